@@ -1,0 +1,207 @@
+"""Proofs of the sign of a polynomial over a whole box of parameters, in exact arithmetic.
+
+One variable: Sturm's theorem counts the roots. Several: map the open box to the positive orthant
+by `x = (low + high*u)/(1 + u)`; if no coefficient in `u` is negative the polynomial is positive
+in the box (the Bernstein criterion), else the box is halved. Faces that belong to the box are
+judged by the same rule, one variable fewer, so ends of ranges are never lost and never assumed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from sympy import Dummy, Expr, Interval, Poly, Rational, S, Symbol, expand, factor_list, oo, together
+
+from symbolic.table import interval_text
+
+Box = Mapping[Symbol, Interval]
+
+
+class Outcome(Enum):
+    """The three answers a proof can give."""
+
+    PROVED = "proved"
+    REFUTED = "refuted by a witness"
+    UNKNOWN = "nothing proved"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An outcome with its reason in one sentence; a refutation names its witness there."""
+
+    outcome: Outcome
+    reason: str
+
+    def __bool__(self) -> bool:
+        return self.outcome is Outcome.PROVED
+
+
+def conjunction(*findings: Finding) -> Finding:
+    """All of them: refuted when one is, proved when every one is."""
+    for wanted in (Outcome.REFUTED, Outcome.UNKNOWN):
+        for finding in findings:
+            if finding.outcome is wanted:
+                return finding
+    return Finding(Outcome.PROVED, "; ".join(dict.fromkeys(f.reason for f in findings)))
+
+
+def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
+    """Is the rational function `expression` > 0 everywhere in `box`? (Its poles must lie outside.)
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> positive(1 - x * y, {x: Interval.Ropen(0, 1), y: Interval(0, 1)}).outcome.name
+    'PROVED'
+    >>> positive(x - y, {x: Interval(0, 1), y: Interval(0, 1)}).reason
+    'at x = 0, y = 0 the value is 0'
+    """
+    numerator, denominator = together(expression).as_numer_denom()
+    if denominator.free_symbols:
+        sign = positive(denominator, box, depth)
+        if sign.outcome is not Outcome.PROVED:
+            sign = positive(-denominator, box, depth)
+            if sign.outcome is not Outcome.PROVED:
+                return Finding(Outcome.UNKNOWN, f"the sign of the denominator {denominator} is open")
+            numerator = -numerator
+    elif denominator.is_negative:
+        numerator = -numerator
+    missing = sorted(str(x) for x in numerator.free_symbols - set(box))
+    if missing:
+        raise ValueError(f"positive: no range given for {', '.join(missing)}")
+    finding = _positive(expand(numerator), dict(box), depth)
+    if finding is not None:
+        return finding
+    return Finding(Outcome.UNKNOWN, f"no certificate for {expression} > 0 within {depth} halvings")
+
+
+def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
+    """Is `expression >= 0` in `box`? Proved in the interior, and so by continuity on the closure.
+
+    >>> x = Symbol("x")
+    >>> nonnegative(x * (1 - x) ** 2, {x: Interval(0, 2)}).outcome.name
+    'PROVED'
+    """
+    kept = S.One
+    constant, factors = _factors(expression)
+    for factor, power in factors:
+        kept *= factor ** (power % 2)
+    return positive(constant * kept, {x: r.interior for x, r in box.items()}, depth)
+
+
+def _factors(expression: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
+    numerator, denominator = together(expression).as_numer_denom()
+    constant, factors = factor_list(numerator * denominator)
+    return constant, list(factors)
+
+
+def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+    used = sorted(p.free_symbols, key=str)
+    box = {x: box[x] for x in used}
+    witness = _witness(p, box)
+    if witness is not None:
+        return witness
+    if not used:
+        return Finding(Outcome.PROVED, f"{p} > 0")
+    if len(used) == 1:
+        return _sturm(p, used[0], box[used[0]])
+    interior = _orthant(p, box)
+    if interior is None and depth > 0:
+        return _halved(p, box, depth)
+    if interior is None:
+        return None
+    faces = [_positive(expand(p.subs(x, end)), box, depth) for x in used for end in _ends(box[x])]
+    if any(face is None for face in faces):
+        return None
+    return conjunction(interior, *(face for face in faces if face is not None))
+
+
+def _ends(interval: Interval) -> list[Expr]:
+    return ([] if interval.left_open else [interval.start]) + ([] if interval.right_open else [interval.end])
+
+
+def _samples(interval: Interval) -> list[Expr]:
+    low, high = interval.start, interval.end
+    if high is oo:
+        inside = [low + Rational(1, 8), low + 1, low + 8]
+    else:
+        inside = [low + (high - low) * Rational(k, 8) for k in (1, 4, 7)]
+    return _ends(interval) + inside
+
+
+def _witness(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
+    """A rational point of the box where `p <= 0`, if one of a few is."""
+    points: list[dict[Symbol, Expr]] = [{}]
+    for x, interval in box.items():
+        points = [{**point, x: value} for point in points for value in _samples(interval)]
+    for point in points:
+        value = p.subs(point)
+        if value.is_nonpositive:
+            where = ", ".join(f"{x} = {v}" for x, v in point.items())
+            return Finding(Outcome.REFUTED, f"at {where} the value is {value}" if where else f"the value is {value}")
+    return None
+
+
+def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
+    poly = Poly(p, x).sqf_part()
+    low = None if interval.start is -oo else interval.start
+    high = None if interval.end is oo else interval.end
+    roots = poly.count_roots(low, high)
+    for end, is_open in ((low, interval.left_open), (high, interval.right_open)):
+        if end is not None and is_open and poly.eval(end) == 0:
+            roots -= 1
+    where = f"{x} in {interval_text(interval)}"
+    if roots == 0:  # and the samples of _witness, all positive, fix the sign
+        return Finding(Outcome.PROVED, f"Sturm: {poly.as_expr()} has no root for {where}")
+    return Finding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}")
+
+
+def _orthant(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
+    if all(c.is_nonnegative for c in bernstein(p, box)):
+        where = ", ".join(f"{x} in {interval_text(r)}" for x, r in box.items())
+        return Finding(Outcome.PROVED, f"Bernstein: {p} > 0 for {where}")
+    return None
+
+
+def bernstein(p: Expr, box: Box) -> list[Expr]:
+    """The nonzero coefficients of the polynomial `p` on the orthant that the open `box` is mapped to.
+
+    None negative: positive in the open box. All of one sign, none vanishing: of that sign on the
+    closed box.
+
+    >>> x = Symbol("x")
+    >>> bernstein(x**2 - 3 * x + 3, {x: Interval(0, 1)})
+    [3, 3, 1]
+    """
+    terms = Poly(p, *box).as_dict()
+    for i, interval in enumerate(box.values()):
+        degree = max(powers[i] for powers in terms)
+        images = [_image(interval, k, degree) for k in range(degree + 1)]
+        mapped: dict[tuple[int, ...], Expr] = {}
+        for powers, coefficient in terms.items():
+            for k, c in enumerate(images[powers[i]]):
+                key = (*powers[:i], k, *powers[i + 1 :])
+                mapped[key] = mapped.get(key, S.Zero) + coefficient * c
+        terms = mapped
+    return [terms[powers] for powers in sorted(terms)]
+
+
+def _image(interval: Interval, power: int, degree: int) -> list[Expr]:
+    """Coefficients in `u`, constant first, of `x**power * (1 + u)**degree` with `x` mapped to the orthant."""
+    u = Dummy()
+    low, high = interval.start, interval.end
+    mapped = (low + u) ** power if high is oo else (low + high * u) ** power * (1 + u) ** (degree - power)
+    return [S(c) for c in Poly(mapped, u).all_coeffs()[::-1]]
+
+
+def _halved(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+    x = max(box, key=lambda y: (box[y].end is oo, box[y].measure if box[y].end is not oo else S.Zero))
+    low, high = box[x].start, box[x].end
+    middle = low + 1 if high is oo else (low + high) / 2
+    halves = Interval(low, middle, box[x].left_open), Interval(middle, high, right_open=box[x].right_open)
+    findings = []
+    for half in halves:
+        finding = _positive(p, {**box, x: half}, depth - 1)
+        if finding is None or finding.outcome is Outcome.REFUTED:
+            return finding
+        findings.append(finding)
+    where = ", ".join(f"{y} in {interval_text(r)}" for y, r in box.items())
+    return Finding(Outcome.PROVED, f"Bernstein, by halving: {p} > 0 for {where}")

@@ -1,0 +1,111 @@
+"""What must hold before a table is one: exact, closed, counterclockwise, free of self-crossings.
+
+Every check here is a proof. A table whose boundary is no trigonometric polynomial may be too hard
+for the last two; it is then accepted here and examined by sampling where kernels are built.
+"""
+
+from dataclasses import replace
+from itertools import pairwise
+
+from sympy import Dummy, Expr, Float, I, Interval, S, Symbol, acos, atan, chebyshevu, expand, pi, sign
+
+from symbolic.fourier import boundary_coefficients
+from symbolic.signs import bernstein
+from symbolic.symbols import theta
+from symbolic.table import Component, Table
+from symbolic.zero import vanishes
+
+
+def validated(table: Table) -> Table:
+    """`table` with its letters made the package's own; `ValueError` when it is no table."""
+    table = replace(table, components=tuple(_own_letters(table, c) for c in table.components))
+    _closed(table)
+    if not table.shapes:
+        _simple_and_counterclockwise(table)
+    return table
+
+
+def _own_letters(table: Table, component: Component) -> Component:
+    allowed = {theta.name: theta} | {p.symbol.name: p.symbol for p in table.shapes}
+    allowed |= {str(s): s for p in table.shapes for s in p.range.free_symbols}
+    renamed = {}
+    for expression in (*component.point, component.start, component.end):
+        if expression.has(Float):
+            raise ValueError(f"{table.name}: {expression} contains a rounded float; write 2/25 or '0.08', not 0.08")
+        for symbol in sorted(expression.free_symbols, key=str):
+            if symbol.name not in allowed:
+                accepted = ", ".join(sorted(allowed))
+                raise ValueError(f"{table.name}: unknown symbol {symbol} in {expression}; it may use: {accepted}")
+            renamed[symbol] = allowed[symbol.name]
+    x, y = (coordinate.xreplace(renamed) for coordinate in component.point)
+    return replace(component, point=(x, y), start=component.start.xreplace(renamed), end=component.end.xreplace(renamed))
+
+
+def _closed(table: Table) -> None:
+    ring = (*table.components, table.components[0])
+    for before, after in pairwise(ring):
+        leaves, arrives = before.at(before.end), after.at(after.start)
+        for p, q in zip(leaves, arrives, strict=True):
+            if not vanishes(p - q):
+                raise ValueError(
+                    f"{table.name}: the boundary is not closed: {before.name} ends at "
+                    f"({leaves[0]}, {leaves[1]}) and {after.name} starts at ({arrives[0]}, {arrives[1]})"
+                )
+
+
+def _simple_and_counterclockwise(table: Table) -> None:
+    if len(table.components) > 1 or table.undefined:
+        return
+    c = boundary_coefficients(table.components[0])
+    if c is None:
+        return
+    area = expand(sum((k * abs(value) ** 2 for k, value in c.items()), S.Zero))  # over pi
+    if area.is_nonpositive:
+        raise ValueError(f"{table.name}: the boundary runs clockwise; exchange theta for -theta")
+    crossing = self_crossing(c)
+    if crossing:
+        raise ValueError(f"{table.name}: {crossing}")
+
+
+def self_crossing(c: dict[int, Expr]) -> str | None:
+    """A sentence on where `sum c_k exp(i*k*theta)` meets itself or stops; None when it is proved simple.
+
+    The chord between `m + B` and `m - B` is `2*i*sin(B)` times `sum sgn(k) c_k U_(|k|-1)(cos B)
+    exp(i*k*m)`. A simple regular curve has no zero of that sum for `-1 <= cos B <= 1`; boxes of
+    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part.
+
+    >>> self_crossing({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
+    'the boundary meets itself, or stops, near theta = -89 and 90 degrees'
+    """
+    T, C = Dummy("T", real=True), Dummy("C", real=True)
+    n = max(abs(k) for k in c)
+    total = S.Zero
+    for k, value in c.items():
+        if k:
+            wave = (1 + sign(k) * I * T) ** (2 * abs(k)) * (1 + T**2) ** (n - abs(k))
+            total += sign(k) * value * chebyshevu(abs(k) - 1, C) * wave
+    parts = [expand(part) for part in expand(total).as_real_imag()]
+    box = _unexcluded([p for p in parts if p != 0], {T: Interval(-1, 1), C: Interval(-1, 1)}, 14)
+    if box is None:
+        return None
+    m = 2 * atan((box[T].start + box[T].end) / 2)
+    half = acos((box[C].start + box[C].end) / 2)
+    ends = sorted((angle * 180 / pi).round() for angle in (m - half, m + half))
+    return f"the boundary meets itself, or stops, near theta = {ends[0]} and {ends[1]} degrees"
+
+
+def _unexcluded(parts: list[Expr], box: dict[Symbol, Interval], depth: int) -> dict[Symbol, Interval] | None:
+    """A box of the last generation in which no part keeps its sign; None when every box is excluded."""
+    for part in parts:
+        signs = {c.is_positive if c.is_nonzero else None for c in bernstein(part, box)}
+        if len(signs) == 1 and None not in signs:
+            return None
+    if depth == 0:
+        return box
+    x = max(box, key=lambda y: box[y].measure)
+    middle = (box[x].start + box[x].end) / 2
+    for half in (Interval(box[x].start, middle), Interval(middle, box[x].end)):
+        found = _unexcluded(parts, {**box, x: half}, depth - 1)
+        if found is not None:
+            return found
+    return None

@@ -77,8 +77,8 @@ def derivative_matrix(
     `lam` is the slope of the reflection law at the landing, `lambda` for the uniform contraction
     and `1 - f'(eta1)` for any other (`exit_slope`).
 
-    >>> derivative_matrix(K0=-1, K1=-1, t=2, cos_phi0=1, cos_eta1=1)
-    Matrix([[1, -2], [0, lam]])
+    >>> derivative_matrix(K0=-1, K1=-1, t=2, cos_phi0=1, cos_eta1=1).tolist()
+    [[1, -2], [0, lam]]
     """
     own = {"K0": K0, "K1": K1, "t": t, "cos_phi0": cos_phi0, "cos_eta1": cos_eta1}
     matrix = implicit_derivative()

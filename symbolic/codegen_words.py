@@ -1,0 +1,189 @@
+"""One expression in words of the closed vocabulary, and the refusal of everything else."""
+
+from sympy import Add, Expr, Float, Integer, Mul, Pow, Rational, S, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
+from sympy.core.function import AppliedUndef
+
+FUNCTIONS = {sin: "sin", cos: "cos", atan: "atan", exp: "exp", log: "log", sqrt: "sqrt"}
+SUM, PRODUCT, ATOM = range(3)
+
+
+def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
+    """`ValueError` when `expression` holds a float, an unknown letter, or a word outside the vocabulary.
+
+    >>> checked("x", S(2) / 5, set())
+    >>> checked("x", Float("0.4"), set())
+    Traceback (most recent call last):
+    ...
+    ValueError: x: 0.400000000000000 is a rounded float; write it exactly, as Rational(2, 5)
+    """
+    for part in expression.atoms(Float):
+        near = Rational(str(part)).limit_denominator(1000)
+        raise ValueError(f"{label}: {part} is a rounded float; write it exactly, as Rational({near.p}, {near.q})")
+    for symbol in sorted(expression.free_symbols - known, key=str):
+        raise ValueError(f"{label}: {symbol} is neither an argument nor defined; known are {_listed(known)}")
+    for node in _nodes(expression):
+        if not _in_vocabulary(node):
+            kind = node.func.__name__ if not isinstance(node, AppliedUndef) else str(node.func)
+            raise ValueError(
+                f"{label}: {kind} in {node} is outside the vocabulary; it has + - * /, rationals, pi, "
+                f"powers by integers and halves, tan, {', '.join(sorted(FUNCTIONS.values()))}"
+            )
+
+
+def _nodes(e: Expr) -> list[Expr]:
+    found, queue = [], [e]
+    while queue:
+        node = queue.pop()
+        found.append(node)
+        queue.extend(node.args)
+    return found
+
+
+def _in_vocabulary(e: Expr) -> bool:
+    if isinstance(e, Rational) or e in (pi, S.Exp1) or isinstance(e, Symbol | Add | Mul | tan):
+        return True
+    if isinstance(e, Pow):
+        return isinstance(e.exp, Rational) and e.exp.q in (1, 2)
+    return e.func in FUNCTIONS
+
+
+def _listed(symbols: set[Symbol]) -> str:
+    return ", ".join(sorted(str(s) for s in symbols)) or "none"
+
+
+class Words:
+    """A printer that keeps the names it gave and the words it used."""
+
+    def __init__(self, taken: set[str]) -> None:
+        self.taken = taken
+        self.names: dict[Symbol, str] = {}
+        self.used: set[str] = set()
+        self.before: list[tuple[str, str]] = []
+        self.powers: dict[tuple[str, int], str] = {}
+        self.count = 0
+
+    def rename(self, symbol: Symbol) -> str:
+        """The next free temporary name, kept for `symbol`."""
+        self.names[symbol] = self._fresh()
+        return self.names[symbol]
+
+    def assignment(self, e: Expr) -> tuple[list[tuple[str, str]], list[str]]:
+        """Assignments needed first, and the terms of `e`, each with its sign."""
+        self.before = []
+        terms = [self._term(term, i > 0) for i, term in enumerate(_terms(e))]
+        return self.before, terms
+
+    def _fresh(self) -> str:
+        name = f"c{self.count}"
+        self.count += 1
+        return self._fresh() if name in self.taken else name
+
+    def _term(self, e: Expr, inner: bool) -> str:
+        text, _ = self._print(e)
+        if not inner:
+            return text
+        return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
+
+    def _print(self, e: Expr) -> tuple[str, int]:
+        if isinstance(e, Symbol):
+            return self.names.get(e, e.name), ATOM
+        if isinstance(e, Integer):
+            return str(e), ATOM if e >= 0 else SUM
+        if isinstance(e, Rational):
+            self.used.add("q")
+            return (f"q({e.p}, {e.q})", ATOM) if e > 0 else (f"-q({-e.p}, {e.q})", SUM)
+        if e == pi:
+            self.used.add("pi")
+            return "pi", ATOM
+        if isinstance(e, Add):
+            return " ".join(self._term(term, i > 0) for i, term in enumerate(_terms(e))), SUM
+        if isinstance(e, Mul):
+            return self._product(e)
+        if isinstance(e, Pow) and e.exp.is_negative:
+            return self._product(e)
+        if isinstance(e, Pow):
+            return self._power(e.base, e.exp)
+        return self._call(e)
+
+    def _call(self, e: Expr) -> tuple[str, int]:
+        if e == S.Exp1:
+            self.used.add("exp")
+            return "exp(1)", ATOM
+        if isinstance(e, tan):
+            return self._product(sin(e.args[0]) / cos(e.args[0]))
+        word = FUNCTIONS[e.func]
+        self.used.add(word)
+        return f"{word}({self._print(e.args[0])[0]})", ATOM
+
+    def _product(self, e: Expr) -> tuple[str, int]:
+        coefficient, rest = e.as_coeff_Mul()
+        sign, coefficient = ("-", -coefficient) if coefficient < 0 else ("", coefficient)
+        above, below = [], []
+        for factor in _factors(rest):
+            if isinstance(factor, Pow) and factor.exp.is_negative:
+                below.append(self._factor(Pow(factor.base, -factor.exp)))
+            else:
+                above.append(self._factor(factor))
+        if coefficient != 1 or not above:
+            above.insert(0, self._factor(coefficient))
+        if len(above) == 1 and not below and coefficient == 1:
+            above = [self._print(rest)[0]] if not isinstance(rest, Mul | Pow) else above
+        text = sign + "*".join(above)
+        if below:
+            product = "*".join(below)
+            text += "/" + (product if _closed(product) else f"({product})")
+        return text, PRODUCT if not sign else SUM
+
+    def _factor(self, e: Expr) -> str:
+        text, level = self._print(e)
+        return text if level >= PRODUCT and "/" not in text else f"({text})"
+
+    def _power(self, base: Expr, power: Rational) -> tuple[str, int]:
+        whole, half = divmod(power, 1)
+        parts = [self._whole_power(self._named(base), int(whole))] if whole else []
+        if half:
+            self.used.add("sqrt")
+            inner = self._named(base) if whole else self._print(base)[0]
+            parts.append(f"sqrt({inner})")
+        return "*".join(parts), ATOM if len(parts) == 1 and "*" not in parts[0] else PRODUCT
+
+    def _named(self, base: Expr) -> str:
+        if isinstance(base, Symbol) or base == pi:
+            return self._print(base)[0]
+        text = self._print(base)[0]
+        return self._kept((text, 1), text)
+
+    def _whole_power(self, name: str, n: int) -> str:
+        if n <= 3:
+            return "*".join([name] * n)
+        half = self._kept((name, n // 2), self._whole_power(name, n // 2))
+        return "*".join([half, half] + [name] * (n % 2))
+
+    def _kept(self, key: tuple[str, int], text: str) -> str:
+        if key not in self.powers:
+            self.powers[key] = self._fresh()
+            self.before.append((self.powers[key], text))
+        return self.powers[key]
+
+
+def _closed(text: str) -> bool:
+    """True for a name, a number, or one call or one pair of parentheses around everything."""
+    depth = 0
+    for i, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if depth == 0 and (character in "*/+- " or (character == ")" and i + 1 < len(text))):
+            return False
+    return True
+
+
+def _terms(e: Expr) -> list[Expr]:
+    """The terms of a sum in SymPy's printing order, a positive one first where there is one."""
+    if not isinstance(e, Add):
+        return [e]
+    terms = list(e.as_ordered_terms())
+    first = next((t for t in terms if not t.could_extract_minus_sign()), terms[0])
+    return [first, *(t for t in terms if t is not first)]
+
+
+def _factors(e: Expr) -> list[Expr]:
+    return list(e.as_ordered_factors()) if e != 1 else []

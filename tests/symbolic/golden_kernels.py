@@ -1,0 +1,58 @@
+"""Writes the golden kernels: `python tests/symbolic/golden_kernels.py [FOLDER]`, from the repository's root."""
+
+import sys
+from pathlib import Path
+
+from symbolic.chords import chord_kernel, collision_kernel
+from symbolic.codegen import Kernel, kernel, module_text
+from symbolic.collision import derivative_matrix
+from symbolic.geometry import curvature
+from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
+from symbolic.table import Table
+from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
+
+TABLES: dict[str, Table] = {
+    "circle": circle,
+    "ellipse": ellipse,
+    "cardioid": cardioid,
+    "cuspless": cuspless,
+    "egg": egg(3),
+}
+ARC, WALL = 0, 1
+PAIRS = {"cuspless": [(ARC, ARC), (ARC, WALL), (WALL, ARC)]}
+TRIPLES = {"cuspless": [(ARC, ARC, ARC), (ARC, ARC, WALL), (WALL, ARC, ARC), (WALL, ARC, WALL), (ARC, WALL, ARC)]}
+
+
+def curvatures(table: Table) -> list[Kernel]:
+    """A kernel of `theta` and the shape for each component's curvature."""
+    shapes = [p.symbol for p in table.shapes]
+    return [
+        kernel(f"curvature_{i}", [theta, *shapes], {"curvature": curvature(c)}, about=f"Signed curvature, {c.name}.")
+        for i, c in enumerate(table.components)
+    ]
+
+
+def files() -> dict[str, str]:
+    """The text of each golden file, by name."""
+    made = {}
+    for name, table in TABLES.items():
+        chords = [chord_kernel(table, *pair, order=2) for pair in PAIRS.get(name, [(0, 0)])]
+        rules = [collision_kernel(table, triple) for triple in TRIPLES.get(name, [(0, 0, 0)])]
+        made[f"chords_{name}.py"] = module_text(chords, f"symbolic.chords.chord_angle, table {name}")
+        made[f"rules_{name}.py"] = module_text(rules, f"symbolic.chords.collision_rule, table {name}")
+        made[f"curvature_{name}.py"] = module_text(curvatures(table), f"symbolic.geometry.curvature, table {name}")
+    matrix = derivative_matrix()
+    entries = {
+        f"d{row}_d{column}": matrix[i, j]
+        for i, row in enumerate(("s1", "phi1"))
+        for j, column in enumerate(("s0", "phi0"))
+    }
+    step = kernel("derivative_matrix", [K0, K1, t, cos_phi0, cos_eta1, lam], entries, about="d(s1, phi1)/d(s0, phi0).")
+    made["derivative_matrix.py"] = module_text([step], "symbolic.collision.derivative_matrix")
+    return made
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent / "golden"
+    for name, text in files().items():
+        (folder / name).write_text(text)

@@ -53,7 +53,8 @@ def test_double_normals_obey_the_rule_for_every_contraction(cycle):
 
 @pytest.mark.parametrize("at_flat", [True, False])
 def test_triangles_of_the_egg_obey_the_elastic_rule_for_every_alpha(at_flat):
-    assert all(vanishes(r) for r in residuals(egg_triangle(at_flat), S.One))
+    for r in residuals(egg_triangle(at_flat), S.One):
+        assert vanishes(r.replace(atan, lambda ratio: ratio))  # atan(u) + atan(v) = 0 exactly when u + v = 0
 
 
 def test_derivatives_are_those_of_the_angle():
@@ -69,7 +70,10 @@ def test_derivatives_are_those_of_the_angle():
     assert simplify(diff(angle, t1) + bend(chord, t1)) == 0
 
 
-@pytest.mark.parametrize(("table", "pair"), [(egg(3), (0, 0)), (cuspless, (0, 1)), (cuspless, (1, 0)), (ellipse, (0, 0))])
+CHORDS = [(egg(3), (0, 0)), (cuspless, (0, 1)), (cuspless, (1, 0)), (ellipse, (0, 0))]
+
+
+@pytest.mark.parametrize(("table", "pair"), CHORDS)
 def test_each_derivative_agrees_with_a_difference_quotient(table: Table, pair: tuple[int, int]):
     context = mpmath.MPContext()
     context.dps = 60
@@ -90,7 +94,9 @@ def test_each_derivative_agrees_with_a_difference_quotient(table: Table, pair: t
                 assert abs(angle(*at)[names.index(derivative)] - quotient) < 1e-25  # h**2 times a third derivative
 
 
-CYCLES = [cardioid_vertical(), cuspless_horizontal(), minor_axis(), egg_diameter(), egg_triangle(True), egg_triangle(False)]
+CYCLES = [
+    cardioid_vertical(), cuspless_horizontal(), minor_axis(), egg_diameter(), egg_triangle(True), egg_triangle(False)
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("cycle", CYCLES, ids=lambda c: f"{c.table.name}-{c.name}")

@@ -1,0 +1,46 @@
+# `make verify` judges the paper, `make test` tests the package; both make .venv first.
+# On another machine: make PYTHON=python3.12, make test JOBS=8.
+
+PYTHON ?= python3
+JOBS ?= auto
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: verify test lint bench clean
+.DELETE_ON_ERROR:
+
+# Open claims are a result (exit status 1); a run that wrote no report is a failure.
+verify: $(VENV)/main.stamp
+	@rm -f report/report.json
+	@status=0; $(BIN)/pinball verify --report report || status=$$?; \
+	test $$status -le 1 && test -f report/report.json
+
+test: lint
+	$(BIN)/python -m pytest -q -n $(JOBS)
+
+lint: $(VENV)/test.stamp
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/bench.stamp
+	$(BIN)/pinball bench
+
+clean:
+	rm -rf $(VENV) report dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# A stamp is a finished installation; it is made again when pyproject.toml changes.
+$(VENV)/main.stamp: extras :=
+$(VENV)/test.stamp: extras := [test]
+$(VENV)/bench.stamp: extras := [bench]
+
+$(VENV)/%.stamp: pyproject.toml $(VENV)/made.stamp
+	$(BIN)/python -m pip install --quiet --editable ".$(extras)"
+	@touch $@
+
+$(VENV)/made.stamp:
+	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("Python 3.11 or later is needed: make PYTHON=...")'
+	$(PYTHON) -m venv $(VENV)
+	@touch $@

@@ -1,0 +1,92 @@
+"""Laws on the repository itself: what each storey may hold, and what nothing may do."""
+
+import ast
+import doctest
+import re
+import subprocess
+import sys
+import tokenize
+import tomllib
+from itertools import chain
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+STOREYS = ("symbolic", "numeric", "verification")
+CODE = sorted(path for storey in STOREYS for path in (ROOT / storey).rglob("*.py"))
+TESTS = sorted(path for path in (ROOT / "tests").rglob("*.py") if "golden" not in path.parts)
+READERS_OF_TEXT = {"eval", "sympify", "parse_expr", "__import__"}
+EXECUTES = {Path("symbolic/codegen.py")}  # compiles what it has written itself
+LINES = 350
+
+
+def named(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def calls(path: Path) -> set[str]:
+    """The plain names that a file calls."""
+    nodes = ast.walk(ast.parse(path.read_text()))
+    return {node.func.id for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+
+
+@pytest.mark.parametrize("path", [path for path in CODE if "symbolic" in path.parts], ids=named)
+def test_the_symbolic_storey_holds_no_float(path):
+    with path.open("rb") as file:
+        numbers = [token for token in tokenize.tokenize(file.readline) if token.type == tokenize.NUMBER]
+
+    assert [token for token in numbers if not isinstance(ast.literal_eval(token.string), int)] == []
+
+
+@pytest.mark.parametrize("path", CODE, ids=named)
+def test_no_text_is_evaluated(path):
+    assert not calls(path) & READERS_OF_TEXT
+    assert "exec" not in calls(path) or path.relative_to(ROOT) in EXECUTES
+
+
+@pytest.mark.parametrize("path", CODE, ids=named)
+def test_precision_is_never_set_for_others(path):
+    assert not re.search(r"\b(mp|iv|fp|ctx)\.(dps|prec)\s*[-+*]?=[^=]", path.read_text())
+
+
+@pytest.mark.parametrize("path", CODE + TESTS, ids=named)
+def test_a_file_holds_one_idea(path):
+    assert len(path.read_text().splitlines()) <= LINES
+
+
+@pytest.mark.parametrize("path", CODE, ids=named)
+def test_a_file_begins_with_what_it_is(path):
+    text = path.read_text()
+
+    assert not text.strip() or ast.get_docstring(ast.parse(text))
+
+
+def test_tests_are_no_packages():
+    assert list((ROOT / "tests").rglob("__init__.py")) == []
+
+
+def test_imports_only_go_down():
+    linter = Path(sys.executable).parent / "lint-imports"
+    done = subprocess.run([linter], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
+
+    assert done.returncode == 0, done.stdout
+
+
+def test_dependencies_have_lower_bounds_only():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for requirement in chain(project["dependencies"], *project["optional-dependencies"].values()):
+        assert re.fullmatch(r"[a-z-]+>=[\d.]+", requirement)
+
+
+def test_the_readme_is_true():
+    result = doctest.testfile(str(ROOT / "README.md"), module_relative=False)
+
+    assert result.attempted >= 5
+    assert result.failed == 0
+
+
+def test_the_two_commands_of_the_readme_exist():
+    makefile = (ROOT / "Makefile").read_text()
+    for target in re.findall(r"^    make (\w+)", (ROOT / "README.md").read_text(), re.MULTILINE):
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE)

@@ -52,8 +52,8 @@ def test_what_is_wrong_in_the_paper_is_listed_first_and_ready_to_be_sent():
     text = markdown([Result(), WRONG], VERSIONS)
 
     errata, claims = text.split("## 3.3 Stability")
-    assert "1. Section 6.3 Period-2 orbits (`egg.mu`). the sign of lam is wrong." in errata
-    assert "- printed: `1 + lam`\n   - derived: `1 - lam`" in errata
+    assert "1. Section 6.3 Period-2 orbits (`egg.mu`). The sign of lam is wrong." in errata
+    assert "\n\n   > the period-$2$ orbit has $P_1 = 1$\n\n   - printed: `1 + lam`\n   - derived: `1 - lam`" in errata
     assert "ellipse.P1" not in errata
     assert "### `ellipse.P1`: confirmed" in claims
 
@@ -105,6 +105,16 @@ def test_a_formula_without_dollars_is_shown_as_the_latex_it_is():
 
 def test_a_sentence_is_not_set_as_a_formula():
     assert "- printed: The table is a circle.\n" in markdown([Result(printed="The table is a circle.")], VERSIONS)
+
+
+def test_words_are_not_taken_for_markdown():
+    text = markdown([Result(derived="the area is a*b*pi for 1 < a <b [note](x)")], VERSIONS)
+
+    assert r"- derived: the area is a\*b\*pi for 1 < a \<b [note\](x)" in text
+
+
+def test_no_two_blank_lines_follow_each_other():
+    assert "\n\n\n" not in markdown([WRONG, Result(printed="x + " * 40 + "1", value="1" * 200)], VERSIONS)
 
 
 def test_the_report_says_what_it_was_made_with():

@@ -1,0 +1,124 @@
+"""Cyclic tridiagonal systems, solved in linear time over any kind of number.
+
+Row `i` of a chain says `lower[i]*x[i-1] + diagonal[i]*x[i] + upper[i]*x[i+1] = r[i]`; around the end
+`x[n] = sign*x[0]`, with `sign = -1` for vectors that come back negated. The last unknown is set
+apart; the others are eliminated in order, without pivoting. The pivots follow the direction that
+the cycle's derivative attracts, so in a dissipative map rounding errors (and the radii of balls) die
+out along the chain instead of multiplying. A pivot that may be 0 ends in `nan` balls: nothing proved.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+Vector = list[Any]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The three diagonals of a cyclic tridiagonal matrix of at least two rows, and its sign."""
+
+    lower: Sequence[Any]
+    diagonal: Sequence[Any]
+    upper: Sequence[Any]
+    sign: int = 1
+
+    def __post_init__(self) -> None:
+        if len(self.diagonal) < 2:
+            raise ValueError(f"chain: {len(self.diagonal)} row is no chain; a cycle has at least 2 bounces")
+
+    def times(self, x: Sequence[Any]) -> Vector:
+        """The matrix times `x`.
+
+        >>> Chain([1, 1, 1], [2, 2, 2], [3, 3, 3], -1).times([1, 0, 0])
+        [2, 1, -3]
+        """
+        n, s = len(x), self.sign
+        padded = [s * x[-1], *x, s * x[0]]
+        return [
+            self.lower[i] * padded[i] + self.diagonal[i] * padded[i + 1] + self.upper[i] * padded[i + 2]
+            for i in range(n)
+        ]
+
+
+class Elimination:
+    """A chain with all unknowns but the last eliminated; the last one's pivot is `rest`.
+
+    `right` and `left` are the vectors with last entry 1 that the matrix, from either side, maps to
+    `(0, ..., 0, rest)`. The matrix is singular exactly when `rest` is 0; they span its kernels then.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
+        n, s = len(chain.diagonal), chain.sign
+        self.pivots: Vector = [chain.diagonal[0]]
+        self.factors: Vector = [0]
+        for i in range(1, n - 1):
+            factor = chain.lower[i] / self.pivots[-1]
+            self.factors.append(factor)
+            self.pivots.append(chain.diagonal[i] - factor * chain.upper[i - 1])
+        column: Vector = [0] * (n - 1)
+        column[0] = s * chain.lower[0]
+        column[-1] = column[-1] + chain.upper[n - 2]
+        self.row: Vector = [0] * (n - 1)
+        self.row[0] = s * chain.upper[n - 1]
+        self.row[-1] = self.row[-1] + chain.lower[n - 1]
+        self.right: Vector = [*self.inner([-c for c in column]), 1]
+        self.left: Vector = [*self._transposed([-c for c in self.row]), 1]
+        self.rest = chain.diagonal[n - 1] + dot(self.row, self.right)
+
+    def inner(self, r: Sequence[Any]) -> Vector:
+        """The solution of the rows but the last, with the last unknown 0."""
+        x = [r[0]]
+        for i in range(1, len(self.pivots)):
+            x.append(r[i] - self.factors[i] * x[i - 1])
+        x[-1] = x[-1] / self.pivots[-1]
+        for i in range(len(x) - 2, -1, -1):
+            x[i] = (x[i] - self.chain.upper[i] * x[i + 1]) / self.pivots[i]
+        return x
+
+    def _transposed(self, r: Sequence[Any]) -> Vector:
+        x = [r[0] / self.pivots[0]]
+        for i in range(1, len(self.pivots)):
+            x.append((r[i] - self.chain.upper[i - 1] * x[i - 1]) / self.pivots[i])
+        for i in range(len(x) - 2, -1, -1):
+            x[i] = x[i] - self.factors[i + 1] * x[i + 1]
+        return x
+
+    def solve(self, r: Sequence[Any]) -> Vector:
+        """`x` with `chain.times(x) = r`."""
+        return self.bordered([], [], [], r)
+
+    def bordered(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
+        """The solution of the chain with one more unknown and one more equation.
+
+        `column` are the coefficients of the new unknown in the chain's rows, `row` and `corner` the
+        new equation. With an empty `column` there is neither. `r` is the right side.
+
+        >>> from fractions import Fraction
+        >>> one = Elimination(Chain(*[[Fraction(1)] * 3, [Fraction(4)] * 3, [Fraction(1)] * 3]))
+        >>> [int(x) for x in one.bordered([1, 0, 0], [1, 1, 1], [0], [5, 6, 6, 3])]
+        [1, 1, 1, -1]
+        """
+        n = len(self.chain.diagonal)
+        plain = self.inner(r[: n - 1])
+        gap = r[n - 1] - dot(self.row, plain)
+        if not column:
+            last = gap / self.rest
+            return [p + last * v for p, v in zip(plain, self.right, strict=False)] + [last]
+        with_new = self.inner(column[: n - 1])
+        a, b = self.rest, column[n - 1] - dot(self.row, with_new)
+        c, d = dot(row, self.right), corner[0] - dot(row, with_new)
+        other = r[n] - dot(row, plain)
+        determinant = a * d - b * c
+        last, new = (gap * d - b * other) / determinant, (a * other - gap * c) / determinant
+        found = [p - new * m + last * v for p, m, v in zip(plain, with_new, self.right, strict=False)]
+        return [*found, last, new]
+
+
+def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
+    """The sum of products; the longer vector's further entries do not count."""
+    total: Any = 0
+    for p, r in zip(x, y, strict=False):
+        total = total + p * r
+    return total

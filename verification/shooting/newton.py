@@ -1,0 +1,117 @@
+"""Newton's method on a problem, in mpmath, with a precision that doubles at each step.
+
+A step needs no more digits than it will make right, so the last step costs as much as all others
+together. The precision lives in a context made here; the ambient `mpmath.mp` is not touched.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import mpmath
+
+from verification.arithmetic import FLOAT64, bits_of, multiprecision
+from verification.shooting.problem import Linearised, Problem, Rows
+
+GUARD = 15  # decimal digits beyond those asked for
+START = 16  # digits of the first step in mpmath
+ATTEMPTS = 6  # steps with the same number of digits
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: the digits it was computed with, and the size of the correction it made."""
+
+    digits: int
+    correction: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Numbers of an mpmath context that solve a problem to about `digits` digits, not proved."""
+
+    problem: Problem
+    z: list[Any]
+    digits: int
+    steps: tuple[Step, ...] = field(repr=False)
+
+
+def refined(problem: Problem, start: Sequence[Any], digits: int) -> Solution:
+    """The solution near `start` to `digits` digits.
+
+    >>> from symbolic.tables import ellipse
+    >>> from sympy import Rational
+    >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
+    >>> found = refined(axis, [1.5, -1.6], 30)
+    >>> mpmath.nstr(found.z[0], 30)
+    '1.57079632679489661923132169164'
+    """
+    context = mpmath.MPContext()
+    context.prec = 53
+    z = [context.mpf(x) for x in floats(problem, start)]
+    rows = Rows(problem, multiprecision(context))
+    steps: list[Step] = []
+    for level in levels(digits + GUARD):
+        context.dps = level
+        for attempt in range(ATTEMPTS):
+            correction = _step(rows, z)
+            z = [x - d for x, d in zip(z, correction, strict=True)]
+            steps.append(Step(level, _log10(context, max(abs(d) for d in correction))))
+            right = -2 * steps[-1].correction  # convergence is quadratic
+            if right >= (digits + GUARD // 2 if level == digits + GUARD else 0.7 * level):
+                break
+            if attempt == ATTEMPTS - 1:
+                raise ValueError(
+                    f"{problem.table.name}: {ATTEMPTS} Newton steps with {level} digits still correct by "
+                    f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
+                )
+    return Solution(problem, z, digits, tuple(steps))
+
+
+def levels(digits: int) -> list[int]:
+    """The digits of each step, doubling (nearly) up to `digits`.
+
+    >>> levels(100)
+    [16, 28, 52, 100]
+    """
+    found = [digits]
+    while found[0] > 2 * START - 4:
+        found.insert(0, found[0] // 2 + 2)
+    return found if found[0] <= START or digits <= START else [START, *found]
+
+
+def floats(problem: Problem, start: Sequence[Any], steps: int = 40) -> list[float]:
+    """The solution near `start` in float64: steps as long as they shorten.
+
+    >>> from symbolic.tables import ellipse
+    >>> from sympy import Rational
+    >>> [round(x, 12) for x in floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6])]
+    [1.570796326795, -1.570796326795]
+    """
+    rows, z = Rows(problem, FLOAT64), [float(x) for x in start]
+    sizes: list[float] = []
+    for _ in range(steps):
+        try:
+            correction = _step(rows, z)
+        except ZeroDivisionError:
+            break
+        size = max(abs(d) for d in correction)
+        if len(sizes) > 4 and size < 1e-6 and size >= sizes[-1]:
+            return z
+        reach = min(1.0, 0.3 / size) if size > 0 else 1.0
+        z = [x - reach * d for x, d in zip(z, correction, strict=True)]
+        sizes.append(size)
+        if size < 1e-15:
+            return z
+    if sizes and sizes[-1] < 1e-6:
+        return z
+    raise ValueError(f"{problem.table.name}: Newton's method in float64 did not settle from {[*start][:4]} ...")
+
+
+def _step(rows: Rows, z: list[Any]) -> list[Any]:
+    at = Linearised(rows, z)
+    return at.solve(at.value)
+
+
+def _log10(context: Any, size: Any) -> float:
+    return float(context.log10(size)) if size else -float(bits_of(context.dps))

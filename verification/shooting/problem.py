@@ -1,0 +1,153 @@
+"""What is sought: a cycle of the chord system, by itself or where it bifurcates.
+
+Unknowns are the boundary parameters of the bounces and, at a bifurcation, one free letter: `lam` or
+a shape. Equations are the collision rule at every bounce and, at a bifurcation, `rest = 0`: the one
+number that makes the linearised system singular on vectors that come back unchanged (fold) or
+negated (flip). All of it holds for any kind of number that the kernels can be loaded with.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+from sympy import Rational
+
+from symbolic.chords import chord_kernel
+from symbolic.codegen import load
+from symbolic.table import Table
+from verification.arithmetic import Arithmetic
+from verification.shooting.chain import Chain, Elimination, Vector, dot
+
+
+class Kind(IntEnum):
+    """What is required of a cycle; the value is the sign of the vectors that its bifurcation keeps."""
+
+    CYCLE = 0
+    FOLD = 1
+    FLIP = -1
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A cycle by its components, in a table whose only free shape is `free`; `lam` is exact or free."""
+
+    table: Table
+    components: tuple[int, ...]
+    kind: Kind = Kind.CYCLE
+    free: str = ""
+    lam: Rational | None = None
+
+    def __post_init__(self) -> None:
+        shapes = {p.symbol.name for p in self.table.shapes}
+        if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
+            raise ValueError(f"{self.table.name}: free letters must be just {self.free or 'none'}; lam = {self.lam}")
+        if (self.kind is Kind.CYCLE) != (not self.free):
+            raise ValueError(f"{self.table.name}: {self.kind.name} with {self.free or 'no letter'} free is not square")
+
+    @property
+    def period(self) -> int:
+        """The number of bounces."""
+        return len(self.components)
+
+
+class Rows:
+    """The collision rule along a cycle, with derivatives, in one kind of number."""
+
+    def __init__(self, problem: Problem, arithmetic: Arithmetic) -> None:
+        self.problem, self.arithmetic = problem, arithmetic
+        self.shape = problem.free if problem.free not in ("", "lam") else ""
+        self.loaded: dict[tuple[int, int, int], Any] = {}
+
+    def kernel(self, here: int, there: int, order: int) -> Any:
+        """The loaded chord kernel between two components."""
+        key = here, there, order
+        if key not in self.loaded:
+            self.loaded[key] = load(chord_kernel(self.problem.table, *key), self.arithmetic)
+        return self.loaded[key]
+
+    def places(self, order: int) -> dict[str, int]:
+        """Where a kernel returns each derivative."""
+        return {name: i for i, name in enumerate(chord_kernel(self.problem.table, 0, 0, order).results)}
+
+    def contraction(self, z: Vector) -> Any:
+        """`lam`, given or unknown."""
+        lam = self.problem.lam
+        return z[-1] if lam is None else self.arithmetic["q"](int(lam.p), int(lam.q))
+
+    def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
+        """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""
+        components, n = self.problem.components, self.problem.period
+        shape = (z[n],) if self.shape else ()
+        out, into = [], []
+        for i in range(n):
+            here, before, after = components[i], (i - 1) % n, (i + 1) % n
+            out.append(self.kernel(here, components[after], order)(z[i], z[after], *shape))
+            into.append(self.kernel(here, components[before], order)(z[i], z[before], *shape))
+        return out, into
+
+
+class Linearised:
+    """The equations of a problem and their first derivatives at one point, or over one box."""
+
+    def __init__(self, rows: Rows, z: Vector, slope: bool = True) -> None:
+        problem = rows.problem
+        self.problem, self.z, self.rows = problem, z, rows
+        critical = problem.kind is not Kind.CYCLE
+        order = 2 if critical and slope else 1
+        self.lam = lam = rows.contraction(z)
+        self.out, self.into = out, into = rows.angles(z, order)
+        self.rule = [f[0] + lam * b[0] for f, b in zip(out, into, strict=True)]
+        upper = [f[2] for f in out]
+        diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
+        lower = [lam * b[2] for b in into]
+        self.value: Vector = list(self.rule)
+        self.cycle = Elimination(Chain(lower, diagonal, upper)) if slope or not critical else None
+        if critical:
+            self.critical = Elimination(Chain(lower, diagonal, upper, int(problem.kind)))
+            self.value.append(self.critical.rest)
+            if slope:
+                self.by_letter = self._by_letter()
+                self.row, self.corner = self._of_rest()
+
+    def solve(self, r: Vector) -> Vector:
+        """The matrix of first derivatives, inverted on `r`."""
+        assert self.cycle is not None
+        if self.problem.kind is Kind.CYCLE:
+            return self.cycle.solve(r)
+        return self.cycle.bordered(self.by_letter[0], self.row, [self.corner], r)
+
+    def _by_letter(self) -> tuple[Vector, Vector, Vector, Vector]:
+        """The derivatives by the free letter of the rule and of the three diagonals."""
+        if self.problem.free == "lam":
+            rule, lower, diagonal = ([b[k] for b in self.into] for k in (0, 2, 1))
+            return rule, lower, diagonal, [0] * len(rule)
+        at, s, lam = self.rows.places(2), self.rows.shape, self.lam
+        r, d, u = at[f"angle_{s}"], at[f"angle_0_{s}"], at[f"angle_1_{s}"]
+        both = list(zip(self.out, self.into, strict=True))
+        return (
+            [f[r] + lam * b[r] for f, b in both],
+            [lam * b[u] for _, b in both],
+            [f[d] + lam * b[d] for f, b in both],
+            [f[u] for f, _ in both],
+        )
+
+    def _of_rest(self) -> tuple[Vector, Any]:
+        """The derivatives of `rest` by the parameters and by the free letter: `left . dJ . right`."""
+        at = self.rows.places(2)
+        hh, ho, oo = at["angle_00"], at["angle_01"], at["angle_11"]
+        n, sign, lam = self.problem.period, int(self.problem.kind), self.lam
+        v, w = self.critical.right, self.critical.left
+        by_theta: Vector = [0] * n
+        for i, (f, b, weight) in enumerate(zip(self.out, self.into, w, strict=True)):
+            here = v[i]
+            before = v[i - 1] if i else sign * v[n - 1]
+            after = v[i + 1] if i < n - 1 else sign * v[0]
+            back_mixed, forth_mixed = lam * b[ho], f[ho]
+            back = lam * b[oo] * before + back_mixed * here
+            own = back_mixed * before + (f[hh] + lam * b[hh]) * here + forth_mixed * after
+            forth = forth_mixed * here + f[oo] * after
+            by_theta[i - 1] = by_theta[i - 1] + weight * back
+            by_theta[i] = by_theta[i] + weight * own
+            by_theta[(i + 1) % n] = by_theta[(i + 1) % n] + weight * forth
+        _, lower, diagonal, upper = self.by_letter
+        return by_theta, dot(w, Chain(lower, diagonal, upper, sign).times(v))

@@ -49,7 +49,7 @@ def implicit_derivative() -> Matrix:
     flight = (X1 - X0) * sin(direction) - (Y1 - Y0) * cos(direction)
     minus_eta = direction - psi1 + pi / 2
 
-    frenet = {}
+    frenet: dict[Expr, Expr] = {}
     for (X, Y, psi), s, kappa in ((ends[0], s0, K0), (ends[1], s1, K1)):
         frenet |= {Derivative(X, s): cos(psi), Derivative(Y, s): sin(psi), Derivative(psi, s): -kappa}
 

@@ -7,7 +7,7 @@ typed in. Paper: end of section 2.1.
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Expr, Matrix, S, cancel, expand_trig, eye, simplify, sqrt, together
+from sympy import Expr, Matrix, cancel, expand_trig, eye, factor, simplify, sqrt, together
 
 from symbolic.collision import derivative_matrix
 from symbolic.ranges import parameter_box, root
@@ -149,7 +149,7 @@ def trace_and_determinant(cycle: Cycle, contraction: Expr = lam) -> tuple[Expr, 
 
 def discriminant(trace: Expr, det: Expr) -> Expr:
     """`trace**2 - 4*det`: negative where the multipliers are complex conjugates."""
-    return simplify(trace**2 - 4 * det)
+    return factor(trace**2 - 4 * det)
 
 
 def multipliers(trace: Expr, det: Expr) -> tuple[Expr, Expr]:

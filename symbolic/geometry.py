@@ -4,7 +4,7 @@ Signs: the boundary runs counterclockwise, the normal points inwards, and the cu
 focusing component is negative (the paper's convention; textbooks use the opposite sign).
 """
 
-from sympy import Expr, Matrix, cos, expand, simplify, sin, sqrt
+from sympy import Expr, Matrix, expand, simplify, sqrt
 from sympy.simplify.fu import TR8
 
 from symbolic.symbols import theta
@@ -89,4 +89,3 @@ def trigonometric(expression: Expr) -> Expr:
         if summed == expression:
             return summed
         expression = summed
-

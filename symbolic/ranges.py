@@ -24,7 +24,7 @@ def root(square: Expr, box: Box) -> Expr:
 
     >>> x = Symbol("x", real=True)
     >>> root(x**2 - 2 * x + 1, {x: Interval(2, 3)}), root(x**3 + x, {x: Interval(2, 3)})
-    (x - 1, sqrt(x*(x**2 + 1)))
+    (x - 1, sqrt(x)*sqrt(x**2 + 1))
     """
     numerator, denominator = together(square).as_numer_denom()
     outside, inside = S.One, S.One

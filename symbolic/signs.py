@@ -81,6 +81,8 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
     'PROVED'
     """
     kept = S.One
+    if expression.is_nonnegative:
+        return Finding(Outcome.PROVED, f"{expression} >= 0")
     constant, factors = _factors(expression)
     for factor, power in factors:
         kept *= factor ** (power % 2)

@@ -134,4 +134,3 @@ def interval_text(interval: Interval) -> str:
 def _substituted(component: Component, values: dict[Symbol, Expr]) -> Component:
     x, y = (coordinate.subs(values) for coordinate in component.point)
     return replace(component, point=(x, y), start=component.start.subs(values), end=component.end.subs(values))
-

@@ -6,7 +6,7 @@ thresholds and the code of the numeric maps are all derived from it.
 
 from collections.abc import Iterable
 
-from sympy import Expr, Integer, Interval, Rational, S, Symbol, cos, oo, pi, sin, sqrt
+from sympy import Expr, Interval, Rational, S, cos, oo, pi, sin, sqrt
 
 from symbolic.symbols import a, alpha, theta
 from symbolic.table import Component, Mark, Shape, Table
@@ -77,7 +77,9 @@ def egg(K: int | Expr = 3) -> Table:
 
 
 circle = polar(1, "circle")
-ellipse = parametric(a * cos(theta), sin(theta), "ellipse", [Shape(a, Interval(1, oo), "makes the y axis the longer one")])
+ellipse = parametric(
+    a * cos(theta), sin(theta), "ellipse", [Shape(a, Interval(1, oo), "makes the y axis the longer one")]
+)
 cardioid = polar(1 + cos(theta), "cardioid", undefined=[Mark("cusp", 0, pi)])
 cuspless = piecewise(
     arc("arc", *cardioid.components[0].point, -2 * pi / 3, 2 * pi / 3),

@@ -38,7 +38,9 @@ def _own_letters(table: Table, component: Component) -> Component:
                 raise ValueError(f"{table.name}: unknown symbol {symbol} in {expression}; it may use: {accepted}")
             renamed[symbol] = allowed[symbol.name]
     x, y = (coordinate.xreplace(renamed) for coordinate in component.point)
-    return replace(component, point=(x, y), start=component.start.xreplace(renamed), end=component.end.xreplace(renamed))
+    return replace(
+        component, point=(x, y), start=component.start.xreplace(renamed), end=component.end.xreplace(renamed)
+    )
 
 
 def _closed(table: Table) -> None:

@@ -41,10 +41,10 @@ def reduced_numerator(expression: Expr) -> Expr:
     0
     """
     expression = expand_trig(expand(expression.replace(tan, lambda x: sin(x) / cos(x))))
+    expression = expression.replace(_is_root, _standard_root)
     numerator = expand(together(expression).as_numer_denom()[0])
-    for angle in sorted({f.args[0] for f in numerator.atoms(sin)}, key=str):
-        numerator = _remainder(numerator, sin(angle), 1 - cos(angle) ** 2)
-    roots = {p for p in numerator.atoms(Pow) if p.exp.is_Rational and p.exp.q == 2}
+    numerator = _without_squared_sines(numerator)
+    roots = {p for p in numerator.atoms(Pow) if _is_root(p)}
     bases = sorted({p.base for p in roots}, key=lambda base: (-base.count_ops(), str(base)))
     for base in bases:
         root = Symbol("root", nonnegative=True)
@@ -52,9 +52,24 @@ def reduced_numerator(expression: Expr) -> Expr:
         named = expand(together(named).as_numer_denom()[0])
         numerator = expand(_remainder(named, root, base).subs(root, base**S.Half))
         numerator = expand(together(numerator).as_numer_denom()[0])
-    for angle in sorted({f.args[0] for f in numerator.atoms(sin)}, key=str):
-        numerator = _remainder(numerator, sin(angle), 1 - cos(angle) ** 2)
-    return numerator
+    return _without_squared_sines(numerator)
+
+
+def _is_root(expression: Expr) -> bool:
+    return isinstance(expression, Pow) and expression.exp.is_Rational and expression.exp.q == 2
+
+
+def _standard_root(power: Expr) -> Expr:
+    """A half-integer power with its base reduced and freed of rational factors."""
+    content, base = _without_squared_sines(power.base).as_content_primitive()
+    return content**power.exp * base**power.exp
+
+
+def _without_squared_sines(expression: Expr) -> Expr:
+    expression = expand(expression)
+    for angle in sorted({f.args[0] for f in expression.atoms(sin)}, key=str):
+        expression = _remainder(expression, sin(angle), 1 - cos(angle) ** 2)
+    return expression
 
 
 def _remainder(expression: Expr, generator: Expr, square: Expr) -> Expr:

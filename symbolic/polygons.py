@@ -1,0 +1,68 @@
+"""Cycles that are one bounce seen q times: regular polygons in a table with rotational symmetry.
+
+Where a turn by `2*pi*p/q` maps the table to itself, a cycle may turn by that angle at each bounce.
+Its chords make the angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the
+radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lands at
+`gamma + delta` (either sign), and the law `gamma - delta = lam*(gamma + delta)` holds when
+
+    rho'/rho = tan(gamma*(1 - lam)/(1 + lam)).
+
+The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
+"""
+
+from sympy import Expr, Rational, atan, cos, diff, pi, simplify, sqrt
+
+from symbolic.symbols import alpha, lam, theta
+
+
+def half_turn(p: int = 1, q: int = 3) -> Expr:
+    """`gamma = pi/2 - pi*p/q`, the elastic exit angle of the polygon, in radians.
+
+    >>> half_turn(1, 3)
+    pi/6
+    """
+    if not (q >= 3 and 0 < 2 * p < q):
+        raise ValueError(f"polygon: the rotation number {p}/{q} must lie strictly between 0 and 1/2")
+    return pi / 2 - pi * Rational(p, q)
+
+
+def tilt_tangent(K: int | Expr = 3) -> Expr:
+    """`-rho'/rho` of the K-pointed egg.
+
+    >>> tilt_tangent().subs(theta, pi / 6)
+    3*alpha
+    """
+    rho = 1 + alpha * cos(K * theta)
+    return -diff(rho, theta) / rho
+
+
+def largest_tilt(K: int | Expr = 3) -> Expr:
+    """The maximum of `|rho'/rho|` over the egg, reached where `cos(K*theta) = -alpha`.
+
+    >>> largest_tilt()
+    3*alpha/sqrt(1 - alpha**2)
+    """
+    return K * alpha / sqrt(1 - alpha**2)
+
+
+def required_tilt(p: int = 1, q: int = 3) -> Expr:
+    """`delta(lam) = gamma*(1-lam)/(1+lam)`, the tilt of the normal that a polygon needs."""
+    return half_turn(p, q) * (1 - lam) / (1 + lam)
+
+
+def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
+    """`lambda_c(alpha)`: polygons exist for `lam >= lambda_c` and none below, in closed form.
+
+    >>> saddle_node().subs(alpha, 0)
+    1
+    """
+    gamma, delta = half_turn(p, q), atan(largest_tilt(K))
+    return (gamma - delta) / (gamma + delta)
+
+
+def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: Expr) -> tuple[Expr, Expr]:
+    """Trace and determinant of one bounce of a polygon, in the frame that turns with it."""
+    from symbolic.collision import derivative_matrix
+
+    matrix = derivative_matrix(K0, K0, t, cos(exit_angle), cos(incidence))
+    return simplify(matrix.trace()), simplify(matrix.det())

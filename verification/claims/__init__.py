@@ -1,0 +1,88 @@
+"""The claims of the paper, each with a judge: `catalogue()` lists them, `verify()` judges them.
+
+What is printed lies in `printed/*.toml`, what is true is derived in `symbolic`, and the judges
+stand between the two; so a misprint cannot leak into the mathematics.
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from importlib import import_module
+
+from symbolic.signs import Finding, Outcome
+from verification.balls import decimal, enclose
+from verification.claims.claim import Claim, Judgement, Verdict, load
+from verification.claims.judges import JUDGES
+
+TABLES = ("map", "circle", "ellipse", "cardioid", "cuspless", "egg", "appendix")
+JUDGING = (*TABLES, "ellipse_stability", "egg_period2", "egg_period3")
+
+
+@dataclass(frozen=True)
+class Result:
+    """A judged claim, as the report shows it."""
+
+    id: str
+    section: str
+    quote: str
+    printed: str
+    derived: str
+    verdict: Verdict
+    value: str | None
+    radius: str | None
+    method: str
+    seconds: float
+    erratum: str = ""
+
+    def to_dict(self) -> dict[str, object]:
+        """The keys of the JSON schema, in order."""
+        return {**self.__dict__, "verdict": self.verdict.value, "seconds": round(self.seconds, 4)}
+
+
+def catalogue() -> list[Claim]:
+    """Every claim, table by table, in the order of the paper."""
+    return [claim for table in TABLES for claim in load(table)]
+
+
+def verify(only: str = "*", digits: int = 15) -> Iterator[Result]:
+    """Judges the claims whose id matches the glob `only`, one at a time."""
+    for module in JUDGING:
+        import_module(f"verification.claims.on_{module}")
+    for claim in catalogue():
+        if fnmatchcase(claim.id, only):
+            yield judge(claim, digits)
+
+
+def judge(claim: Claim, digits: int = 15) -> Result:
+    """The result of one claim; `open` when nothing judges it yet."""
+    start = time.perf_counter()
+    if claim.id in JUDGES:
+        judgement = JUDGES[claim.id](claim)
+    else:
+        judgement = Judgement(Finding(Outcome.UNKNOWN, "not judged yet"), "")
+    value, radius = None, None
+    if judgement.value is not None:
+        value, radius = decimal(enclose(judgement.value, digits=digits + 5).real, digits)
+    return Result(
+        claim.id,
+        claim.section,
+        claim.quote,
+        claim.text,
+        judgement.derived,
+        judgement.verdict,
+        value,
+        radius,
+        method(judgement),
+        time.perf_counter() - start,
+        judgement.erratum if judgement.verdict in (Verdict.CORRECTED, Verdict.REFUTED) else "",
+    )
+
+
+def method(judgement: Judgement) -> str:
+    """How the verdict was reached, in a sentence or two."""
+    if judgement.verdict is Verdict.SUPPORTED:
+        return judgement.evidence
+    if judgement.verdict is Verdict.CORRECTED and judgement.mended is not None:
+        return f"As printed: {judgement.printed.reason}. Corrected: {judgement.mended.reason}."
+    return judgement.printed.reason

@@ -1,0 +1,313 @@
+"""Claims on the egg's period-3 orbits. Paper: sections 6.1 and 6.4."""
+
+from sympy import (
+    Expr,
+    Interval,
+    Matrix,
+    Rational,
+    S,
+    cos,
+    pi,
+    simplify,
+    sin,
+    tan,
+)
+
+from symbolic.circle import flight
+from symbolic.cycles import is_elastic, trace_and_determinant
+from symbolic.egg import COSINE
+from symbolic.named_cycles import egg_triangle
+from symbolic.polygons import half_turn, largest_tilt, required_tilt, saddle_node, tilt_tangent
+from symbolic.signs import Finding, conjunction, nonnegative, positive
+from symbolic.symbols import alpha, lam, phi, s, theta
+from verification.claims.claim import Claim, Judgement
+from verification.claims.egg_ranges import ROUND, SHAPES, at
+from verification.claims.judges import (
+    by,
+    counterexample,
+    digits,
+    greater,
+    identity,
+    judges,
+    shown,
+    zero,
+)
+
+
+def exit_sines(at_flat: bool) -> Matrix:
+    """The sines of the exit angle on a triangle, one way round and the other."""
+    out, _ = egg_triangle(at_flat).sliding(0)
+    return Matrix([out, -out])
+
+
+@judges("egg.period3_angle")
+def flat_angle(claim: Claim) -> Judgement:
+    """Thirty degrees either way."""
+    return identity(claim, exit_sines(True))
+
+
+@judges("egg.hyperbolic3_angle")
+def vertex_angle(claim: Claim) -> Judgement:
+    """Thirty degrees either way."""
+    return identity(claim, exit_sines(False))
+
+
+def limit_positive() -> Finding:
+    """`0 < lambda_c(alpha) < 1`: the largest tilt lies between 0 and `tan(pi/6)`."""
+    squared = simplify(largest_tilt() ** 2)
+    return conjunction(positive(Rational(1, 3) - squared, {alpha: ROUND}), positive(squared, {alpha: ROUND}))
+
+
+@judges("egg.period3_created", "egg.period3_cease")
+def created(claim: Claim) -> Judgement:
+    """The closed form of the fold."""
+    return Judgement(
+        by(
+            "the equilateral orbits need |rho'/rho| = tan(pi/6*(1-lam)/(1+lam)), which no point "
+            "reaches for lam < lambda_c",
+            *polygon_facts(),
+            limit_positive(),
+        ),
+        f"lambda_c(alpha) = {saddle_node()}",
+    )
+
+
+def turn_trace(at_flat: bool) -> Expr:
+    """The trace of one elastic flight of a triangle, in the turning frame: `-(2 + 2*t*K/cos(phi))`."""
+    cycle = egg_triangle(at_flat)
+    return simplify(-(2 + 2 * cycle.length(0) * cycle.frames[0].curvature / cycle.cos_exit(0)))
+
+
+def third_power(at_flat: bool) -> Finding:
+    """The trace over the period is that of the cube of a matrix of determinant 1."""
+    single = turn_trace(at_flat)
+    return zero(
+        "the monodromy is a cube", single**3 - 3 * single - trace_and_determinant(egg_triangle(at_flat), S.One)[0]
+    )
+
+
+@judges("egg.two_period3")
+def two_period3(claim: Claim) -> Judgement:
+    """The flat triangle, both ways round."""
+    return Judgement(
+        counterexample(
+            "at alpha = 0 every equilateral triangle is an orbit", zero("", flight(s, pi / 6)[0] - s - 2 * pi / 3)
+        ),
+        "for 0 < alpha <= 1/10 the triangle of the flat points, run in both directions, with "
+        "eigenvalues on the unit circle",
+        by("an elastic cycle, run both ways, with |trace| <= 2", *flat_triangle()),
+        "At alpha = 0 there is a continuum of period-3 orbits; two need alpha > 0.",
+    )
+
+
+def flat_triangle() -> list[Finding]:
+    """The triangle obeys the elastic law and its multipliers lie on the unit circle."""
+    single = turn_trace(True)
+    return [
+        shown("the law phi = -eta holds", is_elastic(egg_triangle(True))),
+        third_power(True),
+        nonnegative(4 - single**2, {alpha: SHAPES}),
+    ]
+
+
+@judges("egg.period3_pair")
+def pair(claim: Claim) -> Judgement:
+    """Elastic orbits run backwards."""
+    return Judgement(
+        by("an elastic orbit run backwards is an orbit with opposite angles", *flat_triangle()[:1]), "phi -> -phi"
+    )
+
+
+@judges("egg.period3_equilateral")
+def equilateral(claim: Claim) -> Judgement:
+    """Three equal chords."""
+    cycle = egg_triangle(True)
+    return Judgement(
+        by("the three chords are equal", zero("", *(cycle.length(i) - cycle.length(0) for i in (1, 2)))),
+        f"side {cycle.length(0)}",
+    )
+
+
+@judges("egg.period3_elliptic")
+def period3_elliptic(claim: Claim) -> Judgement:
+    """`|trace| <= 2` on the closed range, with equality only at the ends."""
+    single = turn_trace(True)
+    return Judgement(
+        by(
+            "one flight has determinant 1 and trace (2 - 38*alpha)/(1 - alpha), of modulus at most 2; "
+            "it is 2 and -2 at the ends "
+            "alpha = 0, 1/10, and the cube is -1 and 1 at alpha = 1/37, 1/13",
+            *flat_triangle(),
+            zero("", single - (2 - 38 * alpha) / (1 - alpha)),
+        ),
+        "eigenvalues on the unit circle for every alpha in [0, 1/10], real (1 or -1) at alpha = 0, 1/37, 1/13, 1/10",
+    )
+
+
+def polygon_facts() -> list[Finding]:
+    """The condition of the rotating triangles: the tilt of the normal, its largest value, and the law."""
+    slope = simplify(tilt_tangent() * (1 + alpha * cos(3 * theta)) / (3 * alpha)) - sin(3 * theta)
+    squared = 9 * alpha**2 * (1 - COSINE**2) / (1 + alpha * COSINE) ** 2
+    best = 9 * alpha**2 * (COSINE + alpha) ** 2 / ((1 - alpha**2) * (1 + alpha * COSINE) ** 2)
+    gamma, delta = half_turn(), required_tilt()
+    return [
+        zero("tan(delta) = 3*alpha*sin(3*theta)/(1 + alpha*cos(3*theta))", slope),
+        zero(
+            "its square falls short of 9*alpha^2/(1 - alpha^2) by a square, zero where cos(3*theta) = -alpha",
+            simplify(largest_tilt() ** 2) - squared - best,
+        ),
+        zero("the law gamma - delta = lam*(gamma + delta)", gamma - delta - lam * (gamma + delta)),
+    ]
+
+
+@judges("egg.period3_attracting")
+def attracting(claim: Claim) -> Judgement:
+    """`det = lam*cos(gamma - delta)/cos(gamma + delta)` has logarithmic derivative `1 - gamma*tan(gamma) > 0` at 1."""
+    gamma = half_turn()
+    return Judgement(
+        by(
+            "complex multipliers of modulus det^(1/2), and d(log det)/d lam = 1 - gamma*tan(gamma) > "
+            "0 at lam = 1 with gamma = pi/6",
+            *polygon_facts(),
+            greater(S.One, gamma * tan(gamma)),
+        ),
+        "attracting for lam slightly below 1",
+    )
+
+
+@judges("egg.period3_stay_equilateral")
+def stay(claim: Claim) -> Judgement:
+    """The triangles solve one equation in `theta`."""
+    return Judgement(
+        by(
+            "a triangle turned by 2*pi/3 at each bounce solves the one equation |rho'/rho| = tan(delta(lam))",
+            *polygon_facts(),
+            limit_positive(),
+        ),
+        "equilateral for lambda_c(alpha) <= lam <= 1",
+    )
+
+
+@judges("egg.period3_rotate")
+def rotate(claim: Claim) -> Judgement:
+    """`sin(3*theta) != 0` as soon as the tilt is not 0."""
+    return Judgement(
+        by(
+            "delta = pi/6*(1-lam)/(1+lam) > 0 needs sin(3*theta) != 0",
+            *polygon_facts(),
+            positive(required_tilt().subs(pi, 3), {lam: Interval.Ropen(0, 1)}),
+        ),
+        "tan(delta) = |rho'/rho|",
+    )
+
+
+@judges("egg.no_period3_caption")
+def no_period3_caption(claim: Claim) -> Judgement:
+    """Equilateral orbits exist from 0.378 on."""
+    fold = saddle_node().subs(alpha, at("0.08"))
+    return Judgement(
+        counterexample(
+            "the equilateral orbits exist for lam >= lambda_c(0.08) = 0.37812..., which is below 0.4",
+            *polygon_facts(),
+            greater(at("0.4"), fold),
+        ),
+        "no equilateral orbit of period 3 for lam < 0.37812..., two pairs of them above",
+        by(
+            "no point of the boundary reaches the tilt needed below lambda_c",
+            *polygon_facts(),
+            greater(fold, at("0.3")),
+        ),
+        "The limit 0.4 should read 0.378: equilateral period-3 orbits exist for every lambda >= "
+        "0.37812... at alpha = 0.08.",
+        value=fold,
+    )
+
+
+@judges("egg.period3_lambda_c", "egg.period3_end_caption")
+def fold_digits(claim: Claim) -> Judgement:
+    """The closed form at `alpha = 0.08`."""
+    return digits(claim, saddle_node().subs(alpha, at("0.08")), "0.378")
+
+
+@judges("egg.projection_argument")
+def projection(claim: Claim) -> Judgement:
+    """The contrapositive: a cycle of period 3 gives a point of the diagonal."""
+    return Judgement(
+        shown("if T^3(theta, phi) = (theta, phi) then (theta, theta) lies on the graph; contraposition", True),
+        "a necessary condition",
+    )
+
+
+@judges("egg.projection_converse")
+def converse(claim: Claim) -> Judgement:
+    """The circle: `T^3` returns to a place with another angle."""
+    angle = flight(*flight(*flight()))
+    back = angle[0] - s - 2 * pi
+    returning = pi / (2 * (1 + lam + lam**2))
+    return Judgement(
+        by(
+            "in the circle theta_3 = theta_0 at an angle phi = pi/(2*(1 + lam + lam^2)) that is not "
+            "kept, phi_3 = lam^3*phi",
+            zero("", back.subs(phi, returning), angle[1] - lam**3 * phi),
+        ),
+        "position alone does not close an orbit",
+    )
+
+
+@judges("egg.saddle_node")
+def fold(claim: Claim) -> Judgement:
+    """Two branches, from the flat points and from the vertices, meet where the tilt is largest, with multiplier 1."""
+    return Judgement(
+        by(
+            "for each lam in (lambda_c, 1) the equation for the tilt has one root on the side of the "
+            "flat points, cos(3*theta) < -alpha, and one on "
+            "the side of the vertices; they meet at cos(3*theta) = -alpha where d(rho'/rho)/d theta = "
+            "0, a simple maximum",
+            *polygon_facts(),
+            *side_of_fold(),
+        ),
+        f"lambda_c(alpha) = {saddle_node()}",
+        value=saddle_node().subs(alpha, at("0.08")),
+    )
+
+
+def side_of_fold() -> list[Finding]:
+    """`1 - trace + det` of one bounce has the sign of `-(cos(3*theta) + alpha)`.
+
+    It is `(1+lam)*(cos(phi) + cos(eta) + t*K)/cos(eta)`, and with `t = 2*rho*cos(gamma)`, `cos(phi) + cos(eta) =
+    2*cos(gamma)*cos(delta)` that has the sign of `rho*rho'' - rho'**2 = -9*alpha*(cos(3*theta) + alpha)`.
+    """
+    rho = 1 + alpha * COSINE
+    second, first_squared = -9 * alpha * COSINE, 9 * alpha**2 * (1 - COSINE**2)
+    return [
+        zero(
+            "1 - trace + det has the sign of -(cos(3*theta) + alpha)",
+            rho * second - first_squared + 9 * alpha * (COSINE + alpha),
+        )
+    ]
+
+
+@judges("egg.vertex_period3")
+def vertex_period3(claim: Claim) -> Judgement:
+    """The triangle of the vertices is elastic."""
+    return Judgement(
+        shown("the triangle of the vertices obeys phi = -eta", is_elastic(egg_triangle(False))),
+        "theta = 0, 2*pi/3, -2*pi/3 at lam = 1",
+    )
+
+
+@judges("egg.vertex_period3_unstable")
+def vertex_unstable(claim: Claim) -> Judgement:
+    """A multiplier above 1 all along the branch; at `alpha = 0` the branches coincide."""
+    at_one = turn_trace(False)
+    return Judgement(
+        counterexample("at alpha = 0 the triangle is parabolic", zero("", at_one.subs(alpha, 0) - 2)),
+        "unstable for alpha in (0, 1/10] and lambda_c(alpha) < lam <= 1",
+        by(
+            "1 - trace + det < 0 on the vertices' side of the fold, so one multiplier exceeds 1",
+            *polygon_facts(),
+            *side_of_fold(),
+            positive(at_one - 2, {alpha: ROUND}),
+        ),
+        "At alpha = 0 (the circle) the triangles are parabolic, not unstable; the statement needs alpha > 0.",
+    )

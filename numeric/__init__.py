@@ -1,0 +1,12 @@
+"""The map in float64: kernels generated from the exact tables, at the speed of the machine.
+
+>>> from numeric import PinballMap
+>>> step = PinballMap("circle", lam=0.5).step(theta=0.0, phi=0.5)
+>>> round(float(step.theta), 12), round(float(step.phi), 12)
+(2.141592653590, 0.25)
+"""
+
+from numeric.pinball import Exponents, Orbit, PinballMap
+from numeric.status import Status
+
+__all__ = ["Exponents", "Orbit", "PinballMap", "Status"]

@@ -1,0 +1,133 @@
+"""Arc length on every component, counted counterclockwise from the table's origin, and its inverse.
+
+Closed forms for circle and cardioid, SciPy's elliptic integral for the ellipse, and for anything else
+a Fourier or Chebyshev series of the speed, extended until its tail is below rounding, integrated term
+by term. The inverse is Newton's method on these, whose derivative is the speed itself.
+"""
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric.coordinates import States
+
+Array = NDArray[np.float64]
+MOST = 1 << 14  # terms; a boundary that needs more is not smooth
+
+
+class ArcLength:
+    """The paper's `s`, not wrapped: `s` grows with `theta` on each component and is 0 at the origin."""
+
+    def __init__(self, states: States) -> None:
+        self.states = states
+        self.lengths = [self._length(index) for index in range(len(states.ends))]
+        index, program = states.blueprint.origin
+        offsets = {}
+        reached = -float(self.lengths[index](np.array(float(program(states.ops, *states.shape)[0]))))
+        for turn in range(len(states.ends)):
+            at = (index + turn) % len(states.ends)
+            low, high = states.ends[at]
+            if turn:
+                reached -= float(self.lengths[at](np.array(low)))
+            offsets[at] = reached
+            reached += float(self.lengths[at](np.array(high)))
+        self.offsets = [offsets[i] for i in range(len(states.ends))]
+
+    def s(self, theta: Array, component: NDArray[np.int64] | int = 0) -> Array:
+        """Arc length at `theta`."""
+        theta, component = np.broadcast_arrays(np.asarray(theta, dtype=float), component)
+        out = np.empty(theta.shape)
+        for index, (length, offset) in enumerate(zip(self.lengths, self.offsets, strict=True)):
+            here = component == index
+            out[here] = length(theta[here]) + offset
+        return out
+
+    def theta(self, s: Array, component: NDArray[np.int64] | int = 0) -> Array:
+        """The parameter at arc length `s` on a component; ends of the component are included."""
+        s, component = np.broadcast_arrays(np.asarray(s, dtype=float), component)
+        out = np.empty(s.shape)
+        for index, (low, high) in enumerate(self.states.ends):
+            here = component == index
+            if np.any(here):
+                out[here] = self._inverse(index, s[here] - self.offsets[index], low, high)
+        return out
+
+    @cached_property
+    def perimeter(self) -> float:
+        """The length of the whole boundary."""
+        return sum(
+            float(length(np.array(high)) - length(np.array(low)))
+            for length, (low, high) in zip(self.lengths, self.states.ends, strict=True)
+        )
+
+    def _inverse(self, index: int, s: Array, low: float, high: float) -> Array:
+        length = self.lengths[index]
+        bottom, top = float(length(np.array(low))), float(length(np.array(high)))
+        slack = 1e-14 * (top - bottom)
+        if np.any((s < bottom - slack) | (s > top + slack)):
+            bad = s[(s < bottom - slack) | (s > top + slack)].flat[0] + self.offsets[index]
+            name = self.states.blueprint.parts[index].name
+            first, last = bottom + self.offsets[index], top + self.offsets[index]
+            raise ValueError(f"s = {bad} is not on the {name}; there s lies in [{first:.17g}, {last:.17g}]")
+        if self.states.family.name in ("cardioid", "cuspless") and index == 0:
+            return np.asarray(2 * np.arcsin(np.clip(s / 4, -1, 1)))
+        grid = np.linspace(low, high, 1025)
+        theta = np.interp(s, length(grid), grid)
+        where = np.full(theta.shape, index)
+        for _ in range(6):
+            theta = np.clip(theta - (length(theta) - s) / self.states.speed(where, theta), low, high)
+        return theta
+
+    def _length(self, index: int) -> Callable[[Array], Array]:
+        name = self.states.family.name
+        if name == "circle" or (name == "cuspless" and index == 1):
+            return lambda theta: theta
+        if name in ("cardioid", "cuspless"):
+            return lambda theta: 4 * np.sin(theta / 2)
+        if self.states.blueprint.table == "ellipse" and self.states.shape:
+            from scipy.special import ellipeinc
+
+            m = (1 - self.states.shape[0]) * (1 + self.states.shape[0])
+            return lambda theta: np.asarray(ellipeinc(theta, m))
+        low, high = self.states.ends[index]
+        closed = len(self.states.ends) == 1 and abs(high - low - 2 * np.pi) < 1e-12
+        return self._fourier(index) if closed else self._chebyshev(index, low, high)
+
+    def _fourier(self, index: int) -> Callable[[Array], Array]:
+        count = 64
+        while True:
+            theta = 2 * np.pi * np.arange(count) / count - np.pi
+            values = self.states.speed(np.full(count, index), theta)
+            c = np.fft.rfft(values) / count * np.exp(1j * np.pi * np.arange(count // 2 + 1))
+            if np.max(np.abs(c[count // 3 :])) < 1e-17 * abs(c[0]) * 8 or count >= MOST:
+                break
+            count *= 2
+        kept = np.nonzero(np.abs(c) > 1e-18 * abs(c[0]))[0]
+        kept = kept[(kept > 0) & (kept < count // 3)]
+        mean, k, terms = c[0].real, kept[:, None], 2 * c[kept][:, None] / kept[:, None]
+
+        def length(theta: Array) -> Array:
+            flat = theta.ravel()
+            half = k * flat / 2
+            waves = terms.real * np.sin(k * flat) - 2 * terms.imag * np.sin(half) ** 2
+            return np.asarray((mean * flat + np.sum(waves[::-1], axis=0)).reshape(theta.shape))
+
+        return length
+
+    def _chebyshev(self, index: int, low: float, high: float) -> Callable[[Array], Array]:
+        from numpy.polynomial import Chebyshev
+
+        def speed(theta: Array) -> Array:
+            return self.states.speed(np.full(theta.shape, index), theta)
+
+        degree = 16
+        while True:
+            series = Chebyshev.interpolate(speed, degree, [low, high])
+            tail = np.max(np.abs(series.coef[-4:]))
+            if tail < 1e-16 * np.max(np.abs(series.coef)) or degree >= 1024:
+                break
+            degree *= 2
+        integral = series.integ(lbnd=0.0 if low <= 0.0 <= high else low)
+        return lambda theta: np.asarray(integral(theta))

@@ -1,0 +1,129 @@
+"""Running trajectories: rows are padded to whole blocks, blocks are shared out to threads, or NumPy does it all.
+
+Every lane computes what it would compute alone, so results depend neither on threads nor on blocks.
+"""
+
+import itertools
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import machine
+from numeric.families.family import Family
+from numeric.kernel import WIDTH, Question, fields
+from numeric.readers.arrays import Arrays
+
+Array = NDArray[np.float64]
+WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
+
+
+@dataclass(frozen=True)
+class Result:
+    """Rows of the final state by name, and the recorded rows: bounce, field, ball."""
+
+    rows: dict[str, Array]
+    record: Array | None
+
+
+@dataclass(frozen=True)
+class Engine:
+    """The runner of one family on one blueprint; `kernels` is False where NumPy was asked for."""
+
+    family: Family
+    identity: str
+    names: Sequence[str]
+    kernels: bool = True
+    width: int = WIDTH
+
+    def run(
+        self,
+        question: Question,
+        own: Sequence[Array],
+        lam: Array,
+        shape: Sequence[float],
+        bounces: int,
+        tangent: Sequence[Array] = (),
+        threads: int | None = None,
+    ) -> Result:
+        """Bounce every ball `bounces` times. `own` and `tangent` are the starting rows."""
+        names = fields(self.family, question)
+        count = own[0].size
+        width = -(-count // self.width) * self.width
+        start: list[Any] = [*own, *([0.0, 0.0] if self.family.stops else []), *tangent]
+        state = np.empty((len(names), width))
+        for row, values in zip(state, start, strict=True):
+            row[:count] = values
+            row[count:] = values[-1] if isinstance(values, np.ndarray) else values
+        contraction = np.empty(width)
+        contraction[:count], contraction[count:] = lam, lam[-1]
+        record = np.empty((bounces, len(own), width)) if question.record else None
+        function = (
+            machine.compiled(self.family, self.identity, self.names, question, self.width) if self.kernels else None
+        )
+        if function is None:
+            _run_arrays(self.family, question, state, contraction, list(shape), bounces, record)
+        else:
+            parameters = np.array([*shape, 0.0])
+            pointers = [x.ctypes.data if x is not None else None for x in (state, contraction, parameters, record)]
+            pieces = _pieces(width // self.width, count * bounces, threads)
+            calls = [(*pointers, width, first * self.width, last * self.width, bounces) for first, last in pieces]
+            if len(calls) == 1:
+                function(*calls[0])
+            else:
+                with ThreadPoolExecutor(len(calls)) as pool:
+                    list(pool.map(lambda call: function(*call), calls))
+        rows = {name: row[:count] for name, row in zip(names, state, strict=True)}
+        return Result(rows, None if record is None else record[:, :, :count])
+
+
+def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]]:
+    """Consecutive ranges of blocks, one for each thread."""
+    wanted = (os.cpu_count() or 1) if threads is None else threads
+    if threads is None:
+        wanted = min(wanted, 1 + work // WORTH_A_THREAD)
+    wanted = max(1, min(wanted, blocks))
+    cuts = [blocks * i // wanted for i in range(wanted + 1)]
+    return list(itertools.pairwise(cuts))
+
+
+def _run_arrays(
+    family: Family,
+    question: Question,
+    state: Array,
+    lam: Array,
+    shape: list[float],
+    bounces: int,
+    record: Array | None,
+) -> None:
+    """The kernel's loop on NumPy arrays: the same step, the same rows."""
+    ops = Arrays()
+    own = len(family.fields(question.law))
+    extra = own + (2 if family.stops else 0)
+    with np.errstate(all="ignore"):
+        for bounce in range(bounces):
+            ball = [row.copy() for row in state[:own]]
+            if question.exponents:
+                dp, omega, growth, ratio, volume = (row.copy() for row in state[extra:])
+                new, code, tangent, factor = family.bounce_with_tangent(
+                    ops, question.law, shape, lam, ball, [dp, omega]
+                )
+                small, gained = ops.power_of_two(np.maximum(abs(tangent[0]), abs(tangent[1])))
+                tiny, lost = ops.power_of_two(ratio * factor)
+                more = [tangent[0] * small, tangent[1] * small, growth + gained, ratio * factor * tiny, volume + lost]
+            else:
+                new, code = family.bounce(ops, question.law, shape, lam, ball)
+                more = []
+            going = np.ones(state.shape[1], dtype=bool)
+            if family.stops and code is not None:
+                going = ~(np.broadcast_to(code, going.shape) > 0.5)
+                state[own] = np.where(going, state[own], code)
+                state[own + 1] += ~going
+            for row, values in zip([*state[:own], *state[extra:]], [*new, *more], strict=True):
+                np.copyto(row, values, where=going)
+            if record is not None:
+                record[bounce] = state[:own]

@@ -1,0 +1,37 @@
+"""The unit circle: angles are the state, and a bounce is `theta + pi - 2*phi`, `lam*phi`."""
+
+from typing import Any
+
+from numeric.families.family import SLAP, Family, Landing
+from numeric.functions import HALF_PI, HALF_PI_LOW
+
+
+class Circle(Family):
+    """Paper: section 3.1."""
+
+    name = "circle"
+    stops = False
+    position = ("theta",)
+    exit = ("phi",)
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        (theta,), (phi,) = position, exit
+        turned = theta - (phi + phi) if law != SLAP else theta
+        half_turn = ops.with_sign(ops.number(2 * HALF_PI), turned)
+        rest = ops.with_sign(ops.number(2 * HALF_PI_LOW), turned)
+        return Landing([(turned - half_turn) - rest], phi, ops.number(1.0))
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        return [lam * landing.across]
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return [ops.number(0.0)]
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        return ops.number(1.0)
+
+    def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
+        return ops.number(2.0)
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
+        return ops.number(-1.0)

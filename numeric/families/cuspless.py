@@ -1,0 +1,68 @@
+"""The cardioid cut off by the wall `x = -1/4`: cubic from the arc, straight onto the wall, quartic from it.
+
+The table is convex, so a line leaves it at one further point, and where the line passes the two
+joins says on which component. State: the component (0 arc, 1 wall), `sigma = exp(i*theta/2)` on the
+arc or `(y, .)` on the wall, and `exp(i*phi)`. Paper: section 5 and the appendix, where it is the cut-off.
+"""
+
+from typing import Any
+
+from numeric import plane
+from numeric.families.cardioid import Cardioid
+from numeric.families.family import NEAR, SLAP, Landing, grazing
+from numeric.plane import Pair
+
+QUARTER = 0.25
+
+
+class Cuspless(Cardioid):
+    """Paper: section 5."""
+
+    name = "cuspless"
+    position = ("wall", "p", "q")
+    steps = 3, 2
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        nought, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
+        root3 = ops.sqrt(ops.number(3.0))  # tan(theta/2) at the join
+        from_wall = ops.number(0.5) < position[0]
+        (c, s), (p, q) = exit, position[1:]
+        # from the arc: the cardioid's cubic, and on which side the line passes the joins
+        cubic, Q, k, back = self.cubic(ops, (p, q), (c, s))
+        reach = root3 * p
+        ahead, behind = (((cubic[3] * x + cubic[2]) * x + cubic[1]) * x + cubic[0] for x in (-reach, reach))
+        onwards, across = ahead < nought, behind < nought
+        to_wall = ops.negated(onwards | across | from_wall)
+        # from the wall, at height p and along (c, -s): a quartic in tan(theta1/2)
+        L = ops.fma(c, p, ops.number(-QUARTER) * s)
+        quartic = [two * s - L, ops.number(4.0) * c, -two * (s + L), nought, -L]
+        # one polynomial for both, negative at low and positive at high
+        cubic = [ops.select(across, -b, b) for b in cubic] + [nought]
+        poly = [ops.select(from_wall, a, b) for a, b in zip(quartic, cubic, strict=True)]
+        low = ops.select(from_wall, -root3, ops.select(across, Q, -reach))
+        high = ops.select(from_wall, root3, ops.select(across, reach, Q))
+        start = ops.select(from_wall, nought, ops.select(across, reach, Q - c))
+        base = ops.select(from_wall, one, p)
+        S = ops.polynomial_zero(poly, start, low, high, base, self.steps, ops.negated(to_wall))
+        back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
+        landing = plane.normalised(ops, (base, ops.select(from_wall, S, ops.times_sign(S, k))))
+        height = -(two * p * p * k + ops.number(QUARTER) * back[1]) / back[0]
+        w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
+        sine, cosine = ops.select(to_wall, back[1], w[1]), ops.select(to_wall, back[0], -w[0])
+        join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(S) - root3 * base))
+        code = ops.select(ops.number(NEAR) * base < join, nought, one)
+        if law != SLAP:
+            code = ops.select(grazing(ops, sine, cosine), ops.number(3.0), code)
+        wall = ops.select(to_wall, one, nought)
+        landed = [wall, ops.select(to_wall, height, landing[0]), ops.select(to_wall, nought, landing[1])]
+        return Landing(landed, sine, cosine, code, {"back": back})
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
+        wall = ops.number(0.5) < landing.position[0]
+        return ops.select(wall, ops.number(0.0), ops.number(-0.75) / landing.position[1])
+
+    def point(self, ops: Any, position: list[Any]) -> Pair:
+        """The boundary point on the arc or on the wall."""
+        wall = ops.number(0.5) < position[0]
+        x, y = super().point(ops, position[1:])
+        return ops.select(wall, ops.number(-QUARTER), x), ops.select(wall, position[1], y)

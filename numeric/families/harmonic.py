@@ -1,0 +1,107 @@
+"""Tables whose boundary is a finite Fourier sum: the ellipse in closed form, any convex one by its chord polynomial.
+
+State: the unit numbers `u = exp(i*theta)` and `v`, the ball's direction. The programs that a flight
+needs come from `symbolic.flight` through the blueprint.
+"""
+
+from typing import Any
+
+from numeric import plane
+from numeric.blueprint import Blueprint
+from numeric.families.family import ELASTIC, Family, Landing, grazing
+from numeric.plane import Pair
+
+FAR = 2.0**30  # tan(delta) of any chord lies within
+
+
+class Harmonic(Family):
+    """What the ellipse and the others have in common: the reflection and the tangent map."""
+
+    position = ("ux", "uy")
+    exit = ("vx", "vy")
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        self.name = blueprint.family
+        self.point = blueprint.program("point")
+        self.velocity = blueprint.program("velocity")
+        self.acceleration = blueprint.program("acceleration")
+
+    def landed(self, ops: Any, shape: list[Any], u: Pair, v: Pair) -> Landing:
+        """The landing at `u` of a ball that flies along `v`."""
+        dx, dy = self.velocity(ops, *u, *shape)
+        across = plane.exact_dot(ops, (dx, dy), v)
+        along = -plane.exact_cross(ops, (dx, dy), v)
+        code = ops.select(grazing(ops, across, along), ops.number(3.0), ops.number(0.0))
+        return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        v, d = landing.more["v"], landing.more["d"]
+        if law == ELASTIC:
+            inverse = ops.number(1.0) / plane.dot(d, d)
+            x, y = plane.times(plane.squared(d), plane.conjugate(v))
+            return list(plane.unit(ops, (x * inverse, y * inverse)))
+        incidence = ops.angle(landing.across, landing.along)
+        c, s = ops.turn(lam * incidence + incidence)
+        return list(plane.unit(ops, plane.times((-v[0], -v[1]), (c, -s))))
+
+    def slapped_with_unit(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        dx, dy = self.velocity(ops, *position, *shape)
+        return list(plane.normalised(ops, (-dy, dx)))
+
+    slapped = slapped_with_unit
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        dx, dy = self.velocity(ops, *position, *shape)
+        return plane.cross((dx, dy), (exit[0], exit[1]))
+
+    def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
+        x0, y0 = self.point(ops, *position, *shape)
+        x1, y1 = self.point(ops, *landing.position, *shape)
+        return plane.dot((x1 - x0, y1 - y0), (exit[0], exit[1]))
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
+        d = landing.more["d"]
+        ax, ay = self.acceleration(ops, *landing.position, *shape)
+        return plane.cross((ax, ay), d) / plane.dot(d, d)
+
+
+class Ellipse(Harmonic):
+    """One harmonic: the middle of the chord lies along `support`, so nothing is to be solved."""
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        super().__init__(blueprint)
+        self.support = blueprint.program("support")
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        v = exit[0], exit[1]
+        M = self.support(ops, v[1], -v[0], *shape)
+        inverse = ops.number(1.0) / plane.dot((M[0], M[1]), (M[0], M[1]))
+        x, y = plane.times(plane.squared((M[0], M[1])), (position[0], -position[1]))
+        return self.landed(ops, shape, plane.unit(ops, (x * inverse, y * inverse)), v)
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        dx, dy = self.velocity(ops, *position, *shape)
+        return [-dy, dx]
+
+
+class Fourier(Harmonic):
+    """Any convex sum of harmonics: the one real zero of the chord polynomial, from the circle's chord."""
+
+    steps = 1, 3
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        super().__init__(blueprint)
+        self.chord = blueprint.program("chord")
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        v = exit[0], exit[1]
+        E = v[1], -v[0]
+        B = plane.times(E, (position[0], -position[1]))
+        p = self.chord(ops, *E, *B, *shape)
+        _zero, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
+        start = -p[0] / p[1]
+        T = ops.polynomial_zero(p, start, ops.number(-FAR), ops.number(FAR), one, self.steps)
+        s = two * T / (T * T + one)
+        c = one - T * s
+        u = plane.unit(ops, plane.times(plane.times(B, E), (c, s)))
+        return self.landed(ops, shape, u, v)

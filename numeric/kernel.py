@@ -1,0 +1,144 @@
+"""The text of a kernel: blocks of lanes, each bounced many times, for one family, one law and one question.
+
+    void run(double *state, const double *lam, const double *shape, double *record,
+             int64 width, int64 first, int64 last, int64 bounces)
+
+`state` holds one row of `width` doubles for each field: the ball's own, then `lost` when the family
+has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
+worked on. `record`, when orbits are asked for, receives the ball's own rows after every bounce.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from numeric.families.family import ELASTIC, SLAP, Family
+from numeric.readers.lanes import Lane, Lanes
+
+WIDTH = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
+TANGENT = ("dp", "omega", "growth", "ratio", "volume")
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a kernel is asked besides the end of the trajectory."""
+
+    law: str
+    record: bool = False
+    exponents: bool = False
+
+    @property
+    def text(self) -> str:
+        """The question as part of a name."""
+        return "-".join([self.law, *(["record"] if self.record else []), *(["exponents"] if self.exponents else [])])
+
+
+def fields(family: Family, question: Question) -> tuple[str, ...]:
+    """The rows of `state`."""
+    extra = TANGENT if question.exponents else ()
+    return (*family.fields(question.law), *(("code", "lost") if family.stops else ()), *extra)
+
+
+def kernel_text(
+    family: Family, shape: Sequence[str], question: Question, width: int = WIDTH, features: str = ""
+) -> str:
+    """The module in LLVM's language."""
+    ops = Lanes(width)
+    names = fields(family, question)
+    own = len(family.fields(question.law))
+    header = [
+        f"; {family.name}, {question.text}: written by numeric.kernel from numeric.families",
+        "define void @run(ptr noalias %state, ptr noalias %lam, ptr noalias %shape, ptr noalias %record, "
+        "i64 %width, i64 %first, i64 %last, i64 %bounces) #0 {",
+    ]
+    ops.label("entry")
+    parameters = []
+    for i, name in enumerate(shape):
+        address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
+        scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
+        one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
+        parameters.append(
+            Lane(ops, ops.emit(f"shufflevector {ops.type} {one}, {ops.type} poison, <{width} x i32> zeroinitializer"))
+        )
+    ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
+    ops.lines += ["  %busy = icmp slt i64 %at, %last", "  br i1 %busy, label %start, label %exit"]
+    ops.label("start")
+    ops.open()
+    addresses = []
+    for i in range(len(names)):
+        row = ops.emit(f"mul i64 %width, {i}")
+        place = ops.emit(f"add i64 {row}, %at")
+        addresses.append(ops.emit(f"getelementptr double, ptr %state, i64 {place}"))
+    loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
+    lam = _contraction(ops, question.law)
+    ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %bounce, label %done"]
+    ops.label("bounce")
+    slot = len(ops.lines)
+    ops.open()
+    state = [ops.fresh() for _ in names]
+    new = _bounced(ops, family, question, parameters, lam, [Lane(ops, name) for name in state])
+    texts = [x.text for x in new]
+    if question.record:
+        row = ops.emit(f"mul i64 %i, {own}")
+        for i in range(own):
+            line = ops.emit(f"add i64 {row}, {i}")
+            place = ops.emit(f"add i64 {ops.emit(f'mul i64 {line}, %width')}, %at")
+            address = ops.emit(f"getelementptr double, ptr %record, i64 {place}")
+            ops.lines.append(f"  store {ops.type} {texts[i]}, ptr {address}, align 8")
+    ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %bounces"]
+    ops.lines.append("  br i1 %more, label %bounce, label %done")
+    last = ops.block
+    phis = ["  %i = phi i64 [0, %start], [%following, %" + last + "]"]
+    for name, begin, end in zip(state, loaded, texts, strict=True):
+        phis.append(f"  {name} = phi {ops.type} [{begin}, %start], [{end}, %{last}]")
+    ops.lines[slot:slot] = phis
+    ops.close()
+    ops.label("done")
+    for begin, end, address in zip(loaded, texts, addresses, strict=True):
+        name = ops.fresh()
+        ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %start], [{end}, %{last}]")
+        addresses[addresses.index(address)] = f"{address} {name}"
+    for pair in addresses:
+        address, name = pair.split()
+        ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
+    ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {width}", "  br label %column", "exit:"]
+    ops.lines += ["  ret void", "}"]
+    wide = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512"' + features + " }"
+    return "\n".join([*header, *ops.lines, *sorted(ops.called), wide, ""])
+
+
+def _contraction(ops: Lanes, law: str) -> Lane:
+    if law in (SLAP, ELASTIC):
+        return ops.number(0.0 if law == SLAP else 1.0)
+    address = ops.emit("getelementptr double, ptr %lam, i64 %at")
+    return Lane(ops, ops.emit(f"load {ops.type}, ptr {address}, align 8"))
+
+
+def _bounced(
+    ops: Lanes, family: Family, question: Question, shape: list[Lane], lam: Lane, state: list[Lane]
+) -> list[Lane]:
+    """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost."""
+    count = len(family.fields(question.law))
+    own, rest = state[:count], state[count:]
+    outcome, rest = (rest[:2], rest[2:]) if family.stops else ([], rest)
+    if question.exponents:
+        dp, omega, growth, ratio, volume = rest
+        ball, code, tangent, factor = family.bounce_with_tangent(ops, question.law, shape, lam, own, [dp, omega])
+        small, gained = ops.power_of_two(ops.maximum(abs(tangent[0]), abs(tangent[1])))
+        product = ratio * factor
+        tiny, lost = ops.power_of_two(product)
+        rest_new = [tangent[0] * small, tangent[1] * small, growth + gained, product * tiny, volume + lost]
+    else:
+        ball, code = family.bounce(ops, question.law, shape, lam, own)
+        rest_new = []
+    new = [*ball, *rest_new]
+    if code is None or not family.stops:
+        return [*ball, *outcome, *rest_new]
+    stopped = ops.number(0.5) < code
+
+    def frozen() -> list[Lane]:
+        kept = [ops.select(stopped, x, y) for x, y in zip([*own, *rest], new, strict=True)]
+        first = ops.select(stopped, code, outcome[0])
+        return [first, outcome[1] + ops.select(stopped, ops.number(1.0), ops.number(0.0)), *kept]
+
+    code_row, lost_row, *new = ops.when(stopped, [*outcome, *new], frozen)
+    return [*new[:count], code_row, lost_row, *new[count:]]

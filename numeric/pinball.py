@@ -1,0 +1,298 @@
+"""`PinballMap`: a table with its shape and contraction, asked for steps, orbits, derivatives and exponents."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from numeric.arclength import ArcLength
+from numeric.blueprint import Blueprint, blueprint
+from numeric.cache import key_of
+from numeric.coordinates import States
+from numeric.engine import Engine
+from numeric.families.choice import PATHS, family_of
+from numeric.families.family import law_of
+from numeric.inputs import angles, components, contraction, counted, shape_value
+from numeric.kernel import Question
+from numeric.status import Status
+
+Array = NDArray[np.float64]
+STATUSES = np.array(list(Status), dtype=object)
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """Bounces along the first axis, balls along the others; `eta[0]` is nan, since nothing landed there.
+
+    A ball that stopped repeats its last good state; `status` says from which bounce on, and why.
+    """
+
+    component: NDArray[np.int64]
+    theta: Array
+    phi: Array
+    eta: Array
+    x: Array
+    y: Array
+    code: NDArray[np.int64]
+
+    @property
+    def status(self) -> NDArray[np.object_]:
+        """The outcome at each bounce, a `Status`."""
+        return np.asarray(STATUSES[self.code])
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """Finite-time Lyapunov exponents per bounce, in the coordinates `(s, phi)`, and how far each ball came."""
+
+    nu_plus: Array
+    nu_minus: Array
+    bounces: NDArray[np.int64]
+    component: NDArray[np.int64]
+    theta: Array
+    phi: Array
+    code: NDArray[np.int64]
+
+    @property
+    def status(self) -> NDArray[np.object_]:
+        """The outcome of each ball, a `Status`."""
+        return np.asarray(STATUSES[self.code])
+
+
+class PinballMap:
+    """The map `T_lambda` of a table. Paper: section 2.
+
+    `table` is an exact table or the name of one of the paper's; shape parameters are keywords, exact or
+    decimal, and a decimal means the decimal it shows. `lam` is one number or one for each ball. With
+    `kernels=False` the same steps run on NumPy arrays.
+
+    >>> ellipse = PinballMap("ellipse", lam=1, a=2)
+    >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
+    >>> round(float(step.x), 12), round(float(step.phi), 12) + 0.0
+    (-2.0, 0.0)
+    """
+
+    def __init__(self, table: Any, lam: Any = 1, K: int = 3, kernels: bool = True, **shape: Any) -> None:
+        self.blueprint: Blueprint = blueprint(table, K)
+        self.lam = contraction(lam)
+        self.exact_shape = self._shape(shape)
+        self.shape = [float(value) for value in self.exact_shape]
+        names = [entry.name for entry in self.blueprint.shape]
+        family = family_of(self.blueprint)
+        self.states = States(self.blueprint, family, self.shape)
+        if family.name == "fourier" and not self.blueprint.convex and not self._convex():
+            family = family_of(self.blueprint, convex=False)
+            self.states = States(self.blueprint, family, self.shape)
+        prepare = getattr(family, "prepared", None)
+        if prepare is not None:
+            prepare(self.states)
+        self.family = family
+        self.engine = Engine(family, key_of(self.blueprint.as_text(), getattr(family, "identity", "")), names, kernels)
+
+    @property
+    def path(self) -> str:
+        """How flights are computed for this table, in words."""
+        return PATHS[self.family.name]
+
+    @property
+    def law(self) -> str:
+        """`slap`, `elastic` or `pinball`: the reflection for which kernels are made."""
+        return law_of(float(np.min(self.lam)), float(np.max(self.lam)))
+
+    @cached_property
+    def arclength(self) -> ArcLength:
+        """Arc length and its inverse, on every component."""
+        return ArcLength(self.states)
+
+    # ---- questions
+
+    def step(self, theta: ArrayLike, phi: ArrayLike = 0.0, component: ArrayLike = 0) -> Orbit:
+        """One bounce; all fields have the shape of the arguments."""
+        whole = self.orbit(theta, phi, 1, component)
+        return Orbit(*(getattr(whole, name)[-1] for name in Orbit.__dataclass_fields__))
+
+    def orbit(
+        self, theta: ArrayLike, phi: ArrayLike, bounces: int, component: ArrayLike = 0, threads: int | None = None
+    ) -> Orbit:
+        """The start and `bounces` bounces after it."""
+        where, theta, phi = self._start(theta, phi, component)
+        bounces = counted("bounces", bounces)
+        law = self.law
+        own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
+        result = self.engine.run(
+            Question(law, record=True), own, self._lams(theta), self.shape, bounces, threads=threads
+        )
+        assert result.record is not None
+        rows = np.concatenate([np.array(own)[None], result.record])
+        fields = [rows[:, i] for i in range(rows.shape[1])]
+        component_at, theta_at = self.states.place(fields)
+        theta_at[0], component_at[0] = theta.ravel(), where.ravel()
+        phi_at = self.states.exit(component_at, theta_at, fields, law)
+        phi_at[0] = phi.ravel() if law != "slap" else 0.0
+        code = self._codes(result.rows, bounces, theta.size)
+        eta = np.full_like(theta_at, np.nan)
+        vx, vy = self.states.direction(component_at[:-1], theta_at[:-1], phi_at[:-1])
+        if law not in ("slap",) and self.family.name not in ("circle",):
+            vx, vy = self._directions(fields, component_at, theta_at, phi_at)
+        eta[1:] = -self._incidence(component_at[1:], theta_at[1:], vx, vy)
+        eta[1:][code[1:] != 0] = np.nan
+        x, y = self.states.point(component_at, theta_at)
+        shape = (bounces + 1, *theta.shape)
+        return Orbit(*(a.reshape(shape) for a in (component_at, theta_at, phi_at, eta, x, y, code)))
+
+    def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
+        """`d(s1, phi1)/d(s0, phi0)`, a matrix for each ball. Paper: eq. (derivative_of_map)."""
+        where, theta, phi = self._start(theta, phi, component)
+        columns = []
+        speed = self.states.speed(where, theta)
+        curvature = self.states.curvature(where, theta)
+        for ds, dphi in ((1.0, 0.0), (0.0, 1.0)):
+            vector = ds / speed, curvature * ds + dphi
+            rows, _law = self._tangent_run(where, theta, phi, 1, vector, None)
+            scale = np.exp2(rows["growth"])
+            place, at = self.states.place([rows[name] for name in self.family.position])
+            shape = theta.shape
+            moved = (rows["dp"] * scale).reshape(shape) * self.states.speed(place, at).reshape(shape)
+            turned = (rows["omega"] * scale).reshape(shape) - self.states.curvature(place, at).reshape(shape) * moved
+            columns.append([moved, turned])
+        matrix = np.array(columns)
+        return np.moveaxis(matrix, (0, 1), (-1, -2))
+
+    def exponents(
+        self,
+        theta: ArrayLike,
+        phi: ArrayLike,
+        bounces: int,
+        transient: int = 0,
+        component: ArrayLike = 0,
+        threads: int | None = None,
+    ) -> Exponents:
+        """Both Lyapunov exponents of every ball over `bounces` bounces, after `transient` that do not count.
+
+        `nu_plus` is the growth of one vector, which starts in a fixed generic direction; `nu_minus` comes from
+        the determinant. At `lam = 0` the map is one-dimensional and `nu_minus` is minus infinity.
+        """
+        where, theta, phi = self._start(theta, phi, component)
+        bounces = counted("bounces", bounces)
+        early = None
+        if counted("transient", transient, least=0):
+            own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), self.law)
+            early = self.engine.run(
+                Question(self.law), own, self._lams(theta), self.shape, transient, threads=threads
+            ).rows
+            fields = [early[name] for name in self.family.fields(self.law)]
+            flat_where, flat = self.states.place(fields)
+            where, theta = flat_where.reshape(theta.shape), flat.reshape(theta.shape)
+            phi = self.states.exit(flat_where, flat, fields, self.law).reshape(theta.shape)
+        speed, curvature = self.states.speed(where, theta), self.states.curvature(where, theta)
+        ds, dphi = (1.0, 0.0) if self.law == "slap" else (0.8, 0.6)
+        rows, law = self._tangent_run(where, theta, phi, bounces, (ds / speed, curvature * ds + dphi), early, threads)
+        fields = [rows[name] for name in self.family.fields(law)]
+        place, at = self.states.place(fields)
+        moved = rows["dp"] * self.states.speed(place, at)
+        turned = rows["omega"] - self.states.curvature(place, at) * moved
+        lost = rows["lost"] if "lost" in rows else np.zeros(theta.size)
+        made = np.maximum(bounces - lost, 1.0)
+        with np.errstate(divide="ignore"):
+            plus = (np.log(np.hypot(moved, turned)) + rows["growth"] * np.log(2.0)) / made
+            ends = np.log(self.states.speed(place, at) / speed.ravel())
+            total = (np.log(rows["ratio"]) + rows["volume"] * np.log(2.0) + ends) / made + np.log(self._lams(theta))
+        code = rows["code"].astype(np.int64) if "code" in rows else np.zeros(theta.size, dtype=np.int64)
+        if early is not None and "code" in early:
+            code = np.maximum(code, early["code"].astype(np.int64))
+        out = self.states.exit(place, at, fields, law)
+        minus = total - plus
+        upper, lower = np.maximum(plus, minus), np.minimum(plus, minus)
+        came = (bounces - lost).astype(np.int64)
+        upper, lower, at, out = (a.reshape(theta.shape) for a in (upper, lower, at, out))
+        came, place, code = (a.reshape(theta.shape) for a in (came, place, code))
+        return Exponents(upper, lower, came, place, at, out, code)
+
+    # ---- within
+
+    def _tangent_run(
+        self, where: Any, theta: Array, phi: Array, bounces: int, vector: Any, early: Any, threads: int | None = None
+    ) -> tuple[dict[str, Array], str]:
+        law = self.law
+        if early is None:
+            own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
+        else:
+            own = [early[name] for name in self.family.fields(law)]
+        dp, omega = (np.broadcast_to(x, theta.shape).ravel().astype(float) for x in vector)
+        nought = np.zeros(theta.size)
+        tangent = [dp, omega, nought, nought + 1.0, nought]
+        question = Question(law, exponents=True)
+        return self.engine.run(question, own, self._lams(theta), self.shape, bounces, tangent, threads).rows, law
+
+    def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
+        name = self.blueprint.table
+        ranges = {entry.name: entry for entry in self.blueprint.shape}
+        for key in given:
+            if key not in ranges:
+                accepted = ", ".join(ranges) or "none"
+                raise ValueError(f"{name}: no shape parameter {key}; it has: {accepted}")
+        values: list[Fraction | float] = []
+        for key, entry in ranges.items():
+            if key not in given:
+                raise ValueError(f"{name}: the shape parameter {key} needs a value, as in PinballMap(..., {key}=...)")
+            value = shape_value(f"{name}: {key}", given[key])
+            entry.check(name, Fraction(value))
+            values.append(value)
+        return values
+
+    def _convex(self) -> bool:
+        """No curvature of the wrong sign on a fine grid, up to rounding."""
+        theta = np.linspace(-np.pi, np.pi, 8192)
+        curvature = self.states.curvature(np.zeros(theta.size, dtype=np.int64), theta)
+        return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
+
+    def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:
+        theta, phi = angles("theta", theta), angles("phi", phi)
+        where = components(component, [part.name for part in self.blueprint.parts])
+        theta, phi, where = np.broadcast_arrays(theta, phi, where)
+        if theta.size == 0:
+            raise ValueError("theta and phi are empty; give at least one ball")
+        steep = np.abs(phi) >= np.pi / 2
+        if np.any(steep):
+            raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
+        if self.lam.size > 1 and self.lam.shape != theta.shape:
+            raise ValueError(
+                f"lam has shape {self.lam.shape} and the balls {theta.shape}; give one lam for each ball, or one"
+            )
+        for index, (low, high) in enumerate(self.states.ends):
+            off = (where == index) & ~((low <= theta) & (theta <= high))
+            if np.any(off):
+                if len(self.blueprint.parts) == 1 and abs(high - low - 2 * np.pi) < 1e-12:
+                    theta = np.where(off, np.remainder(theta - low, 2 * np.pi) + low, theta)
+                else:
+                    name = self.blueprint.parts[index].name
+                    raise ValueError(
+                        f"theta = {theta[off].flat[0]} is not on the {name}, whose theta lies in [{low:.17g}, {high:.17g}]"
+                    )
+        return where, np.array(theta), np.array(phi)
+
+    def _lams(self, theta: Array) -> Array:
+        return np.broadcast_to(self.lam, theta.shape).ravel().astype(float)
+
+    def _codes(self, rows: dict[str, Array], bounces: int, count: int) -> NDArray[np.int64]:
+        codes = np.zeros((bounces + 1, count), dtype=np.int64)
+        if "code" in rows:
+            first = bounces + 1 - rows["lost"].astype(np.int64)
+            stopped = np.arange(bounces + 1)[:, None] >= first[None]
+            codes[stopped] = np.broadcast_to(rows["code"].astype(np.int64), codes.shape)[stopped]
+        return codes
+
+    def _directions(self, fields: Any, component: Any, theta: Array, phi: Array) -> tuple[Array, Array]:
+        """The directions of the flights that start at each bounce but the last."""
+        if self.family.name in ("cardioid", "cuspless"):
+            return self.states.direction(component[:-1], theta[:-1], phi[:-1])
+        at = len(self.family.position)
+        return fields[at][:-1], fields[at + 1][:-1]
+
+    def _incidence(self, component: Any, theta: Array, vx: Array, vy: Array) -> Array:
+        """The angle of arrival whose sine is `v.tangent`."""
+        tx, ty = self.states.tangent(component, theta)
+        return np.asarray(np.arctan2(vx * tx + vy * ty, vx * ty - vy * tx))

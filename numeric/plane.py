@@ -1,0 +1,59 @@
+"""Complex arithmetic on pairs, for points and directions in the plane."""
+
+from typing import Any
+
+Pair = tuple[Any, Any]
+
+
+def times(z: Pair, w: Pair) -> Pair:
+    """`z*w`.
+
+    >>> times((1, 2), (3, 4))
+    (-5, 10)
+    """
+    return z[0] * w[0] - z[1] * w[1], z[0] * w[1] + z[1] * w[0]
+
+
+def conjugate(z: Pair) -> Pair:
+    """The mirror image in the x axis; the inverse of a unit vector."""
+    return z[0], -z[1]
+
+
+def squared(z: Pair) -> Pair:
+    """`z*z`, with the real part as a product so that nothing cancels twice."""
+    return (z[0] - z[1]) * (z[0] + z[1]), (z[0] + z[0]) * z[1]
+
+
+def dot(z: Pair, w: Pair) -> Any:
+    """The scalar product, `Re(conj(z)*w)`."""
+    return z[0] * w[0] + z[1] * w[1]
+
+
+def cross(z: Pair, w: Pair) -> Any:
+    """`Im(conj(z)*w)`, positive when `w` lies to the left of `z`."""
+    return z[0] * w[1] - z[1] * w[0]
+
+
+def exact_cross(ops: Any, z: Pair, w: Pair) -> Any:
+    """`cross` to two units in the last place even where it almost vanishes (Kahan's difference of products)."""
+    product = z[1] * w[0]
+    lost = ops.fma(-z[1], w[0], product)
+    return ops.fma(z[0], w[1], -product) + lost
+
+
+def exact_dot(ops: Any, z: Pair, w: Pair) -> Any:
+    """`dot`, as `exact_cross`."""
+    return exact_cross(ops, (z[0], -z[1]), (w[1], w[0]))
+
+
+def unit(ops: Any, z: Pair) -> Pair:
+    """`z` with its length set to one again, when it is one up to rounding."""
+    short = ops.fma(-z[0], z[0], ops.fma(-z[1], z[1], ops.number(1.0)))
+    half = short * ops.number(0.5)
+    return ops.fma(z[0], half, z[0]), ops.fma(z[1], half, z[1])
+
+
+def normalised(ops: Any, z: Pair) -> Pair:
+    """`z` divided by its length, whatever that is."""
+    scale = ops.number(1.0) / ops.sqrt(dot(z, z))
+    return unit(ops, (z[0] * scale, z[1] * scale))

@@ -1,0 +1,168 @@
+"""Straight-line programs: the form in which a formula leaves the symbolic storey.
+
+A program is a list of lines in a closed vocabulary, without names, branches or floats. Any reader
+(LLVM lanes, NumPy arrays, multiprecision numbers) runs it, and it is plain data: it can be
+hashed, and written to a file from which it is read back without importing SymPy.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+UNARY = {"neg", "sqrt", "sin", "cos"}
+BINARY = {"+", "-", "*", "/"}
+Line = tuple[Any, ...]  # a word of the vocabulary and the numbers of its operands
+
+
+@dataclass(frozen=True)
+class Program:
+    """`outputs` computed from `inputs` by `lines`; values are numbered, inputs first."""
+
+    inputs: tuple[str, ...]
+    lines: tuple[Line, ...]
+    outputs: tuple[int, ...]
+
+    def __call__(self, ops: Any, *values: Any) -> list[Any]:
+        """The outputs, in the arithmetic of `ops`; every rational enters as `ops.constant(p, q)`."""
+        known = list(values)
+        for word, *operands in self.lines:
+            if word == "q":
+                known.append(ops.constant(*operands))
+            elif word == "pi":
+                known.append(ops.pi())
+            elif word in UNARY:
+                (x,) = (known[i] for i in operands)
+                known.append(-x if word == "neg" else getattr(ops, word)(x))
+            else:
+                x, y = (known[i] for i in operands)
+                known.append(_combined(word, x, y))
+        return [known[i] for i in self.outputs]
+
+    def as_data(self) -> list[Any]:
+        """Nested lists for JSON."""
+        return [list(self.inputs), [list(line) for line in self.lines], list(self.outputs)]
+
+    @staticmethod
+    def from_data(data: list[Any]) -> "Program":
+        """The inverse of `as_data`; a word outside the vocabulary is an error."""
+        inputs, lines, outputs = data
+        for line in lines:
+            if line[0] not in UNARY | BINARY | {"q", "pi"}:
+                raise ValueError(f"program: {line[0]!r} is no word of the vocabulary")
+        return Program(tuple(inputs), tuple(tuple(line) for line in lines), tuple(outputs))
+
+
+def _combined(word: str, x: Any, y: Any) -> Any:
+    if word == "+":
+        return x + y
+    if word == "-":
+        return x - y
+    return x * y if word == "*" else x / y
+
+
+class Builder:
+    """Writes a program: run any formula on its nodes, then name the outputs.
+
+    >>> builder = Builder("x", "y")
+    >>> x, y = builder.nodes
+    >>> builder.program(x * y + 0 * x, x * y * 2).lines
+    (('*', 0, 1), ('q', 2, 1), ('*', 2, 3))
+    """
+
+    def __init__(self, *inputs: str) -> None:
+        self.inputs = inputs
+        self.lines: list[Line] = []
+        self.numbers: dict[Line, int] = {}
+        self.nodes = [Node(self, None, i) for i in range(len(inputs))]
+
+    def number(self, line: Line) -> int:
+        """The number of the value that `line` computes; equal lines are written once."""
+        if line not in self.numbers:
+            self.numbers[line] = len(self.inputs) + len(self.lines)
+            self.lines.append(line)
+        return self.numbers[line]
+
+    def node(self, *line: Any) -> "Node":
+        """The value of a line whose operands are given by number."""
+        return Node(self, None, self.number(line))
+
+    def exact(self, value: Any) -> "Node":
+        """A rational constant."""
+        return value if isinstance(value, Node) else Node(self, Fraction(value), None)
+
+    def program(self, *outputs: Any) -> Program:
+        """The program of all lines so far that the outputs need."""
+        wanted = [self.exact(output).number() for output in outputs]
+        first, used = len(self.inputs), set(wanted)
+        for i in range(len(self.lines) - 1, -1, -1):
+            if first + i in used and self.lines[i][0] != "q":
+                used.update(self.lines[i][1:])
+        renumbered = {i: i for i in range(first)}
+        lines: list[Line] = []
+        for i, (word, *operands) in enumerate(self.lines):
+            if first + i in used:
+                renumbered[first + i] = first + len(lines)
+                lines.append((word, *(operands if word == "q" else (renumbered[j] for j in operands))))
+        return Program(tuple(self.inputs), tuple(lines), tuple(renumbered[i] for i in wanted))
+
+
+class Node:
+    """A value in a program under construction; zeros and ones are folded away, exactly."""
+
+    def __init__(self, builder: Builder, value: Fraction | None, number: int | None) -> None:
+        self.builder, self.value, self._number = builder, value, number
+
+    def number(self) -> int:
+        """The node's number; a constant gets its line only when something needs it."""
+        if self._number is None:
+            assert self.value is not None
+            self._number = self.builder.number(("q", self.value.numerator, self.value.denominator))
+        return self._number
+
+    def _with(self, word: str, other: Any, swapped: bool = False) -> "Node":
+        other = self.builder.exact(other)
+        x, y = (other, self) if swapped else (self, other)
+        if x.value is not None and y.value is not None:
+            return Node(self.builder, Fraction(_combined(word, x.value, y.value)), None)
+        if word == "*" and 0 in (x.value, y.value):
+            return self.builder.exact(0)
+        if (word in "*/" and y.value == 1) or (word in "+-" and y.value == 0):
+            return x
+        if (word == "*" and x.value == 1) or (word == "+" and x.value == 0):
+            return y
+        if (word == "*" and y.value == -1) or (word == "/" and y.value == -1):
+            return -x
+        if (word == "*" and x.value == -1) or (word == "-" and x.value == 0):
+            return -y
+        if word in "+*" and x.number() > y.number():
+            x, y = y, x
+        return self.builder.node(word, x.number(), y.number())
+
+    def __add__(self, other: Any) -> "Node":
+        return self._with("+", other)
+
+    def __radd__(self, other: Any) -> "Node":
+        return self._with("+", other, swapped=True)
+
+    def __sub__(self, other: Any) -> "Node":
+        return self._with("-", other)
+
+    def __rsub__(self, other: Any) -> "Node":
+        return self._with("-", other, swapped=True)
+
+    def __mul__(self, other: Any) -> "Node":
+        return self._with("*", other)
+
+    def __rmul__(self, other: Any) -> "Node":
+        return self._with("*", other, swapped=True)
+
+    def __truediv__(self, other: Any) -> "Node":
+        return self._with("/", other)
+
+    def __rtruediv__(self, other: Any) -> "Node":
+        return self._with("/", other, swapped=True)
+
+    def __neg__(self) -> "Node":
+        return (
+            Node(self.builder, -self.value, None) if self.value is not None else self.builder.node("neg", self.number())
+        )

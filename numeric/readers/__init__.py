@@ -1,0 +1,1 @@
+"""The arithmetics that can run a step: LLVM lanes, NumPy arrays, and scalars of any precision."""

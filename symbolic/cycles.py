@@ -79,6 +79,7 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
     """The frame of a table at parameter `value` of component `index`.
 
     >>> from symbolic.tables import cardioid
+    >>> from sympy import S
     >>> frame(cardioid, 0, S.Zero, {}).curvature
     -3/4
     """
@@ -155,6 +156,7 @@ def discriminant(trace: Expr, det: Expr) -> Expr:
 def multipliers(trace: Expr, det: Expr) -> tuple[Expr, Expr]:
     """`(mu_plus, mu_minus)`, the eigenvalues of a monodromy matrix.
 
+    >>> from sympy import S
     >>> multipliers(S(3), S(2))
     (2, 1)
     """

@@ -81,6 +81,7 @@ def evolute(component: Component) -> Matrix:
 def trigonometric(expression: Expr) -> Expr:
     """A trigonometric polynomial as a sum of sines and cosines of multiples; others merely expanded.
 
+    >>> from sympy import cos, sin
     >>> trigonometric(sin(theta) ** 2 + 3 * cos(theta) ** 2)
     cos(2*theta) + 2
     """

@@ -97,13 +97,14 @@ def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
     return points
 
 
-def digits(claim: Claim, value: Expr, mend: str = "") -> Judgement:
-    """Is the printed decimal the true value, correctly rounded? `mend` is the decimal that is."""
+def digits(claim: Claim, value: Expr, mend: tuple[str, str] | None = None) -> Judgement:
+    """Is the printed decimal the true value, correctly rounded? `mend` is the misprint and what it should read."""
     finding = rounded(str(claim.printed), value)
-    if not mend:
+    if mend is None:
         return Judgement(finding, text_of(value), value=value)
-    erratum = f"{claim.printed} should read {mend}"
-    return Judgement(finding, text_of(value), rounded(mend, value), erratum, value)
+    wrong, right = mend
+    repaired = str(mended(claim, wrong, right).printed)
+    return Judgement(finding, text_of(value), rounded(repaired, value), f"{wrong} should read {right}", value)
 
 
 def rounded(decimal: str, value: Expr) -> Finding:

@@ -226,7 +226,7 @@ def no_period3_caption(claim: Claim) -> Judgement:
 @judges("egg.period3_lambda_c", "egg.period3_end_caption")
 def fold_digits(claim: Claim) -> Judgement:
     """The closed form at `alpha = 0.08`."""
-    return digits(claim, saddle_node().subs(alpha, at("0.08")), "0.378")
+    return digits(claim, saddle_node().subs(alpha, at("0.08")), ("0.39", "0.378"))
 
 
 @judges("egg.projection_argument")

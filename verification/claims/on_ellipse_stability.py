@@ -95,9 +95,10 @@ def complex_near_one(claim: Claim) -> Judgement:
 def modulus_at_one(claim: Claim) -> Judgement:
     """At `lam = 1` the determinant is 1 and `|trace| <= 2`: both multipliers lie on the unit circle."""
     trace, det = (x.subs(lam, 1) for x in minor())
-    ranged = {a: claim.box[a]}
+    circle = nonnegative(4 - trace**2, {a: claim.box[a]})
     return Judgement(
-        by("det = 1 and |trace| <= 2 at lam = 1", zero("", det - 1), nonnegative(4 - trace**2, ranged)), "|mu| = 1"
+        by("|trace| <= 2 at lam = 1, so both moduli are det^(1/2)", circle, equal(claim.formula, sqrt(det), {})),
+        "|mu| = 1",
     )
 
 
@@ -178,14 +179,15 @@ def lower_range(claim: Claim) -> Judgement:
 @judges("ellipse.lambda_minus_sqrt2")
 def lower_limit_at_sqrt2(claim: Claim) -> Judgement:
     """Continuous there."""
-    return Judgement(zero("lambda_- is continuous and vanishes at a = sqrt(2)", lambda_minus().subs(a, sqrt(2))), "0")
+    reached = lambda_minus().subs(a, sqrt(2))
+    return Judgement(by("lambda_- is continuous at a = sqrt(2)", equal(claim.formula, reached, {})), str(reached))
 
 
 @judges("ellipse.lambda_minus_oo")
 def lower_limit_at_infinity(claim: Claim) -> Judgement:
     """A rational function of `w` with equal leading coefficients."""
     reached = limit(((w - 1) / (w + 1)) ** 2, w, oo)
-    return Judgement(zero("((w-1)/(w+1))^2 -> 1 as w -> oo", reached - 1), "1")
+    return Judgement(by("the limit of ((w-1)/(w+1))^2 as w -> oo", equal(claim.formula, reached, {})), str(reached))
 
 
 @judges("ellipse.stable_node")

@@ -7,7 +7,7 @@ typed in. Paper: end of section 2.1.
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Expr, Matrix, cancel, expand_trig, eye, factor, simplify, sqrt, together
+from sympy import Expr, Matrix, cancel, expand_trig, eye, factor, simplify, sqrt
 
 from symbolic.collision import derivative_matrix
 from symbolic.ranges import parameter_box, root
@@ -74,6 +74,11 @@ class Cycle:
         arriving = self.chord(i - 1).dot(tangent) / self.length(i - 1)
         return simplify(leaving), simplify(arriving)
 
+    def _repr_latex_(self) -> str:
+        from symbolic.notation import equation  # a notebook asks for it, nothing else does
+
+        return equation(rf"\text{{{self.table.name}, {self.name}:}}\quad D T^{{{len(self.bounces)}}}", monodromy(self))
+
 
 def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
     """The frame of a table at parameter `value` of component `index`.
@@ -139,7 +144,7 @@ def monodromy(cycle: Cycle, base: int = 0, contraction: Expr = lam) -> Matrix:
     product = eye(2)
     for i in range(base, base + len(cycle.bounces)):
         product = flight_matrix(cycle, i, contraction) * product
-    return product.applyfunc(lambda entry: together(cancel(entry)))
+    return product.applyfunc(factor)
 
 
 def trace_and_determinant(cycle: Cycle, contraction: Expr = lam) -> tuple[Expr, Expr]:

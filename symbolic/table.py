@@ -101,6 +101,11 @@ class Table:
         names = ", ".join(component.name for component in self.components)
         raise ValueError(f"{self.name}: no component {name}; it has: {names}")
 
+    def _repr_latex_(self) -> str:
+        from symbolic.notation import latex  # a notebook asks for it, nothing else does
+
+        return rf"$\displaystyle {latex(self)}$"
+
 
 def exact_number(label: str, given: Expr | int | str) -> Expr:
     """`given` as an exact expression; a float is refused, because it is not the number it shows.

@@ -60,7 +60,7 @@ def judge(claim: Claim, digits: int = 15) -> Result:
     if claim.id in JUDGES:
         judgement = JUDGES[claim.id](claim)
     else:
-        judgement = Judgement(Finding(Outcome.UNKNOWN, "not judged yet"), "")
+        judgement = Judgement(Finding(Outcome.UNKNOWN, "stated from numerics; nothing settles it here yet"), "")
     value, radius = None, None
     if judgement.value is not None:
         value, radius = decimal(enclose(judgement.value, digits=digits + 5).real, digits)

@@ -15,9 +15,10 @@ from sympy import (
 )
 
 from symbolic.circle import flight
+from symbolic.convexity import convexity
 from symbolic.egg import COSINE, curvature_slope_polynomial, squared_speed_polynomial, turning_polynomial
 from symbolic.named_cycles import egg_diameter
-from symbolic.signs import Finding, nonnegative, positive
+from symbolic.signs import Finding, positive
 from symbolic.symbols import alpha, lam, phi, theta
 from symbolic.tables import egg
 from verification.claims.claim import Claim, Judgement
@@ -75,18 +76,15 @@ def nonconvex(claim: Claim) -> Judgement:
 @judges("egg.convex")
 def convex(claim: Claim) -> Judgement:
     """Convex on the closed range, focusing without its end."""
-    N = turning_polynomial()
+    flat_end = turning_polynomial().subs({COSINE: -1, alpha: Rational(1, 10)})
+    focusing = convexity(egg(3), {alpha: Interval.Ropen(0, Rational(1, 10))}, strictly=True)
     return Judgement(
         counterexample(
             "at alpha = 1/10 the curvature of the flat points is 0, and a focusing component has none",
-            zero("", N.subs({COSINE: -1, alpha: Rational(1, 10)})),
+            zero("", flat_end),
         ),
         "convex for alpha in [0, 1/10], focusing for alpha in [0, 1/10)",
-        by(
-            "x'y'' - y'x'' > 0 below 1/10 and >= 0 at it",
-            positive(N, {COSINE: FULL, alpha: Interval.Ropen(0, Rational(1, 10))}),
-            nonnegative(N, {COSINE: FULL, alpha: SHAPES}),
-        ),
+        by("x'y'' - y'x'' > 0 below 1/10 and >= 0 at it", focusing, convexity(egg(3))),
         "At alpha = 1/10 the table is still convex but no longer focusing: the curvature vanishes at three points.",
     )
 
@@ -105,7 +103,7 @@ def analytic(claim: Claim) -> Judgement:
 @judges("egg.compact_domain")
 def compact_domain(claim: Claim) -> Judgement:
     """A circle times a closed interval of angles."""
-    N = nonnegative(turning_polynomial(), {COSINE: FULL, alpha: SHAPES})
+    N = convexity(egg(3))
     return Judgement(
         by(
             "no corner and no tangency on the way (the table is convex), so the domain is boundary x [-pi/2, pi/2]",
@@ -165,7 +163,7 @@ def map_smooth(claim: Claim) -> Judgement:
             "the flight equation is analytic with slope cos(eta1) != 0 for |phi0| < pi/2 in a convex "
             "table: implicit function theorem",
             regular(),
-            nonnegative(turning_polynomial(), {COSINE: FULL, alpha: SHAPES}),
+            convexity(egg(3)),
         ),
         "analytic for |phi| < pi/2",
     )

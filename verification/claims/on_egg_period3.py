@@ -271,6 +271,15 @@ def fold(claim: Claim) -> Judgement:
     )
 
 
+@judges("egg.period3_exponent")
+def multiplier_at_fold(claim: Claim) -> Judgement:
+    """`1 - trace + det` of one bounce vanishes at the fold, so 1 is a multiplier there."""
+    return Judgement(
+        by("one multiplier of a bounce tends to 1 as cos(3*theta) -> -alpha", *side_of_fold()),
+        "multiplier 1 at lambda_c",
+    )
+
+
 def side_of_fold() -> list[Finding]:
     """`1 - trace + det` of one bounce has the sign of `-(cos(3*theta) + alpha)`.
 

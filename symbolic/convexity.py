@@ -1,0 +1,73 @@
+"""Convexity as a proved condition on the shape.
+
+A closed simple boundary is convex where it never turns right. On a trigonometric boundary the
+turning `x'y'' - y'x''` is a polynomial in `tan(x/2)`, with `x` the common multiple of `theta` that it
+depends on, so its sign over all of the boundary and the whole shape range can be proved.
+"""
+
+from functools import reduce
+from math import gcd
+
+from sympy import Dummy, Expr, Interval, S, Symbol, expand, oo
+
+from symbolic.fourier import coefficients
+from symbolic.geometry import turning
+from symbolic.ranges import parameter_box
+from symbolic.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
+from symbolic.symbols import theta
+from symbolic.table import Table
+
+
+def convexity(table: Table, box: Box | None = None, strictly: bool = False) -> Finding:
+    """Is the table convex for every shape in `box` (by default its own range, ends included)?
+
+    `strictly` asks for negative curvature everywhere. A piecewise table is judged component by
+    component, each on its whole period, which is enough but not needed.
+
+    >>> from symbolic.tables import egg
+    >>> convexity(egg(3)).outcome.name, convexity(egg(3), strictly=True).outcome.name
+    ('PROVED', 'REFUTED')
+    """
+    ranges = dict(box or parameter_box(table))
+    return conjunction(*(_turns_left(turning(component), ranges, strictly) for component in table.components))
+
+
+def _turns_left(expression: Expr, box: Box, strictly: bool) -> Finding:
+    judge = positive if strictly else nonnegative
+    if not expression.has(theta):
+        if expression == 0 and not strictly:
+            return Finding(Outcome.PROVED, "straight")
+        return judge(expression, {x: r for x, r in box.items() if x in expression.free_symbols})
+    half = in_half_tangent(expression)
+    if half is None:
+        return Finding(Outcome.UNKNOWN, f"{expression} is no trigonometric polynomial")
+    polynomial, T, at_pi = half
+    used = {x: r for x, r in box.items() if x in polynomial.free_symbols}
+    far = judge(at_pi, {x: r for x, r in box.items() if x in at_pi.free_symbols})
+    sides = [judge(polynomial.subs(T, sign * T), {**used, T: Interval(0, oo)}) for sign in (1, -1)]
+    return conjunction(*sides, far)
+
+
+def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
+    """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
+
+    Here `x = g*theta` with `g` the common divisor of the frequencies.
+
+    >>> from sympy import cos
+    >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
+    >>> p.subs(T, 0), value
+    (3, 1)
+    """
+    c = coefficients(expression)
+    if c is None:
+        return None
+    step = reduce(gcd, (abs(k) for k in c)) or 1
+    n = max(abs(k) for k in c) // step
+    T = Dummy("T", real=True)
+    total = S.Zero
+    for k, value in c.items():
+        power = k // step
+        wave = (1 + (1 if power > 0 else -1) * S.ImaginaryUnit * T) ** (2 * abs(power))
+        total += value * wave * (1 + T**2) ** (n - abs(power))
+    at_pi = sum((value * S.NegativeOne ** (k // step) for k, value in c.items()), S.Zero)
+    return expand(expand(total).as_real_imag()[0]), T, expand(at_pi)

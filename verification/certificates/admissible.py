@@ -7,12 +7,16 @@ and that a finite collision rule shows the chord is not tangent.
 
 from fractions import Fraction
 from functools import cache
+from itertools import pairwise
+from math import gcd
 
 from flint import arb
-from sympy import Expr, Matrix, simplify, sympify
+from sympy import Expr, Interval, Matrix, S, Symbol, chebyshevt, simplify
 
 from symbolic.codegen import kernel, load
+from symbolic.fourier import coefficients
 from symbolic.geometry import turning, velocity
+from symbolic.signs import nonnegative
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
 from verification.arithmetic import balls, working
@@ -29,6 +33,8 @@ def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
     >>> from symbolic.tables import cardioid, cuspless, egg
     >>> convex(cuspless), convex(egg(3).at(alpha="0.08")), convex(cardioid)
     (True, True, None)
+    >>> convex(egg(3).at(alpha="0.1"))
+    True
     """
     if table.undefined:
         return None
@@ -38,7 +44,7 @@ def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
 
 def _bends_inwards(component: Component, table: Table, shape: tuple[arb, ...]) -> bool:
     bend = turning(component)
-    if bend.is_nonnegative:
+    if bend.is_nonnegative or _exactly_nonnegative(bend):
         return True
     function = load(kernel("turning", [theta, *(p.symbol for p in table.shapes)], {"bend": bend}), balls(BITS))
     with working(BITS):
@@ -56,10 +62,21 @@ def _bends_inwards(component: Component, table: Table, shape: tuple[arb, ...]) -
     return True
 
 
+def _exactly_nonnegative(bend: Expr) -> bool:
+    """True when a sum of cosines of multiples of `theta` is proved nonnegative, as a polynomial in one of them."""
+    waves = coefficients(bend)
+    if waves is None or len(waves) < 2 or any(waves.get(-k) != c or not c.is_Rational for k, c in waves.items()):
+        return False
+    step = gcd(*waves)
+    c = Symbol("c", real=True)
+    polynomial = sum((w * (2 if k else 1) * chebyshevt(k // step, c) for k, w in waves.items() if k >= 0), S.Zero)
+    return bool(nonnegative(polynomial, {c: Interval(-1, 1)}))
+
+
 @cache
 def _joined(table: Table) -> bool:
     ring = (*table.components, table.components[0])
-    for before, after in zip(ring, ring[1:], strict=False):
+    for before, after in pairwise(ring):
         p, q = velocity(before).subs(theta, before.end), velocity(after).subs(theta, after.start)
         if not simplify(Matrix([p.T, q.T]).det()).is_nonnegative or not simplify(p.dot(q)).is_positive:
             return len(table.components) == 1  # one closed part is smooth where it ends
@@ -96,7 +113,7 @@ def _apart(table: Table, components: tuple[int, ...], zero: list[arb], i: int, j
 
 
 def _ball(x: Expr) -> arb:
-    value: arb = load(kernel("end", [], {"end": sympify(x)}), balls(BITS))()[0] + arb(0)
+    value: arb = load(kernel("end", [], {"end": x}), balls(BITS))()[0] + arb(0)
     return value
 
 

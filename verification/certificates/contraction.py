@@ -13,7 +13,7 @@ from typing import Any
 from flint import arb
 
 from verification.arithmetic import balls, working
-from verification.shooting.problem import Linearised, Problem, Rows
+from verification.shooting.newton import System
 
 
 class Status(Enum):
@@ -30,14 +30,14 @@ class Enclosure:
 
     status: Status
     zero: list[arb]
-    at: Linearised | None = None  # the derivatives over the box
 
 
-def contraction(problem: Problem, centre: list[arb], radius: arb, bits: int) -> Enclosure:
+def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> Enclosure:
     """What the interval Newton operator proves about the box of `radius` around exact `centre`.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
+    >>> from verification.shooting.problem import Problem
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> with working(100):
     ...     near, off = [arb("1.5707963268"), arb("-1.5707963268")], [arb("0.5"), arb("-1.5")]
@@ -46,14 +46,11 @@ def contraction(problem: Problem, centre: list[arb], radius: arb, bits: int) -> 
     """
     with working(bits):
         box = [arb(x, radius) for x in centre]
-        rows = Rows(problem, balls(bits))
         try:
-            value = Linearised(rows, centre, slope=False).value
-            at = Linearised(rows, box)
-            image = [x - d for x, d in zip(centre, at.solve(value), strict=True)]
+            image = [x - d for x, d in zip(centre, system.newton(balls(bits), centre, box), strict=True)]
         except ZeroDivisionError:
             return Enclosure(Status.UNKNOWN, box)
-        return Enclosure(compared(image, box), image, at)
+        return Enclosure(compared(image, box), image)
 
 
 def compared(image: list[arb], box: list[arb]) -> Status:

@@ -4,7 +4,7 @@ Nothing here is proved and nothing needs to be: a start only has to lie in reach
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from sympy import Rational
 
@@ -30,20 +30,31 @@ def attractor(table: Table, lam: float, start: tuple[float, float], longest: int
     """
     angle = Rows(Problem(table, (0, 0), lam=Rational(0)), FLOAT64).kernel(0, 0, 1)
     before, here = start
-    orbit = []
-    for bounce in range(SETTLE + 2 * longest):
-        wanted = -lam * angle(here, before)[0]
-        low, high = here, here + 2 * math.pi  # the exit angle falls from pi/2 to -pi/2 between them
-        for _ in range(60):
-            middle = (low + high) / 2
-            low, high = (middle, high) if angle(here, middle)[0] > wanted else (low, middle)
-        before, here = here, math.remainder((low + high) / 2, 2 * math.pi)
-        if bounce >= SETTLE:
-            orbit.append(here)
-    for period in range(1, longest + 1):
-        if all(_near(orbit[i], orbit[i + period]) for i in range(longest)):
-            return orbit[:period]
+    orbit: list[float] = []
+    for bounce in range(SETTLE):
+        before, here = here, math.remainder(_landing(angle, here, -lam * angle(here, before)[0]), 2 * math.pi)
+        orbit.append(here)
+        if bounce % 200 == 199:
+            last = orbit[-2 * longest :]
+            for period in range(1, longest + 1):
+                if all(_near(last[i], last[i + period]) for i in range(longest)):
+                    return last[-period:]
     return []
+
+
+def _landing(angle: Callable[..., tuple[float, ...]], here: float, phi: float) -> float:
+    """Where a ball lands that leaves `here` at `phi`: the angle falls from pi/2 to -pi/2 on the way round."""
+    low, high = here, here + 2 * math.pi
+    x = here + math.pi - 2 * phi
+    for _ in range(60):
+        value, _, slope, *_ = angle(here, x)
+        low, high = (x, high) if value > phi else (low, x)
+        better = x - (value - phi) / slope
+        better = better if low < better < high else (low + high) / 2
+        if abs(better - x) < 4e-16 * 8:
+            return better
+        x = better
+    return x
 
 
 def _near(x: float, y: float) -> bool:

@@ -29,10 +29,12 @@ class Jet:
         return Jet(*(-a for a in self.c))
 
     def __sub__(self, other: Any) -> "Jet":
-        return self + (-other)
+        total: Jet = self + (-other)
+        return total
 
     def __rsub__(self, other: Any) -> "Jet":
-        return (-self) + other
+        total: Jet = (-self) + other
+        return total
 
     def __mul__(self, other: Any) -> "Jet":
         if not isinstance(other, Jet):

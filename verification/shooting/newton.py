@@ -6,16 +6,26 @@ together. The precision lives in a context made here; the ambient `mpmath.mp` is
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import mpmath
 
-from verification.arithmetic import FLOAT64, bits_of, multiprecision
-from verification.shooting.problem import Linearised, Problem, Rows
+from verification.arithmetic import FLOAT64, Arithmetic, bits_of, multiprecision
 
 GUARD = 15  # decimal digits beyond those asked for
 START = 16  # digits of the first step in mpmath
 ATTEMPTS = 6  # steps with the same number of digits
+
+
+class System(Protocol):
+    """As many equations as unknowns, over any kind of number."""
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+
+    def newton(self, arithmetic: Arithmetic, at: list[Any], over: list[Any] | None = None) -> list[Any]:
+        """`F'(over)^-1 F(at)`, with `over = at` when it is not given."""
 
 
 @dataclass(frozen=True)
@@ -30,17 +40,18 @@ class Step:
 class Solution:
     """Numbers of an mpmath context that solve a problem to about `digits` digits, not proved."""
 
-    problem: Problem
+    problem: System
     z: list[Any]
     digits: int
     steps: tuple[Step, ...] = field(repr=False)
 
 
-def refined(problem: Problem, start: Sequence[Any], digits: int) -> Solution:
+def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
     """The solution near `start` to `digits` digits.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
+    >>> from verification.shooting.problem import Problem
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> found = refined(axis, [1.5, -1.6], 30)
     >>> mpmath.nstr(found.z[0], 30)
@@ -49,12 +60,12 @@ def refined(problem: Problem, start: Sequence[Any], digits: int) -> Solution:
     context = mpmath.MPContext()
     context.prec = 53
     z = [context.mpf(x) for x in floats(problem, start)]
-    rows = Rows(problem, multiprecision(context))
+    arithmetic = multiprecision(context)
     steps: list[Step] = []
     for level in levels(digits + GUARD):
         context.dps = level
         for attempt in range(ATTEMPTS):
-            correction = _step(rows, z)
+            correction = problem.newton(arithmetic, z)
             z = [x - d for x, d in zip(z, correction, strict=True)]
             steps.append(Step(level, _log10(context, max(abs(d) for d in correction))))
             right = -2 * steps[-1].correction  # convergence is quadratic
@@ -62,7 +73,7 @@ def refined(problem: Problem, start: Sequence[Any], digits: int) -> Solution:
                 break
             if attempt == ATTEMPTS - 1:
                 raise ValueError(
-                    f"{problem.table.name}: {ATTEMPTS} Newton steps with {level} digits still correct by "
+                    f"{problem.label}: {ATTEMPTS} Newton steps with {level} digits still correct by "
                     f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
                 )
     return Solution(problem, z, digits, tuple(steps))
@@ -80,19 +91,20 @@ def levels(digits: int) -> list[int]:
     return found if found[0] <= START or digits <= START else [START, *found]
 
 
-def floats(problem: Problem, start: Sequence[Any], steps: int = 40) -> list[float]:
+def floats(problem: System, start: Sequence[Any], steps: int = 40) -> list[float]:
     """The solution near `start` in float64: steps as long as they shorten.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
+    >>> from verification.shooting.problem import Problem
     >>> [round(x, 12) for x in floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6])]
     [1.570796326795, -1.570796326795]
     """
-    rows, z = Rows(problem, FLOAT64), [float(x) for x in start]
+    z = [float(x) for x in start]
     sizes: list[float] = []
     for _ in range(steps):
         try:
-            correction = _step(rows, z)
+            correction = problem.newton(FLOAT64, z)
         except ZeroDivisionError:
             break
         size = max(abs(d) for d in correction)
@@ -105,12 +117,7 @@ def floats(problem: Problem, start: Sequence[Any], steps: int = 40) -> list[floa
             return z
     if sizes and sizes[-1] < 1e-6:
         return z
-    raise ValueError(f"{problem.table.name}: Newton's method in float64 did not settle from {[*start][:4]} ...")
-
-
-def _step(rows: Rows, z: list[Any]) -> list[Any]:
-    at = Linearised(rows, z)
-    return at.solve(at.value)
+    raise ValueError(f"{problem.label}: Newton's method in float64 did not settle from {[*start][:4]} ...")
 
 
 def _log10(context: Any, size: Any) -> float:

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from sympy import Rational
+from sympy import Expr
 
 from symbolic.chords import chord_kernel
-from symbolic.codegen import load
+from symbolic.codegen import kernel, load
 from symbolic.table import Table
 from verification.arithmetic import Arithmetic
 from verification.shooting.chain import Chain, Elimination, Vector, dot
@@ -35,7 +35,7 @@ class Problem:
     components: tuple[int, ...]
     kind: Kind = Kind.CYCLE
     free: str = ""
-    lam: Rational | None = None
+    lam: Expr | None = None
 
     def __post_init__(self) -> None:
         shapes = {p.symbol.name for p in self.table.shapes}
@@ -43,6 +43,19 @@ class Problem:
             raise ValueError(f"{self.table.name}: free letters must be just {self.free or 'none'}; lam = {self.lam}")
         if (self.kind is Kind.CYCLE) != (not self.free):
             raise ValueError(f"{self.table.name}: {self.kind.name} with {self.free or 'no letter'} free is not square")
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return f"{self.table.name}, period {self.period}"
+
+    def newton(self, arithmetic: Arithmetic, at: Vector, over: Vector | None = None) -> Vector:
+        """`F'(over)^-1 F(at)`: Newton's correction at a point, or the interval Newton operator's over a box."""
+        rows = Rows(self, arithmetic)
+        if over is None:
+            here = Linearised(rows, at)
+            return here.solve(here.value)
+        return Linearised(rows, over).solve(Linearised(rows, at, slope=False).value)
 
     @property
     def period(self) -> int:
@@ -72,7 +85,7 @@ class Rows:
     def contraction(self, z: Vector) -> Any:
         """`lam`, given or unknown."""
         lam = self.problem.lam
-        return z[-1] if lam is None else self.arithmetic["q"](int(lam.p), int(lam.q))
+        return z[-1] if lam is None else load(kernel("lam", [], {"lam": lam}), self.arithmetic)()[0]
 
     def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
         """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""

@@ -1,0 +1,101 @@
+"""The orbit through both corners of the cuspless cardioid: what happens at `lambda-star`.
+
+A bounce at a corner has a tangent (the joins are C1) and two curvatures, that of the arc and that of
+the wall. So the collision rules hold there, but the derivative of whatever passes the lower corner
+has two values. Paper: section 5.2.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb
+
+from symbolic.chords import chord_kernel
+from symbolic.codegen import kernel, load
+from symbolic.collision import derivative_matrix
+from symbolic.geometry import curvature
+from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
+from symbolic.tables import cuspless
+from verification.arithmetic import Arithmetic
+from verification.shooting.small import corner_parameter
+
+Matrix = tuple[Any, Any, Any, Any]
+
+
+@dataclass(frozen=True)
+class Corner:
+    """One-sided derivatives at the orbit that leaves the upper corner at `phi-star`.
+
+    `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc;
+    `motion` is `d s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are
+    `(trace, determinant)` of the half return map, mirrored to the same corner.
+    """
+
+    slope_wall: arb
+    slope_arc: arb
+    motion: arb
+    wall: tuple[arb, arb]
+    arc: tuple[arb, arb]
+
+    @property
+    def minimum_at_kink(self) -> bool | None:
+        """True when `s_4` falls up to `phi-star` and grows from there: it touches with a corner of its curve."""
+        left, right = (self.slope_wall, self.slope_arc) if self.motion > 0 else (self.slope_arc, self.slope_wall)
+        if not (self.motion > 0 or self.motion < 0):
+            return None
+        if left < 0 and right > 0:
+            return True
+        return False if left > 0 or right < 0 else None
+
+
+def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
+    """The one-sided derivatives at a solution of `shooting.small.corner`."""
+    edge = corner_parameter(arithmetic)
+    bend = load(kernel("curvature", [theta], {"curvature": curvature(cuspless.components[0])}), arithmetic)
+    middle, sharp = bend(theta1)[0], bend(edge)[0]
+
+    def down(K: Any) -> Matrix:  # from the arc's bounce to the lower corner, on the side of curvature K
+        return _flight(arithmetic, theta1, -edge, middle, K, contraction)
+
+    def up(K: Any) -> Matrix:  # from the lower corner to the mirrored bounce
+        return _flight(arithmetic, -edge, -theta1, K, middle, contraction)
+
+    first = _flight(arithmetic, edge, theta1, sharp, middle, contraction)  # its second column holds no K0
+    last = _flight(arithmetic, -theta1, edge, middle, sharp, contraction)  # its first row holds no K1
+    slopes = [_product(last, _product(up(K), _product(down(K), first)))[1] for K in (0, sharp)]
+    halves = []
+    for K in (0, sharp):
+        half = _product(down(K), _flight(arithmetic, edge, theta1, K, middle, contraction))
+        halves.append((-(half[0] + half[3]), half[0] * half[3] - half[1] * half[2]))  # the mirror is -1
+    return Corner(slopes[0], slopes[1], _product(down(0), first)[1], halves[0], halves[1])
+
+
+def _flight(arithmetic: Arithmetic, start: Any, end: Any, leaving: Any, landing: Any, contraction: Any) -> Matrix:
+    """The derivative matrix of one flight between two points of the arc."""
+    angle = load(chord_kernel(cuspless, 0, 0, 0), arithmetic)
+    here, there = (load(_place(), arithmetic)(x) for x in (start, end))
+    dx, dy = there[0] - here[0], there[1] - here[1]
+    length, cos = arithmetic["sqrt"](dx * dx + dy * dy), arithmetic["cos"]
+    entries: Matrix = load(_matrix(), arithmetic)(
+        leaving, landing, length, cos(angle(start, end)[0]), cos(angle(end, start)[0]), contraction
+    )
+    return entries
+
+
+def _place() -> Any:
+    x, y = cuspless.components[0].point
+    return kernel("place", [theta], {"x": x, "y": y})
+
+
+def _matrix() -> Any:
+    entries = dict(zip(("a", "b", "c", "d"), derivative_matrix(), strict=True))
+    return kernel("derivative_matrix", [K0, K1, t, cos_phi0, cos_eta1, lam], entries)
+
+
+def _product(m: Matrix, n: Matrix) -> Matrix:
+    return (
+        m[0] * n[0] + m[1] * n[2],
+        m[0] * n[1] + m[1] * n[3],
+        m[2] * n[0] + m[3] * n[2],
+        m[2] * n[1] + m[3] * n[3],
+    )

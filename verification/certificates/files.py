@@ -1,0 +1,102 @@
+"""Certificates as files: a claim with exact endpoints, written out and read back bit for bit.
+
+A ball is `[mantissa, exponent]` of its exact midpoint, in decimal text; the radius is one such pair.
+Reading builds the problem from the table's name and exact shape, so that a file can claim anything
+and prove nothing: `checked` works the whole checklist through again.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flint import arb
+
+from symbolic import tables
+from symbolic.formula import number
+from symbolic.fourier import boundary_coefficients
+from symbolic.table import Table
+from verification.certificates.bifurcation import Claim, Proof, proved
+from verification.shooting.problem import Kind, Problem
+
+SCHEMA = 1
+LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
+
+
+def document(name: str, proof: Proof) -> dict[str, Any]:
+    """A proof as a JSON document."""
+    claim, problem = proof.claim, proof.claim.problem
+    return {
+        "schema": SCHEMA,
+        "name": name,
+        "table": problem.table.name,
+        "points": _points(problem.table),
+        "shape": {letter: str(value) for letter, value in problem.table.fixed},
+        "kind": problem.kind.name.lower(),
+        "free": problem.free,
+        "lam": None if problem.lam is None else str(problem.lam),
+        "components": list(problem.components),
+        "bits": claim.bits,
+        "digits": claim.digits,
+        "centre": [_pair(x) for x in claim.centre],
+        "radius": _pair(claim.radius),
+        "checks": proof.checks,
+    }
+
+
+def claim_of(given: Mapping[str, Any]) -> Claim:
+    """The claim of a document; `ValueError` with the entry that is wrong."""
+    try:
+        if given["schema"] != SCHEMA:
+            raise ValueError(f"certificate: schema = {given['schema']} is unknown; this version reads {SCHEMA}")
+        bits, components = int(given["bits"]), tuple(int(i) for i in given["components"])
+        if not 16 <= bits <= LARGEST_BITS or not 2 <= len(components) <= LARGEST_PERIOD:
+            raise ValueError(f"certificate: bits = {bits} or {len(components)} bounces is out of range")
+        shape = {letter: number(text, letter) for letter, text in given["shape"].items()}
+        table = tables.named(given["table"], int(given["points"])).at(**shape)
+        lam = None if given["lam"] is None else number(given["lam"], "lam")
+        problem = Problem(table, components, Kind[given["kind"].upper()], given["free"], lam)
+        centre = tuple(_ball(pair) for pair in given["centre"])
+        if len(centre) != len(components) + bool(problem.free):
+            raise ValueError(f"certificate: centre has {len(centre)} entries for {len(components)} bounces")
+        return Claim(problem, centre, _ball(given["radius"]), bits, int(given["digits"]))
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
+
+
+def read(path: Path) -> dict[str, Any]:
+    """The document in a file; `ValueError` when it is none."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"certificate {str(path)!r} cannot be read ({error.strerror})") from None
+    except ValueError as error:
+        raise ValueError(f"certificate {str(path)!r} is no JSON document: {error}") from None
+    if not isinstance(found, dict):
+        raise ValueError(f"certificate {str(path)!r} holds no JSON object")
+    return found
+
+
+def checked(given: Mapping[str, Any]) -> Proof:
+    """The checklist of a document's claim, worked through anew; what the file says of it is not believed."""
+    return proved(claim_of(given))
+
+
+def _points(table: Table) -> int:
+    """`K` of an egg: the boundary turns by `2*pi/K` into itself."""
+    if table.name != "egg":
+        return 0
+    waves = boundary_coefficients(table.components[0])
+    return max(waves) - 1 if waves else 0
+
+
+def _pair(x: arb) -> list[str]:
+    mantissa, exponent = x.man_exp()
+    return [str(mantissa), str(exponent)]
+
+
+def _ball(pair: Any) -> arb:
+    mantissa, exponent = (int(text) for text in pair)
+    if abs(exponent) > LARGEST_BITS * 2:
+        raise ValueError(f"certificate: the exponent {exponent} is out of range")
+    return arb((mantissa, exponent))

@@ -1,0 +1,73 @@
+"""`pinball locate`: where does it happen, to N certified digits?"""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verification.cli import DONE, FAILED
+from verification.commands.output import Output, json_option, write_whole
+
+if TYPE_CHECKING:
+    from verification.locate import Located
+
+LETTERS = ("lam", "alpha", "n")
+WORDS = {True: "proved", False: "refuted", None: "unknown"}
+
+
+@click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
+@click.argument("name")
+@click.option("--digits", type=click.IntRange(1, 20_000), default=30, show_default=True, help="Decimal digits.")
+@click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat.")
+@click.option("--alpha", metavar="NUMBER", help="The shape of the egg, for saddle-node and doubling.")
+@click.option("--n", metavar="INTEGER", help="Which doubling: from period 2^(n-1) to 2^n.")
+@click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
+@json_option
+def command(
+    name: str, digits: int, lam: str | None, alpha: str | None, n: str | None, certificate: str | None, output: Output
+) -> int:
+    """Where does it happen, to N certified digits? Exit status 1 when something is not proved.
+
+    NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node or doubling.
+    """
+    from symbolic.formula import number
+    from verification.locate import GMPY2, locate
+
+    given = {letter: text for letter, text in zip(LETTERS, (lam, alpha, n), strict=True) if text is not None}
+    shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}
+    if "n" in shape and not shape["n"].is_Integer:
+        raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
+    with output.progress(f"Locating {name}", 1) as step:
+        found = locate(name, digits, **shape)
+        step(name)
+    if certificate is not None:
+        _write(certificate, found)
+    output.write(
+        {
+            "name": found.name,
+            "value": found.value,
+            "radius": found.radius,
+            "digits": found.digits,
+            "certified": found.certified,
+            "checks": found.checks,
+            "notes": dict(found.notes),
+            "gmpy2": GMPY2,
+            "seconds": found.seconds,
+        }
+    )
+    said = "certified" if found.certified else "not certified"
+    output.console.print(f"{name} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
+    for item, value in found.checks.items():
+        output.console.print(f"  {item.replace('_', ' '):28} {WORDS[value]}")
+    for item, text in found.notes.items():
+        output.console.print(f"  {item.replace('_', ' '):28} {text}")
+    return DONE if found.certified else FAILED
+
+
+def _write(path: str, found: "Located") -> None:
+    from verification.certificates.files import document
+
+    if found.proof is None:
+        raise ValueError(f"--certificate: {found.name} rests on no single cycle's certificate; accepted: the others")
+    write_whole(Path(path), json.dumps(document(found.name, found.proof), indent=1) + "\n")

@@ -1,0 +1,91 @@
+"""The period-doubling ladder of the egg: `lambda_n`, where period `2**(n-1)` becomes `2**n`.
+
+Paper: section 6.6, with `alpha = 0.08` and `lambda_3` to `lambda_6`. The second rung, where it exists,
+is the flip of the diameter; from the third on the cycles are followed from an attractor of period 4.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+from sympy import Expr, N
+
+from symbolic import tables
+from symbolic.symbols import lam as lam_letter
+from symbolic.table import Table
+from symbolic.thresholds import alpha_tilde
+from verification.shooting.follow import FEIGENBAUM, attractor, doubled, next_critical
+from verification.shooting.problem import Kind, Problem
+
+HIGHEST = 17  # the rung whose period, 2**16, still takes minutes
+
+
+@dataclass(frozen=True)
+class Rung:
+    """`lambda_n` in float64: the problem that defines it, and a start for its solution."""
+
+    n: int
+    problem: Problem
+    start: list[float]
+
+    @property
+    def lam(self) -> float:
+        """The contraction."""
+        return self.start[-1]
+
+
+def ladder(alpha: Expr) -> Iterator[Rung]:
+    """The rungs from the third on, in float64.
+
+    >>> from sympy import Rational
+    >>> [round(rung.lam, 9) for rung in islice(ladder(Rational(2, 25)), 4)]
+    [0.371235503, 0.388761023, 0.392501516, 0.393302227]
+    """
+    table = tables.egg(3).at(alpha=alpha)
+    lam, theta = stable_four(table)
+    critical = next_critical(table, theta, lam, 0.005, Kind.FLIP)
+    n, gap = 3, (critical[-1] - lam) / 4
+    while True:
+        problem = Problem(table, (0,) * (len(critical) - 1), Kind.FLIP, "lam")
+        yield Rung(n, problem, critical)
+        theta, lam = doubled(problem, critical, 0.3 * gap)
+        following = next_critical(table, theta, lam, 0.15 * gap, Kind.FLIP)
+        gap = (following[-1] - critical[-1]) / FEIGENBAUM
+        n, critical = n + 1, following
+
+
+def stable_four(table: Table) -> tuple[float, list[float]]:
+    """The largest contraction of a coarse grid with an attracting cycle of period 4 near a diameter."""
+    tried = [k / 25 for k in range(20, -1, -1)]
+    for lam in tried:
+        cycle = attractor(table, lam, (0.05, 3.1), 16)
+        if len(cycle) == 4:
+            return lam, cycle
+    raise ValueError(
+        f"egg: alpha = {dict(table.fixed)['alpha']} has no attracting cycle of period 4 near a diameter "
+        f"at any lam = {tried[-1]}, ..., {tried[0]} in steps of 0.04; the ladder starts from one"
+    )
+
+
+def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
+    """What `lambda_n` solves, and where to start."""
+    if not 2 <= n <= HIGHEST:
+        raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
+    if n == 2:
+        return _second(alpha)
+    rung = next(islice(ladder(alpha), n - 3, None))
+    return rung.problem, rung.start
+
+
+def _second(alpha: Expr) -> tuple[Problem, list[float]]:
+    ends = [alpha_tilde().subs(lam_letter, k) for k in (1, 0)]
+    if not ends[0] < alpha < ends[1]:
+        raise ValueError(
+            f"locate doubling: alpha = {alpha} has no lambda_2; the diameter doubles for alpha "
+            f"between {N(ends[0], 6)} and {N(ends[1], 6)}"
+        )
+    low, high = 0.0, 1.0  # alpha-tilde falls as lam grows
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if float(alpha_tilde().subs(lam_letter, middle)) > alpha else (low, middle)
+    return Problem(tables.egg(3).at(alpha=alpha), (0, 0), Kind.FLIP, "lam"), [0.0, 3.14159265, low]

@@ -1,0 +1,224 @@
+"""Where does it happen? Each bifurcation by its name: to N digits, with a proof.
+
+mpmath finds the approximation on the chord system, balls prove it (`verification.certificates`), and
+where there is a closed form it must agree. `value` and `radius` are decimals that hold the truth.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import mpmath
+from flint import arb
+from sympy import Expr, N, S, acos
+
+from symbolic import polygons, tables, thresholds
+from symbolic.codegen import kernel, load
+from symbolic.symbols import alpha as alpha_letter
+from symbolic.symbols import lam as lam_letter
+from verification.arithmetic import balls, bits_of, working
+from verification.balls import decimal
+from verification.certificates.bifurcation import Checks, Claim, Proof, proved
+from verification.certificates.contraction import Status, contraction, exact_balls
+from verification.certificates.corner import at_corner
+from verification.ladder import critical_cycle
+from verification.shooting.newton import refined
+from verification.shooting.problem import Kind, Problem
+from verification.shooting.small import corner, corner_angle, focus
+
+MOST_DIGITS = 20_000
+GMPY2 = mpmath.libmp.BACKEND == "gmpy"
+
+
+@dataclass(frozen=True)
+class Located:
+    """A value in decimals, and what was proved about it."""
+
+    name: str
+    value: str
+    radius: str
+    digits: int
+    checks: Checks
+    seconds: float
+    ball: arb = field(repr=False)
+    proof: Proof | None = field(repr=False, default=None)
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def certified(self) -> bool:
+        """True when the whole checklist is proved."""
+        return all(value is True for value in self.checks.values())
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search hands over: the ball, its checklist, and the proof if it is one cycle's."""
+
+    ball: arb
+    checks: Checks
+    proof: Proof | None = None
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
+    """The bifurcation `name` (see `NAMES`) to `digits` decimal digits.
+
+    >>> locate("lambda-c", 20).value
+    '0.0934003354313602414161'
+    """
+    if name not in NAMES:
+        raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}")
+    if not 1 <= digits <= MOST_DIGITS:
+        raise ValueError(f"locate: digits = {digits} is out of range; accepted: 1 to {MOST_DIGITS}")
+    search, letters = NAMES[name]
+    if set(shape) != set(letters):
+        raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(letters)}")
+    started = time.perf_counter()
+    found = search(digits, **shape)
+    value, radius = decimal(found.ball, digits + 1)
+    seconds = time.perf_counter() - started
+    return Located(name, value, radius, digits, found.checks, seconds, found.ball, found.proof, found.notes)
+
+
+def certify(problem: Problem, start: list[float], digits: int) -> Proof:
+    """The proof for the solution near `start`: mpmath to a few digits more, then balls around it."""
+    solution = refined(problem, start, digits)
+    bits = bits_of(digits, 64 + 8 * problem.period.bit_length())
+    with working(bits):
+        radius = (arb(10) ** -(digits + 2)).mid()
+    return proved(Claim(problem, tuple(exact_balls(solution.z)), radius, bits, digits))
+
+
+def closed_form(expression: Expr, digits: int) -> arb:
+    """An exact expression as a ball."""
+    bits = bits_of(digits, 64)
+    with working(bits):
+        ball: arb = load(kernel("value", [], {"value": expression}), balls(bits))()[0] + arb(0)
+        return ball
+
+
+def _agreeing(proof: Proof, expression: Expr, digits: int) -> Found:
+    """A proof from the cycle together with a closed form: both balls must meet."""
+    ball = closed_form(expression, digits)
+    overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
+    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof))
+
+
+def _direction(proof: Proof) -> dict[str, str]:
+    if proof.supercritical is None:
+        return {}
+    born = "a stable" if proof.supercritical else "an unstable"
+    return {"kind": f"{'super' if proof.supercritical else 'sub'}critical: {born} cycle of twice the period is born"}
+
+
+def _corner(digits: int) -> tuple[list[arb], Checks, dict[str, str]]:
+    solution = refined(corner(), [0.2545, 0.0712], digits + 5)
+    bits = bits_of(digits, 100)
+    with working(bits):
+        radius = (arb(10) ** -(digits + 3)).mid()
+        enclosure = contraction(corner(), exact_balls(solution.z), radius, bits)
+        theta1, value = enclosure.zero
+        found = enclosure.status is Status.UNIQUE
+        sides = at_corner(balls(bits), theta1, value)
+        inside = theta1 > 0 and theta1 < 2  # on the arc, apart from the corners and from its mirror image
+        checks: Checks = {
+            "exists": True if found else None,
+            "unique": True if found else None,
+            "precise": bool(value.rad() < arb(10) ** -digits),
+            "admissible": True if found and inside else None,
+            "minimal_period": True if found and inside else None,
+            "s4_minimum_at_a_kink": sides.minimum_at_kink if found else None,
+        }
+        notes = {
+            "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
+            "half_return_traces": f"{sides.arc[0].str(8)} on the arc, {sides.wall[0].str(8)} on the wall",
+            "half_return_determinant": sides.wall[1].str(8),
+        }
+        return [corner_angle(balls(bits), theta1), value], checks, notes
+
+
+def lambda_star(digits: int) -> Found:
+    """The contraction at which the cuspless orbit through both corners exists. Paper: section 5.2."""
+    (_, value), checks, notes = _corner(digits)
+    return Found(value, checks, None, notes)
+
+
+def phi_star(digits: int) -> Found:
+    """Its exit angle at the upper corner, in radians."""
+    (angle, _), checks, notes = _corner(digits)
+    return Found(angle, checks, None, notes)
+
+
+def lambda_c(digits: int) -> Found:
+    """The period doubling of the cuspless cardioid's horizontal orbit. Paper: section 5.1."""
+    exact = thresholds.lambda_c()
+    proof = certify(Problem(tables.cuspless, (1, 0), Kind.FLIP, "lam"), [0, 0, float(N(exact))], digits)
+    return _agreeing(proof, exact, digits)
+
+
+def alpha_tilde(digits: int, lam: Expr) -> Found:
+    """The shape at which the egg's diameters double their period. Paper: section 6.3."""
+    exact = thresholds.alpha_tilde().subs(lam_letter, _unit("lam", lam))
+    problem = Problem(tables.egg(3), (0, 0), Kind.FLIP, "alpha", lam)
+    return _agreeing(certify(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
+
+
+def alpha_hat(digits: int, lam: Expr) -> Found:
+    """The shape above which the multipliers of the egg's diameters are complex. Paper: section 6.3."""
+    exact = thresholds.alpha_hat().subs(lam_letter, _unit("lam", lam))
+    ball = closed_form(exact, digits)
+    checks: Checks = {"precise": True}
+    try:
+        system = focus(lam)
+        solution = refined(system, [0.0, 3.14, float(N(exact))], digits)
+        bits = bits_of(digits, 64)
+        with working(bits):
+            radius = (arb(10) ** -(digits + 2)).mid()
+            enclosure = contraction(system, exact_balls(solution.z), radius, bits)
+        unique = enclosure.status is Status.UNIQUE
+        overlap = unique and bool(enclosure.zero[-1].overlaps(ball))
+        checks |= {"exists": unique or None, "unique": unique or None, "closed_form_agrees": overlap or None}
+    except (ValueError, ZeroDivisionError):  # lam = 0: the discriminant only touches 0
+        checks |= dict.fromkeys(("exists", "unique", "closed_form_agrees"))
+    return Found(ball, checks)
+
+
+def saddle_node(digits: int, alpha: Expr) -> Found:
+    """The contraction at which the egg's period-3 cycles are born. Paper: section 6.4."""
+    table = tables.egg(3).at(alpha=alpha)
+    if alpha == 0:
+        raise ValueError("locate saddle-node: alpha = 0 is a circle, whose triangles exist at lam = 1 only")
+    exact = polygons.saddle_node().subs(alpha_letter, alpha)
+    turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
+    problem = Problem(table, (0, 0, 0), Kind.FOLD, "lam")
+    start = [turn + float(N(2 * S.Pi / 3)) * k for k in range(3)]
+    return _agreeing(certify(problem, [*start, float(N(exact))], digits), exact, digits)
+
+
+def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
+    """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
+    problem, start = critical_cycle(alpha, int(n))
+    proof = certify(problem, start, digits)
+    return Found(proof.value, proof.checks, proof, _direction(proof))
+
+
+def _unit(letter: str, value: Expr) -> Expr:
+    if not 0 <= value <= 1:
+        raise ValueError(f"locate: {letter} = {value} is out of range; accepted: numbers from 0 to 1")
+    return value
+
+
+def _listed(letters: Any) -> str:
+    return ", ".join(f"--{letter}" for letter in letters) or "no letter"
+
+
+NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
+    "lambda-star": (lambda_star, ()),
+    "phi-star": (phi_star, ()),
+    "lambda-c": (lambda_c, ()),
+    "alpha-tilde": (alpha_tilde, ("lam",)),
+    "alpha-hat": (alpha_hat, ("lam",)),
+    "saddle-node": (saddle_node, ("alpha",)),
+    "doubling": (doubling, ("alpha", "n")),
+}

@@ -269,9 +269,8 @@ class PinballMap:
                     theta = np.where(off, np.remainder(theta - low, 2 * np.pi) + low, theta)
                 else:
                     name = self.blueprint.parts[index].name
-                    raise ValueError(
-                        f"theta = {theta[off].flat[0]} is not on the {name}, whose theta lies in [{low:.17g}, {high:.17g}]"
-                    )
+                    lies = f"there theta lies in [{low:.17g}, {high:.17g}]"
+                    raise ValueError(f"theta = {theta[off].flat[0]} is not on the {name}; {lies}")
         return where, np.array(theta), np.array(phi)
 
     def _lams(self, theta: Array) -> Array:

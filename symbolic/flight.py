@@ -41,8 +41,8 @@ def harmonics(component: Component) -> dict[int, tuple[Complex, Complex]] | None
         return None
     found = {}
     for k in sorted(set(map(abs, c))):
-        there, back = c.get(k, S.Zero), c.get(-k, S.Zero) if k else S.Zero
-        C, sine = simplify(there + back), simplify(I * (there - back))
+        there, back = c.get(k, S.Zero), c.get(-k, S.Zero)
+        C, sine = simplify(there + back if k else there), simplify(I * (there - back))
         found[k] = ((re(C), im(C)), (re(sine), im(sine)))
     return found
 

@@ -1,0 +1,82 @@
+"""Positions within 4 units of rounding and directions within 8, against the exact map of the rounded state."""
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from numeric.kernel import Question
+from verification.exact_map import ExactMap
+from verification.truth import errors
+
+EPS = 2.0**-52
+
+
+def measured(map, where, theta, phi):
+    own = map.states.enter(where, theta, phi, map.law)
+    lam = np.full(theta.size, float(map.lam))
+    result = map.engine.run(Question(map.law, record=True), own, lam, map.shape, 1)
+    return errors(map, ExactMap(map, 40), own, list(result.record[0]))
+
+
+@pytest.mark.parametrize("lam", [0, 1e-300, 0.3, 0.95, 1])
+def test_one_bounce_is_right_to_the_last_bits(table, lam):
+    map = table.map(lam)
+    position, direction = measured(map, *table.starts(map, 25, seed=int(1e3 * lam)))
+
+    assert max(position) <= 4
+    assert max(direction) <= 8
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_grazing_flights_are_as_exact_as_others(table, gap):
+    map = table.map(0.9)
+    where, theta, _ = table.starts(map, 12, seed=8)
+    if table.name == "cuspless":  # from the wall a grazing flight ends next to a join
+        where, theta = np.zeros_like(where), np.linspace(-1.9, 1.9, 12)
+    phi = np.where(np.arange(12) % 2 == 0, 1, -1) * (np.pi / 2 - gap)
+    position, direction = measured(map, where, theta, phi)
+
+    assert max(position) <= 4
+    assert max(direction) <= 8
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-5, 1e-8, 1e-11])
+def test_flights_that_start_near_the_cusp(gap):
+    map = PinballMap("cardioid", lam=0.9)
+    phi = np.linspace(-1.5, 1.5, 24)
+    theta = np.where(np.arange(24) % 2 == 0, 1, -1) * (np.pi - gap)
+    position, direction = measured(map, np.zeros(24, dtype=int), theta, phi)
+
+    assert max(position) <= 4
+    assert max(direction) <= 8
+
+
+@pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_flights_aimed_at_the_cusp(miss):
+    map = PinballMap("cardioid", lam=0.9)
+    theta = np.linspace(-2.9, 2.9, 24)
+    phi = theta / 2 + np.where(np.arange(24) % 2 == 0, 1, -1) * miss
+    position, direction = measured(map, np.zeros(24, dtype=int), theta, phi)
+
+    assert max(position) <= 4
+    assert max(direction) <= 8
+
+
+@pytest.mark.parametrize("a", ["100", "10000"])
+def test_long_ellipses_near_the_tip(a):
+    map = PinballMap("ellipse", lam=0.9, a=a)
+    theta = np.linspace(-1, 1, 24) * 10 / float(a)
+    position, direction = measured(map, np.zeros(24, dtype=int), theta, np.linspace(-1.5, 1.5, 24))
+
+    assert max(position) <= 4
+    assert max(direction) <= 8
+
+
+@pytest.mark.parametrize("K", [2, 4, 6])
+def test_eggs_of_any_number_of_points(K):
+    map = PinballMap("egg", lam=0.9, K=K, alpha=f"{9 / 10 / (K * K + 1):.6f}")
+    rng = np.random.default_rng(K)
+    position, direction = measured(map, np.zeros(16, dtype=int), rng.uniform(-3, 3, 16), rng.uniform(-1.4, 1.4, 16))
+
+    assert max(position) <= 4
+    assert max(direction) <= 8

@@ -5,12 +5,9 @@ turning `x'y'' - y'x''` is a polynomial in `tan(x/2)`, with `x` the common multi
 depends on, so its sign over all of the boundary and the whole shape range can be proved.
 """
 
-from functools import reduce
-from math import gcd
+from sympy import Expr, Interval, oo
 
-from sympy import Dummy, Expr, Interval, S, Symbol, expand, oo
-
-from symbolic.fourier import coefficients
+from symbolic.fourier import in_half_tangent
 from symbolic.geometry import turning
 from symbolic.ranges import parameter_box
 from symbolic.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
@@ -46,28 +43,3 @@ def _turns_left(expression: Expr, box: Box, strictly: bool) -> Finding:
     far = judge(at_pi, {x: r for x, r in box.items() if x in at_pi.free_symbols})
     sides = [judge(polynomial.subs(T, sign * T), {**used, T: Interval(0, oo)}) for sign in (1, -1)]
     return conjunction(*sides, far)
-
-
-def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
-    """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
-
-    Here `x = g*theta` with `g` the common divisor of the frequencies.
-
-    >>> from sympy import cos
-    >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
-    >>> p.subs(T, 0), value
-    (3, 1)
-    """
-    c = coefficients(expression)
-    if c is None:
-        return None
-    step = reduce(gcd, (abs(k) for k in c)) or 1
-    n = max(abs(k) for k in c) // step
-    T = Dummy("T", real=True)
-    total = S.Zero
-    for k, value in c.items():
-        power = k // step
-        wave = (1 + (1 if power > 0 else -1) * S.ImaginaryUnit * T) ** (2 * abs(power))
-        total += value * wave * (1 + T**2) ** (n - abs(power))
-    at_pi = sum((value * S.NegativeOne ** (k // step) for k, value in c.items()), S.Zero)
-    return expand(expand(total).as_real_imag()[0]), T, expand(at_pi)

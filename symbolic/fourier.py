@@ -1,6 +1,9 @@
 """A boundary as a finite Fourier sum `z = x + i*y = sum_k c_k exp(i*k*theta)`, when it is one."""
 
-from sympy import Dummy, Expr, I, Poly, S, cos, exp, expand, sin
+from functools import reduce
+from math import gcd
+
+from sympy import Dummy, Expr, I, Poly, S, Symbol, cos, exp, expand, sin
 from sympy.polys.polyerrors import PolynomialError
 
 from symbolic.symbols import theta
@@ -40,6 +43,30 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
     """
     x, y = component.point
     return coefficients(x + I * y)
+
+
+def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
+    """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
+
+    Here `x = g*theta` with `g` the common divisor of the frequencies.
+
+    >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
+    >>> p.subs(T, 0), value
+    (3, 1)
+    """
+    c = coefficients(expression)
+    if c is None:
+        return None
+    step = reduce(gcd, (abs(k) for k in c), 0) or 1
+    n = max((abs(k) for k in c), default=0) // step
+    T = Dummy("T", real=True)
+    total = S.Zero
+    for k, value in c.items():
+        power = k // step
+        wave = (1 + (1 if power > 0 else -1) * I * T) ** (2 * abs(power))
+        total += value * wave * (1 + T**2) ** (n - abs(power))
+    at_pi = sum((value * S.NegativeOne ** (k // step) for k, value in c.items()), S.Zero)
+    return expand(expand(total).as_real_imag()[0]), T, expand(at_pi)
 
 
 def _degree(term: Expr, base: Expr) -> int:

@@ -8,31 +8,39 @@ from collections.abc import Iterable
 
 from sympy import Expr, Interval, Rational, S, cos, oo, pi, sin, sqrt
 
+from symbolic.formula import parse
 from symbolic.symbols import a, alpha, theta
 from symbolic.table import Component, Mark, Shape, Table
-from symbolic.validity import validated
+from symbolic.validity import closed_and_finite, positive_radius, validated
 
 __all__ = ["arc", "cardioid", "circle", "cuspless", "egg", "ellipse", "named", "parametric", "piecewise", "polar"]
 
 
 def polar(
-    rho: Expr | int,
+    rho: Expr | int | str,
     name: str = "polar",
     shapes: Iterable[Shape] = (),
     undefined: Iterable[Mark] = (),
 ) -> Table:
     """The table bounded by `rho(theta)`, `-pi <= theta < pi`, in polar coordinates.
 
+    Text is read by `symbolic.formula`, which executes nothing.
+
     >>> polar(1 + cos(5 * theta) / 40).components[0].at(S.Zero)
     (41/40, 0)
+    >>> polar("1 + cos(5*theta)/40") == polar(1 + cos(5 * theta) / 40)
+    True
     """
-    rho = S(rho)
-    return parametric(rho * cos(theta), rho * sin(theta), name, shapes, undefined)
+    rho, shapes, undefined = _exact(rho), tuple(shapes), tuple(undefined)
+    whole = arc(name, rho * cos(theta), rho * sin(theta), -pi, pi)
+    table = closed_and_finite(Table(name, (whole,), shapes, undefined))
+    simple = not shapes and not undefined and positive_radius(name, rho)
+    return table if simple else validated(table)
 
 
 def parametric(
-    x: Expr,
-    y: Expr,
+    x: Expr | str,
+    y: Expr | str,
     name: str = "parametric",
     shapes: Iterable[Shape] = (),
     undefined: Iterable[Mark] = (),
@@ -57,9 +65,14 @@ def piecewise(
     return validated(Table(name, components, tuple(shapes), tuple(undefined), origin))
 
 
-def arc(name: str, x: Expr, y: Expr, start: Expr, end: Expr) -> Component:
+def arc(name: str, x: Expr | str, y: Expr | str, start: Expr | str, end: Expr | str) -> Component:
     """A component of a piecewise table: `(x(theta), y(theta))` for `start <= theta <= end`."""
-    return Component(name, (S(x), S(y)), S(start), S(end))
+    return Component(name, (_exact(x), _exact(y)), _exact(start), _exact(end))
+
+
+def _exact(given: Expr | int | str) -> Expr:
+    """An expression as it is; text only through the parser that executes nothing."""
+    return parse(given) if isinstance(given, str) else S(given)
 
 
 def egg(K: int | Expr = 3) -> Table:

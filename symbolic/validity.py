@@ -1,28 +1,79 @@
 """What must hold before a table is one: exact, closed, counterclockwise, free of self-crossings.
 
-Every check here is a proof. A table whose boundary is no trigonometric polynomial may be too hard
-for the last two; it is then accepted here and examined by sampling where kernels are built.
+Every check here is a proof. A boundary that is no trigonometric polynomial, or one of high degree,
+may be too hard for the last two; it is then accepted here and examined where kernels are built.
 """
 
 from dataclasses import replace
 from itertools import pairwise
 
-from sympy import Dummy, Expr, Float, I, Interval, S, Symbol, acos, atan, chebyshevu, expand, pi, sign
+from sympy import (
+    Dummy,
+    Expr,
+    Float,
+    I,
+    Interval,
+    Poly,
+    S,
+    Symbol,
+    acos,
+    atan,
+    chebyshevu,
+    cos,
+    expand,
+    oo,
+    pi,
+    sign,
+    sin,
+    tan,
+    together,
+)
 
-from symbolic.fourier import boundary_coefficients
-from symbolic.signs import bernstein
+from symbolic.fourier import boundary_coefficients, coefficients, in_half_tangent
+from symbolic.signs import Outcome, bernstein, positive
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
 from symbolic.zero import vanishes
 
+HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box
+
 
 def validated(table: Table) -> Table:
     """`table` with its letters made the package's own; `ValueError` when it is no table."""
-    table = replace(table, components=tuple(_own_letters(table, c) for c in table.components))
-    _closed(table)
+    table = closed_and_finite(table)
     if not table.shapes:
         _simple_and_counterclockwise(table)
     return table
+
+
+def closed_and_finite(table: Table) -> Table:
+    """The part of `validated` that every table needs, whatever is known of its self-crossings."""
+    table = replace(table, components=tuple(_own_letters(table, c) for c in table.components))
+    for component in table.components:
+        _finite(table, component)
+    _closed(table)
+    return table
+
+
+def positive_radius(name: str, rho: Expr) -> bool:
+    """True when `rho(theta) > 0` is proved, so that the polar curve is simple and counterclockwise.
+
+    >>> positive_radius("flower", 1 + cos(5 * theta) / 40)
+    True
+    """
+    half = in_half_tangent(rho)
+    if half is None:
+        return bool(rho.is_positive)
+    c = coefficients(rho) or {}
+    if c.get(0, S.Zero) > sum(abs(value) for k, value in c.items() if k):
+        return True
+    polynomial, T, at_pi = half
+    findings = [positive(at_pi, {}), *(positive(polynomial.subs(T, s * T), {T: Interval(0, oo)}) for s in (1, -1))]
+    if any(finding.outcome is Outcome.REFUTED for finding in findings):
+        raise ValueError(
+            f"{name}: rho = {rho} is not positive for every theta; a polar table needs rho > 0, or its cusp named"
+        )
+    return all(findings)
 
 
 def _own_letters(table: Table, component: Component) -> Component:
@@ -43,6 +94,18 @@ def _own_letters(table: Table, component: Component) -> Component:
     )
 
 
+def _finite(table: Table, component: Component) -> None:
+    for coordinate in component.point:
+        below = together(coordinate.replace(tan, lambda x: sin(x) / cos(x))).as_numer_denom()[1]
+        half = in_half_tangent(below) if below.has(theta) else None
+        if half is None:
+            continue
+        polynomial, T, at_pi = half
+        roots = Poly(polynomial, T).count_roots() if not table.shapes else 0
+        if roots or at_pi.is_zero:
+            raise ValueError(f"{table.name}: {coordinate} has a pole, where {below} = 0; a boundary must be finite")
+
+
 def _closed(table: Table) -> None:
     ring = (*table.components, table.components[0])
     for before, after in pairwise(ring):
@@ -59,10 +122,10 @@ def _simple_and_counterclockwise(table: Table) -> None:
     if len(table.components) > 1 or table.undefined:
         return
     c = boundary_coefficients(table.components[0])
-    if c is None:
+    if c is None or max(abs(k) for k in c) > HIGHEST_HARMONIC:
         return
     area = expand(sum((k * abs(value) ** 2 for k, value in c.items()), S.Zero))  # over pi
-    if area.is_nonpositive:
+    if area.is_negative:
         raise ValueError(f"{table.name}: the boundary runs clockwise; exchange theta for -theta")
     crossing = self_crossing(c)
     if crossing:

@@ -21,15 +21,19 @@ from sympy import (
     chebyshevu,
     cos,
     expand,
+    integrate,
+    nan,
     oo,
     pi,
     sign,
     sin,
     tan,
     together,
+    zoo,
 )
 
 from symbolic.fourier import boundary_coefficients, coefficients, in_half_tangent
+from symbolic.geometry import trigonometric
 from symbolic.signs import Outcome, bernstein, positive
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
@@ -41,13 +45,16 @@ HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box
 def validated(table: Table) -> Table:
     """`table` with its letters made the package's own; `ValueError` when it is no table."""
     table = closed_and_finite(table)
+    _counterclockwise(table)
     if not table.shapes:
-        _simple_and_counterclockwise(table)
+        _simple(table)
     return table
 
 
 def closed_and_finite(table: Table) -> Table:
     """The part of `validated` that every table needs, whatever is known of its self-crossings."""
+    if not table.components:
+        raise ValueError(f"{table.name}: a table needs at least one component, and none is given")
     table = replace(table, components=tuple(_own_letters(table, c) for c in table.components))
     for component in table.components:
         _finite(table, component)
@@ -83,6 +90,8 @@ def _own_letters(table: Table, component: Component) -> Component:
     for expression in (*component.point, component.start, component.end):
         if expression.has(Float):
             raise ValueError(f"{table.name}: {expression} contains a rounded float; write 2/25 or '0.08', not 0.08")
+        if expression.has(I, nan, oo, -oo, zoo):
+            raise ValueError(f"{table.name}: {expression} is no finite real expression")
         for symbol in sorted(expression.free_symbols, key=str):
             if symbol.name not in allowed:
                 accepted = ", ".join(sorted(allowed))
@@ -95,6 +104,11 @@ def _own_letters(table: Table, component: Component) -> Component:
 
 
 def _finite(table: Table, component: Component) -> None:
+    start, end = component.start, component.end
+    if start.has(theta) or end.has(theta) or (end - start).is_nonpositive:
+        raise ValueError(
+            f"{table.name}: {component.name} runs from theta = {start} to {end}; the end must be a larger number"
+        )
     for coordinate in component.point:
         below = together(coordinate.replace(tan, lambda x: sin(x) / cos(x))).as_numer_denom()[1]
         half = in_half_tangent(below) if below.has(theta) else None
@@ -118,15 +132,40 @@ def _closed(table: Table) -> None:
                 )
 
 
-def _simple_and_counterclockwise(table: Table) -> None:
+def _counterclockwise(table: Table) -> None:
+    area = enclosed_area(table)
+    ranges = {p.symbol: p.range for p in table.shapes}
+    if area is None or any(r.free_symbols for r in ranges.values()):
+        return
+    if area.is_zero:
+        raise ValueError(f"{table.name}: the boundary encloses area 0; it crosses itself or runs back along itself")
+    if area.is_negative or (ranges and positive(area, ranges).outcome is Outcome.REFUTED):
+        raise ValueError(f"{table.name}: the boundary runs clockwise; exchange theta for -theta")
+
+
+def enclosed_area(table: Table) -> Expr | None:
+    """The area by Green's formula, negative for a clockwise boundary; None when it is too hard to integrate.
+
+    >>> from symbolic.tables import cardioid, cuspless
+    >>> enclosed_area(cardioid), enclosed_area(cuspless)
+    (3*pi/2, 15*sqrt(3)/16 + pi)
+    """
+    total = S.Zero
+    for component in table.components:
+        x, y = component.point
+        swept = expand(x * y.diff(theta) - y * x.diff(theta))
+        if not swept.is_polynomial(theta) and coefficients(swept) is None:
+            return None
+        total += integrate(trigonometric(swept), (theta, component.start, component.end)) / 2
+    return expand(total)
+
+
+def _simple(table: Table) -> None:
     if len(table.components) > 1 or table.undefined:
         return
     c = boundary_coefficients(table.components[0])
     if c is None or max(abs(k) for k in c) > HIGHEST_HARMONIC:
         return
-    area = expand(sum((k * abs(value) ** 2 for k, value in c.items()), S.Zero))  # over pi
-    if area.is_negative:
-        raise ValueError(f"{table.name}: the boundary runs clockwise; exchange theta for -theta")
     crossing = self_crossing(c)
     if crossing:
         raise ValueError(f"{table.name}: {crossing}")

@@ -49,6 +49,15 @@ def enclose(expression: Expr, values: Mapping[Symbol, Expr] | None = None, digit
         return _ball(expression.subs(values or {}))
 
 
+def real_ball(number: Expr | Callable[[int], arb], digits: int = 30) -> arb:
+    """A real number, exact or given as balls of any number of digits, as a ball.
+
+    >>> real_ball(Integer(2)) == 2
+    True
+    """
+    return enclose(number, digits=digits).real if isinstance(number, Expr) else number(digits)
+
+
 def _ball(e: Expr) -> acb:
     if isinstance(e, Rational):
         return acb(arb(_fraction(e)))

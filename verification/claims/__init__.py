@@ -11,7 +11,7 @@ from fnmatch import fnmatchcase
 from importlib import import_module
 
 from symbolic.signs import Finding, Outcome
-from verification.balls import decimal, enclose
+from verification.balls import decimal, real_ball
 from verification.claims.claim import Claim, Judgement, Verdict, load
 from verification.claims.judges import JUDGES
 
@@ -58,12 +58,12 @@ def judge(claim: Claim, digits: int = 15) -> Result:
     """The result of one claim; `open` when nothing judges it yet."""
     start = time.perf_counter()
     if claim.id in JUDGES:
-        judgement = JUDGES[claim.id](claim)
+        judgement = _judged(claim)
     else:
         judgement = Judgement(Finding(Outcome.UNKNOWN, "stated from numerics; nothing settles it here yet"), "")
     value, radius = None, None
     if judgement.value is not None:
-        value, radius = decimal(enclose(judgement.value, digits=digits + 5).real, digits)
+        value, radius = decimal(real_ball(judgement.value, digits + 5), digits)
     return Result(
         claim.id,
         claim.section,
@@ -77,6 +77,14 @@ def judge(claim: Claim, digits: int = 15) -> Result:
         time.perf_counter() - start,
         judgement.erratum if judgement.verdict in (Verdict.CORRECTED, Verdict.REFUTED) else "",
     )
+
+
+def _judged(claim: Claim) -> Judgement:
+    """A judge that fails leaves its claim open, and says so; the others go on."""
+    try:
+        return JUDGES[claim.id](claim)
+    except Exception as error:
+        return Judgement(Finding(Outcome.UNKNOWN, f"the judge failed: {type(error).__name__}: {error}"), "")
 
 
 def method(judgement: Judgement) -> str:

@@ -1,12 +1,14 @@
 """A claim of the paper as printed, and what came of judging it."""
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from importlib.resources import files
-from typing import Any
+from typing import Any, TypeAlias
 
+from flint import arb
 from sympy import Expr, Interval, Matrix, Symbol, oo
 
 from symbolic import symbols
@@ -16,6 +18,7 @@ from symbolic.signs import Finding, Outcome
 LETTERS: dict[str, Symbol] = {name: value for name, value in vars(symbols).items() if isinstance(value, Symbol)}
 LETTERS |= {name: Symbol(name, real=True) for name in ("P1", "P2", "rho", "rho1", "rho2")}
 
+Number: TypeAlias = Expr | Callable[[int], arb]
 Printed = str | list[str] | list[list[str]]
 
 
@@ -71,15 +74,15 @@ class Claim:
 class Judgement:
     """A finding on what is printed, what is true in its place, and the finding on that.
 
-    `value` is the exact number of a claim about digits, `evidence` a sentence that supports a claim
-    which is not proved.
+    `value` is the number of a claim about digits, exact or as balls of as many digits as asked for;
+    `evidence` is a sentence that supports a claim which is not proved.
     """
 
     printed: Finding
     derived: str
     mended: Finding | None = None
     erratum: str = ""
-    value: Expr | None = None
+    value: Number | None = None
     evidence: str = ""
 
     @property

@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from flint import fmpq
 from sympy import Expr, Interval, Matrix, Rational, S, Symbol, oo
 
 from symbolic.signs import Box, Finding, Outcome, conjunction
 from symbolic.zero import vanishes
-from verification.balls import enclose
-from verification.claims.claim import Claim, Judgement
+from verification.balls import enclose, real_ball
+from verification.claims.claim import Claim, Judgement, Number
 
 Judge = Callable[[Claim], Judgement]
 JUDGES: dict[str, Judge] = {}
@@ -97,29 +98,30 @@ def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
     return points
 
 
-def digits(claim: Claim, value: Expr, mend: tuple[str, str] | None = None) -> Judgement:
+def digits(claim: Claim, value: Number, mend: tuple[str, str] | None = None) -> Judgement:
     """Is the printed decimal the true value, correctly rounded? `mend` is the misprint and what it should read."""
+    shown_value = text_of(value) if isinstance(value, Expr) else real_ball(value, 20).str(15, radius=False) + "..."
     finding = rounded(str(claim.printed), value)
     if mend is None:
-        return Judgement(finding, text_of(value), value=value)
+        return Judgement(finding, shown_value, value=value)
     wrong, right = mend
     repaired = str(mended(claim, wrong, right).printed)
-    return Judgement(finding, text_of(value), rounded(repaired, value), f"{wrong} should read {right}", value)
+    return Judgement(finding, shown_value, rounded(repaired, value), f"{wrong} should read {right}", value)
 
 
-def rounded(decimal: str, value: Expr) -> Finding:
+def rounded(decimal: str, value: Number) -> Finding:
     """Does `decimal` show `value` rounded to its last place?
 
     >>> from sympy import sqrt
     >>> rounded("1.414", sqrt(S(2))).outcome.name, rounded("1.415", sqrt(S(2))).outcome.name
     ('PROVED', 'REFUTED')
     """
-    shown = Fraction(decimal)
+    shown_value = Fraction(decimal)
     places = len(decimal.partition(".")[2])
-    gap = abs(enclose(value - Rational(shown.numerator, shown.denominator)).real)
-    half = Fraction(1, 2 * 10**places)
-    room = enclose(Rational(half.numerator, half.denominator)).real - gap
-    true = enclose(value).real.str(places + 6, radius=False)
+    ball = real_ball(value)
+    gap = abs(ball - fmpq(shown_value.numerator, shown_value.denominator))
+    room = fmpq(1, 2 * 10**places) - gap
+    true = ball.str(places + 6, radius=False)
     if room > 0:
         return Finding(Outcome.PROVED, f"the true value {true}... rounds to {decimal}")
     if room < 0:

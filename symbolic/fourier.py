@@ -71,4 +71,4 @@ def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
 
 def _degree(term: Expr, base: Expr) -> int:
     power = term.as_powers_dict().get(1 / base, 0)
-    return -int(power) if S(power).is_integer else 0
+    return -int(power) if S(power).is_Integer else 0

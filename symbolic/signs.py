@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from sympy import Dummy, Expr, Interval, Poly, Rational, S, Symbol, expand, factor_list, oo, together
+from sympy.polys.polyerrors import CoercionFailed, DomainError
 
 from symbolic.table import interval_text
 
@@ -67,6 +68,9 @@ def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
     missing = sorted(str(x) for x in numerator.free_symbols - set(box))
     if missing:
         raise ValueError(f"positive: no range given for {', '.join(missing)}")
+    for x in sorted(numerator.free_symbols, key=str):
+        if not isinstance(box[x], Interval):
+            raise ValueError(f"positive: the range of {x} is {box[x]}; it must be an interval of more than one point")
     finding = _positive(expand(numerator), dict(box), depth)
     if finding is not None:
         return finding
@@ -86,7 +90,13 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
     constant, factors = _factors(expression)
     for factor, power in factors:
         kept *= factor ** (power % 2)
-    return positive(constant * kept, {x: r.interior for x, r in box.items()}, depth)
+    inside = {x: r.interior for x, r in box.items()}
+    finding = positive(constant * kept, inside, depth)
+    if finding.outcome is Outcome.REFUTED and len(kept.free_symbols) > 1:  # a zero at one point refutes nothing here
+        used = {x: inside[x] for x in sorted(kept.free_symbols, key=str)}
+        negative = _witness(constant * kept, used, strictly=True)
+        return negative or Finding(Outcome.UNKNOWN, f"no certificate for {expression} >= 0 within {depth} halvings")
+    return finding
 
 
 def _factors(expression: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
@@ -102,9 +112,13 @@ def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | Non
     if witness is not None:
         return witness
     if not used:
-        return Finding(Outcome.PROVED, f"{p} > 0")
+        return Finding(Outcome.PROVED, f"{p} > 0") if p.is_positive else None
+    if not p.is_polynomial(*used):
+        return None
     if len(used) == 1:
-        return _sturm(p, used[0], box[used[0]])
+        counted = _sturm(p, used[0], box[used[0]])
+        if counted is not None:
+            return counted
     interior = _orthant(p, box)
     if interior is None and depth > 0:
         return _halved(p, box, depth)
@@ -122,42 +136,51 @@ def _ends(interval: Interval) -> list[Expr]:
 
 def _samples(interval: Interval) -> list[Expr]:
     low, high = interval.start, interval.end
-    if high is oo:
+    if low is -oo:
+        inside = [(S.Zero if high is oo else high) - k for k in (Rational(1, 8), 1, 8)]
+    elif high is oo:
         inside = [low + Rational(1, 8), low + 1, low + 8]
     else:
         inside = [low + (high - low) * Rational(k, 8) for k in (1, 4, 7)]
     return _ends(interval) + inside
 
 
-def _witness(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
-    """A rational point of the box where `p <= 0`, if one of a few is."""
+def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Finding | None:
+    """A rational point of the box where `p <= 0`, or `p < 0`, if one of a few is."""
     points: list[dict[Symbol, Expr]] = [{}]
     for x, interval in box.items():
         points = [{**point, x: value} for point in points for value in _samples(interval)]
     for point in points:
         value = p.subs(point)
-        if value.is_nonpositive:
+        if value.is_negative or (value.is_nonpositive and not strictly):
             where = ", ".join(f"{x} = {v}" for x, v in point.items())
             return Finding(Outcome.REFUTED, f"at {where} the value is {value}" if where else f"the value is {value}")
     return None
 
 
 def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
+    """The verdict of Sturm's theorem; None where it does not apply, at irrational ends and coefficients."""
     poly = Poly(p, x).sqf_part()
     low = None if interval.start is -oo else interval.start
     high = None if interval.end is oo else interval.end
-    roots = poly.count_roots(low, high)
+    try:
+        roots = poly.count_roots(low, high)
+    except (CoercionFailed, DomainError):
+        return None
     for end, is_open in ((low, interval.left_open), (high, interval.right_open)):
         if end is not None and is_open and poly.eval(end) == 0:
             roots -= 1
     where = f"{x} in {interval_text(interval)}"
-    if roots == 0:  # and the samples of _witness, all positive, fix the sign
+    if roots == 0 and not p.subs(x, _samples(interval)[-1]).is_positive:  # one sample fixes the sign
+        return None
+    if roots == 0:
         return Finding(Outcome.PROVED, f"Sturm: {poly.as_expr()} has no root for {where}")
     return Finding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}")
 
 
 def _orthant(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
-    if all(c.is_nonnegative for c in bernstein(p, box)):
+    lines = any(r.start is -oo and r.end is oo for r in box.values())
+    if not lines and all(c.is_nonnegative for c in bernstein(p, box)):
         where = ", ".join(f"{x} in {interval_text(r)}" for x, r in box.items())
         return Finding(Outcome.PROVED, f"Bernstein: {p} > 0 for {where}")
     return None
@@ -190,14 +213,30 @@ def _image(interval: Interval, power: int, degree: int) -> list[Expr]:
     """Coefficients in `u`, constant first, of `x**power * (1 + u)**degree` with `x` mapped to the orthant."""
     u = Dummy()
     low, high = interval.start, interval.end
-    mapped = (low + u) ** power if high is oo else (low + high * u) ** power * (1 + u) ** (degree - power)
+    if low is -oo or high is oo:
+        mapped = (high - u if low is -oo else low + u) ** power
+    else:
+        mapped = (low + high * u) ** power * (1 + u) ** (degree - power)
     return [S(c) for c in Poly(mapped, u).all_coeffs()[::-1]]
 
 
+def _size(interval: Interval) -> tuple[bool, bool, Expr]:
+    """Lines before half-lines before long intervals before short ones."""
+    infinite = interval.measure is oo
+    return interval.start is -oo and interval.end is oo, infinite, S.Zero if infinite else interval.measure
+
+
+def _middle(interval: Interval) -> Expr:
+    low, high = interval.start, interval.end
+    if low is -oo:
+        return S.Zero if high is oo else high - 1
+    return low + 1 if high is oo else (low + high) / 2
+
+
 def _halved(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
-    x = max(box, key=lambda y: (box[y].end is oo, box[y].measure if box[y].end is not oo else S.Zero))
+    x = max(box, key=lambda y: _size(box[y]))
+    middle = _middle(box[x])
     low, high = box[x].start, box[x].end
-    middle = low + 1 if high is oo else (low + high) / 2
     halves = Interval(low, middle, box[x].left_open), Interval(middle, high, right_open=box[x].right_open)
     findings = []
     for half in halves:

@@ -80,6 +80,8 @@ class Table:
                 accepted = ", ".join(sorted(known)) or "none"
                 raise ValueError(f"{self.name}: no shape parameter {name}; it has: {accepted}")
             value = exact_number(f"{self.name}: {name}", given)
+            if value.has(theta):
+                raise ValueError(f"{self.name}: {name} = {value} changes along the boundary; a shape is one number")
             if value.is_number and known[name].range.contains(value) == S.false:
                 raise ValueError(
                     f"{self.name}: {name} = {value} {known[name].otherwise}; "
@@ -116,13 +118,16 @@ def exact_number(label: str, given: Expr | int | str) -> Expr:
     if isinstance(given, str):
         try:
             return Rational(given)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, ZeroDivisionError):
             raise ValueError(f"{label} = {given!r} is no exact number such as 2/25 or 0.08") from None
-    if isinstance(given, float) or (isinstance(given, Expr) and given.has(Float)):
+    value = exact(given)
+    if not isinstance(value, Expr):
+        raise ValueError(f"{label} = {given!r} is no exact number such as 2/25 or 0.08")
+    if value.has(Float):
         raise ValueError(
             f"{label} = {given} is a rounded float; write it exactly, as a string '0.08' or Rational(2, 25)"
         )
-    return exact(given)
+    return value
 
 
 def interval_text(interval: Interval) -> str:

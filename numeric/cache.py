@@ -7,8 +7,6 @@ file is no file. When the folder cannot be used the work is done without it, and
 
 import hashlib
 import os
-import tempfile
-import warnings
 from contextlib import suppress
 from functools import cache as memoised
 from pathlib import Path
@@ -65,6 +63,8 @@ def write(kind: str, *parts_and_content: str | bytes) -> None:
     place = folder()
     if place is None:
         return
+    import tempfile
+
     temporary = None
     try:
         place.mkdir(parents=True, exist_ok=True)
@@ -78,5 +78,7 @@ def write(kind: str, *parts_and_content: str | bytes) -> None:
                 Path(temporary).unlink()
         if str(place) not in _said:
             _said.add(str(place))
+            import warnings
+
             why = reason.strerror or reason
             warnings.warn(f"the cache folder {place} cannot be written ({why}); working without it", stacklevel=2)

@@ -6,7 +6,6 @@ Every lane computes what it would compute alone, so results depend neither on th
 import itertools
 import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from numeric import machine
 from numeric.families.family import Family
-from numeric.kernel import WIDTH, Question, fields
+from numeric.question import WIDTH, Question, fields
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
@@ -75,6 +74,8 @@ class Engine:
             if len(calls) == 1:
                 function(*calls[0])
             else:
+                from concurrent.futures import ThreadPoolExecutor
+
                 with ThreadPoolExecutor(len(calls)) as pool:
                     list(pool.map(lambda call: function(*call), calls))
         rows = {name: row[:count] for name, row in zip(names, state, strict=True)}

@@ -8,7 +8,7 @@ from typing import Any
 
 from numeric import cache
 from numeric.families.family import Family
-from numeric.kernel import Question, kernel_text
+from numeric.question import Question
 
 Run = Callable[..., None]
 _loaded: dict[tuple[str, ...], Any] = {}
@@ -62,6 +62,8 @@ def compiled(family: Family, identity: str, shape: Sequence[str], question: Ques
         code = cache.read("kernel", *stamp)
         engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target())
         if code is None:
+            from numeric.kernel import kernel_text
+
             code = object_code(kernel_text(family, shape, question, width))
             cache.write("kernel", *stamp, code)
         engine.add_object_file(llvm.object_file.ObjectFileRef.from_data(code))

@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from numeric.arclength import ArcLength
 from numeric.blueprint import Blueprint, blueprint
 from numeric.cache import key_of
 from numeric.coordinates import States
@@ -16,8 +15,11 @@ from numeric.engine import Engine
 from numeric.families.choice import PATHS, family_of
 from numeric.families.family import law_of
 from numeric.inputs import angles, components, contraction, counted, shape_value
-from numeric.kernel import Question
+from numeric.question import Question
 from numeric.status import Status
+
+if TYPE_CHECKING:
+    from numeric.arclength import ArcLength
 
 Array = NDArray[np.float64]
 STATUSES = np.array(list(Status), dtype=object)
@@ -103,8 +105,10 @@ class PinballMap:
         return law_of(float(np.min(self.lam)), float(np.max(self.lam)))
 
     @cached_property
-    def arclength(self) -> ArcLength:
+    def arclength(self) -> "ArcLength":
         """Arc length and its inverse, on every component."""
+        from numeric.arclength import ArcLength
+
         return ArcLength(self.states)
 
     # ---- questions

@@ -86,8 +86,8 @@ class Cardioid(Family):
         x1, y1 = self.point(ops, landing.position)
         return plane.dot((x0 - x1, y0 - y1), landing.more["back"])
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
-        return ops.number(-0.75) / landing.position[0]
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        return ops.number(-0.75), landing.position[0]
 
     def point(self, ops: Any, position: list[Any]) -> Pair:
         """The boundary point `2*cos(theta/2)**2*exp(i*theta)`."""

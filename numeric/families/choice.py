@@ -1,12 +1,7 @@
-"""Which step serves which blueprint."""
+"""Which step serves which blueprint. Only the one that is asked for is imported."""
 
 from numeric.blueprint import Blueprint
-from numeric.families.cardioid import Cardioid
-from numeric.families.circle import Circle
-from numeric.families.cuspless import Cuspless
 from numeric.families.family import Family
-from numeric.families.general import General
-from numeric.families.harmonic import Ellipse, Fourier
 
 PATHS = {
     "circle": "closed form in angles",
@@ -20,14 +15,27 @@ PATHS = {
 
 def family_of(blueprint: Blueprint, convex: bool = True) -> Family:
     """The family of a blueprint; a Fourier sum that is not convex goes the general way."""
-    if blueprint.family == "circle":
+    name = blueprint.family
+    if name == "circle":
+        from numeric.families.circle import Circle
+
         return Circle()
-    if blueprint.family == "ellipse":
+    if name == "ellipse":
+        from numeric.families.harmonic import Ellipse
+
         return Ellipse(blueprint)
-    if blueprint.family == "fourier" and convex:
+    if name == "fourier" and convex:
+        from numeric.families.harmonic import Fourier
+
         return Fourier(blueprint)
-    if blueprint.family == "cardioid":
+    if name == "cardioid":
+        from numeric.families.cardioid import Cardioid
+
         return Cardioid()
-    if blueprint.family == "cuspless":
+    if name == "cuspless":
+        from numeric.families.cuspless import Cuspless
+
         return Cuspless()
+    from numeric.families.general import General
+
     return General(blueprint)

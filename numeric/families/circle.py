@@ -33,5 +33,5 @@ class Circle(Family):
     def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
         return ops.number(2.0)
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
-        return ops.number(-1.0)
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
+        return ops.number(-1.0), ops.number(1.0)

@@ -57,9 +57,11 @@ class Cuspless(Cardioid):
         landed = [wall, ops.select(to_wall, height, landing[0]), ops.select(to_wall, nought, landing[1])]
         return Landing(landed, sine, cosine, code, {"back": back})
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
         wall = ops.number(0.5) < landing.position[0]
-        return ops.select(wall, ops.number(0.0), ops.number(-0.75) / landing.position[1])
+        return ops.select(wall, ops.number(0.0), ops.number(-0.75)), ops.select(
+            wall, ops.number(1.0), landing.position[1]
+        )
 
     def point(self, ops: Any, position: list[Any]) -> Pair:
         """The boundary point on the arc or on the wall."""

@@ -69,8 +69,8 @@ class Family:
         """The length `t` of a flight."""
         raise NotImplementedError
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
-        """`K*speed` at the landing, negative where the boundary focuses."""
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
+        """`K*speed` at the landing as a quotient, negative where the boundary focuses."""
         raise NotImplementedError
 
     def fields(self, law: str) -> tuple[str, ...]:
@@ -93,9 +93,11 @@ class Family:
         dp, omega = tangent
         n0 = self.departure(ops, shape, position, exit)
         t = self.length(ops, shape, position, exit, landing)
-        inverse = ops.number(1.0) / landing.along
+        above, below = self.bend(ops, shape, landing)
+        both = ops.number(1.0) / (landing.along * below)
+        inverse = both * below
         moved = -((n0 * dp + t * omega) * inverse)
-        turned = (ops.number(1.0) + lam) * self.bend(ops, shape, landing) * moved - lam * omega
+        turned = (ops.number(1.0) + lam) * (above * both * landing.along) * moved - lam * omega
         leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
         return landing.position + leaving, landing.code, [moved, turned], n0 * inverse
 

@@ -156,9 +156,9 @@ class General(Family):
     def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
         return landing.more["t"]
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
         _, _, dx, dy, ax, ay = self.curve(ops, shape, *landing.position)
-        return plane.cross((ax, ay), (dx, dy)) / plane.dot((dx, dy), (dx, dy))
+        return plane.cross((ax, ay), (dx, dy)), plane.dot((dx, dy), (dx, dy))
 
 
 def _inflection(states: Any, index: int, low: float, high: float) -> float:

@@ -59,10 +59,10 @@ class Harmonic(Family):
         x1, y1 = self.point(ops, *landing.position, *shape)
         return plane.dot((x1 - x0, y1 - y0), (exit[0], exit[1]))
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Any:
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
         d = landing.more["d"]
         ax, ay = self.acceleration(ops, *landing.position, *shape)
-        return plane.cross((ax, ay), d) / plane.dot(d, d)
+        return plane.cross((ax, ay), d), plane.dot(d, d)
 
 
 class Ellipse(Harmonic):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.kernel import Question
+from numeric.question import Question
 from verification.exact_map import ExactMap
 from verification.truth import errors
 

@@ -5,7 +5,8 @@ import pytest
 
 from numeric.engine import Engine
 from numeric.families.family import SLAP
-from numeric.kernel import Question, kernel_text
+from numeric.kernel import kernel_text
+from numeric.question import Question
 
 LAMS = (0, 0.3, 1)
 

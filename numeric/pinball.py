@@ -1,5 +1,6 @@
 """`PinballMap`: a table with its shape and contraction, asked for steps, orbits, derivatives and exponents."""
 
+from copy import copy
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -13,7 +14,7 @@ from numeric.cache import key_of
 from numeric.coordinates import States
 from numeric.engine import Engine
 from numeric.families.choice import PATHS, family_of
-from numeric.families.family import law_of
+from numeric.families.family import SLAP, law_of
 from numeric.inputs import angles, components, contraction, counted, shape_value
 from numeric.question import Question
 from numeric.status import Status
@@ -62,6 +63,16 @@ class Exponents:
     def status(self) -> NDArray[np.object_]:
         """The outcome of each ball, a `Status`."""
         return np.asarray(STATUSES[self.code])
+
+
+@dataclass(frozen=True)
+class Slap:
+    """Iterates of the slap map along the first axis, and its slope at the start."""
+
+    component: NDArray[np.int64]
+    theta: Array
+    slope: Array
+    code: NDArray[np.int64]
 
 
 class PinballMap:
@@ -135,11 +146,11 @@ class PinballMap:
         component_at, theta_at = self.states.place(fields)
         theta_at[0], component_at[0] = theta.ravel(), where.ravel()
         phi_at = self.states.exit(component_at, theta_at, fields, law)
-        phi_at[0] = phi.ravel() if law != "slap" else 0.0
+        phi_at[0] = phi.ravel() if law != SLAP else 0.0
         code = self._codes(result.rows, bounces, theta.size)
         eta = np.full_like(theta_at, np.nan)
         vx, vy = self.states.direction(component_at[:-1], theta_at[:-1], phi_at[:-1])
-        if law not in ("slap",) and self.family.name not in ("circle",):
+        if law != SLAP and self.family.name != "circle":
             vx, vy = self._directions(fields, component_at, theta_at, phi_at)
         eta[1:] = -self._incidence(component_at[1:], theta_at[1:], vx, vy)
         eta[1:][code[1:] != 0] = np.nan
@@ -192,7 +203,7 @@ class PinballMap:
             where, theta = flat_where.reshape(theta.shape), flat.reshape(theta.shape)
             phi = self.states.exit(flat_where, flat, fields, self.law).reshape(theta.shape)
         speed, curvature = self.states.speed(where, theta), self.states.curvature(where, theta)
-        ds, dphi = (1.0, 0.0) if self.law == "slap" else (0.8, 0.6)
+        ds, dphi = (1.0, 0.0) if self.law == SLAP else (0.8, 0.6)
         rows, law = self._tangent_run(where, theta, phi, bounces, (ds / speed, curvature * ds + dphi), early, threads)
         fields = [rows[name] for name in self.family.fields(law)]
         place, at = self.states.place(fields)
@@ -214,6 +225,25 @@ class PinballMap:
         upper, lower, at, out = (a.reshape(theta.shape) for a in (upper, lower, at, out))
         came, place, code = (a.reshape(theta.shape) for a in (came, place, code))
         return Exponents(upper, lower, came, place, at, out, code)
+
+    def slap(self, theta: ArrayLike, iterates: int = 1, component: ArrayLike = 0) -> Slap:
+        """The slap map `T_0` and its iterates, whatever this map's `lam`; the start comes first. Paper: section 2.2.
+
+        `slope` is `T_0'(s)` at the start, the derivative with respect to arc length.
+
+        >>> float(PinballMap("ellipse", a=2).slap(0.0).theta[1])
+        -3.141592653589793
+        """
+        slapping = self if self.law == SLAP else self.at(lam=0)
+        orbit = slapping.orbit(theta, 0.0, iterates, component)
+        slope = slapping.derivative(theta, 0.0, component)[..., 0, 0]
+        return Slap(orbit.component, orbit.theta, slope, orbit.code)
+
+    def at(self, lam: Any) -> "PinballMap":
+        """The same table with another contraction."""
+        other = copy(self)
+        other.lam = contraction(lam)
+        return other
 
     # ---- within
 

@@ -7,6 +7,7 @@ closed forms and the deflated polynomials of the kernels but the exact table its
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import mpmath
@@ -42,16 +43,16 @@ class ExactMap:
     -2.0
     """
 
-    def __init__(self, map: PinballMap, digits: int = 50) -> None:
+    def __init__(self, map: PinballMap, digits: int = 50, lam: Any = None) -> None:
         self.context = mpmath.MPContext()
         self.context.dps = digits + GUARD
         self.digits = digits
         self.ops = Scalars(self.context)
         self.general = General(map.blueprint)
         self.general.prepared(map.states)
-        self.lam = self._exact(map.lam.flat[0])
+        self.lam = self.exactly(map.lam.flat[0] if lam is None else lam)  # a float is the double it is
         self.law = law_of(float(map.lam.flat[0]), float(map.lam.flat[0]))
-        self.shape = [self._exact(value) for value in map.exact_shape]
+        self.shape = [self.exactly(value) for value in map.exact_shape]
         parts = map.blueprint.parts
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in parts]
         self.general.ends = self.ends
@@ -102,7 +103,9 @@ class ExactMap:
         speed = self.context.hypot(dx, dy)
         return dx / speed, dy / speed, x, y
 
-    def _exact(self, value: Any) -> Any:
-        if hasattr(value, "numerator") and hasattr(value, "denominator"):
+    def exactly(self, value: Any) -> Any:
+        if isinstance(value, Fraction):
             return self.context.mpf(value.numerator) / value.denominator
+        if hasattr(value, "evalf"):
+            return self.context.mpf(str(value.evalf(self.context.dps)))
         return self.context.mpf(float(value))

@@ -1,0 +1,83 @@
+"""`pinball orbit`: where does this ball go?"""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verification.cli import DONE, FAILED
+from verification.commands.mapped import pinball_map, start_of
+from verification.commands.output import Output, json_option
+from verification.commands.scene import Scene, exact, scene_options
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+MOST = 40  # bounces shown to people
+KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
+
+
+@click.command(epilog="Example: pinball orbit ellipse --a 1.5 --lam 0.9 --start 0.5,-0.2 --bounces 10")
+@scene_options
+@click.option("--start", required=True, metavar="THETA,PHI", help="Boundary parameter and exit angle, in radians.")
+@click.option("--component", metavar="NAME", help="The component of the start; the first one if left out.")
+@click.option("--bounces", type=click.IntRange(1, 10_000_000), required=True, help="How many.")
+@click.option("--arithmetic", type=click.Choice(["float64", "mpmath", "arb"]), default="float64", show_default=True)
+@click.option("--digits", type=click.IntRange(1, 10_000), default=50, show_default=True, help="For mpmath and arb.")
+@json_option
+def command(
+    scene: Scene, start: str, component: str | None, bounces: int, arithmetic: str, digits: int, output: Output
+) -> int:
+    """Where does this ball go? Exit status 1 when it stops at a join, a cusp or a tangency."""
+    map = pinball_map(scene)
+    names = [part.name for part in map.blueprint.parts]
+    if component is not None and component not in names:
+        raise ValueError(f"--component = {component} is not on this table; accepted: {', '.join(names)}")
+    index = names.index(component) if component else 0
+    theta, phi = start_of(start)
+    if arithmetic == "float64":
+        entries = in_float64(map, index, float(theta), float(phi), bounces)
+    else:
+        from verification.orbits import in_balls, in_multiprecision
+
+        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
+        follow = in_multiprecision if arithmetic == "mpmath" else in_balls
+        with output.progress("Bouncing", bounces) as step:
+            entries = follow(map, exact("--lam", scene.lam), (index, theta, phi), bounces, digits, step)
+    output.write({"bounces": entries})
+    show(output.console, entries, map.path if arithmetic == "float64" else f"{arithmetic}, {digits} digits")
+    return DONE if all(entry["status"] == "regular" for entry in entries) else FAILED
+
+
+def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> list[dict[str, Any]]:
+    """The orbit from the kernels, as far as it goes."""
+    orbit = map.orbit(theta, phi, bounces, index)
+    names = [part.name for part in map.blueprint.parts]
+    s = map.arclength.s(orbit.theta, orbit.component)
+    statuses = [status.name.lower() for status in orbit.status]
+    end = next((i for i, status in enumerate(statuses) if status != "regular"), len(statuses) - 1)
+    entries = []
+    for i in range(end + 1):
+        eta = float(orbit.eta[i])
+        values = (names[orbit.component[i]], *(float(row[i]) for row in (orbit.theta, s, orbit.x, orbit.y)))
+        entries.append(
+            dict(zip(KEYS, (*values, None if eta != eta else eta, float(orbit.phi[i]), statuses[i]), strict=True))
+        )
+    return entries
+
+
+def show(console: "Console", entries: list[dict[str, Any]], how: str) -> None:
+    """The first bounces, a line each."""
+    wide = 20 if isinstance(entries[0]["x"], float) else len(entries[0]["x"]) + 4
+    console.print("bounce  " + "".join(f"{key:<{9 if key == 'component' else wide}}" for key in KEYS))
+    for i, entry in enumerate(entries[:MOST]):
+        texts = (f"{_text(entry[key]):<{9 if key == 'component' else wide}}" for key in KEYS)
+        console.print(f"{i:<8}" + "".join(texts))
+    if len(entries) > MOST:
+        console.print(f"... and {len(entries) - MOST} more; --json FILE has them all")
+    console.print(f"{len(entries) - 1} bounces ({how})")
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.16g}" if isinstance(value, float) else str(value)

@@ -36,6 +36,15 @@ def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
     >>> convex(egg(3).at(alpha="0.1"))
     True
     """
+    return _of_one_shape(table) if not shape else _convex(table, shape)
+
+
+@cache
+def _of_one_shape(table: Table) -> bool | None:
+    return _convex(table, ())
+
+
+def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
     if table.undefined:
         return None
     parts = all(_bends_inwards(component, table, shape) for component in table.components)

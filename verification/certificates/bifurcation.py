@@ -17,7 +17,7 @@ from flint import arb
 
 from verification.arithmetic import balls, working
 from verification.certificates.admissible import convex, inside, minimal
-from verification.certificates.contraction import Enclosure, Status, contraction
+from verification.certificates.contraction import Enclosure, Status, contraction, slope_bits
 from verification.shooting.normal_form import NormalForm, normal_form
 from verification.shooting.problem import Kind, Linearised, Problem, Rows
 
@@ -94,14 +94,18 @@ def proved(claim: Claim) -> Proof:
         checks["minimal_period"] = minimal(problem.table, problem.components, zero) if found else None
         if problem.kind is Kind.CYCLE:
             return Proof(claim, checks, enclosure)
-        form = _form(problem, zero, claim.bits) if found else None
-        checks |= _generic(form)
-        return Proof(claim, checks, enclosure, form)
+        form = None
+        for bits in (min(claim.bits, 2 * slope_bits(len(zero))), claim.bits) if found else ():
+            form = _form(problem, zero, bits)
+            if None not in _generic(form).values():
+                break
+        return Proof(claim, checks | _generic(form), enclosure, form)
 
 
 def _form(problem: Problem, zero: list[arb], bits: int) -> NormalForm | None:
     try:
-        return normal_form(Linearised(Rows(problem, balls(bits)), zero), balls(bits))
+        with working(bits):
+            return normal_form(Linearised(Rows(problem, balls(bits)), zero), balls(bits))
     except ZeroDivisionError:
         return None
 

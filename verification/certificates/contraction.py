@@ -47,10 +47,32 @@ def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> En
     with working(bits):
         box = [arb(x, radius) for x in centre]
         try:
-            image = [x - d for x, d in zip(centre, system.newton(balls(bits), centre, box), strict=True)]
+            value = system.value(balls(bits), centre)
         except ZeroDivisionError:
             return Enclosure(Status.UNKNOWN, box)
-        return Enclosure(compared(image, box), image)
+        found = _image(system, value, centre, box, min(bits, slope_bits(len(centre))))
+        if found.status is not Status.UNIQUE:
+            found = _image(system, value, centre, box, bits)
+        return found
+
+
+def slope_bits(unknowns: int) -> int:
+    """Bits that the derivatives need: `F` at the midpoint is tiny, so theirs need not grow with the digits.
+
+    >>> slope_bits(3)
+    144
+    """
+    return 128 + 8 * unknowns.bit_length()
+
+
+def _image(system: System, value: list[arb], centre: list[arb], box: list[arb], bits: int) -> Enclosure:
+    try:
+        with working(bits):
+            correction = system.solved(balls(bits), box, value)
+    except ZeroDivisionError:
+        return Enclosure(Status.UNKNOWN, box)
+    image = [x - d for x, d in zip(centre, correction, strict=True)]
+    return Enclosure(compared(image, box), image)
 
 
 def compared(image: list[arb], box: list[arb]) -> Status:

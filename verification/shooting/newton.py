@@ -24,8 +24,14 @@ class System(Protocol):
     def label(self) -> str:
         """What messages call it."""
 
-    def newton(self, arithmetic: Arithmetic, at: list[Any], over: list[Any] | None = None) -> list[Any]:
-        """`F'(over)^-1 F(at)`, with `over = at` when it is not given."""
+    def value(self, arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+        """`F(z)`."""
+
+    def solved(self, arithmetic: Arithmetic, z: list[Any], r: list[Any]) -> list[Any]:
+        """`F'(z)^-1 r`."""
+
+    def newton(self, arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+        """`F'(z)^-1 F(z)`, Newton's correction."""
 
 
 @dataclass(frozen=True)

@@ -49,13 +49,18 @@ class Problem:
         """What messages call it."""
         return f"{self.table.name}, period {self.period}"
 
-    def newton(self, arithmetic: Arithmetic, at: Vector, over: Vector | None = None) -> Vector:
-        """`F'(over)^-1 F(at)`: Newton's correction at a point, or the interval Newton operator's over a box."""
-        rows = Rows(self, arithmetic)
-        if over is None:
-            here = Linearised(rows, at)
-            return here.solve(here.value)
-        return Linearised(rows, over).solve(Linearised(rows, at, slope=False).value)
+    def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
+        """`F(z)`."""
+        return Linearised(Rows(self, arithmetic), z, slope=False).value
+
+    def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
+        """`F'(z)^-1 r`."""
+        return Linearised(Rows(self, arithmetic), z).solve(r)
+
+    def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
+        """`F'(z)^-1 F(z)`, Newton's correction."""
+        here = Linearised(Rows(self, arithmetic), z)
+        return here.solve(here.value)
 
     @property
     def period(self) -> int:

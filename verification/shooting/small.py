@@ -24,16 +24,23 @@ class Small:
     label: str
     equations: Callable[[Arithmetic, Vector], Vector]
 
-    def newton(self, arithmetic: Arithmetic, at: Vector, over: Vector | None = None) -> Vector:
-        """`F'(over)^-1 F(at)`: Newton's correction at a point, or the interval Newton operator's over a box."""
-        value = self.equations(arithmetic, at)
-        rows: list[Vector] = [[] for _ in value]
-        words, where = jets(arithmetic), at if over is None else over
-        for j in range(len(at)):
-            moved = [Jet(x, 1 if i == j else 0) for i, x in enumerate(where)]
+    def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
+        """`F(z)`."""
+        return self.equations(arithmetic, z)
+
+    def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
+        """`F'(z)^-1 r`."""
+        rows: list[Vector] = [[] for _ in r]
+        words = jets(arithmetic)
+        for j in range(len(z)):
+            moved = [Jet(x, 1 if i == j else 0) for i, x in enumerate(z)]
             for row, e in zip(rows, self.equations(words, moved), strict=True):
                 row.append(e.c[1])
-        return solved([[*row, r] for row, r in zip(rows, value, strict=True)])
+        return solved([[*row, x] for row, x in zip(rows, r, strict=True)])
+
+    def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
+        """`F'(z)^-1 F(z)`, Newton's correction."""
+        return self.solved(arithmetic, z, self.value(arithmetic, z))
 
 
 def solved(rows: list[Vector]) -> Vector:

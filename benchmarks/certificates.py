@@ -1,0 +1,124 @@
+"""What certified digits cost: `python benchmarks/certificates.py [--full]`, from the repository's root.
+
+Three columns for each value: Newton's method in mpmath, the same in balls, and the certificate that
+the first of them leads to. Then the ladder at 50 digits, whose cost must grow like the period, and
+its end. `--full` goes to 10,000 digits and to period 2**15, a few minutes.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from itertools import islice
+from typing import Any
+
+import mpmath
+from flint import arb
+from rich.console import Console
+from rich.table import Table as Shown
+from sympy import Expr, N, Rational, acos, pi
+
+from symbolic import tables
+from symbolic.polygons import saddle_node
+from symbolic.symbols import alpha as letter
+from verification.arithmetic import balls, bits_of, working
+from verification.certificates.bifurcation import Claim, proved
+from verification.certificates.contraction import contraction, exact_balls
+from verification.feigenbaum import limit, ratio
+from verification.ladder import ladder
+from verification.locate import GMPY2
+from verification.shooting.newton import GUARD, System, floats, levels, refined
+from verification.shooting.problem import Kind, Problem
+from verification.shooting.small import corner
+
+ALPHA: Expr = Rational(2, 25)
+DIGITS = (16, 50, 100, 300, 1000, 3000, 10_000)
+
+
+def timed(work: Callable[[], Any]) -> tuple[float, Any]:
+    """Seconds, and the result."""
+    start = time.perf_counter()
+    result = work()
+    return time.perf_counter() - start, result
+
+
+def in_balls(system: System, start: list[float], digits: int) -> list[arb]:
+    """Newton's method on the midpoints of balls, with doubling precision: fast, and no proof."""
+    z = [arb(x) for x in floats(system, start)]
+    for level in levels(digits + GUARD):
+        with working(bits_of(level)):
+            for _ in range(2 if level < 20 else 1):
+                z = [(x - d).mid() for x, d in zip(z, system.newton(balls(bits_of(level)), z), strict=True)]
+    return z
+
+
+def certificate(system: System, z: list[Any], digits: int) -> None:
+    """The proof around an approximation: the whole checklist where there is one."""
+    bits = bits_of(digits, 100)
+    with working(bits):
+        radius = (arb(10) ** -(digits + 2)).mid()
+    if isinstance(system, Problem):
+        assert proved(Claim(system, tuple(exact_balls(z)), radius, bits, digits)).certified
+    else:
+        assert contraction(system, exact_balls(z), radius, bits).status.name == "UNIQUE"
+
+
+def systems() -> dict[str, tuple[System, list[float]]]:
+    """The three values of the table, each with a start."""
+    egg = tables.egg(3).at(alpha=ALPHA)
+    turn = -float(N(acos(-ALPHA))) / 3
+    triangle = [turn + 2 * float(N(pi)) * k / 3 for k in range(3)]
+    first = next(ladder(ALPHA))
+    return {
+        "lambda-star": (corner(), [0.2545, 0.0712]),
+        "saddle-node": (
+            Problem(egg, (0, 0, 0), Kind.FOLD, "lam"),
+            [*triangle, float(N(saddle_node().subs(letter, ALPHA)))],
+        ),
+        "doubling 3": (first.problem, first.start),
+    }
+
+
+def digits_table(console: Console, most: int) -> None:
+    """Digits against seconds."""
+    shown = Shown("value", "digits", "mpmath", "balls", "certificate", title="seconds")
+    for name, (system, start) in systems().items():
+        refined(system, start, 16)  # generates and loads the kernels
+        for digits in (d for d in DIGITS if d <= most):
+            shooting, solution = timed(lambda s=system, x=start, d=digits: refined(s, x, d))
+            in_arb, _ = timed(lambda s=system, x=start, d=digits: in_balls(s, x, d))
+            proof, _ = timed(lambda s=system, z=solution.z, d=digits: certificate(s, z, d))
+            shown.add_row(name, str(digits), f"{shooting:.4f}", f"{in_arb:.4f}", f"{proof:.4f}")
+    console.print(shown)
+
+
+def ladder_table(console: Console, highest: int) -> None:
+    """Period against seconds at 50 digits, and where the ladder ends."""
+    shown = Shown("n", "period", "start in float64", "mpmath", "certificate", "lambda_n", title="seconds at 50 digits")
+    values = []
+    rungs = islice(ladder(ALPHA), highest - 2)
+    while True:
+        seconds, rung = timed(lambda: next(rungs, None))
+        if rung is None:
+            break
+        shooting, solution = timed(lambda r=rung: refined(r.problem, r.start, 50))
+        proof, _ = timed(lambda r=rung, s=solution: certificate(r.problem, s.z, 50))
+        values.append(mpmath.nstr(solution.z[-1], 55))
+        row = [str(rung.n), str(rung.problem.period), *(f"{t:.2f}" for t in (seconds, shooting, proof))]
+        shown.add_row(*row, values[-1][:24])
+    console.print(shown)
+    for name, found in (("lambda_infinity", limit(values)), ("delta", ratio(values))):
+        shown_value, error = mpmath.nstr(found.value, 26), mpmath.nstr(found.error, 2)
+        console.print(f"{name} = {shown_value} +- {error}, estimated by two schemes, not certified", soft_wrap=True)
+
+
+def main() -> None:
+    """Prints both tables."""
+    console = Console()
+    full = "--full" in sys.argv[1:]
+    console.print(f"gmpy2 under mpmath: {'yes' if GMPY2 else 'no'}")
+    digits_table(console, 10_000 if full else 1000)
+    ladder_table(console, 15 if full else 10)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+"""Proofs over sets: exclusion, periodic points of a slap map, the projection argument, the ladder's end."""
+
+import mpmath
+import pytest
+from sympy import Rational
+
+from symbolic.polygons import saddle_node
+from symbolic.symbols import alpha as letter
+from verification.certificates.exclusion import no_triangles
+from verification.certificates.projection import PRODUCED, SLAP, witness
+from verification.certificates.slap import periodic_points
+from verification.feigenbaum import DELTA, aitken, limit, ratio, wynn
+
+ALPHA = Rational(2, 25)
+LADDER = [  # lambda_3 to lambda_12 at alpha = 2/25, each certified by `pinball locate doubling`
+    "0.371235502527919523578336532324050275102188525622321165344497",
+    "0.388761023460840300793370106076533294454826453523904186833767",
+    "0.392501516486075505022985915339702278914873717285746295287448",
+    "0.393302227093869130725330359607485970048944219553467466096273",
+    "0.393473727302274657497533299069879636401126234562683438000395",
+    "0.393510457806534967868224391633800585520740198839762609461142",
+    "0.393518324384185952563141252710603892261699790023154867016722",
+    "0.393520009165315133620037665117809277662839690313352616059054",
+    "0.393520369993896232548858405166321589370418783260980296487933",
+    "0.393520447272331094885770321804636356347020367373638639307504",
+]
+
+
+def test_the_egg_has_no_period_3_cycle_below_the_fold():
+    found = no_triangles(ALPHA, Rational(378, 1000))
+
+    assert found.excluded is True
+    assert saddle_node().subs(letter, ALPHA) > Rational(378, 1000)
+
+
+def test_what_exists_is_never_excluded():
+    found = no_triangles(ALPHA, Rational(45, 100), budget=8_000)
+
+    assert found.excluded is None
+    assert found.share < 1
+
+
+def test_a_budget_that_ends_is_unknown_and_says_how_far_it_came():
+    found = no_triangles(ALPHA, Rational(3, 10), budget=1000)
+
+    assert found.excluded is None
+    assert 0 < found.share < 1
+    assert found.boxes == 1000
+
+
+def test_the_cuspless_slap_map_has_no_cycle_of_period_4():
+    ends_of_period_2 = {(0, -mpmath.pi / 3), (0, 0), (0, mpmath.pi / 3), (1, 0)}
+    stretches = periodic_points(4).stretches
+
+    assert len(stretches) == 4
+    for component, low, high in stretches:
+        assert sum(c == component and low <= x <= high for c, x in ends_of_period_2) == 1
+    assert periodic_points(1).stretches == []
+
+
+def test_the_projection_meets_the_diagonal_where_the_paper_says_that_it_misses():
+    free = witness(ALPHA, Rational(0), *SLAP)
+    produced = witness(ALPHA, Rational(3, 10), *PRODUCED)
+
+    assert free.exists
+    assert produced.exists
+    assert produced.produced
+
+
+def test_the_ladder_ends_at_feigenbaums_constant():
+    found = ratio(LADDER)
+
+    assert abs(found.value - mpmath.mpf(DELTA)) < found.error < 1e-6
+
+
+def test_more_rungs_agree_with_the_stated_error():
+    short, long = limit(LADDER[:-2]), limit(LADDER)
+
+    assert abs(short.value - long.value) < 10 * short.error
+    assert long.error < 1e-18
+    assert mpmath.nstr(long.value, 18) == "0.39352046833370729"
+
+
+@pytest.mark.parametrize("process", [wynn, aitken])
+def test_a_geometric_sequence_is_summed_exactly(process):
+    assert process([2 - mpmath.mpf(2) ** -n for n in range(5)]) == 2

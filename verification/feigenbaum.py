@@ -1,0 +1,89 @@
+"""The end of a period-doubling ladder: `delta` and `lambda_infinity`, estimated and not certified.
+
+Two schemes that share no assumption but geometric convergence: Wynn's epsilon algorithm on the
+sequence itself, and Aitken's process on what is left after the leading term has been removed with
+the universal constant of Feigenbaum. Their difference is the error that is stated.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+
+DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # Feigenbaum; from the literature
+DIGITS = 60
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A limit and the size of the difference between two ways to it, as mpmath numbers."""
+
+    value: Any
+    error: Any
+
+
+def limit(values: Sequence[str]) -> Estimate:
+    """The limit of `lambda_n`, given as decimals.
+
+    >>> found = limit([str(1 - mpmath.mpf(4.669201609) ** -n) for n in range(3, 12)])
+    >>> abs(found.value - 1) < 1e-12
+    True
+    """
+    context = mpmath.MPContext()
+    context.dps = DIGITS
+    given = [context.mpf(v) for v in values]
+    delta = context.mpf(DELTA)
+    removed = [(delta * b - a) / (delta - 1) for a, b in pairwise(given)]
+    return _compared(wynn(given), wynn(removed))
+
+
+def ratio(values: Sequence[str]) -> Estimate:
+    """The limit of `(lambda_n - lambda_(n-1))/(lambda_(n+1) - lambda_n)`: an estimate of `delta`.
+
+    >>> found = ratio([str(1 - mpmath.mpf(3) ** -n) for n in range(3, 12)])
+    >>> abs(found.value - 3) < 1e-9
+    True
+    """
+    context = mpmath.MPContext()
+    context.dps = DIGITS
+    gaps = [b - a for a, b in pairwise(context.mpf(v) for v in values)]
+    ratios = [a / b for a, b in pairwise(gaps)]
+    return _compared(wynn(ratios), aitken(ratios))
+
+
+def _compared(one: Any, two: Any) -> Estimate:
+    return Estimate(one, abs(one - two))
+
+
+def wynn(values: Sequence[Any]) -> Any:
+    """The last even entry of Wynn's epsilon table.
+
+    >>> wynn([1, 1.5, 1.75, 1.875])
+    2.0
+    """
+    before: list[Any] = [0] * (len(values) + 1)
+    here = list(values)
+    best = here[-1]
+    for order in range(1, len(values)):
+        differences = [b - a for a, b in pairwise(here)]
+        if any(d == 0 for d in differences):
+            return best
+        before, here = here, [before[i + 1] + 1 / d for i, d in enumerate(differences)]
+        if order % 2 == 0:
+            best = here[-1]
+    return best
+
+
+def aitken(values: Sequence[Any]) -> Any:
+    """Aitken's process, repeated as long as three terms are left."""
+    here = list(values)
+    while len(here) >= 3:
+        following = []
+        for a, b, c in zip(here, here[1:], here[2:], strict=False):
+            if c - 2 * b + a == 0:
+                return c
+            following.append(c - (c - b) ** 2 / (c - 2 * b + a))
+        here = following
+    return here[-1]

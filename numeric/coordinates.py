@@ -34,8 +34,8 @@ class States:
             here = component == index
             if np.any(here):
                 values = part.curve(self.ops, theta[here], *self.shape)
-                for row, value in zip(rows, values, strict=True):
-                    row[here] = value
+                for i, value in enumerate(values):
+                    rows[i, here] = value
         return rows
 
     def tangent(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
@@ -53,6 +53,12 @@ class States:
             return np.where(component == 1, 1.0, 2 * np.cos(theta / 2))
         _, _, dx, dy, _, _ = self.curve(component, theta)
         return np.asarray(np.hypot(dx, dy))
+
+    def rate(self, component: NDArray[np.int64], theta: Array) -> Array:
+        """`ds/dp` for the parameter `p` of the family's tangent vectors: `theta`, or arc length itself."""
+        if self.family.name in ("cardioid", "cuspless"):
+            return np.ones(np.shape(theta))
+        return self.speed(component, theta)
 
     def curvature(self, component: NDArray[np.int64], theta: Array) -> Array:
         """The paper's signed curvature, negative where the boundary focuses."""

@@ -12,7 +12,10 @@ Array = NDArray[np.float64]
 
 def real(name: str, given: Any) -> Array:
     """An array of finite doubles."""
-    array = np.asarray(given)
+    try:
+        array = np.asarray(given)
+    except ValueError as reason:
+        raise ValueError(f"{name} is no array of numbers: {reason}") from None
     if array.dtype == object:
         try:
             array = array.astype(float)
@@ -54,7 +57,10 @@ def contraction(given: Any) -> Array:
     0.25
     """
     if isinstance(given, str | Fraction):
-        given = float(Fraction(given))
+        try:
+            given = float(Fraction(given))
+        except (ValueError, ZeroDivisionError):
+            raise ValueError(f"lam = {given!r} is no number such as 9/10 or 0.9") from None
     array = real("lam", given)
     if array.size == 0:
         raise ValueError("lam is empty; give one number in [0, 1], or one for each ball")
@@ -76,7 +82,7 @@ def shape_value(label: str, given: Any) -> Fraction | float:
         if isinstance(given, str | int | Fraction):
             return Fraction(given)
         if isinstance(given, float):
-            return Fraction(repr(given)) if np.isfinite(given) else float(given)
+            return Fraction(repr(float(given)))
         if getattr(given, "is_Rational", False):
             return Fraction(int(given.p), int(given.q))
         value = float(given)

@@ -14,8 +14,8 @@ from numeric.cache import key_of
 from numeric.coordinates import States
 from numeric.engine import Engine
 from numeric.families.choice import PATHS, family_of
-from numeric.families.family import SLAP, law_of
-from numeric.inputs import angles, components, contraction, counted, shape_value
+from numeric.families.family import PINBALL, SLAP, law_of
+from numeric.inputs import angles, components, contraction, counted, real, shape_value
 from numeric.question import Question
 from numeric.status import Status
 
@@ -42,9 +42,9 @@ class Orbit:
     code: NDArray[np.int64]
 
     @property
-    def status(self) -> NDArray[np.object_]:
-        """The outcome at each bounce, a `Status`."""
-        return np.asarray(STATUSES[self.code])
+    def status(self) -> Any:
+        """The outcome at each bounce: a `Status`, or an array of them."""
+        return STATUSES[self.code]
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,9 @@ class Exponents:
     code: NDArray[np.int64]
 
     @property
-    def status(self) -> NDArray[np.object_]:
-        """The outcome of each ball, a `Status`."""
-        return np.asarray(STATUSES[self.code])
+    def status(self) -> Any:
+        """The outcome of each ball: a `Status`, or an array of them."""
+        return STATUSES[self.code]
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class PinballMap:
         """The start and `bounces` bounces after it."""
         where, theta, phi = self._start(theta, phi, component)
         bounces = counted("bounces", bounces)
-        law = self.law
+        law = self._law(phi)
         own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
         result = self.engine.run(
             Question(law, record=True), own, self._lams(theta), self.shape, bounces, threads=threads
@@ -146,7 +146,7 @@ class PinballMap:
         component_at, theta_at = self.states.place(fields)
         theta_at[0], component_at[0] = theta.ravel(), where.ravel()
         phi_at = self.states.exit(component_at, theta_at, fields, law)
-        phi_at[0] = phi.ravel() if law != SLAP else 0.0
+        phi_at[0] = phi.ravel()
         code = self._codes(result.rows, bounces, theta.size)
         eta = np.full_like(theta_at, np.nan)
         vx, vy = self.states.direction(component_at[:-1], theta_at[:-1], phi_at[:-1])
@@ -161,16 +161,16 @@ class PinballMap:
     def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
         """`d(s1, phi1)/d(s0, phi0)`, a matrix for each ball. Paper: eq. (derivative_of_map)."""
         where, theta, phi = self._start(theta, phi, component)
-        columns = []
-        speed = self.states.speed(where, theta)
+        law, columns = self._law(phi), []
+        speed = self.states.rate(where, theta)
         curvature = self.states.curvature(where, theta)
         for ds, dphi in ((1.0, 0.0), (0.0, 1.0)):
             vector = ds / speed, curvature * ds + dphi
-            rows, _law = self._tangent_run(where, theta, phi, 1, vector, None)
+            rows = self._tangent_run(PINBALL if law == SLAP else law, where, theta, phi, 1, vector, None)
             scale = np.exp2(rows["growth"])
             place, at = self.states.place([rows[name] for name in self.family.position])
             shape = theta.shape
-            moved = (rows["dp"] * scale).reshape(shape) * self.states.speed(place, at).reshape(shape)
+            moved = (rows["dp"] * scale).reshape(shape) * self.states.rate(place, at).reshape(shape)
             turned = (rows["omega"] * scale).reshape(shape) - self.states.curvature(place, at).reshape(shape) * moved
             columns.append([moved, turned])
         matrix = np.array(columns)
@@ -192,28 +192,27 @@ class PinballMap:
         """
         where, theta, phi = self._start(theta, phi, component)
         bounces = counted("bounces", bounces)
-        early = None
+        law, early = self._law(phi), None
         if counted("transient", transient, least=0):
-            own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), self.law)
-            early = self.engine.run(
-                Question(self.law), own, self._lams(theta), self.shape, transient, threads=threads
-            ).rows
-            fields = [early[name] for name in self.family.fields(self.law)]
+            own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
+            early = self.engine.run(Question(law), own, self._lams(theta), self.shape, transient, threads=threads).rows
+            fields = [early[name] for name in self.family.fields(law)]
             flat_where, flat = self.states.place(fields)
             where, theta = flat_where.reshape(theta.shape), flat.reshape(theta.shape)
-            phi = self.states.exit(flat_where, flat, fields, self.law).reshape(theta.shape)
-        speed, curvature = self.states.speed(where, theta), self.states.curvature(where, theta)
-        ds, dphi = (1.0, 0.0) if self.law == SLAP else (0.8, 0.6)
-        rows, law = self._tangent_run(where, theta, phi, bounces, (ds / speed, curvature * ds + dphi), early, threads)
+            phi = self.states.exit(flat_where, flat, fields, law).reshape(theta.shape)
+        speed, curvature = self.states.rate(where, theta), self.states.curvature(where, theta)
+        ds, dphi = (1.0, 0.0) if law == SLAP else (0.8, 0.6)
+        vector = ds / speed, curvature * ds + dphi
+        rows = self._tangent_run(law, where, theta, phi, bounces, vector, early, threads)
         fields = [rows[name] for name in self.family.fields(law)]
         place, at = self.states.place(fields)
-        moved = rows["dp"] * self.states.speed(place, at)
+        moved = rows["dp"] * self.states.rate(place, at)
         turned = rows["omega"] - self.states.curvature(place, at) * moved
         lost = rows["lost"] if "lost" in rows else np.zeros(theta.size)
         made = np.maximum(bounces - lost, 1.0)
         with np.errstate(divide="ignore"):
             plus = (np.log(np.hypot(moved, turned)) + rows["growth"] * np.log(2.0)) / made
-            ends = np.log(self.states.speed(place, at) / speed.ravel())
+            ends = np.log(self.states.rate(place, at) / speed.ravel())
             total = (np.log(rows["ratio"]) + rows["volume"] * np.log(2.0) + ends) / made + np.log(self._lams(theta))
         code = rows["code"].astype(np.int64) if "code" in rows else np.zeros(theta.size, dtype=np.int64)
         if early is not None and "code" in early:
@@ -239,6 +238,17 @@ class PinballMap:
         slope = slapping.derivative(theta, 0.0, component)[..., 0, 0]
         return Slap(orbit.component, orbit.theta, slope, orbit.code)
 
+    def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[NDArray[np.int64], Array]:
+        """Component and parameter of boundary points given in Cartesian coordinates.
+
+        >>> component, theta = PinballMap("ellipse", a=2).locate(0.0, 1.0)
+        >>> int(component), float(theta)
+        (0, 1.5707963267948966)
+        """
+        from numeric.location import located
+
+        return located(self.states, real("x", x), real("y", y))
+
     def at(self, lam: Any) -> "PinballMap":
         """The same table with another contraction."""
         other = copy(self)
@@ -247,10 +257,14 @@ class PinballMap:
 
     # ---- within
 
+    def _law(self, phi: Array) -> str:
+        """The law of a run; the slap kernel can only start along the normal."""
+        return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
+
     def _tangent_run(
-        self, where: Any, theta: Array, phi: Array, bounces: int, vector: Any, early: Any, threads: int | None = None
-    ) -> tuple[dict[str, Array], str]:
-        law = self.law
+        self, law: str, where: Any, theta: Array, phi: Array, bounces: int, vector: Any, early: Any, threads: Any = None
+    ) -> dict[str, Array]:
+        """The rows after `bounces` bounces of a ball and a tangent vector `(dp, omega)`."""
         if early is None:
             own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
         else:
@@ -259,7 +273,7 @@ class PinballMap:
         nought = np.zeros(theta.size)
         tangent = [dp, omega, nought, nought + 1.0, nought]
         question = Question(law, exponents=True)
-        return self.engine.run(question, own, self._lams(theta), self.shape, bounces, tangent, threads).rows, law
+        return self.engine.run(question, own, self._lams(theta), self.shape, bounces, tangent, threads).rows
 
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
         name = self.blueprint.table

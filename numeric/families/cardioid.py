@@ -65,9 +65,10 @@ class Cardioid(Family):
         S = ops.polynomial_zero(coefficients, start, low, Q, sigma[0], self.steps, None, accepts)
         landing = plane.normalised(ops, (sigma[0], ops.times_sign(S, k)))
         w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
-        code = ops.select(ops.number(NEAR) < landing[0], ops.number(0.0), ops.number(2.0))
+        code = ops.number(0.0)
         if law != SLAP:
             code = ops.select(grazing(ops, w[1], -w[0]), ops.number(3.0), code)
+        code = ops.select(ops.number(NEAR) < landing[0], code, ops.number(2.0))
         return Landing(list(landing), w[1], -w[0], code, {"back": back})
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:

@@ -1,0 +1,83 @@
+"""Parameter, arc length and Cartesian point, both ways, to full accuracy."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+
+EPS = 2.0**-52
+MP = mpmath.MPContext()
+MP.dps = 40
+
+
+def grid(map, component, count=41):
+    low, high = map.states.ends[component]
+    return np.linspace(low, high, count + 2)[1:-1]
+
+
+@pytest.mark.parametrize("a", ["1", "3/2", "10", "1000"])
+def test_arc_length_of_the_ellipse_is_the_elliptic_integral(a):
+    map = PinballMap("ellipse", lam=1, a=a)
+    theta = grid(map, 0)
+    exact = [MP.ellipe(MP.mpf(t), 1 - MP.mpf(map.shape[0]) ** 2) for t in theta]
+    found = map.arclength.s(theta)
+
+    assert max(abs(s - e) for s, e in zip(found, exact, strict=True)) <= 4 * EPS * map.arclength.perimeter
+
+
+@pytest.mark.parametrize("alpha", ["0.02", "0.08", "0.1"])
+def test_arc_length_of_the_egg_is_the_integral_of_the_speed(alpha):
+    map = PinballMap("egg", lam=1, alpha=alpha)
+    a = MP.mpf(map.shape[0])
+    theta = grid(map, 0, 7)
+
+    def speed(t):
+        return MP.hypot(1 + a * MP.cos(3 * t), 3 * a * MP.sin(3 * t))
+
+    for t, s in zip(theta, map.arclength.s(theta), strict=True):
+        exact = MP.quad(speed, [MP.mpf(t) * k / 8 for k in range(9)])
+        assert abs(s - exact) <= 8 * EPS * max(abs(exact), 1)
+
+
+def test_inverse_arc_length_gives_the_parameter_back(table):
+    map = table.map(1)
+    for component in range(len(map.states.ends)):
+        theta = grid(map, component)
+        s = map.arclength.s(theta, component)
+        back = map.arclength.theta(s, component)
+        speed = map.states.speed(np.full(theta.shape, component), theta)
+        allowed = EPS * (4 * np.abs(theta) + 8 * np.maximum(np.abs(s), 1) / speed)  # s itself is rounded
+
+        assert np.all(np.abs(back - theta) <= allowed)
+
+
+def test_arc_length_is_continuous_around_the_table():
+    map = PinballMap("cuspless", lam=1)
+    (low, high), (first, last) = map.states.ends
+
+    assert map.arclength.s(low, 0) == pytest.approx(map.arclength.s(last, 1), abs=1e-15)
+    assert map.arclength.s(high, 0) - map.arclength.s(first, 1) == pytest.approx(map.arclength.perimeter, abs=4e-15)
+    assert map.arclength.perimeter == pytest.approx(9 * np.sqrt(3) / 2, abs=4e-15)
+
+
+def test_a_point_of_the_boundary_is_found_again(table):
+    map = table.map(1)
+    for component in range(len(map.states.ends)):
+        theta = grid(map, component)
+        x, y = map.states.point(np.full(theta.shape, component), theta)
+        where, at = map.locate(x, y)
+
+        assert np.array_equal(where, np.full(theta.shape, component))
+        speed = map.states.speed(where, theta)
+        assert np.all(np.abs(at - theta) <= 32 * EPS * np.maximum(1, 1 / speed))
+
+
+def test_a_point_off_the_boundary_is_refused():
+    with pytest.raises(ValueError, match=r"the point \(0.3, 0.2\) is not on the boundary"):
+        PinballMap("egg", lam=1, alpha="0.08").locate(0.3, 0.2)
+
+
+def test_a_place_outside_the_component_is_refused():
+    with pytest.raises(ValueError, match=r"s = 9\.0 is not on the arc"):
+        PinballMap("cuspless", lam=1).arclength.theta(9.0, 0)

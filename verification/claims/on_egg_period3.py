@@ -201,28 +201,6 @@ def rotate(claim: Claim) -> Judgement:
     )
 
 
-@judges("egg.no_period3_caption")
-def no_period3_caption(claim: Claim) -> Judgement:
-    """Equilateral orbits exist from 0.378 on."""
-    fold = saddle_node().subs(alpha, at("0.08"))
-    return Judgement(
-        counterexample(
-            "the equilateral orbits exist for lam >= lambda_c(0.08) = 0.37812..., which is below 0.4",
-            *polygon_facts(),
-            greater(at("0.4"), fold),
-        ),
-        "no equilateral orbit of period 3 for lam < 0.37812..., two pairs of them above",
-        by(
-            "no point of the boundary reaches the tilt needed below lambda_c",
-            *polygon_facts(),
-            greater(fold, at("0.3")),
-        ),
-        "The limit 0.4 should read 0.378: equilateral period-3 orbits exist for every lambda >= "
-        "0.37812... at alpha = 0.08.",
-        value=fold,
-    )
-
-
 @judges("egg.period3_lambda_c", "egg.period3_end_caption")
 def fold_digits(claim: Claim) -> Judgement:
     """The closed form at `alpha = 0.08`."""

@@ -1,0 +1,86 @@
+"""Claims that something exists nowhere, settled by exclusion over sets. Paper: sections 5.4, 6.2 and 6.4."""
+
+from functools import cache
+
+from sympy import Expr, Rational
+
+from symbolic.polygons import saddle_node
+from symbolic.signs import Finding, Outcome
+from symbolic.symbols import alpha
+from verification.certificates.exclusion import no_triangles
+from verification.certificates.projection import PRODUCED, SLAP, witness
+from verification.certificates.slap import periodic_points
+from verification.claims.claim import Claim, Judgement
+from verification.claims.judges import by, counterexample, greater, judges
+
+SHAPE = Rational(2, 25)
+BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
+
+
+@cache
+def without_triangles(shape: Expr, most: Expr) -> Finding:
+    """No cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
+    found = no_triangles(shape, most)
+    if found.excluded is True:
+        return Finding(
+            Outcome.PROVED, f"no period 3 at alpha = {shape} for lam <= {most}: {found.boxes} boxes excluded"
+        )
+    return Finding(Outcome.UNKNOWN, f"{found.share:.0%} of the triangles excluded")
+
+
+@judges("egg.slap_no_period3")
+def slap_no_period3(claim: Claim) -> Judgement:
+    """At both shapes of the figure."""
+    findings = without_triangles(Rational(1, 20), Rational(1, 16)), without_triangles(SHAPE, BELOW)
+    return Judgement(
+        by("exclusion of every triangle", *findings), "none for alpha = 0.05 and 0.08, and lam up to 0.378 at 0.08"
+    )
+
+
+@judges("egg.no_period3_caption")
+def no_period3_caption(claim: Claim) -> Judgement:
+    """The fold lies below 0.4."""
+    fold = saddle_node().subs(alpha, SHAPE)
+    return Judgement(
+        counterexample(
+            "equilateral orbits exist for every lam >= lambda_c(0.08) = 0.37812...", greater(Rational(2, 5), fold)
+        ),
+        "no orbit of period 3 for lam <= 0.378; two pairs of equilateral ones for lam > 0.37812...",
+        by("every triangle is excluded up to 0.378", without_triangles(SHAPE, BELOW), greater(fold, BELOW)),
+        "The limit 0.4 should read 0.378: at alpha = 0.08 orbits of period 3 exist for every lambda >= 0.37812... .",
+        value=fold,
+    )
+
+
+@judges("egg.projection_misses")
+def projection_misses(claim: Claim) -> Judgement:
+    """Witnesses: orbits that come back to their first position after three bounces."""
+    free, produced = witness(SHAPE, Rational(0), *SLAP), witness(SHAPE, Rational(3, 10), *PRODUCED)
+    proved = bool(free.exists and produced.exists and produced.produced)
+    met = Finding(Outcome.PROVED if proved else Outcome.UNKNOWN, "both orbits proved by interval Newton")
+    return Judgement(
+        counterexample(
+            "at lam = 0 with a free first angle, and at lam = 3/10 with an angle that a collision can produce, "
+            "an orbit is back at its first position after three bounces",
+            met,
+        ),
+        "the projected graph meets the diagonal at lam = 0 and at lam = 0.3; there is no period 3 up "
+        "to 0.378 all the same",
+        by("every triangle is excluded up to 0.378", without_triangles(SHAPE, BELOW)),
+        "The graph over all initial angles does meet the diagonal below lambda_c, so the argument as stated proves "
+        "nothing there; its conclusion (no period 3) holds, up to 0.378 and not 0.39.",
+    )
+
+
+@judges("cuspless.slap_no_period4")
+def slap_no_period4(claim: Claim) -> Judgement:
+    """Four stretches hold at most one point each of period dividing 4, and the two orbits of period 2 take them."""
+    found = periodic_points(4)
+    four = found.stretches is not None and len(found.stretches) == 4
+    outcome = Outcome.PROVED if four else Outcome.UNKNOWN
+    return Judgement(
+        Finding(
+            outcome, f"T0^4(x) = x has at most four solutions ({found.boxes} boxes), which the two period-2 orbits are"
+        ),
+        "the points of the horizontal and the vertical orbit, and no other",
+    )

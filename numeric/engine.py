@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from numeric import machine
 from numeric.families.family import Family
-from numeric.question import WIDTH, Question, fields
+from numeric.question import WIDTH, Question, fields, rescaled
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
@@ -106,16 +106,15 @@ def _run_arrays(
     own = len(family.fields(question.law))
     extra = own + (2 if family.stops else 0)
     with np.errstate(all="ignore"):
+        carried = family.carried(ops, shape, question.law, list(state[:own])) if question.exponents else []
         for bounce in range(bounces):
             ball = [row.copy() for row in state[:own]]
             if question.exponents:
                 dp, omega, growth, ratio, volume = (row.copy() for row in state[extra:])
-                new, code, tangent, factor = family.bounce_with_tangent(
-                    ops, question.law, shape, lam, ball, [dp, omega]
+                new, code, tangent, factor, carried = family.bounce_with_tangent(
+                    ops, question.law, shape, lam, ball, [dp, omega], carried
                 )
-                small, gained = ops.power_of_two(np.maximum(abs(tangent[0]), abs(tangent[1])))
-                tiny, lost = ops.power_of_two(ratio * factor)
-                more = [tangent[0] * small, tangent[1] * small, growth + gained, ratio * factor * tiny, volume + lost]
+                more = rescaled(ops, [*tangent, growth, ratio * factor, volume])
             else:
                 new, code = family.bounce(ops, question.law, shape, lam, ball)
                 more = []

@@ -8,11 +8,14 @@ has outcomes, then the tangent vector's when exponents are asked for. Columns `f
 worked on. `record`, when orbits are asked for, receives the ball's own rows after every bounce.
 """
 
+import re
 from collections.abc import Sequence
 
 from numeric.families.family import ELASTIC, SLAP, Family
-from numeric.question import WIDTH, Question, fields
+from numeric.question import WIDTH, Question, fields, rescaled
 from numeric.readers.lanes import Lane, Lanes
+
+NAME = re.compile(r"%[A-Za-z0-9_]+")
 
 
 def kernel_text(
@@ -47,11 +50,13 @@ def kernel_text(
         addresses.append(ops.emit(f"getelementptr double, ptr %state, i64 {place}"))
     loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
     lam = _contraction(ops, question.law)
+    first = [Lane(ops, name) for name in loaded[:own]]
+    carried = [x.text for x in family.carried(ops, parameters, question.law, first)] if question.exponents else []
     ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %bounce, label %done"]
     ops.label("bounce")
     slot = len(ops.lines)
     ops.open()
-    state = [ops.fresh() for _ in names]
+    state = [ops.fresh() for _ in [*names, *carried]]
     new = _bounced(ops, family, question, parameters, lam, [Lane(ops, name) for name in state])
     texts = [x.text for x in new]
     if question.record:
@@ -65,12 +70,12 @@ def kernel_text(
     ops.lines.append("  br i1 %more, label %bounce, label %done")
     last = ops.block
     phis = ["  %i = phi i64 [0, %start], [%following, %" + last + "]"]
-    for name, begin, end in zip(state, loaded, texts, strict=True):
+    for name, begin, end in zip(state, loaded + carried, texts, strict=True):
         phis.append(f"  {name} = phi {ops.type} [{begin}, %start], [{end}, %{last}]")
     ops.lines[slot:slot] = phis
     ops.close()
     ops.label("done")
-    for begin, end, address in zip(loaded, texts, addresses, strict=True):
+    for begin, end, address in zip(loaded, texts[: len(names)], list(addresses), strict=True):
         name = ops.fresh()
         ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %start], [{end}, %{last}]")
         addresses[addresses.index(address)] = f"{address} {name}"
@@ -80,7 +85,47 @@ def kernel_text(
     ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {width}", "  br label %column", "exit:"]
     ops.lines += ["  ret void", "}"]
     wide = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512"' + features + " }"
-    return "\n".join([*header, *ops.lines, *sorted(ops.called), wide, ""])
+    return "\n".join([*header, *alive(ops.lines), *sorted(ops.called), wide, ""])
+
+
+def alive(lines: list[str]) -> list[str]:
+    """The lines that a store or a branch depends on.
+
+    >>> alive(["  %a = fadd double 1.0, 2.0", "  %b = fadd double 3.0, 4.0", "  store double %b, ptr %p"])
+    ['  %b = fadd double 3.0, 4.0', '  store double %b, ptr %p']
+    """
+    uses = {}
+    needed: list[str] = []
+    for line in lines:
+        name, found, text = line.strip().partition(" = ")
+        if found and name.startswith("%"):
+            uses[name] = NAME.findall(text)
+        else:
+            needed += NAME.findall(line)
+    kept: set[str] = set()
+    while needed:
+        name = needed.pop()
+        if name not in kept:
+            kept.add(name)
+            needed += uses.get(name, [])
+    return [line for line in lines if (line.strip().partition(" = ")[0] in kept) or " = " not in line]
+
+
+def operations(text: str) -> dict[str, int]:
+    """How many vector instructions of each kind one bounce takes, branches that are rarely taken left out."""
+    counts = dict.fromkeys(("fma", "add", "mul", "div", "sqrt", "compare", "select"), 0)
+    words = {"fadd": "add", "fsub": "add", "fmul": "mul", "fdiv": "div", "fcmp": "compare", "select": "select"}
+    rare = False
+    for line in text.splitlines():
+        if line.endswith(":"):
+            rare = line.startswith(("inside", "head"))
+        elif not rare and " = " in line:
+            word = line.partition(" = ")[2].split()[0]
+            if word in words:
+                counts[words[word]] += 1
+            for name in ("fma", "sqrt"):
+                counts[name] += f"@llvm.{name}." in line
+    return counts
 
 
 def _contraction(ops: Lanes, law: str) -> Lane:
@@ -98,12 +143,11 @@ def _bounced(
     own, rest = state[:count], state[count:]
     outcome, rest = (rest[:2], rest[2:]) if family.stops else ([], rest)
     if question.exponents:
-        dp, omega, growth, ratio, volume = rest
-        ball, code, tangent, factor = family.bounce_with_tangent(ops, question.law, shape, lam, own, [dp, omega])
-        small, gained = ops.power_of_two(ops.maximum(abs(tangent[0]), abs(tangent[1])))
-        product = ratio * factor
-        tiny, lost = ops.power_of_two(product)
-        rest_new = [tangent[0] * small, tangent[1] * small, growth + gained, product * tiny, volume + lost]
+        dp, omega, growth, ratio, volume, *carried = rest
+        ball, code, tangent, factor, carried = family.bounce_with_tangent(
+            ops, question.law, shape, lam, own, [dp, omega], carried
+        )
+        rest_new = rescaled(ops, [*tangent, growth, ratio * factor, volume]) + carried
     else:
         ball, code = family.bounce(ops, question.law, shape, lam, own)
         rest_new = []

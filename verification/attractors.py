@@ -32,6 +32,8 @@ def random_starts(map: PinballMap, count: int, seed: int) -> tuple[NDArray[np.in
 def survey(map: PinballMap, bounces: int, orbits: int, seed: int, transient: int) -> dict[str, Any]:
     """Exponents of random orbits, all together and for each attractor."""
     component, theta, phi = random_starts(map, orbits, seed)
+    if map.law == "slap":
+        phi = np.zeros_like(phi)  # every exit is along the normal, the first one too
     found = map.exponents(theta, phi, bounces, transient, component)
     kinds = sorted_by_kind(map, found)
     groups = [{"kind": kind, **summary(found, np.array(members))} for kind, members in kinds.items()]

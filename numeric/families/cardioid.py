@@ -82,10 +82,11 @@ class Cardioid(Family):
     def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
         return exit[0]
 
-    def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
-        x0, y0 = self.point(ops, position)
-        x1, y1 = self.point(ops, landing.position)
-        return plane.dot((x0 - x1, y0 - y1), landing.more["back"])
+    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
+        return self.point(ops, position)
+
+    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
+        return plane.dot((start[0] - end[0], start[1] - end[1]), landing.more["back"])
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
         return ops.number(-0.75), landing.position[0]

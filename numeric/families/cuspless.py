@@ -20,7 +20,7 @@ class Cuspless(Cardioid):
 
     name = "cuspless"
     position = ("wall", "p", "q")
-    steps = 3, 2
+    steps = 3, 1
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         nought, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))

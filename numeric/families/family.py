@@ -14,6 +14,9 @@ with `N0 = speed*cos(phi0)`, `N1 = speed*cos(eta1)`, `bend = K*speed`; its deter
 from dataclasses import dataclass, field
 from typing import Any
 
+from numeric import plane
+from numeric.plane import Pair
+
 SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"
 GRAZE = 2.0**-50  # cos(eta) below this is a tangency
 NEAR = 2.0**-50  # a landing closer than this to a join or a cusp is one
@@ -65,9 +68,13 @@ class Family:
         """`N0 = speed*cos(phi0)`."""
         raise NotImplementedError
 
-    def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
-        """The length `t` of a flight."""
+    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
+        """The Cartesian point, up to a shift; only differences are used."""
         raise NotImplementedError
+
+    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
+        """The length `t` of a flight."""
+        return plane.dot((end[0] - start[0], end[1] - start[1]), landing.more["v"])
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
         """`K*speed` at the landing as a quotient, negative where the boundary focuses."""
@@ -84,22 +91,33 @@ class Family:
         leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
         return landing.position + leaving, landing.code
 
+    def carried(self, ops: Any, shape: list[Any], law: str, state: list[Any]) -> list[Any]:
+        """What the tangent map needs of a departure, kept from the landing before: `N0` and the point."""
+        position, exit = self._split(ops, shape, law, state, whole=True)
+        return [self.departure(ops, shape, position, exit), *self.point_at(ops, shape, position)]
+
     def bounce_with_tangent(
-        self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any], tangent: list[Any]
-    ) -> tuple[list[Any], Any, list[Any], Any]:
-        """As `bounce`, with the tangent vector carried along, and `N0/N1`."""
+        self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any], tangent: list[Any], carried: list[Any]
+    ) -> tuple[list[Any], Any, list[Any], Any, list[Any]]:
+        """As `bounce`, with the tangent vector and what is carried for it, and `N0/N1`."""
         position, exit = self._split(ops, shape, law, state, whole=True)
         landing = self.fly(ops, shape, law, position, exit)
-        dp, omega = tangent
-        n0 = self.departure(ops, shape, position, exit)
-        t = self.length(ops, shape, position, exit, landing)
+        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
+        (dp, omega), (n0, *start) = tangent, carried
+        end = self.point_at(ops, shape, landing.position)
+        t = self.length(ops, (start[0], start[1]), end, exit, landing)
         above, below = self.bend(ops, shape, landing)
         both = ops.number(1.0) / (landing.along * below)
         inverse = both * below
         moved = -((n0 * dp + t * omega) * inverse)
         turned = (ops.number(1.0) + lam) * (above * both * landing.along) * moved - lam * omega
-        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
-        return landing.position + leaving, landing.code, [moved, turned], n0 * inverse
+        n1 = self.leaving_rate(ops, shape, landing, leaving)
+        return landing.position + leaving, landing.code, [moved, turned], n0 * inverse, [n1, *end]
+
+    def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
+        """`departure` at a landing, whose frame is known already."""
+        exit = leaving or self.slapped_with_unit(ops, shape, landing.position)
+        return self.departure(ops, shape, landing.position, exit)
 
     def _split(
         self, ops: Any, shape: list[Any], law: str, state: list[Any], whole: bool = False

@@ -153,7 +153,10 @@ class General(Family):
         _, _, dx, dy, _, _ = self.curve(ops, shape, *position)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
-    def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
+    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
+        return ops.number(0.0), ops.number(0.0)
+
+    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
         return landing.more["t"]
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:

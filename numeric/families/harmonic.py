@@ -8,7 +8,7 @@ from typing import Any
 
 from numeric import plane
 from numeric.blueprint import Blueprint
-from numeric.families.family import ELASTIC, Family, Landing, grazing
+from numeric.families.family import ELASTIC, SLAP, Family, Landing, grazing
 from numeric.plane import Pair
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
@@ -26,12 +26,14 @@ class Harmonic(Family):
         self.velocity = blueprint.program("velocity")
         self.acceleration = blueprint.program("acceleration")
 
-    def landed(self, ops: Any, shape: list[Any], u: Pair, v: Pair) -> Landing:
+    def landed(self, ops: Any, shape: list[Any], law: str, u: Pair, v: Pair) -> Landing:
         """The landing at `u` of a ball that flies along `v`."""
         dx, dy = self.velocity(ops, *u, *shape)
         across = plane.exact_dot(ops, (dx, dy), v)
         along = -plane.exact_cross(ops, (dx, dy), v)
-        code = ops.select(grazing(ops, across, along), ops.number(3.0), ops.number(0.0))
+        code = None  # a convex table has no tangent normals
+        if law != SLAP:
+            code = ops.select(grazing(ops, across, along), ops.number(3.0), ops.number(0.0))
         return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
@@ -54,10 +56,15 @@ class Harmonic(Family):
         dx, dy = self.velocity(ops, *position, *shape)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
-    def length(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any], landing: Landing) -> Any:
-        x0, y0 = self.point(ops, *position, *shape)
-        x1, y1 = self.point(ops, *landing.position, *shape)
-        return plane.dot((x1 - x0, y1 - y0), (exit[0], exit[1]))
+    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
+        x, y = self.point(ops, *position, *shape)
+        return x, y
+
+    def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
+        d = landing.more["d"]
+        if not leaving:
+            return ops.sqrt(plane.dot(d, d))
+        return plane.cross(d, (leaving[0], leaving[1]))
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
         d = landing.more["d"]
@@ -77,7 +84,7 @@ class Ellipse(Harmonic):
         M = self.support(ops, v[1], -v[0], *shape)
         inverse = ops.number(1.0) / plane.dot((M[0], M[1]), (M[0], M[1]))
         x, y = plane.times(plane.squared((M[0], M[1])), (position[0], -position[1]))
-        return self.landed(ops, shape, plane.unit(ops, (x * inverse, y * inverse)), v)
+        return self.landed(ops, shape, law, plane.unit(ops, (x * inverse, y * inverse)), v)
 
     def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
         dx, dy = self.velocity(ops, *position, *shape)
@@ -87,7 +94,7 @@ class Ellipse(Harmonic):
 class Fourier(Harmonic):
     """Any convex sum of harmonics: the one real zero of the chord polynomial, from the circle's chord."""
 
-    steps = 1, 3
+    steps = 1, 1
 
     def __init__(self, blueprint: Blueprint) -> None:
         super().__init__(blueprint)
@@ -99,9 +106,9 @@ class Fourier(Harmonic):
         B = plane.times(E, (position[0], -position[1]))
         p = self.chord(ops, *E, *B, *shape)
         _zero, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
-        start = -p[0] / p[1]
+        start = -(p[0] * p[1]) / (p[1] * p[1] - p[0] * p[2])  # Halley's step from T = 0
         T = ops.polynomial_zero(p, start, ops.number(-FAR), ops.number(FAR), one, self.steps)
         s = two * T / (T * T + one)
         c = one - T * s
         u = plane.unit(ops, plane.times(plane.times(B, E), (c, s)))
-        return self.landed(ops, shape, u, v)
+        return self.landed(ops, shape, law, u, v)

@@ -61,9 +61,11 @@ def _near(x: float, y: float) -> bool:
     return abs(math.remainder(x - y, 2 * math.pi)) < SAME
 
 
-def characteristic(table: Table, theta: Sequence[float], lam: float, sign: int) -> float:
+def characteristic(
+    table: Table, theta: Sequence[float], lam: float, sign: int, components: tuple[int, ...] = ()
+) -> float:
     """`det(M - sign)` of a cycle's monodromy matrix `M`, up to sign: 0 at a fold (1) or a flip (-1)."""
-    free = Problem(table, (0,) * len(theta), Kind(sign), "lam")
+    free = Problem(table, components or (0,) * len(theta), Kind(sign), "lam")
     found = Linearised(Rows(free, FLOAT64), [*theta, lam], slope=False).critical
     value, power = found.rest / found.chain.upper[-1], 0
     for pivot, upper in zip(found.pivots, found.chain.upper, strict=False):
@@ -72,9 +74,9 @@ def characteristic(table: Table, theta: Sequence[float], lam: float, sign: int) 
     return math.ldexp(value, power)
 
 
-def cycle_at(table: Table, theta: Sequence[float], lam: float) -> list[float]:
-    """The cycle near `theta` at contraction `lam`, in float64."""
-    return floats(Problem(table, (0,) * len(theta), lam=Rational(lam)), theta)
+def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple[int, ...] = ()) -> list[float]:
+    """The cycle near `theta` at contraction `lam`, in float64; on one component when none are given."""
+    return floats(Problem(table, components or (0,) * len(theta), lam=Rational(lam)), theta)
 
 
 def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: Kind) -> list[float]:
@@ -121,7 +123,7 @@ def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tup
     lam = critical[-1] + math.copysign(abs(distance), c)
     theta = critical[:-1]
     both = [x + s * amplitude * v for s in (1, -1) for x, v in zip(theta, vector, strict=True)]
-    found = cycle_at(problem.table, both, lam)
+    found = cycle_at(problem.table, both, lam, problem.components * 2)
     half = len(theta)
     apart = max(abs(math.remainder(found[i] - found[i + half], 2 * math.pi)) for i in range(half))
     if apart < amplitude / 20:

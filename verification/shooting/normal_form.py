@@ -41,7 +41,6 @@ class NormalForm:
 
 def normal_form(at: Linearised, arithmetic: Arithmetic) -> NormalForm:
     """The normal form where the equations of a fold or a flip hold."""
-    assert at.cycle is not None
     chain, v, w = at.critical.chain, at.critical.right, at.critical.left
     turn = w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1]
     determinant: Any = 1

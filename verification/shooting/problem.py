@@ -8,6 +8,7 @@ negated (flip). All of it holds for any kind of number that the kernels can be l
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from typing import Any
 
 from sympy import Expr
@@ -29,13 +30,16 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True)
 class Problem:
-    """A cycle by its components, in a table whose only free shape is `free`; `lam` is exact or free."""
+    """A cycle by its components, in a table whose only free shape is `free`.
+
+    `lam` is free when None, exact, or a number as it is: a ball proves for every `lam` in it, a jet differentiates.
+    """
 
     table: Table
     components: tuple[int, ...]
     kind: Kind = Kind.CYCLE
     free: str = ""
-    lam: Expr | None = None
+    lam: Expr | Any = None
 
     def __post_init__(self) -> None:
         shapes = {p.symbol.name for p in self.table.shapes}
@@ -90,7 +94,9 @@ class Rows:
     def contraction(self, z: Vector) -> Any:
         """`lam`, given or unknown."""
         lam = self.problem.lam
-        return z[-1] if lam is None else load(kernel("lam", [], {"lam": lam}), self.arithmetic)()[0]
+        if lam is None:
+            return z[-1]
+        return load(kernel("lam", [], {"lam": lam}), self.arithmetic)()[0] if isinstance(lam, Expr) else lam
 
     def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
         """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""
@@ -119,7 +125,7 @@ class Linearised:
         diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
         lower = [lam * b[2] for b in into]
         self.value: Vector = list(self.rule)
-        self.cycle = Elimination(Chain(lower, diagonal, upper)) if slope or not critical else None
+        self.plain = Chain(lower, diagonal, upper)
         if critical:
             self.critical = Elimination(Chain(lower, diagonal, upper, int(problem.kind)))
             self.value.append(self.critical.rest)
@@ -127,9 +133,13 @@ class Linearised:
                 self.by_letter = self._by_letter()
                 self.row, self.corner = self._of_rest()
 
+    @cached_property
+    def cycle(self) -> Elimination:
+        """The linearised collision rules, eliminated."""
+        return Elimination(self.plain)
+
     def solve(self, r: Vector) -> Vector:
         """The matrix of first derivatives, inverted on `r`."""
-        assert self.cycle is not None
         if self.problem.kind is Kind.CYCLE:
             return self.cycle.solve(r)
         return self.cycle.bordered(self.by_letter[0], self.row, [self.corner], r)

@@ -1,0 +1,164 @@
+"""Bad input is refused in one clear sentence; a table of one's own works."""
+
+from decimal import Decimal
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, nan, pi, simplify, sin
+
+from symbolic.fourier import boundary_coefficients
+from symbolic.length import perimeter
+from symbolic.symbols import a, theta
+from symbolic.table import Component, Shape, Table
+from symbolic.tables import arc, cardioid, cuspless, egg, ellipse, named, parametric, piecewise, polar
+from symbolic.validity import enclosed_area, self_crossing, validated
+
+b = Symbol("b")
+
+
+def limacon(swing):
+    return (1 + swing * cos(theta)) * cos(theta), (1 + swing * cos(theta)) * sin(theta)
+
+
+def stadium(sense: int = 1, gap: int = 0) -> Table:
+    return piecewise(
+        arc("bottom", theta, -sense, -1, 1),
+        arc("right", 1 + gap + cos(theta), sense * sin(theta), -pi / 2, pi / 2),
+        arc("top", -theta, sense, -1, 1),
+        arc("left", cos(theta) - 1, sense * sin(theta), pi / 2, 3 * pi / 2),
+        name="stadium",
+    )
+
+
+def bow_tie() -> Table:
+    sides = [(theta, theta), (S.One, -theta), (-theta, theta), (-S.One, -theta)]
+    return piecewise(*(arc(f"side {i}", x, y, -1, 1) for i, (x, y) in enumerate(sides)))
+
+
+BAD = {
+    "a float in a formula": (lambda: polar(1 + 0.08 * cos(3 * theta)), "contains a rounded float"),
+    "a float alone": (lambda: polar(1.5), "contains a rounded float"),
+    "an unknown symbol": (lambda: polar(1 + b * cos(theta)), "unknown symbol b in .*; it may use: theta$"),
+    "another letter for the parameter": (lambda: polar(1 + cos(Symbol("t")) / 9), "unknown symbol t in"),
+    "an open spiral": (lambda: polar(5 + theta), r"not closed: polar ends at \(-5 - pi, 0\) and polar starts at"),
+    "a half circle": (lambda: piecewise(arc("half", cos(theta), sin(theta), 0, pi)), "half ends at .* half starts at"),
+    "a gap between components": (lambda: stadium(gap=1), "not closed: bottom ends at .* right starts at"),
+    "a figure eight": (lambda: parametric(sin(theta), sin(2 * theta)), "area 0; it crosses itself"),
+    "a bow tie": (bow_tie, "area 0; it crosses itself"),
+    "a wall there and back": (lambda: parametric(cos(theta), 0), "runs back along itself"),
+    "an uneven eight": (lambda: parametric(cos(theta), sin(2 * theta) + sin(theta) / 2), "meets itself, or stops"),
+    "a limacon": (lambda: polar(1 + 2 * cos(theta)), "is not positive for every theta"),
+    "a limacon by coordinates": (lambda: parametric(*limacon(2)), "meets itself, or stops, near theta = -120 and 12"),
+    "a cusp not named": (lambda: polar(1 + cos(theta)), "or its cusp named"),
+    "a point": (lambda: polar(0), "is not positive"),
+    "a circle run twice": (lambda: parametric(cos(2 * theta), sin(2 * theta)), "meets itself"),
+    "a clockwise circle": (lambda: parametric(cos(theta), -sin(theta)), "runs clockwise; exchange theta for -theta"),
+    "a clockwise stadium": (lambda: stadium(-1), "runs clockwise"),
+    "a clockwise cusp": (
+        lambda: parametric(*(p.subs(theta, -theta) for p in limacon(1)), undefined=cardioid.undefined),
+        "runs clockwise",
+    ),
+    "a clockwise family": (
+        lambda: parametric(a * cos(theta), -sin(theta), shapes=ellipse.shapes), "runs clockwise",
+    ),
+    "a clockwise wiggle": (lambda: parametric(cos(theta), -sin(theta) - sin(9 * theta) / 99), "clockwise"),
+    "a pole": (lambda: polar(1 / cos(theta)), "has a pole"),
+    "a complex radius": (lambda: polar(1 + I * cos(theta) / 9), "no finite real expression"),
+    "no number": (lambda: polar(nan), "no finite real expression"),
+    "no component": (piecewise, "needs at least one component"),
+    "an arc run backwards": (lambda: piecewise(arc("loop", cos(theta), sin(theta), pi, -pi)), "larger number"),
+    "an end that moves": (lambda: piecewise(arc("loop", cos(theta), sin(theta), 0, theta)), "larger number"),
+    "a shape too small": (lambda: ellipse.at(a="0.5"), r"a = 1/2 makes .*; a must lie in \[1, oo\)$"),
+    "a negative shape": (lambda: egg(3).at(alpha=-1), r"alpha must lie in \[0, 1/10\]$"),
+    "a float shape": (lambda: ellipse.at(a=1.5), r"a = 1.5 is a rounded float; write it exactly"),
+    "a SymPy float shape": (lambda: ellipse.at(a=Float("1.5")), "is a rounded float"),
+    "a decimal shape": (lambda: ellipse.at(a=Decimal("1.5")), "is a rounded float"),
+    "a complex shape": (lambda: ellipse.at(a=2 + I), "must lie in"),
+    "an infinite shape": (lambda: ellipse.at(a=S.Infinity), "must lie in"),
+    "a shape divided by zero": (lambda: ellipse.at(a="1/0"), "is no exact number"),
+    "a shape in words": (lambda: ellipse.at(a="two"), "a = 'two' is no exact number such as 2/25 or 0.08"),
+    "a truth value": (lambda: ellipse.at(a=True), "is no exact number"),
+    "nothing": (lambda: ellipse.at(a=None), "is no exact number"),
+    "a shape along the boundary": (lambda: ellipse.at(a=2 + cos(theta)), "changes along the boundary"),
+    "a wrong shape name": (lambda: ellipse.at(b=2), "ellipse: no shape parameter b; it has: a$"),
+    "a shape of a table without": (lambda: cardioid.at(a=2), "cardioid: no shape parameter a; it has: none$"),
+    "an egg of one point": (lambda: egg(1), "egg: K = 1 is no number of points"),
+    "a wrong component": (lambda: cuspless.component("roof"), "cuspless: no component roof; it has: arc, wall$"),
+    "a wrong table": (lambda: named("square"), "no table is called square"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_input_is_refused_in_one_sentence(what):
+    build, sentence = BAD[what]
+    with pytest.raises(ValueError, match=sentence) as refusal:
+        build()
+
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 220
+
+
+@pytest.mark.parametrize("text", ["__import__('pathlib').Path('{0}').touch()", "open('{0}', 'w')", "theta.__class__"])
+def test_text_is_never_executed(text, tmp_path: Path):
+    left = tmp_path / "left_behind"
+    for build in (lambda t: polar(t), lambda t: parametric(t, t), lambda t: ellipse.at(a=t)):
+        with pytest.raises(ValueError, match=r".+"):
+            build(text.format(left))
+
+    assert not left.exists()
+
+
+def test_a_stadium_of_ones_own_has_the_right_perimeter_and_area():
+    assert simplify(perimeter(stadium()) - (4 + 2 * pi)) == 0
+    assert enclosed_area(stadium()) == 4 + pi
+
+
+def test_a_family_of_ones_own_keeps_its_range():
+    width = Symbol("width", positive=True)
+    shape = Shape(width, Interval(1, 3), "is too wide for the box")
+    table = parametric(width * cos(theta), 2 * sin(theta), "oval", [shape])
+
+    assert table.at(width=2).components[0].at(S.Zero) == (2, 0)
+    with pytest.raises(ValueError, match=r"^oval: width = 4 is too wide for the box; width must lie in \[1, 3\]$"):
+        table.at(width=4)
+
+
+def test_a_plain_letter_theta_becomes_the_boundary_parameter():
+    assert polar(1 + cos(3 * Symbol("theta")) / 20) == polar(1 + cos(3 * theta) / 20)
+
+
+def test_validation_changes_nothing_of_a_table_that_passed():
+    for table in (ellipse, cardioid, cuspless, egg(3)):
+        assert validated(table) == table
+
+
+@settings(max_examples=25)
+@given(st.fractions(Rational(-3), Rational(3), max_denominator=20))
+@example(Rational(1))
+@example(Rational(-1))
+@example(Rational(999, 1000))
+def test_a_limacon_is_a_table_exactly_when_its_radius_stays_positive(swing):
+    swing = Rational(swing.numerator, swing.denominator)
+    if abs(swing) < 1:
+        assert enclosed_area(polar(1 + swing * cos(theta))) == pi * (1 + swing**2 / 2)
+    else:
+        with pytest.raises(ValueError, match="not positive"):
+            polar(1 + swing * cos(theta))
+
+
+@settings(max_examples=8)
+@given(st.fractions(Rational(-2), Rational(2), max_denominator=8).filter(lambda f: abs(abs(f) - 1) > 0.05))
+def test_self_crossings_are_found_by_coordinates_alone(swing):
+    swing = Rational(swing.numerator, swing.denominator)
+    c = boundary_coefficients(Component("limacon", limacon(swing), -pi, pi))
+
+    assert (self_crossing(c) is None) == (abs(swing) < 1)
+
+
+def test_an_area_too_hard_to_integrate_is_not_judged():
+    x, y = (coordinate / (2 + cos(theta)) for coordinate in (cos(theta), sin(theta)))
+
+    assert enclosed_area(Table("hard", (Component("hard", (x, y), -pi, pi),))) is None
+    assert parametric(x, y).components[0].at(Dummy("p") * 0) == (Rational(1, 3), 0)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from numeric import machine
 from numeric.families.family import Family
-from numeric.question import WIDTH, Question, fields, rescaled
+from numeric.question import Question, fields, rescaled
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
@@ -37,7 +37,12 @@ class Engine:
     identity: str
     names: Sequence[str]
     kernels: bool = True
-    width: int = WIDTH
+    lanes: int = 0  # how many to a block; 0 for what suits the family
+
+    @property
+    def width(self) -> int:
+        """Lanes to a block."""
+        return self.lanes or self.family.width
 
     def run(
         self,

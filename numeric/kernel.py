@@ -12,16 +12,15 @@ import re
 from collections.abc import Sequence
 
 from numeric.families.family import ELASTIC, SLAP, Family
-from numeric.question import WIDTH, Question, fields, rescaled
+from numeric.question import Question, fields, rescaled
 from numeric.readers.lanes import Lane, Lanes
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
 
 
-def kernel_text(
-    family: Family, shape: Sequence[str], question: Question, width: int = WIDTH, features: str = ""
-) -> str:
+def kernel_text(family: Family, shape: Sequence[str], question: Question, width: int = 0, features: str = "") -> str:
     """The module in LLVM's language."""
+    width = width or family.width
     ops = Lanes(width)
     names = fields(family, question)
     own = len(family.fields(question.law))

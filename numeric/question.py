@@ -1,12 +1,10 @@
 """What a kernel is asked, and the rows of state that the question needs."""
 
 from dataclasses import dataclass
-
 from typing import Any
 
 from numeric.families.family import Family
 
-WIDTH = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
 FARTHEST = 400  # powers of two; a single bounce adds far less than the 600 that are left
 TANGENT = ("dp", "omega", "growth", "ratio", "volume")
 

@@ -49,6 +49,7 @@ class Family:
 
     name = ""
     stops = True  # some landings are outcomes that stop the ball
+    width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     position: tuple[str, ...] = ()
     exit: tuple[str, ...] = ()
 

@@ -26,6 +26,7 @@ class General(Family):
     name = "general"
     position = ("component", "theta")
     exit = ("vx", "vy")
+    width = 8  # one register for each value: there are many, and as much text to compile for each piece
 
     def __init__(self, blueprint: Blueprint) -> None:
         self.parts = blueprint.parts

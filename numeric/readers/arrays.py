@@ -8,11 +8,11 @@ import numpy as np
 from numeric import functions
 from numeric.roots import bracketed_zero, polynomial_zero
 
-SPLITTER = 134217729.0  # 2**27 + 1
-
 
 class Arrays:
     """Float64 arrays. Masks are boolean arrays."""
+
+    splitter = 2.0**27 + 1  # halves a mantissa of 53 bits
 
     zero = bracketed_zero
     polynomial_zero = polynomial_zero
@@ -45,7 +45,7 @@ class Arrays:
     def fma(self, x: Any, y: Any, z: Any) -> Any:
         """`x*y + z` from an exact product and an exact sum; no hardware instruction is assumed."""
         product = x * y
-        xs, ys = SPLITTER * x, SPLITTER * y
+        xs, ys = self.splitter * x, self.splitter * y
         xh, yh = xs - (xs - x), ys - (ys - y)
         xl, yl = x - xh, y - yh
         product_low = ((xh * yh - product) + xh * yl + xl * yh) + xl * yl

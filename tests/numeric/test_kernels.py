@@ -37,7 +37,7 @@ def test_the_number_of_threads_does_not_change_a_bit(table, lam):
 @pytest.mark.parametrize("lam", LAMS)
 def test_the_number_of_lanes_does_not_change_a_bit(table, lam):
     map = table.map(lam)
-    narrow = Engine(map.family, map.engine.identity, map.engine.names, width=8)
+    narrow = Engine(map.family, map.engine.identity, map.engine.names, lanes=8)
 
     assert np.array_equal(record(map).record, record(map, engine=narrow).record)
 

@@ -1,0 +1,54 @@
+"""Does the conserved product of angular momenta in the elastic ellipse drift, or walk at random?
+
+    python benchmarks/drift.py [COLLISIONS]
+
+Over `n` collisions of many balls, the mean change of `L1*L2` over `n` is the drift; its standard error
+is the walk's. The product is formed in 80 bits from the kernel's state, so that only the map rounds.
+"""
+
+import sys
+
+import numpy as np
+
+from numeric import PinballMap
+from numeric.question import Question
+
+BALLS = 2048
+
+
+def say(text):
+    """A line on standard output, at once."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def product(map, rows):
+    """`L1*L2` about the foci, of the exact ball whose rounded state the rows are."""
+    ux, uy, vx, vy = (row.astype(np.longdouble) for row in rows)
+    size = np.hypot(ux, uy)
+    ux, uy = ux / size, uy / size
+    size = np.hypot(vx, vy)
+    vx, vy = vx / size, vy / size
+    a = np.longdouble(map.shape[0])
+    x, y, c2 = a * ux, uy, a * a - 1
+    L = x * vy - y * vx
+    return L * L - c2 * vy * vy
+
+
+def main(collisions):
+    for a in ("3/2", "11/10", "3"):
+        map = PinballMap("ellipse", lam=1, a=a)
+        rng = np.random.default_rng(5)
+        theta, phi = rng.uniform(-np.pi, np.pi, BALLS), np.arcsin(rng.uniform(-1, 1, BALLS) * 0.999)
+        rows = map.states.enter(np.zeros(BALLS, dtype=int), theta, phi, map.law)
+        lam = np.ones(BALLS)
+        start = product(map, rows)
+        result = map.engine.run(Question(map.law), rows, lam, map.shape, collisions)
+        change = np.asarray(product(map, [result.rows[f] for f in map.family.fields(map.law)]) - start, dtype=float)
+        mean, error = change.mean() / collisions, change.std(ddof=1) / np.sqrt(BALLS) / collisions
+        walk = change.std() / np.sqrt(collisions)
+        say(f"a = {a:<6} drift {mean:+.2e} +- {error:.1e} a collision; spread {walk:.2e} * sqrt(n)")
+
+
+if __name__ == "__main__":
+    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 1_000_000)

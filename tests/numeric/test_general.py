@@ -1,0 +1,112 @@
+"""Any table: the general path, on its own tables and against the special ones."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from sympy import Rational, cos, pi, sin, sqrt
+
+from numeric import PinballMap
+from numeric.families.general import General
+from numeric.question import Question
+from symbolic import tables
+from symbolic.symbols import theta
+from verification import strategies
+from verification.exact_map import ExactMap
+from verification.truth import errors
+
+WAVY = tables.polar(1 + cos(5 * theta) / 10, name="wavy")
+MILD = tables.polar(1 + cos(5 * theta) / 40, name="mild")
+ROUNDED = tables.parametric(cos(theta) * (1 + sin(theta) ** 2 / 9), sin(theta), name="rounded")
+ROOTED = tables.polar(sqrt(1 + cos(theta) / 3), name="rooted")
+STADIUM = tables.piecewise(
+    tables.arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
+    tables.arc("top", -theta, 1, -1, 1),
+    tables.arc("left", -1 - cos(theta), -sin(theta), -pi / 2, pi / 2),
+    tables.arc("bottom", theta, -1, -1, 1),
+    name="stadium",
+)
+
+
+def generally(map):
+    """The same map, made to go the general way."""
+    family = General(map.blueprint)
+    other = PinballMap(map.blueprint.table, lam=map.lam, **dict(zip(map.engine.names, map.exact_shape, strict=True)))
+    family.prepared(other.states)
+    other.family = other.states.family = family
+    other.engine = type(other.engine)(family, other.engine.identity + family.identity, other.engine.names)
+    return other
+
+
+@pytest.mark.parametrize(
+    ("table", "path"),
+    [(WAVY, "every zero"), (MILD, "chord polynomial"), (ROUNDED, "chord"), (ROOTED, "every zero"), (STADIUM, "every")],
+    ids=lambda value: getattr(value, "name", None),
+)
+def test_a_map_says_which_path_it_took(table, path):
+    assert PinballMap(table, lam=1).path.startswith(path)
+
+
+def test_the_general_way_agrees_with_the_special_ones(table):
+    if table.name == "cardioid":
+        pytest.skip("the cusp is no end of a component for the general way")
+    map = table.map(0.8)
+    other = generally(map)
+    where, theta0, phi = table.starts(map, 300, seed=21, steepest=0.99)
+    one, two = map.step(theta0, phi, where), other.step(theta0, phi, where)
+
+    assert np.array_equal(one.component, two.component)
+    assert np.max(np.hypot(one.x - two.x, one.y - two.y) * np.cos(phi)) <= 64 * 2.0**-52
+    assert np.max(np.abs(one.phi - two.phi) * np.cos(phi)) <= 64 * 2.0**-52
+
+
+@pytest.mark.parametrize("table", [WAVY, ROOTED, STADIUM, ROUNDED, MILD], ids=lambda table: table.name)
+def test_flights_on_any_table_are_the_exact_ones(table):
+    map = PinballMap(table, lam=0.9)
+    rng = np.random.default_rng(4)
+    where = rng.integers(0, len(map.states.ends), 10)
+    ends = np.array(map.states.ends)[where]
+    start, phi = ends[:, 0] + np.ptp(ends, axis=1) * rng.uniform(0.05, 0.95, 10), rng.uniform(-1.2, 1.2, 10)
+    own = map.states.enter(where, start, phi, map.law)
+    result = map.engine.run(Question(map.law, record=True), own, np.full(10, 0.9), map.shape, 1)
+    position, direction = errors(map, ExactMap(map, 30), own, list(result.record[0]))
+
+    assert max(position) <= 64
+    assert max(direction) <= 64
+
+
+def test_the_first_hit_is_taken_where_a_ray_meets_the_boundary_three_times():
+    map = PinballMap(WAVY, lam=1)
+    orbit = map.orbit(np.linspace(-3, 3, 200), np.linspace(-1.5, 1.5, 200), 20)
+    middles = 0.5 * (orbit.x[1:] + orbit.x[:-1]), 0.5 * (orbit.y[1:] + orbit.y[:-1])
+    at = np.arctan2(middles[1], middles[0])
+
+    assert np.all(orbit.code == 0)
+    assert np.all(np.hypot(*middles) <= 1 + np.cos(5 * at) / 10 + 1e-12)
+
+
+def test_a_scaled_and_rotated_ellipse_needs_no_root_finding():
+    tilted = tables.parametric(
+        3 * cos(theta) + sin(theta) / 2 + 1, cos(theta) / 3 + 2 * sin(theta) - Rational(1, 2), name="tilted"
+    )
+    map = PinballMap(tilted, lam=1)
+    step = map.step(np.linspace(-3, 3, 50), np.linspace(-1.4, 1.4, 50))
+    error = np.abs(step.x - 3 * np.cos(step.theta) - np.sin(step.theta) / 2 - 1)
+
+    assert map.path == "closed form in unit numbers"
+    assert np.max(error) <= 8 * 2.0**-52
+
+
+@settings(max_examples=30)
+@given(strategies.balls(tables=[MILD, "ellipse", "egg"], lams=strategies.contractions(0.1, 1.0), steepest=1.4))
+def test_an_angle_never_grows_at_a_reflection(ball):
+    step = ball.map.step(ball.theta, ball.phi, ball.component)
+
+    assert abs(step.phi) <= abs(step.eta) + 4 * 2.0**-52
+    assert step.phi == pytest.approx(-ball.lam * float(step.eta), abs=8 * 2.0**-52)
+
+
+def test_a_word_outside_the_vocabulary_is_an_error():
+    from sympy import exp
+
+    with pytest.raises(ValueError, match="beyond the kernels' words"):
+        PinballMap(tables.polar(1 + exp(cos(theta)) / 20, name="exponential"), lam=1)

@@ -10,7 +10,7 @@ radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lan
 The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
 """
 
-from sympy import Expr, Rational, atan, cos, diff, pi, simplify, sqrt
+from sympy import Expr, Rational, atan, cos, diff, pi, simplify, sin, sqrt
 
 from symbolic.symbols import alpha, lam, theta
 
@@ -66,3 +66,21 @@ def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: E
 
     matrix = derivative_matrix(K0, K0, t, cos(exit_angle), cos(incidence))
     return simplify(matrix.trace()), simplify(matrix.det())
+
+
+def characteristic_on_branch(x: Expr, at: Expr, K: int = 3, p: int = 1, q: int = 3) -> Expr:
+    """`at**2 - trace*at + det` of one bounce of a polygon of the egg, times `cos(eta)`, where `cos(K*theta) = -cos(x)`.
+
+    The branch starts at a flat point at `x = 0` (elastic) and folds at `cos(x) = alpha`; on it
+    `lam = (gamma - delta)/(gamma + delta)` with `tan(delta) = K*alpha*sin(x)/rho`.
+    """
+    C = -cos(x)
+    rho = 1 + alpha * C
+    delta, gamma = atan(K * alpha * sin(x) / rho), half_turn(p, q)
+    out, back = gamma - delta, gamma + delta
+    contraction = out / back
+    squared = rho**2 + (K * alpha * sin(x)) ** 2
+    curvature = -(rho**2 + 2 * (squared - rho**2) + rho * K**2 * alpha * C) / (squared * sqrt(squared))
+    tK = 2 * rho * cos(gamma) * curvature
+    trace = -((tK + cos(out)) + contraction * (tK + cos(back)))
+    return at**2 * cos(back) - trace * at + contraction * cos(out)

@@ -89,19 +89,6 @@ def unstable_period4(claim: Claim) -> Judgement:
     return Judgement(by("the flip at lambda_c is subcritical", certified("lambda-c"), subcritical), subcritical.reason)
 
 
-@judges("egg.period4_created")
-def period4_created(claim: Claim) -> Judgement:
-    """The sign of the normal-form coefficient at a few points of the curve."""
-    tried = [Rational(k, 4) for k in range(4)]
-    findings = [kind_of("alpha-tilde", "supercritical", lam=lam) for lam in tried]
-    proved = all(findings) and all(certified("alpha-tilde", lam=lam) for lam in tried)
-    return Judgement(
-        Finding(Outcome.UNKNOWN, "proved at single points of the curve only"),
-        "a supercritical flip",
-        evidence="certified at lambda = 0, 1/4, 1/2, 3/4: supercritical, a stable cycle of period 4" if proved else "",
-    )
-
-
 @judges("egg.doubling.3")
 def doubling_3(claim: Claim) -> Judgement:
     """Period 4 to 8."""

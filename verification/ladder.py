@@ -4,6 +4,7 @@ Paper: section 6.6, with `alpha = 0.08` and `lambda_3` to `lambda_6`. The second
 is the flip of the diameter; from the third on the cycles are followed from an attractor of period 4.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
@@ -15,8 +16,11 @@ from symbolic.symbols import lam as lam_letter
 from symbolic.table import Table
 from symbolic.thresholds import alpha_tilde
 from verification.shooting.follow import FEIGENBAUM, attractor, doubled, next_critical
+from verification.shooting.newton import floats
 from verification.shooting.problem import Kind, Problem
 
+GRID = [k / 25 for k in range(20, -1, -1)]
+TRIED = f"a ball settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
 HIGHEST = 17  # the rung whose period, 2**16, still takes minutes
 
 
@@ -56,15 +60,35 @@ def ladder(alpha: Expr) -> Iterator[Rung]:
 
 def stable_four(table: Table) -> tuple[float, list[float]]:
     """The largest contraction of a coarse grid with an attracting cycle of period 4 near a diameter."""
-    tried = [k / 25 for k in range(20, -1, -1)]
-    for lam in tried:
+    for lam in GRID:
         cycle = attractor(table, lam, (0.05, 3.1), 16)
         if len(cycle) == 4:
             return lam, cycle
     raise ValueError(
         f"egg: alpha = {dict(table.fixed)['alpha']} has no attracting cycle of period 4 near a diameter "
-        f"at any lam = {tried[-1]}, ..., {tried[0]} in steps of 0.04; the ladder starts from one"
+        f"that {TRIED}; the ladder starts from one"
     )
+
+
+def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
+    """Where the mirror-symmetric cycle of period 4 bears two that are not: a flip of half the cycle.
+
+    A symmetric cycle cannot double its period: half of it would need the multipliers `i` and `-i`,
+    whose product is 1. It breaks its symmetry first, and the ladder climbs from what it bears.
+    """
+    table = tables.egg(3).at(alpha=alpha)
+    problem = Problem(table, (0, 0), Kind.FLIP, "lam", mirror=True)
+    for lam in GRID:
+        cycle = attractor(table, lam, (0.05, 3.1), 16)
+        if len(cycle) == 4 and abs(math.remainder(cycle[0] + cycle[2], 2 * math.pi)) < 1e-6:
+            for share in range(1, 12):
+                try:
+                    found = floats(problem, [*cycle[:2], lam + share / 100])
+                except ValueError:
+                    continue
+                if 0 <= found[-1] - lam < 0.15:
+                    return problem, found
+    raise ValueError(f"egg: alpha = {alpha} has no symmetric attracting cycle of period 4 that {TRIED}")
 
 
 def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:

@@ -17,12 +17,12 @@ from symbolic import polygons, tables, thresholds
 from symbolic.codegen import kernel, load
 from symbolic.symbols import alpha as alpha_letter
 from symbolic.symbols import lam as lam_letter
+from verification import ladder
 from verification.arithmetic import balls, bits_of, working
 from verification.balls import decimal
 from verification.certificates.bifurcation import Checks, Claim, Proof, proved
 from verification.certificates.contraction import Status, contraction, exact_balls
 from verification.certificates.corner import at_corner
-from verification.ladder import critical_cycle
 from verification.shooting.newton import refined
 from verification.shooting.problem import Kind, Problem
 from verification.shooting.small import corner, corner_angle, focus
@@ -198,9 +198,17 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
 
 def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
     """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
-    problem, start = critical_cycle(alpha, int(n))
+    problem, start = ladder.critical_cycle(alpha, int(n))
     proof = certify(problem, start, digits)
     return Found(proof.value, proof.checks, proof, _direction(proof))
+
+
+def symmetry_breaking(digits: int, alpha: Expr) -> Found:
+    """The contraction at which the egg's symmetric cycle of period 4 gives way to two that are not."""
+    problem, start = ladder.symmetry_breaking(alpha)
+    proof = certify(problem, start, digits)
+    born = "two stable cycles" if proof.supercritical else "two unstable cycles"
+    return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
 
 
 def _unit(letter: str, value: Expr) -> Expr:
@@ -221,4 +229,5 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "alpha-hat": (alpha_hat, ("lam",)),
     "saddle-node": (saddle_node, ("alpha",)),
     "doubling": (doubling, ("alpha", "n")),
+    "symmetry-breaking": (symmetry_breaking, ("alpha",)),
 }

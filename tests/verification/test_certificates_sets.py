@@ -2,14 +2,20 @@
 
 import mpmath
 import pytest
-from sympy import Rational
+from flint import arb
+from sympy import Rational, acos
 
 from symbolic.polygons import saddle_node
 from symbolic.symbols import alpha as letter
+from verification.certificates.contraction import Status, contraction, exact_balls
+from verification.certificates.curve import doubling_curve
 from verification.certificates.exclusion import no_triangles
 from verification.certificates.projection import PRODUCED, SLAP, witness
 from verification.certificates.slap import periodic_points
 from verification.feigenbaum import DELTA, aitken, limit, ratio, wynn
+from verification.locate import closed_form
+from verification.shooting.newton import refined
+from verification.shooting.polygon import polygon_fold
 
 ALPHA = Rational(2, 25)
 LADDER = [  # lambda_3 to lambda_12 at alpha = 2/25, each certified by `pinball locate doubling`
@@ -79,6 +85,24 @@ def test_more_rungs_agree_with_the_stated_error():
     assert abs(short.value - long.value) < 10 * short.error
     assert long.error < 1e-18
     assert mpmath.nstr(long.value, 18) == "0.39352046833370729"
+
+
+def test_the_diameters_double_supercritically_along_the_whole_curve():
+    assert doubling_curve().supercritical is True
+
+
+@pytest.mark.parametrize(("K", "p", "q"), [(3, 1, 3), (4, 1, 4), (5, 1, 5), (5, 2, 5), (6, 1, 3), (6, 1, 6)])
+def test_the_fold_of_every_polygon_is_where_the_closed_form_says(K, p, q):
+    shape = Rational(1, 2 * (1 + K * K))
+    exact = saddle_node(K, p, q).subs(letter, shape)
+    where = -float(acos(-shape)) / K
+    found = refined(polygon_fold(K, shape, p, q), [where, float(exact)], 30)
+
+    proof = contraction(polygon_fold(K, shape, p, q), exact_balls(found.z), arb("1e-25"), 200)
+
+    assert proof.status is Status.UNIQUE
+    assert proof.zero[1].overlaps(closed_form(exact, 30))
+    assert proof.zero[1].rad() < arb("1e-30")
 
 
 @pytest.mark.parametrize("process", [wynn, aitken])

@@ -19,6 +19,7 @@ SHAPES = {
     "alpha-hat": {"lam": Rational(1, 3)},
     "saddle-node": {"alpha": ALPHA},
     "doubling": {"alpha": ALPHA, "n": Integer(3)},
+    "symmetry-breaking": {"alpha": ALPHA},
 }
 KNOWN = {  # each from its second method: closed forms of the symbolic storey, or 60 digits in mpmath
     "lambda-star": "0.0712172452489159804",
@@ -28,6 +29,7 @@ KNOWN = {  # each from its second method: closed forms of the symbolic storey, o
     "alpha-hat": "0.0277563773199464655",
     "saddle-node": "0.3781212525900902357",
     "doubling": "0.3712355025279195235",
+    "symmetry-breaking": "0.2877854765031",
 }
 
 

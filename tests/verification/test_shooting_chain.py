@@ -9,7 +9,8 @@ from sympy import Matrix, Rational, cos, diff, log, sin, sqrt, symbols
 from sympy import atan as arctan
 
 from symbolic.codegen import kernel, load
-from symbolic.tables import cuspless, egg
+from symbolic.symbols import theta
+from symbolic.tables import cuspless, egg, polar
 from verification.arithmetic import FLOAT64
 from verification.shooting.chain import Chain, Elimination
 from verification.shooting.jets import Jet, jets
@@ -83,6 +84,8 @@ PROBLEMS = [
     (Problem(egg(3), (0,) * 4, Kind.FOLD, "alpha", Rational(1, 3)), [0.3, 3.0, -0.2, 2.5, 0.05]),
     (Problem(egg(3).at(alpha="2/25"), (0, 0), Kind.FLIP, "lam"), [0.3, 3.0, 0.2]),
     (Problem(cuspless, (1, 0, 0), Kind.FLIP, "lam"), [0.1, -0.4, 1.1, 0.3]),
+    (Problem(egg(3).at(alpha="2/25"), (0, 0), Kind.FLIP, "lam", mirror=True), [0.1, -2.7, 0.2]),
+    (Problem(egg(3), (0, 0, 0), Kind.FOLD, "alpha", Rational(1, 3), mirror=True), [0.1, -2.7, 0.2, 0.05]),
     (Problem(cuspless, (1, 0, 0), lam=Rational(1, 4)), [0.1, -0.4, 1.1]),
 ]
 
@@ -123,5 +126,7 @@ def test_a_problem_that_is_not_square_is_refused():
         Problem(cuspless, (1, 0), Kind.CYCLE, "lam")
     with pytest.raises(ValueError, match="free letters must be just lam; lam = None"):
         Problem(egg(3), (0, 0), Kind.FLIP, "lam")
+    with pytest.raises(ValueError, match="theta -> -theta is no mirror image"):
+        Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), mirror=True)
     with pytest.raises(ValueError, match="1 row is no chain"):
         Chain([1], [1], [1])

@@ -89,9 +89,13 @@ def proved(claim: Claim) -> Proof:
         bound = arb(10) ** -claim.digits
         checks["precise"] = bool(zero[-1].rad() < bound) if found else None
         shape = (zero[-1],) if problem.free not in ("", "lam") else ()
-        apart = found and bool(convex(problem.table, shape)) and inside(problem.table, problem.components, zero)
+        whole = zero[: problem.period]
+        if problem.mirror:
+            whole = whole + [-x for x in whole]
+        parts = problem.components * (len(whole) // problem.period)
+        apart = found and bool(convex(problem.table, shape)) and inside(problem.table, parts, whole)
         checks["admissible"] = True if apart else None
-        checks["minimal_period"] = minimal(problem.table, problem.components, zero) if found else None
+        checks["minimal_period"] = minimal(problem.table, parts, whole) if found else None
         if problem.kind is Kind.CYCLE:
             return Proof(claim, checks, enclosure)
         form = None

@@ -34,6 +34,7 @@ def document(name: str, proof: Proof) -> dict[str, Any]:
         "shape": {letter: str(value) for letter, value in problem.table.fixed},
         "kind": problem.kind.name.lower(),
         "free": problem.free,
+        "mirror": problem.mirror,
         "lam": None if problem.lam is None else str(problem.lam),
         "components": list(problem.components),
         "bits": claim.bits,
@@ -55,7 +56,7 @@ def claim_of(given: Mapping[str, Any]) -> Claim:
         shape = {letter: number(text, letter) for letter, text in given["shape"].items()}
         table = tables.named(given["table"], int(given["points"])).at(**shape)
         lam = None if given["lam"] is None else number(given["lam"], "lam")
-        problem = Problem(table, components, Kind[given["kind"].upper()], given["free"], lam)
+        problem = Problem(table, components, Kind[given["kind"].upper()], given["free"], lam, bool(given["mirror"]))
         centre = tuple(_ball(pair) for pair in given["centre"])
         if len(centre) != len(components) + bool(problem.free):
             raise ValueError(f"certificate: centre has {len(centre)} entries for {len(components)} bounces")

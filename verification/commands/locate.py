@@ -20,7 +20,7 @@ WORDS = {True: "proved", False: "refuted", None: "unknown"}
 @click.argument("name")
 @click.option("--digits", type=click.IntRange(1, 20_000), default=30, show_default=True, help="Decimal digits.")
 @click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat.")
-@click.option("--alpha", metavar="NUMBER", help="The shape of the egg, for saddle-node and doubling.")
+@click.option("--alpha", metavar="NUMBER", help="The shape of the egg, for the names that need one.")
 @click.option("--n", metavar="INTEGER", help="Which doubling: from period 2^(n-1) to 2^n.")
 @click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
 @json_option
@@ -29,7 +29,7 @@ def command(
 ) -> int:
     """Where does it happen, to N certified digits? Exit status 1 when something is not proved.
 
-    NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node or doubling.
+    NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling or symmetry-breaking.
     """
     from symbolic.formula import number
     from verification.locate import GMPY2, locate

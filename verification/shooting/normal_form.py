@@ -42,7 +42,7 @@ class NormalForm:
 def normal_form(at: Linearised, arithmetic: Arithmetic) -> NormalForm:
     """The normal form where the equations of a fold or a flip hold."""
     chain, v, w = at.critical.chain, at.critical.right, at.critical.left
-    turn = w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1]
+    turn = at.problem.turn * (w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1])
     determinant: Any = 1
     for lower, upper in zip(chain.lower, chain.upper, strict=True):
         determinant = determinant * lower / upper
@@ -58,14 +58,16 @@ def normal_form(at: Linearised, arithmetic: Arithmetic) -> NormalForm:
 def along(at: Linearised, arithmetic: Arithmetic, directions: list[Vector]) -> list[Jet]:
     """The collision rule on the curve `theta + directions[0]*e + directions[1]*e**2`.
 
-    Around the end of a flip the odd powers of `e` come back negated. One order more than there are
-    directions is kept.
+    Around the end of a flip the odd powers of `e` come back negated, with a mirror all of them. One
+    order more than there are directions is kept.
     """
     problem, z = at.problem, at.z
-    n, sign, order = problem.period, int(problem.kind), len(directions) + 1
+    n, order = problem.period, len(directions) + 1
     rows = Rows(problem, arithmetic)
     own = [Jet(z[i], *(d[i] for d in directions), *([0] * (order - len(directions)))) for i in range(n)]
-    first, last = (Jet(*(c * sign**k for k, c in enumerate(x.c))) for x in (own[0], own[-1]))
+    first, last = (
+        Jet(*(c * problem.turn * int(problem.kind) ** k for k, c in enumerate(x.c))) for x in (own[0], own[-1])
+    )
     ring = [last, *own, first]
     parts, shape = problem.components, (z[n],) if rows.shape else ()
     found = []

@@ -8,14 +8,15 @@ negated (flip). All of it holds for any kind of number that the kernels can be l
 
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
-from sympy import Expr
+from sympy import Expr, simplify
 
 from symbolic.chords import chord_kernel
 from symbolic.codegen import kernel, load
-from symbolic.table import Table
+from symbolic.symbols import theta
+from symbolic.table import Component, Table
 from verification.arithmetic import Arithmetic
 from verification.shooting.chain import Chain, Elimination, Vector, dot
 
@@ -32,6 +33,7 @@ class Kind(IntEnum):
 class Problem:
     """A cycle by its components, in a table whose only free shape is `free`.
 
+    With `mirror` it is half a cycle: after its bounces come their images under `theta -> -theta`.
     `lam` is free when None, exact, or a number as it is: a ball proves for every `lam` in it, a jet differentiates.
     """
 
@@ -40,6 +42,7 @@ class Problem:
     kind: Kind = Kind.CYCLE
     free: str = ""
     lam: Expr | Any = None
+    mirror: bool = False
 
     def __post_init__(self) -> None:
         shapes = {p.symbol.name for p in self.table.shapes}
@@ -47,6 +50,14 @@ class Problem:
             raise ValueError(f"{self.table.name}: free letters must be just {self.free or 'none'}; lam = {self.lam}")
         if (self.kind is Kind.CYCLE) != (not self.free):
             raise ValueError(f"{self.table.name}: {self.kind.name} with {self.free or 'no letter'} free is not square")
+
+        if self.mirror and not all(mirrored(component) for component in self.table.components):
+            raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
+
+    @property
+    def turn(self) -> int:
+        """The factor on parameters that are carried around the end: -1 with a mirror."""
+        return -1 if self.mirror else 1
 
     @property
     def label(self) -> str:
@@ -70,6 +81,19 @@ class Problem:
     def period(self) -> int:
         """The number of bounces."""
         return len(self.components)
+
+
+@cache
+def mirrored(component: Component) -> bool:
+    """True when `theta -> -theta` is proved to map a component to its image under `y -> -y`.
+
+    >>> from symbolic.tables import cuspless
+    >>> all(mirrored(component) for component in cuspless.components)
+    True
+    """
+    x, y = component.point
+    image = x.subs(theta, -theta) - x, y.subs(theta, -theta) + y, component.start + component.end
+    return all(simplify(part) == 0 for part in image)
 
 
 class Rows:
@@ -100,13 +124,14 @@ class Rows:
 
     def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
         """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""
-        components, n = self.problem.components, self.problem.period
+        components, n, turn = self.problem.components, self.problem.period, self.problem.turn
+        ring = [turn * z[n - 1], *z[:n], turn * z[0]]
         shape = (z[n],) if self.shape else ()
         out, into = [], []
         for i in range(n):
             here, before, after = components[i], (i - 1) % n, (i + 1) % n
-            out.append(self.kernel(here, components[after], order)(z[i], z[after], *shape))
-            into.append(self.kernel(here, components[before], order)(z[i], z[before], *shape))
+            out.append(self.kernel(here, components[after], order)(z[i], ring[i + 2], *shape))
+            into.append(self.kernel(here, components[before], order)(z[i], ring[i], *shape))
         return out, into
 
 
@@ -125,9 +150,9 @@ class Linearised:
         diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
         lower = [lam * b[2] for b in into]
         self.value: Vector = list(self.rule)
-        self.plain = Chain(lower, diagonal, upper)
+        self.plain = Chain(lower, diagonal, upper, problem.turn)
         if critical:
-            self.critical = Elimination(Chain(lower, diagonal, upper, int(problem.kind)))
+            self.critical = Elimination(Chain(lower, diagonal, upper, problem.turn * problem.kind))
             self.value.append(self.critical.rest)
             if slope:
                 self.by_letter = self._by_letter()
@@ -163,7 +188,7 @@ class Linearised:
         """The derivatives of `rest` by the parameters and by the free letter: `left . dJ . right`."""
         at = self.rows.places(2)
         hh, ho, oo = at["angle_00"], at["angle_01"], at["angle_11"]
-        n, sign, lam = self.problem.period, int(self.problem.kind), self.lam
+        n, sign, turn, lam = self.problem.period, self.critical.chain.sign, self.problem.turn, self.lam
         v, w = self.critical.right, self.critical.left
         by_theta: Vector = [0] * n
         for i, (f, b, weight) in enumerate(zip(self.out, self.into, w, strict=True)):
@@ -174,8 +199,8 @@ class Linearised:
             back = lam * b[oo] * before + back_mixed * here
             own = back_mixed * before + (f[hh] + lam * b[hh]) * here + forth_mixed * after
             forth = forth_mixed * here + f[oo] * after
-            by_theta[i - 1] = by_theta[i - 1] + weight * back
+            by_theta[i - 1] = by_theta[i - 1] + weight * back * (1 if i else turn)
             by_theta[i] = by_theta[i] + weight * own
-            by_theta[(i + 1) % n] = by_theta[(i + 1) % n] + weight * forth
+            by_theta[(i + 1) % n] = by_theta[(i + 1) % n] + weight * forth * (1 if i < n - 1 else turn)
         _, lower, diagonal, upper = self.by_letter
         return by_theta, dot(w, Chain(lower, diagonal, upper, sign).times(v))

@@ -53,7 +53,6 @@ class Blueprint:
 
     table: str
     family: str
-    convex: bool
     shape: tuple[ShapeRange, ...]
     parts: tuple[Part, ...]
     programs: tuple[tuple[str, Program], ...]
@@ -68,7 +67,6 @@ class Blueprint:
         data = {
             "table": self.table,
             "family": self.family,
-            "convex": self.convex,
             "shape": [[s.name, s.low, s.high, s.otherwise] for s in self.shape],
             "parts": [[p.name, p.ends.as_data(), p.curve.as_data()] for p in self.parts],
             "programs": [[name, program.as_data()] for name, program in self.programs],
@@ -84,7 +82,6 @@ class Blueprint:
         return Blueprint(
             data["table"],
             data["family"],
-            data["convex"],
             tuple(ShapeRange(*entry) for entry in data["shape"]),
             tuple(Part(name, read(ends), read(curve)) for name, ends, curve in data["parts"]),
             tuple((name, read(program)) for name, program in data["programs"]),

@@ -33,7 +33,6 @@ def drawn(table: Table) -> Blueprint:
     return Blueprint(
         table.name,
         family,
-        table.name in ("circle", "ellipse", "egg", "cuspless"),
         tuple(
             ShapeRange(name, _bound(shape.range.start), _bound(shape.range.end), shape.otherwise)
             for name, shape in zip(names, table.shapes, strict=True)

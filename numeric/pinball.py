@@ -96,7 +96,7 @@ class PinballMap:
         names = [entry.name for entry in self.blueprint.shape]
         family = family_of(self.blueprint)
         self.states = States(self.blueprint, family, self.shape)
-        if family.name == "fourier" and not self.blueprint.convex and not self._convex():
+        if family.name == "fourier" and not self._convex():
             family = family_of(self.blueprint, convex=False)
             self.states = States(self.blueprint, family, self.shape)
         prepare = getattr(family, "prepared", None)
@@ -293,7 +293,7 @@ class PinballMap:
 
     def _convex(self) -> bool:
         """No curvature of the wrong sign on a fine grid, up to rounding."""
-        theta = np.linspace(-np.pi, np.pi, 8192)
+        theta = np.linspace(-np.pi, np.pi, 4096)
         curvature = self.states.curvature(np.zeros(theta.size, dtype=np.int64), theta)
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 

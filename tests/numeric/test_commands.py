@@ -1,0 +1,134 @@
+"""`pinball orbit`, `lyapunov`, `slap` and `bench`, as the contract has them."""
+
+import json
+
+import pytest
+
+from verification.cli import main
+
+
+def run(capsys, *arguments):
+    status = main([*arguments, "--json", "-"])
+    captured = capsys.readouterr()
+    return status, json.loads(captured.out) if captured.out else None, captured.err
+
+
+EGG = ("egg", "--alpha", "0.08", "--lam", "0.9")
+
+
+def test_an_orbit_starts_at_its_start(capsys):
+    status, document, _ = run(capsys, "orbit", *EGG, "--start", "0.5,-1/5", "--bounces", "3")
+    first = document["bounces"][0]
+
+    assert status == 0
+    assert len(document["bounces"]) == 4
+    assert list(first) == ["component", "theta", "s", "x", "y", "eta", "phi", "status"]
+    assert (first["component"], first["theta"], first["eta"], first["phi"], first["status"]) == (
+        "egg", 0.5, None, -0.2, "regular",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [EGG, ("circle", "--lam", "1"), ("cardioid", "--lam", "1/3"), ("cuspless", "--lam", "0.9")],
+    ids=lambda scene: scene[0],
+)
+def test_float64_mpmath_and_arb_tell_the_same_story(capsys, scene):
+    question = ("orbit", *scene, "--start", "0.5,-1/5", "--bounces", "4", "--digits", "25")
+    plain, multi, balls = (
+        run(capsys, *question, "--arithmetic", name)[1]["bounces"] for name in ("float64", "mpmath", "arb")
+    )
+    for one, two, three in zip(plain, multi, balls, strict=True):
+        for key in ("theta", "s", "x", "y", "phi"):
+            assert isinstance(two[key], str)
+            assert float(two[key]) == pytest.approx(one[key], abs=1e-13)
+            assert float(three[key]) == pytest.approx(float(two[key]), abs=1e-15)
+            digits = [text.replace("-", "").replace(".", "").lstrip("0")[:22] for text in (two[key], three[key])]
+            assert abs(int(digits[0].ljust(22, "0")) - int(digits[1].ljust(22, "0"))) <= 1
+
+
+def test_an_irrational_shape_is_exact_to_every_digit(capsys):
+    _, document, _ = run(
+        capsys, "orbit", "ellipse", "--a", "sqrt(2)", "--lam", "1/3", "--start", "pi/3,1/7",
+        "--bounces", "1", "--arithmetic", "arb", "--digits", "30",
+    )  # fmt: skip
+
+    assert document["bounces"][0]["x"].startswith("0.70710678118654752440084436210")
+
+
+def test_a_formula_makes_a_table(capsys):
+    question = ("orbit", "--polar", "1 + cos(5*theta)/40", "--lam", "1/2", "--start", "1,0.5", "--bounces", "2")
+    status, document, _ = run(capsys, *question)
+
+    assert status == 0
+    assert document["bounces"][1]["component"] == "polar"
+
+
+def test_a_ball_that_stops_is_reported(capsys):
+    status, document, _ = run(capsys, "orbit", "cardioid", "--lam", "0.9", "--start", "0,0", "--bounces", "5")
+
+    assert status == 1
+    assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "cusp"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((*EGG, "--start", "0.5", "--bounces", "2"), "--start '0.5' is no pair; give THETA,PHI"),
+        ((*EGG, "--start", "0.5,2", "--bounces", "2"), "phi = 2.0 does not point into the table"),
+        ((*EGG, "--start", "0.5,0", "--bounces", "2", "--component", "roof"), "accepted: egg"),
+        (("egg", "--alpha", "0.2", "--lam", "1", "--start", "0,0", "--bounces", "2"), "alpha must lie in"),
+    ],
+)
+def test_bad_input_is_one_sentence(capsys, arguments, words):
+    status, document, told = run(capsys, "orbit", *arguments)
+
+    assert (status, document) == (2, None)
+    assert words in told
+    assert told.count("\n") == 1
+
+
+def test_lyapunov_finds_the_attractors(capsys):
+    question = (
+        "lyapunov",
+        "egg",
+        "--alpha",
+        "0.08",
+        "--lam",
+        "0.45",
+        "--bounces",
+        "500",
+        "--orbits",
+        "60",
+        "--seed",
+        "1",
+    )
+    status, document, _ = run(capsys, *question)
+    kinds = [group["kind"] for group in document["groups"]]
+
+    assert status == 0
+    assert kinds[0] == "chaotic"
+    assert sum(kind.startswith("cycle of period 3") for kind in kinds) == 2
+    assert document["groups"][0]["nu_plus"] > 5 * document["groups"][0]["nu_plus_stderr"]
+    assert sum(group["orbits"] for group in document["groups"]) == document["orbits"] == 60
+    assert run(capsys, *question)[1] == document
+
+
+def test_the_slap_map_of_the_circle_is_half_a_turn(capsys):
+    _, document, _ = run(capsys, "slap", "circle", "--points", "8", "--iterates", "2")
+    for point in document["points"]:
+        once, twice = (image["theta"] for image in point["images"])
+        assert abs(once - point["theta"]) == pytest.approx(3.141592653589793, abs=1e-15)
+        assert twice == pytest.approx(point["theta"], abs=2e-15)
+        assert point["slope"] == pytest.approx(1)
+
+
+def test_bench_has_rows_for_every_arithmetic(capsys):
+    question = ("bench", "--scene", "circle", "--digits", "20", "--runs", "1", "--no-baselines")
+    status, document, _ = run(capsys, *question)
+    names = {"scene", "arithmetic", "kernel", "error", "error_unit", "seconds_per_bounce", "runs"}
+
+    assert status == 0
+    assert all(set(row) == names for row in document["rows"])
+    assert {row["arithmetic"] for row in document["rows"]} == {"float64", "mpmath", "arb"}
+    assert "processor" in document["machine"]

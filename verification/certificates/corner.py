@@ -55,22 +55,22 @@ def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
     middle, sharp = bend(theta1)[0], bend(edge)[0]
 
     def down(K: Any) -> Matrix:  # from the arc's bounce to the lower corner, on the side of curvature K
-        return _flight(arithmetic, theta1, -edge, middle, K, contraction)
+        return flight(arithmetic, theta1, -edge, middle, K, contraction)
 
     def up(K: Any) -> Matrix:  # from the lower corner to the mirrored bounce
-        return _flight(arithmetic, -edge, -theta1, K, middle, contraction)
+        return flight(arithmetic, -edge, -theta1, K, middle, contraction)
 
-    first = _flight(arithmetic, edge, theta1, sharp, middle, contraction)  # its second column holds no K0
-    last = _flight(arithmetic, -theta1, edge, middle, sharp, contraction)  # its first row holds no K1
+    first = flight(arithmetic, edge, theta1, sharp, middle, contraction)  # its second column holds no K0
+    last = flight(arithmetic, -theta1, edge, middle, sharp, contraction)  # its first row holds no K1
     slopes = [_product(last, _product(up(K), _product(down(K), first)))[1] for K in (0, sharp)]
     halves = []
     for K in (0, sharp):
-        half = _product(down(K), _flight(arithmetic, edge, theta1, K, middle, contraction))
+        half = _product(down(K), flight(arithmetic, edge, theta1, K, middle, contraction))
         halves.append((-(half[0] + half[3]), half[0] * half[3] - half[1] * half[2]))  # the mirror is -1
     return Corner(slopes[0], slopes[1], _product(down(0), first)[1], halves[0], halves[1])
 
 
-def _flight(arithmetic: Arithmetic, start: Any, end: Any, leaving: Any, landing: Any, contraction: Any) -> Matrix:
+def flight(arithmetic: Arithmetic, start: Any, end: Any, leaving: Any, landing: Any, contraction: Any) -> Matrix:
     """The derivative matrix of one flight between two points of the arc."""
     angle = load(chord_kernel(cuspless, 0, 0, 0), arithmetic)
     here, there = (load(_place(), arithmetic)(x) for x in (start, end))

@@ -95,7 +95,9 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
     if finding.outcome is Outcome.REFUTED and len(kept.free_symbols) > 1:  # a zero at one point refutes nothing here
         used = {x: inside[x] for x in sorted(kept.free_symbols, key=str)}
         negative = _witness(constant * kept, used, strictly=True)
-        return negative or Finding(Outcome.UNKNOWN, f"no certificate for {expression} >= 0 within {depth} halvings")
+        if negative is None:
+            return Finding(Outcome.UNKNOWN, f"no certificate for {expression} >= 0 within {depth} halvings")
+        return negative
     return finding
 
 

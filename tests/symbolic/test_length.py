@@ -89,6 +89,13 @@ def test_positions_go_once_around_without_a_gap():
     assert simplify(ends[1][1] - ends[2][0] - perimeter(table)) == 0
 
 
+def test_an_origin_in_the_middle_of_a_component_is_where_the_length_is_zero():
+    shifted = Table("shifted", cardioid.components, origin=(0, pi / 3))
+
+    assert positions(shifted)[0].subs(theta, pi / 3) == 0
+    assert positions(shifted)[0].subs(theta, pi) == 2
+
+
 def test_perimeters_are_those_of_a_hand_calculation():
     assert perimeter(circle) == 2 * pi
     assert perimeter(cardioid) == 8

@@ -72,6 +72,8 @@ def test_no_verdict_on_a_polynomial_in_two_variables_is_false(p, over_x, over_y)
 @given(st.lists(SMALL, min_size=1, max_size=6), intervals())
 @example([0, 0, 1], Interval.open(0, 1))
 @example([0, 1], Interval.Ropen(-1, 0))
+@example([1, -6, 9], Interval(0, 1))  # touches zero between the samples
+@example([-1, 16], Interval.open(0, 1))  # negative before the first sample
 def test_one_variable_is_always_decided_and_never_wrongly(coefficients, over_x):
     p = sum((c * x**k for k, c in enumerate(coefficients)), S.Zero)
 
@@ -146,6 +148,21 @@ def test_a_polynomial_that_almost_touches_zero_is_still_decided(gap):
 @pytest.mark.parametrize("expression", [nan, S.ComplexInfinity, sin(x) + 2, sqrt(x) + 1])
 def test_what_is_no_polynomial_is_left_open(expression):
     assert positive(expression, {x: Interval(0, 1)}).outcome is Outcome.UNKNOWN
+
+
+def test_a_negative_denominator_turns_the_sign():
+    box = {x: Interval(0, 1)}
+
+    assert positive(1 / (x - 2), box).outcome is Outcome.REFUTED
+    assert positive(x / (x - 2) + 2, box).outcome is Outcome.PROVED
+    assert positive(-1 / (x - 2), box).outcome is Outcome.PROVED
+
+
+def test_a_zero_at_an_inner_point_does_not_refute_nonnegative():
+    box = {x: Interval(-1, 1), y: Interval(-1, 1)}
+
+    assert nonnegative(x**2 - x * y + y**2, box).outcome is not Outcome.REFUTED
+    assert nonnegative(x**2 - 3 * x * y + y**2, box).outcome is Outcome.REFUTED
 
 
 def test_a_pole_in_the_range_leaves_the_question_open():

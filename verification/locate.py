@@ -21,11 +21,11 @@ from verification import ladder
 from verification.arithmetic import balls, bits_of, working
 from verification.balls import decimal
 from verification.certificates.bifurcation import Checks, Claim, Proof, proved
-from verification.certificates.contraction import Status, contraction, exact_balls
-from verification.certificates.corner import at_corner
+from verification.certificates.contraction import Status, exact_balls
+from verification.certificates.special import SpecialClaim, SpecialProof, specially_proved
 from verification.shooting.newton import refined
 from verification.shooting.problem import Kind, Problem
-from verification.shooting.small import corner, corner_angle, focus
+from verification.shooting.small import corner, focus
 
 MOST_DIGITS = 20_000
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
@@ -42,7 +42,7 @@ class Located:
     checks: Checks
     seconds: float
     ball: arb = field(repr=False)
-    proof: Proof | None = field(repr=False, default=None)
+    proof: Proof | SpecialProof | None = field(repr=False, default=None)
     notes: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -57,7 +57,7 @@ class Found:
 
     ball: arb
     checks: Checks
-    proof: Proof | None = None
+    proof: Proof | SpecialProof | None = None
     notes: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -112,42 +112,25 @@ def _direction(proof: Proof) -> dict[str, str]:
     return {"kind": f"{'super' if proof.supercritical else 'sub'}critical: {born} cycle of twice the period is born"}
 
 
-def _corner(digits: int) -> tuple[list[arb], Checks, dict[str, str]]:
-    solution = refined(corner(), [0.2545, 0.0712], digits + 5)
+def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> SpecialProof:
+    """The proof of a small system's solution near `start`."""
     bits = bits_of(digits, 100)
     with working(bits):
         radius = (arb(10) ** -(digits + 3)).mid()
-        enclosure = contraction(corner(), exact_balls(solution.z), radius, bits)
-        theta1, value = enclosure.zero
-        found = enclosure.status is Status.UNIQUE
-        sides = at_corner(balls(bits), theta1, value)
-        inside = theta1 > 0 and theta1 < 2  # on the arc, apart from the corners and from its mirror image
-        checks: Checks = {
-            "exists": True if found else None,
-            "unique": True if found else None,
-            "precise": bool(value.rad() < arb(10) ** -digits),
-            "admissible": True if found and inside else None,
-            "minimal_period": True if found and inside else None,
-            "s4_minimum_at_a_kink": sides.minimum_at_kink if found else None,
-        }
-        notes = {
-            "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
-            "half_return_traces": f"{sides.arc[0].str(8)} on the arc, {sides.wall[0].str(8)} on the wall",
-            "half_return_determinant": sides.wall[1].str(8),
-        }
-        return [corner_angle(balls(bits), theta1), value], checks, notes
+    solution = refined(corner() if lam is None else focus(lam), start, digits + 5)
+    return specially_proved(SpecialClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam))
 
 
 def lambda_star(digits: int) -> Found:
     """The contraction at which the cuspless orbit through both corners exists. Paper: section 5.2."""
-    (_, value), checks, notes = _corner(digits)
-    return Found(value, checks, None, notes)
+    proof = _special("lam", [0.2545, 0.0712], digits)
+    return Found(proof.value, proof.checks, proof, proof.notes)
 
 
 def phi_star(digits: int) -> Found:
     """Its exit angle at the upper corner, in radians."""
-    (angle, _), checks, notes = _corner(digits)
-    return Found(angle, checks, None, notes)
+    proof = _special("phi", [0.2545, 0.0712], digits)
+    return Found(proof.value, proof.checks, proof, proof.notes)
 
 
 def lambda_c(digits: int) -> Found:
@@ -168,20 +151,12 @@ def alpha_hat(digits: int, lam: Expr) -> Found:
     """The shape above which the multipliers of the egg's diameters are complex. Paper: section 6.3."""
     exact = thresholds.alpha_hat().subs(lam_letter, _unit("lam", lam))
     ball = closed_form(exact, digits)
-    checks: Checks = {"precise": True}
-    try:
-        system = focus(lam)
-        solution = refined(system, [0.0, 3.14, float(N(exact))], digits)
-        bits = bits_of(digits, 64)
-        with working(bits):
-            radius = (arb(10) ** -(digits + 2)).mid()
-            enclosure = contraction(system, exact_balls(solution.z), radius, bits)
-        unique = enclosure.status is Status.UNIQUE
-        overlap = unique and bool(enclosure.zero[-1].overlaps(ball))
-        checks |= {"exists": unique or None, "unique": unique or None, "closed_form_agrees": overlap or None}
-    except (ValueError, ZeroDivisionError):  # lam = 0: the discriminant only touches 0
-        checks |= dict.fromkeys(("exists", "unique", "closed_form_agrees"))
-    return Found(ball, checks)
+    if lam in (0, 1):
+        why = {0: "the discriminant touches 0 there and does not cross it", 1: "the table is a circle there"}[lam]
+        return Found(ball, {"precise": True} | dict.fromkeys(("exists", "unique")), None, {"degenerate": why})
+    proof = _special("alpha", [0.0, 3.14, float(N(exact))], digits, lam)
+    overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
+    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof)
 
 
 def saddle_node(digits: int, alpha: Expr) -> Found:

@@ -34,6 +34,25 @@ def test_an_irrational_shape_is_kept_exactly():
 
 
 @pytest.mark.parametrize(
+    ("name", "shape"),
+    [
+        ("lambda-star", {}),
+        ("phi-star", {}),
+        ("lambda-c", {}),
+        ("alpha-hat", {"lam": Rational(1, 3)}),
+        ("alpha-tilde", {"lam": Rational(1, 3)}),
+        ("symmetry-breaking", {"alpha": Rational(2, 25)}),
+    ],
+)
+def test_every_name_has_a_certificate_that_checks(name, shape):
+    made = json.loads(json.dumps(document(name, locate(name, 20, **shape).proof)))
+    again = checked(made)
+
+    assert again.certified
+    assert document(name, again) == made
+
+
+@pytest.mark.parametrize(
     "spoil",
     [
         lambda d: d["centre"].__setitem__(0, ["1", "-1"]),
@@ -57,7 +76,7 @@ def test_a_spoiled_certificate_is_not_certified_whatever_it_says(fold, spoil):
         ("bits", 10**9, "out of range"),
         ("table", "egg; import os", "no table is called"),
         ("shape", {"alpha": "__import__('os').system('true')"}, "."),
-        ("centre", [["1", "0"]], "1 entries for 3 bounces"),
+        ("centre", [["1", "0"]], "1 entries for 4 unknowns"),
         ("centre", [["x", "0"]] * 4, "."),
         ("radius", ["1", "999999999999"], "out of range"),
         ("kind", "crisis", "."),

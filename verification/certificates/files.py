@@ -17,15 +17,27 @@ from symbolic.formula import number
 from symbolic.fourier import boundary_coefficients
 from symbolic.table import Table
 from verification.certificates.bifurcation import Claim, Proof, proved
+from verification.certificates.special import SpecialClaim, SpecialProof, specially_proved
 from verification.shooting.problem import Kind, Problem
 
 SCHEMA = 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
 
 
-def document(name: str, proof: Proof) -> dict[str, Any]:
+def document(name: str, proof: Proof | SpecialProof) -> dict[str, Any]:
     """A proof as a JSON document."""
-    claim, problem = proof.claim, proof.claim.problem
+    claim = proof.claim
+    box = {
+        "bits": claim.bits,
+        "digits": claim.digits,
+        "centre": [_pair(x) for x in claim.centre],
+        "radius": _pair(claim.radius),
+        "checks": proof.checks,
+    }
+    if isinstance(claim, SpecialClaim):
+        lam = None if claim.lam is None else str(claim.lam)
+        return {"schema": SCHEMA, "name": name, "kind": "special", "value": claim.value, "lam": lam} | box
+    problem = claim.problem
     return {
         "schema": SCHEMA,
         "name": name,
@@ -37,32 +49,44 @@ def document(name: str, proof: Proof) -> dict[str, Any]:
         "mirror": problem.mirror,
         "lam": None if problem.lam is None else str(problem.lam),
         "components": list(problem.components),
-        "bits": claim.bits,
-        "digits": claim.digits,
-        "centre": [_pair(x) for x in claim.centre],
-        "radius": _pair(claim.radius),
-        "checks": proof.checks,
-    }
+    } | box
 
 
-def claim_of(given: Mapping[str, Any]) -> Claim:
+def claim_of(given: Mapping[str, Any]) -> Claim | SpecialClaim:
     """The claim of a document; `ValueError` with the entry that is wrong."""
     try:
         if given["schema"] != SCHEMA:
             raise ValueError(f"certificate: schema = {given['schema']} is unknown; this version reads {SCHEMA}")
-        bits, components = int(given["bits"]), tuple(int(i) for i in given["components"])
-        if not 16 <= bits <= LARGEST_BITS or not 2 <= len(components) <= LARGEST_PERIOD:
-            raise ValueError(f"certificate: bits = {bits} or {len(components)} bounces is out of range")
-        shape = {letter: number(text, letter) for letter, text in given["shape"].items()}
-        table = tables.named(given["table"], int(given["points"])).at(**shape)
+        bits, digits = int(given["bits"]), int(given["digits"])
+        if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
+            raise ValueError(f"certificate: bits = {bits} or digits = {digits} is out of range")
+        centre, radius = tuple(_ball(pair) for pair in given["centre"]), _ball(given["radius"])
         lam = None if given["lam"] is None else number(given["lam"], "lam")
-        problem = Problem(table, components, Kind[given["kind"].upper()], given["free"], lam, bool(given["mirror"]))
-        centre = tuple(_ball(pair) for pair in given["centre"])
-        if len(centre) != len(components) + bool(problem.free):
-            raise ValueError(f"certificate: centre has {len(centre)} entries for {len(components)} bounces")
-        return Claim(problem, centre, _ball(given["radius"]), bits, int(given["digits"]))
+        if given["kind"] == "special":
+            unknowns = 2 if lam is None else 3
+            _sized(centre, unknowns, "unknowns")
+            return SpecialClaim(given["value"], centre, radius, bits, digits, lam)
+        problem = _problem(given, lam)
+        _sized(centre, problem.period + bool(problem.free), "unknowns")
+        return Claim(problem, centre, radius, bits, digits)
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
+
+
+def _problem(given: Mapping[str, Any], lam: Any) -> Problem:
+    components = tuple(int(i) for i in given["components"])
+    if not 2 <= len(components) <= LARGEST_PERIOD:
+        raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
+    shape = {letter: number(text, letter) for letter, text in given["shape"].items()}
+    table = tables.named(given["table"], int(given["points"])).at(**shape)
+    if not set(components) <= set(range(len(table.components))):
+        raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
+    return Problem(table, components, Kind[given["kind"].upper()], given["free"], lam, bool(given["mirror"]))
+
+
+def _sized(centre: tuple[arb, ...], wanted: int, what: str) -> None:
+    if len(centre) != wanted:
+        raise ValueError(f"certificate: centre has {len(centre)} entries for {wanted} {what}")
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -78,9 +102,10 @@ def read(path: Path) -> dict[str, Any]:
     return found
 
 
-def checked(given: Mapping[str, Any]) -> Proof:
+def checked(given: Mapping[str, Any]) -> Proof | SpecialProof:
     """The checklist of a document's claim, worked through anew; what the file says of it is not believed."""
-    return proved(claim_of(given))
+    claim = claim_of(given)
+    return specially_proved(claim) if isinstance(claim, SpecialClaim) else proved(claim)
 
 
 def _points(table: Table) -> int:

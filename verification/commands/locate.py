@@ -69,5 +69,5 @@ def _write(path: str, found: "Located") -> None:
     from verification.certificates.files import document
 
     if found.proof is None:
-        raise ValueError(f"--certificate: {found.name} rests on no single cycle's certificate; accepted: the others")
+        raise ValueError(f"--certificate: {found.name} has none here, it degenerates; accepted: other values of --lam")
     write_whole(Path(path), json.dumps(document(found.name, found.proof), indent=1) + "\n")

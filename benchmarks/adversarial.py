@@ -1,5 +1,6 @@
 """A million points for each labelled case: did the kernel take the right zero, and how exact was it?
 
+The last two columns divide by one plus the row sums of the derivative matrix, the condition numbers.
 The reference is the same step on 80-bit floats (NumPy's longdouble, 11 bits more than a double);
 that the step itself is right is what tests/numeric/test_accuracy.py shows at 50 digits.
 
@@ -101,7 +102,8 @@ def cases(count, rng):
 
 def main(count):
     rng = np.random.default_rng(11)
-    say(f"{count} points a case\n{'case':<40}{'stopped':>9}{'wrong':>7}{'position':>10}{'direction':>11}  (2**-52)")
+    say(f"{count} points a case; errors in units of 2**-52")
+    say(f"{'case':<40}{'stopped':>9}{'wrong':>7}{'position':>10}{'direction':>11}{'/condition':>16}")
     for label, map, component, theta, phi in cases(count, rng):
         own = map.states.enter(component, theta, phi, "pinball")
         lam = np.full(theta.size, float(map.lam))
@@ -119,8 +121,13 @@ def main(count):
         place = np.max(gaps[:half], axis=0)[going]
         turned = np.max(gaps[half:], axis=0)[going]
         wrong = int(np.sum(~(place < 1e-3)))
+        matrix = np.abs(map.derivative(theta, phi, component))[going]
+        conditions = 1 + matrix[:, 0].sum(axis=-1), 1 + matrix[:, 1].sum(axis=-1)
         worst = [np.max(e, initial=0) / EPS for e in (place, turned)]
-        say(f"{label:<40}{np.sum(~going):>9}{wrong:>7}{worst[0]:>10.3g}{worst[1]:>11.3g}")
+        worst += [np.max(e / c, initial=0) / EPS for e, c in zip((place, turned), conditions, strict=True)]
+        say(
+            f"{label:<40}{np.sum(~going):>9}{wrong:>7}{worst[0]:>10.3g}{worst[1]:>11.3g}{worst[2]:>10.2g}{worst[3]:>6.2g}"
+        )
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from numeric import machine
 from numeric.families.family import Family
-from numeric.question import Question, fields, rescaled
+from numeric.question import OFTEN, Question, fields, rescaled
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
@@ -119,7 +119,9 @@ def _run_arrays(
                 new, code, tangent, factor, carried = family.bounce_with_tangent(
                     ops, question.law, shape, lam, ball, [dp, omega], carried
                 )
-                more = rescaled(ops, [*tangent, growth, ratio * factor, volume])
+                more = [*tangent, growth, ratio * factor, volume]
+                if bounce % OFTEN == OFTEN - 1:
+                    more = rescaled(ops, more)
             else:
                 new, code = family.bounce(ops, question.law, shape, lam, ball)
                 more = []

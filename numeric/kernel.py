@@ -12,7 +12,7 @@ import re
 from collections.abc import Sequence
 
 from numeric.families.family import ELASTIC, SLAP, Family
-from numeric.question import Question, fields, rescaled
+from numeric.question import OFTEN, Question, fields, rescaled
 from numeric.readers.lanes import Lane, Lanes
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
@@ -146,7 +146,9 @@ def _bounced(
         ball, code, tangent, factor, carried = family.bounce_with_tangent(
             ops, question.law, shape, lam, own, [dp, omega], carried
         )
-        rest_new = rescaled(ops, [*tangent, growth, ratio * factor, volume]) + carried
+        rows = [*tangent, growth, ratio * factor, volume]
+        bit = ops.emit(f"icmp eq i64 {ops.emit(f'and i64 %i, {OFTEN - 1}')}, {OFTEN - 1}")
+        rest_new = ops.branch(bit, rows, lambda: rescaled(ops, rows)) + carried
     else:
         ball, code = family.bounce(ops, question.law, shape, lam, own)
         rest_new = []

@@ -5,7 +5,7 @@ from typing import Any
 
 from numeric.families.family import Family
 
-FARTHEST = 400  # powers of two; a single bounce adds far less than the 600 that are left
+OFTEN = 8  # bounces; no single one grows a vector by more than 2**100, a double holds 2**1000
 TANGENT = ("dp", "omega", "growth", "ratio", "volume")
 
 
@@ -30,20 +30,11 @@ def fields(family: Family, question: Question) -> tuple[str, ...]:
 
 
 def rescaled(ops: Any, rows: list[Any]) -> list[Any]:
-    """`dp, omega, growth, ratio, volume` with mantissas brought back near one where they have gone far.
+    """`dp, omega, growth, ratio, volume` with their mantissas brought back near one, to be done every `OFTEN` bounces.
 
     What is taken out goes into the exponents `growth` and `volume`, so no logarithm is needed on the way.
     """
     dp, omega, growth, ratio, volume = rows
-    size = ops.maximum(abs(dp), abs(omega))
-    low, high = ops.number(2.0**-FARTHEST), ops.number(2.0**FARTHEST)
-    inside = (low < size) & (size < high) & (low < ratio) & (ratio < high)
-    outside = ops.negated(inside)
-
-    def brought_back() -> list[Any]:
-        small, gained = ops.power_of_two(size)
-        tiny, lost = ops.power_of_two(ratio)
-        scaled = [dp * small, omega * small, growth + gained, ratio * tiny, volume + lost]
-        return [ops.select(outside, new, old) for new, old in zip(scaled, rows, strict=True)]
-
-    return list(ops.when(outside, rows, brought_back))
+    small, gained = ops.power_of_two(ops.maximum(abs(dp), abs(omega)))
+    tiny, lost = ops.power_of_two(ratio)
+    return [dp * small, omega * small, growth + gained, ratio * tiny, volume + lost]

@@ -46,7 +46,9 @@ class Cuspless(Cardioid):
         S = ops.polynomial_zero(poly, start, low, high, base, self.steps, ops.negated(to_wall))
         back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
         landing = plane.normalised(ops, (base, ops.select(from_wall, S, ops.times_sign(S, k))))
-        height = -(two * p * p * k + ops.number(QUARTER) * back[1]) / back[0]
+        # the arc is tangent to the wall: its distance is exactly (2*p**2 - 1/2)**2, its height 4*p**3*q
+        gap = two * (p - ops.number(0.5)) * (p + ops.number(0.5))
+        height = (two * p * p) * (two * p * q) - gap * gap * back[1] / back[0]
         w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
         sine, cosine = ops.select(to_wall, back[1], w[1]), ops.select(to_wall, back[0], -w[0])
         join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(S) - root3 * base))

@@ -310,9 +310,13 @@ class Lanes:
 
     def when(self, mask: Mask, values: list[Lane], changed: Callable[[], list[Lane]]) -> list[Lane]:
         """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
+        return self.branch(self.anywhere(mask), values, changed)
+
+    def branch(self, bit: str, values: list[Lane], changed: Callable[[], list[Lane]]) -> list[Lane]:
+        """`changed()` where the single bit is set, else `values`."""
         inside, after = self.fresh("inside")[1:], self.fresh("after")[1:]
         otherwise, before = [x.text for x in values], self.block
-        self.lines.append(f"  br i1 {self.anywhere(mask)}, label %{inside}, label %{after}")
+        self.lines.append(f"  br i1 {bit}, label %{inside}, label %{after}")
         self.label(inside)
         self.open()
         then = [x.text for x in changed()]

@@ -18,6 +18,7 @@ from numeric.question import OFTEN, Question, fields, rescaled
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
+PART = 1 << 24  # doubles recorded at a time
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
 
@@ -65,26 +66,46 @@ class Engine:
             row[count:] = values[-1] if isinstance(values, np.ndarray) else values
         contraction = np.empty(width)
         contraction[:count], contraction[count:] = lam, lam[-1]
-        record = np.empty((bounces, len(own), width)) if question.record else None
-        function = (
-            machine.compiled(self.family, self.identity, self.names, question, self.width) if self.kernels else None
-        )
-        if function is None:
-            _run_arrays(self.family, question, state, contraction, list(shape), bounces, record)
-        else:
-            parameters = np.array([*shape, 0.0])
-            pointers = [x.ctypes.data if x is not None else None for x in (state, contraction, parameters, record)]
-            pieces = _pieces(width // self.width, count * bounces, threads)
-            calls = [(*pointers, width, first * self.width, last * self.width, bounces) for first, last in pieces]
-            if len(calls) == 1:
-                function(*calls[0])
-            else:
-                from concurrent.futures import ThreadPoolExecutor
-
-                with ThreadPoolExecutor(len(calls)) as pool:
-                    list(pool.map(lambda call: function(*call), calls))
+        record = np.empty((bounces, len(own), count)) if question.record else None
+        most = max(1, PART // (len(own) * width)) if question.record else bounces
+        for done in range(0, bounces, most):
+            part = min(most, bounces - done)
+            page = np.empty((part, len(own), width)) if question.record else None
+            self._advance(question, state, contraction, shape, part, page, threads)
+            if record is not None and page is not None:
+                record[done : done + part] = page[:, :, :count]
         rows = {name: row[:count] for name, row in zip(names, state, strict=True)}
-        return Result(rows, None if record is None else record[:, :, :count])
+        return Result(rows, record)
+
+    def _advance(
+        self,
+        question: Question,
+        state: Array,
+        contraction: Array,
+        shape: Sequence[float],
+        bounces: int,
+        page: Array | None,
+        threads: int | None,
+    ) -> None:
+        """Bounce all columns of `state` in place."""
+        function = None
+        if self.kernels:
+            function = machine.compiled(self.family, self.identity, self.names, question, self.width)
+        if function is None:
+            _run_arrays(self.family, question, state, contraction, list(shape), bounces, page)
+            return
+        width = state.shape[1]
+        parameters = np.array([*shape, 0.0])
+        pointers = [x.ctypes.data if x is not None else None for x in (state, contraction, parameters, page)]
+        pieces = _pieces(width // self.width, width * bounces, threads)
+        calls = [(*pointers, width, first * self.width, last * self.width, bounces) for first, last in pieces]
+        if len(calls) == 1:
+            function(*calls[0])
+            return
+        from concurrent.futures import ThreadPoolExecutor
+
+        with ThreadPoolExecutor(len(calls)) as pool:
+            list(pool.map(lambda call: function(*call), calls))
 
 
 def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]]:

@@ -3,8 +3,8 @@
     void run(double *state, const double *lam, const double *shape, double *record,
              int64 width, int64 first, int64 last, int64 bounces)
 
-`state` holds one row of `width` doubles for each field: the ball's own, then `lost` when the family
-has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
+`state` holds one row of `width` doubles for each field: the ball's own, then `code` and `lost` when the
+family has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
 worked on. `record`, when orbits are asked for, receives the ball's own rows after every bounce.
 """
 
@@ -16,41 +16,30 @@ from numeric.question import OFTEN, Question, fields, rescaled
 from numeric.readers.lanes import Lane, Lanes
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
+HEAD = (
+    "define void @run(ptr noalias %state, ptr noalias %lam, ptr noalias %shape, ptr noalias %record, "
+    "i64 %width, i64 %first, i64 %last, i64 %bounces) #0 {"
+)
+TAIL = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
 
 
-def kernel_text(family: Family, shape: Sequence[str], question: Question, width: int = 0, features: str = "") -> str:
+def kernel_text(family: Family, shape: Sequence[str], question: Question, width: int = 0) -> str:
     """The module in LLVM's language."""
-    width = width or family.width
-    ops = Lanes(width)
+    ops = Lanes(width or family.width)
     names = fields(family, question)
     own = len(family.fields(question.law))
-    header = [
-        f"; {family.name}, {question.text}: written by numeric.kernel from numeric.families",
-        "define void @run(ptr noalias %state, ptr noalias %lam, ptr noalias %shape, ptr noalias %record, "
-        "i64 %width, i64 %first, i64 %last, i64 %bounces) #0 {",
-    ]
     ops.label("entry")
-    parameters = []
-    for i, name in enumerate(shape):
-        address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
-        scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
-        one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
-        parameters.append(
-            Lane(ops, ops.emit(f"shufflevector {ops.type} {one}, {ops.type} poison, <{width} x i32> zeroinitializer"))
-        )
+    parameters = [_broadcast(ops, i, name) for i, name in enumerate(shape)]
     ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
     ops.lines += ["  %busy = icmp slt i64 %at, %last", "  br i1 %busy, label %start, label %exit"]
     ops.label("start")
     ops.open()
-    addresses = []
-    for i in range(len(names)):
-        row = ops.emit(f"mul i64 %width, {i}")
-        place = ops.emit(f"add i64 {row}, %at")
-        addresses.append(ops.emit(f"getelementptr double, ptr %state, i64 {place}"))
+    addresses = [_address(ops, "state", ops.emit(f"mul i64 %width, {i}")) for i in range(len(names))]
     loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
     lam = _contraction(ops, question.law)
-    first = [Lane(ops, name) for name in loaded[:own]]
-    carried = [x.text for x in family.carried(ops, parameters, question.law, first)] if question.exponents else []
+    ball = [Lane(ops, name) for name in loaded[:own]]
+    carried = [x.text for x in family.carried(ops, parameters, question.law, ball)] if question.exponents else []
+    before = ops.block
     ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %bounce, label %done"]
     ops.label("bounce")
     slot = len(ops.lines)
@@ -59,32 +48,46 @@ def kernel_text(family: Family, shape: Sequence[str], question: Question, width:
     new = _bounced(ops, family, question, parameters, lam, [Lane(ops, name) for name in state])
     texts = [x.text for x in new]
     if question.record:
-        row = ops.emit(f"mul i64 %i, {own}")
-        for i in range(own):
-            line = ops.emit(f"add i64 {row}, {i}")
-            place = ops.emit(f"add i64 {ops.emit(f'mul i64 {line}, %width')}, %at")
-            address = ops.emit(f"getelementptr double, ptr %record, i64 {place}")
-            ops.lines.append(f"  store {ops.type} {texts[i]}, ptr {address}, align 8")
+        _record(ops, texts[:own])
     ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %bounces"]
     ops.lines.append("  br i1 %more, label %bounce, label %done")
     last = ops.block
-    phis = ["  %i = phi i64 [0, %start], [%following, %" + last + "]"]
+    phis = [f"  %i = phi i64 [0, %{before}], [%following, %{last}]"]
     for name, begin, end in zip(state, loaded + carried, texts, strict=True):
-        phis.append(f"  {name} = phi {ops.type} [{begin}, %start], [{end}, %{last}]")
+        phis.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
     ops.lines[slot:slot] = phis
     ops.close()
     ops.label("done")
-    for begin, end, address in zip(loaded, texts[: len(names)], list(addresses), strict=True):
-        name = ops.fresh()
-        ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %start], [{end}, %{last}]")
-        addresses[addresses.index(address)] = f"{address} {name}"
-    for pair in addresses:
-        address, name = pair.split()
+    finals = [ops.fresh() for _ in names]
+    for name, begin, end in zip(finals, loaded, texts[: len(names)], strict=True):
+        ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
+    for name, address in zip(finals, addresses, strict=True):
         ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
-    ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {width}", "  br label %column", "exit:"]
-    ops.lines += ["  ret void", "}"]
-    wide = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512"' + features + " }"
-    return "\n".join([*header, *alive(ops.lines), *sorted(ops.called), wide, ""])
+    ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
+    title = f"; {family.name}, {question.text}: written by numeric.kernel from numeric.families"
+    return "\n".join([title, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
+
+
+def _broadcast(ops: Lanes, i: int, name: str) -> Lane:
+    """A shape parameter in every lane."""
+    address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
+    scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
+    one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
+    everywhere = f"<{ops.width} x i32> zeroinitializer"
+    return Lane(ops, ops.emit(f"shufflevector {ops.type} {one}, {ops.type} poison, {everywhere}"))
+
+
+def _address(ops: Lanes, base: str, row: str) -> str:
+    """Where this column's block of a row begins; `row` counts doubles."""
+    return ops.emit(f"getelementptr double, ptr %{base}, i64 {ops.emit(f'add i64 {row}, %at')}")
+
+
+def _record(ops: Lanes, texts: list[str]) -> None:
+    """Store the ball's own rows of bounce `%i`."""
+    page = ops.emit(f"mul i64 %i, {len(texts)}")
+    for i, text in enumerate(texts):
+        row = ops.emit(f"mul i64 {ops.emit(f'add i64 {page}, {i}')}, %width")
+        ops.lines.append(f"  store {ops.type} {text}, ptr {_address(ops, 'record', row)}, align 8")
 
 
 def alive(lines: list[str]) -> list[str]:
@@ -114,10 +117,10 @@ def operations(text: str) -> dict[str, int]:
     """How many vector instructions of each kind one bounce takes, branches that are rarely taken left out."""
     counts = dict.fromkeys(("fma", "add", "mul", "div", "sqrt", "compare", "select"), 0)
     words = {"fadd": "add", "fsub": "add", "fmul": "mul", "fdiv": "div", "fcmp": "compare", "select": "select"}
-    rare = False
+    rare = True
     for line in text.splitlines():
         if line.endswith(":"):
-            rare = line.startswith(("inside", "head"))
+            rare = line.startswith(("entry", "start", "inside", "head"))
         elif not rare and " = " in line:
             word = line.partition(" = ")[2].split()[0]
             if word in words:

@@ -100,7 +100,9 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
         if kernels:
             tangent = (nought + 1, nought, nought, nought + 1, nought)
             yield Row(name, "float64", "llvm, exponents", error, run(Question(map.law, exponents=True), tangent), runs)
-            yield Row(name, "float64", "llvm, 2 threads", error, run(Question(map.law), threads=2), runs)
+            yield Row(
+                name, "float64", "llvm, 2 threads", error, run(Question(map.law), threads=2, bounces=4 * bounces), runs
+            )
 
 
 def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[Row]:

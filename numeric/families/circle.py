@@ -3,7 +3,6 @@
 from typing import Any
 
 from numeric.families.family import SLAP, Family, Landing
-from numeric.functions import HALF_PI, HALF_PI_LOW
 from numeric.plane import Pair
 
 
@@ -18,8 +17,8 @@ class Circle(Family):
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         (theta,), (phi,) = position, exit
         turned = theta - (phi + phi) if law != SLAP else theta
-        half_turn = ops.with_sign(ops.number(2 * HALF_PI), turned)
-        rest = ops.with_sign(ops.number(2 * HALF_PI_LOW), turned)
+        half_turn = ops.with_sign(ops.pi(), turned)
+        rest = ops.with_sign(ops.pi_low(), turned)
         return Landing([(turned - half_turn) - rest], phi, ops.number(1.0))
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:

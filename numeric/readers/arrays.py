@@ -29,6 +29,10 @@ class Arrays:
         """The double nearest to pi."""
         return np.pi
 
+    def pi_low(self) -> Any:
+        """What that double lacks."""
+        return 2 * functions.HALF_PI_LOW
+
     sqrt = staticmethod(np.sqrt)
     sin = staticmethod(np.sin)
     cos = staticmethod(np.cos)

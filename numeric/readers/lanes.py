@@ -197,6 +197,10 @@ class Lanes:
         """The double nearest to pi."""
         return self.number(2 * functions.HALF_PI)
 
+    def pi_low(self) -> Lane:
+        """What that double lacks."""
+        return self.number(2 * functions.HALF_PI_LOW)
+
     def sqrt(self, x: Lane) -> Lane:
         """The square root."""
         return self.number(math.sqrt(x.value)) if x.value is not None else self.call("sqrt", x)

@@ -28,6 +28,10 @@ class Scalars:
         """Pi to the context's precision."""
         return +self.context.pi
 
+    def pi_low(self) -> Any:
+        """Nothing: `pi` is as good as every other number here."""
+        return self.context.mpf(0)
+
     def sqrt(self, x: Any) -> Any:
         """The square root."""
         return self.context.sqrt(x)

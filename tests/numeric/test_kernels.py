@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from numeric import PinballMap
 from numeric.engine import Engine
 from numeric.families.family import SLAP
 from numeric.kernel import kernel_text
@@ -99,3 +100,11 @@ def test_steps_make_orbits(table):
     assert np.array_equal(orbit.theta[0], theta)
     assert np.all(np.isnan(orbit.eta[0]))
     assert np.nanmax(np.abs(orbit.phi[1:] + 0.6 * orbit.eta[1:])) <= 8 * 2.0**-52
+
+
+def test_long_orbits_are_recorded_in_parts_without_a_seam(monkeypatch):
+    map = PinballMap("egg", lam=0.9, alpha="0.08")
+    whole = map.orbit([0.1, 0.2], 0.3, 500)
+    monkeypatch.setattr("numeric.engine.PART", 4 * 32 * 7)
+
+    assert np.array_equal(map.orbit([0.1, 0.2], 0.3, 500).theta, whole.theta)

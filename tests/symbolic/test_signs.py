@@ -50,6 +50,7 @@ def check(p, box) -> Outcome:
     samples = [p.subs(dict(zip(used, at, strict=True))) for at in product(*(points(box[symbol]) for symbol in used))]
     if finding:
         assert all(value > 0 for value in samples)
+        assert len(used) != 1 or not any(root in box[used[0]] for root in Poly(p, used[0]).real_roots())
     elif finding.outcome is Outcome.REFUTED and "the value is" in finding.reason:
         at, value = witness(finding.reason)
         assert p.subs(at) == value <= 0

@@ -2,7 +2,12 @@
 
 import pytest
 
+from verification.arithmetic import FLOAT64
 from verification.border import Border, sampled
+from verification.certificates.corner import at_corner
+from verification.locate import locate
+from verification.shooting.newton import floats
+from verification.shooting.small import corner
 
 BORDER = Border()
 
@@ -13,6 +18,17 @@ def test_both_sides_expand_so_no_cycle_there_is_stable():
         trace, determinant = half[0][0] + half[1][1], half[0][0] * half[1][1] - half[0][1] * half[1][0]
 
         assert abs(trace) > 1 + determinant  # a real multiplier outside the unit circle
+
+
+def test_the_kink_of_s4_moves_as_the_one_sided_derivatives_say():
+    theta1, lam = floats(corner(), [0.2545, 0.0712])
+    exact = at_corner(FLOAT64, theta1, lam)
+    balls_of_it = locate("lambda-star", 15)
+
+    assert exact.minimum_at_kink
+    assert abs(exact.descent + 1.68078633425) < 1e-9
+    assert balls_of_it.checks["s4_dips_below"]
+    assert balls_of_it.checks["unstable"]
 
 
 def test_an_orbit_is_carried_away_below_and_kept_above():

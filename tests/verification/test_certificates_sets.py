@@ -10,6 +10,7 @@ from symbolic.symbols import alpha as letter
 from verification.certificates.contraction import Status, contraction, exact_balls
 from verification.certificates.curve import doubling_curve
 from verification.certificates.exclusion import no_triangles
+from verification.certificates.fourth import fourth_on_wall
 from verification.certificates.projection import PRODUCED, SLAP, witness
 from verification.certificates.slap import periodic_points
 from verification.feigenbaum import DELTA, aitken, limit, ratio, wynn
@@ -85,6 +86,11 @@ def test_more_rungs_agree_with_the_stated_error():
     assert abs(short.value - long.value) < 10 * short.error
     assert long.error < 1e-18
     assert mpmath.nstr(long.value, 18) == "0.39352046833370729"
+
+
+def test_below_lambda_star_the_fourth_collision_is_on_the_wall():
+    assert fourth_on_wall(0.08, 0.0, 0.04).on_wall is True
+    assert fourth_on_wall(0.08, 0.0712, 0.0713, budget=3000).on_wall is None  # lambda-star lies between
 
 
 def test_the_diameters_double_supercritically_along_the_whole_curve():

@@ -28,7 +28,8 @@ class Corner:
 
     `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc;
     `motion` is `d s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are
-    `(trace, determinant)` of the half return map, mirrored to the same corner.
+    `(trace, determinant)` of the half return map, mirrored to the same corner. `descent` is the speed in
+    `lam` of the value of `s_4` at the kink: negative when the touching curve then dips below `s*`.
     """
 
     slope_wall: arb
@@ -36,6 +37,13 @@ class Corner:
     motion: arb
     wall: tuple[arb, arb]
     arc: tuple[arb, arb]
+    descent: arb
+
+    @property
+    def unstable(self) -> bool | None:
+        """True when the half return has a multiplier outside the unit circle on either side."""
+        both = all(abs(trace) > 1 + determinant for trace, determinant in (self.wall, self.arc))
+        return True if both else None
 
     @property
     def minimum_at_kink(self) -> bool | None:
@@ -67,7 +75,26 @@ def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
     for K in (0, sharp):
         half = _product(down(K), flight(arithmetic, edge, theta1, K, middle, contraction))
         halves.append((-(half[0] + half[3]), half[0] * half[3] - half[1] * half[2]))  # the mirror is -1
-    return Corner(slopes[0], slopes[1], _product(down(0), first)[1], halves[0], halves[1])
+    motion = _product(down(0), first)[1]
+    descent = _descent(arithmetic, theta1, first, down(0), up(0), last, motion)
+    return Corner(slopes[0], slopes[1], motion, halves[0], halves[1], descent)
+
+
+def _descent(
+    arithmetic: Arithmetic, theta1: Any, first: Matrix, down: Matrix, up: Matrix, last: Matrix, motion: Any
+) -> Any:
+    """`d s_4/d lam` along the angles that hit the lower corner: each reflection shifts `phi` by `-eta`."""
+    angle, edge = load(chord_kernel(cuspless, 0, 0, 0), arithmetic), corner_parameter(arithmetic)
+    eta1, eta2 = angle(theta1, edge)[0], angle(-edge, theta1)[0]  # the mirrored bounces have -eta1, -eta2
+    turned = down[1] * -eta1 / motion  # with this much less of the initial angle the lower corner stays hit
+    x = _times(first, (0, -turned))
+    x = _times(down, (x[0], x[1] - eta1))
+    x = _times(up, (0, x[1] - eta2))
+    return _times(last, (x[0], x[1] + eta1))[0]
+
+
+def _times(m: Matrix, x: tuple[Any, Any]) -> tuple[Any, Any]:
+    return m[0] * x[0] + m[1] * x[1], m[2] * x[0] + m[3] * x[1]
 
 
 def flight(arithmetic: Arithmetic, start: Any, end: Any, leaving: Any, landing: Any, contraction: Any) -> Matrix:

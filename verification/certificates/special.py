@@ -83,6 +83,8 @@ def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb,
         return value, {}
     sides = at_corner(words, theta1, lam)
     checks["s4_minimum_at_a_kink"] = sides.minimum_at_kink
+    checks["s4_dips_below"] = True if sides.descent < 0 else False if sides.descent > 0 else None
+    checks["unstable"] = sides.unstable
     notes = {
         "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
         "half_return_traces": f"{sides.arc[0].str(8)} on the arc, {sides.wall[0].str(8)} on the wall",

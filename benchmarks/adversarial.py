@@ -4,7 +4,7 @@ The last two columns divide by one plus the row sums of the derivative matrix, t
 The reference is the same step on 80-bit floats (NumPy's longdouble, 11 bits more than a double);
 that the step itself is right is what tests/numeric/test_accuracy.py shows at 50 digits.
 
-    python benchmarks/adversarial.py [POINTS]
+    python benchmarks/adversarial.py [POINTS [WORD]]        only the cases whose label has the word
 """
 
 import sys
@@ -100,11 +100,13 @@ def cases(count, rng):
     yield "ellipse, a = 1e4, near the tip", long, zero, side * tiny, angle
 
 
-def main(count):
+def main(count, word):
     rng = np.random.default_rng(11)
     say(f"{count} points a case; errors in units of 2**-52")
     say(f"{'case':<40}{'stopped':>9}{'wrong':>7}{'position':>10}{'direction':>11}{'/condition':>16}")
     for label, map, component, theta, phi in cases(count, rng):
+        if word not in label:
+            continue
         own = map.states.enter(component, theta, phi, "pinball")
         lam = np.full(theta.size, float(map.lam))
         result = map.engine.run(Question("pinball", record=True), own, lam, map.shape, 1)
@@ -131,4 +133,4 @@ def main(count):
 
 
 if __name__ == "__main__":
-    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 1_000_000)
+    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 1_000_000, sys.argv[2] if len(sys.argv) > 2 else "")

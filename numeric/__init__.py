@@ -3,7 +3,7 @@
 >>> from numeric import PinballMap
 >>> step = PinballMap("circle", lam=0.5).step(theta=0.0, phi=0.5)
 >>> round(float(step.theta), 12), round(float(step.phi), 12)
-(2.141592653590, 0.25)
+(2.14159265359, 0.25)
 """
 
 from numeric.pinball import Exponents, Orbit, PinballMap

@@ -14,7 +14,7 @@ from numeric.cache import key_of
 from numeric.coordinates import States
 from numeric.engine import Engine
 from numeric.families.choice import PATHS, family_of
-from numeric.families.family import PINBALL, SLAP, law_of
+from numeric.families.family import NEAR, PINBALL, SLAP, law_of
 from numeric.inputs import angles, components, contraction, counted, real, shape_value
 from numeric.question import Question
 from numeric.status import Status
@@ -230,8 +230,8 @@ class PinballMap:
 
         `slope` is `T_0'(s)` at the start, the derivative with respect to arc length.
 
-        >>> float(PinballMap("ellipse", a=2).slap(0.0).theta[1])
-        -3.141592653589793
+        >>> abs(float(PinballMap("ellipse", a=2).slap(0.0).theta[1]))
+        3.141592653589793
         """
         slapping = self if self.law == SLAP else self.at(lam=0)
         orbit = slapping.orbit(theta, 0.0, iterates, component)
@@ -306,6 +306,9 @@ class PinballMap:
         steep = np.abs(phi) >= np.pi / 2
         if np.any(steep):
             raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
+        at_cusp = np.cos(theta / 2) < NEAR if self.family.name == "cardioid" else np.zeros(theta.shape, dtype=bool)
+        if np.any(at_cusp):
+            raise ValueError(f"theta = {theta[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
         if self.lam.size > 1 and self.lam.shape != theta.shape:
             raise ValueError(
                 f"lam has shape {self.lam.shape} and the balls {theta.shape}; give one lam for each ball, or one"

@@ -17,6 +17,7 @@ from numeric.families.family import ELASTIC, NEAR, Family, Landing, grazing
 from numeric.plane import Pair
 
 GRID = 4096  # points on which a component's turning is examined
+OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
 TURN = np.pi / 2  # of the tangent on one piece, at most
 
 
@@ -37,6 +38,7 @@ class General(Family):
     def prepared(self, states: Any) -> None:
         """Find the pieces of the table with its shape; they are constants of its kernels."""
         self.ends = states.ends
+        self.closing = states.ends[0]
         for index, (low, high) in enumerate(states.ends):
             theta = np.linspace(low, high, GRID + 1)
             _, _, dx, dy, ax, ay = states.curve(np.full(theta.shape, index), theta)
@@ -48,7 +50,7 @@ class General(Family):
                 if flips or abs(angle[i + 1] - start) > TURN:
                     cuts.append(_inflection(states, index, theta[i - 1], theta[i]) if flips else float(theta[i]))
                     start = angle[i]
-            cuts.append(high)
+            cuts.append(high + OVERLAP if self.closed else high)
             self.pieces += [(index, a, b) for a, b in itertools.pairwise(cuts)]
         self.identity = repr(self.pieces)
 
@@ -82,7 +84,8 @@ class General(Family):
                 gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
                 gap = ops.select(here, one, gap * speed)
                 code = ops.select(gap < ops.number(NEAR), one, code)
-        code = ops.select(t < far, code, ops.number(4.0))
+        nowhere = ops.number(4.0 if self.closed else 1.0)  # what is lost between two components is at a join
+        code = ops.select(t < far, code, nowhere)
         return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy), "t": t})
 
     def _hits(
@@ -122,8 +125,11 @@ class General(Family):
         for first, last in ((a, middle), (middle, b)):
             f0, f1 = flight(first)[0], flight(last)[0]
             departs = own & (first <= theta) & (theta <= last)
-            crosses = (f0 * f1 < nought) & ops.negated(departs) & (first < last)
-            up = ops.times_sign(ops.number(1.0), f1)
+            if self.closed:  # the two ends of the parameter are one point
+                (begin, end) = (ops.number(float(x)) for x in self.closing)
+                departs = departs | ((theta <= begin) & (end <= last)) | ((end <= theta) & (first <= begin))
+            crosses = ops.negated((nought < f0 * f1) | (f0 == f1) | departs) & (first < last)
+            up = ops.times_sign(ops.number(1.0), f1 - f0)
             at = ops.zero(
                 lambda x, up=up: tuple(up * f for f in flight(x)), ops.number(0.5) * (first + last) + theta * nought,
                 first + theta * nought, last + theta * nought, ops.number(high - low), 3, crosses,

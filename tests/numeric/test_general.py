@@ -110,3 +110,12 @@ def test_a_word_outside_the_vocabulary_is_an_error():
 
     with pytest.raises(ValueError, match="beyond the kernels' words"):
         PinballMap(tables.polar(1 + exp(cos(theta)) / 20, name="exponential"), lam=1)
+
+
+def test_landings_on_the_cut_between_two_pieces_are_found():
+    map = generally(PinballMap("ellipse", lam=1, a=2))
+    step = map.step([0.0, np.pi, -np.pi, np.pi / 2], 0.0)
+
+    assert [status.name for status in step.status] == ["REGULAR"] * 4
+    assert np.allclose(step.x, [-2, 2, 2, 0], rtol=0, atol=1e-15)
+    assert ExactMap(map, 30).bounce(ExactMap(map, 30).ball(0, 0, 0)).code == 0

@@ -83,3 +83,8 @@ def test_integers_and_single_precision_are_numbers():
 
     assert map.step(1, 0).theta == map.step(1.0, 0.0).theta
     assert map.step(np.float32(0.5), 0.0).theta == map.step(0.5, 0.0).theta
+
+
+def test_no_ball_starts_at_the_cusp():
+    with pytest.raises(ValueError, match="is the cusp, where no normal and so no exit is defined"):
+        PinballMap("cardioid", lam=0.5).step(np.pi, 0.3)

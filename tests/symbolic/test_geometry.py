@@ -14,7 +14,7 @@ mp = mpmath.MPContext()
 mp.dps = 30
 
 COMPONENTS = [*circle.components, *ellipse.components, *cardioid.components, *cuspless.components, *egg(3).components]
-CURVED = [c for c in COMPONENTS if c.name not in ("wall", "egg")] + [*egg(3).at(alpha="1/20").components]
+CURVED = [c for c in COMPONENTS if c.name not in ("wall", "egg")]
 ANGLES = [S.Zero, Rational(1, 3), Rational(-7, 5), Rational(2)]
 SHAPE = {a: Rational(3, 2), alpha: Rational(1, 20)}
 

@@ -72,6 +72,8 @@ def arc(name: str, x: Expr | str, y: Expr | str, start: Expr | str, end: Expr | 
 
 def _exact(given: Expr | int | str) -> Expr:
     """An expression as it is; text only through the parser that executes nothing."""
+    if isinstance(given, bool) or not isinstance(given, str | int | Expr):
+        raise ValueError(f"table: {given!r} is no formula; give an exact expression, an integer, or text")
     return parse(given) if isinstance(given, str) else S(given)
 
 
@@ -83,10 +85,11 @@ def egg(K: int | Expr = 3) -> Table:
     >>> egg(3).components[0].at(S.Zero)
     (alpha + 1, 0)
     """
-    if isinstance(K, int) and K < 2:
+    points = _exact(K)
+    if points.is_integer is False or (points - 2).is_negative or points.has(theta):
         raise ValueError(f"egg: K = {K} is no number of points; K must be an integer of at least 2")
-    convex = Shape(alpha, Interval(0, 1 / (1 + S(K) ** 2)), "makes the table non-convex")
-    return polar(1 + alpha * cos(K * theta), "egg", [convex])
+    convex = Shape(alpha, Interval(0, 1 / (1 + points**2)), "makes the table non-convex")
+    return polar(1 + alpha * cos(points * theta), "egg", [convex])
 
 
 circle = polar(1, "circle")

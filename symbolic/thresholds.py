@@ -107,4 +107,6 @@ def even_stability_numbers(K: int | Expr) -> tuple[Expr, Expr]:
     >>> even_stability_numbers(4)
     ((33*alpha + 1)**2/(alpha + 1)**2, (33*alpha - 1)**2/(alpha - 1)**2)
     """
+    if S(K).is_odd:
+        raise ValueError(f"egg: K = {K} is odd; its diameters run from a vertex to a flat point (see alpha_tilde)")
     return stability_number(egg_diameter(K)), stability_number(egg_diameter(K, pi / K))

@@ -72,7 +72,7 @@ def arc(name: str, x: Expr | str, y: Expr | str, start: Expr | str, end: Expr | 
 
 def _exact(given: Expr | int | str) -> Expr:
     """An expression as it is; text only through the parser that executes nothing."""
-    if isinstance(given, bool) or not isinstance(given, str | int | Expr):
+    if isinstance(given, bool) or not isinstance(given, str | int | float | Expr):  # floats are refused later
         raise ValueError(f"table: {given!r} is no formula; give an exact expression, an integer, or text")
     return parse(given) if isinstance(given, str) else S(given)
 

@@ -80,3 +80,12 @@ def test_krawczyk_has_three_answers_too():
     ]
 
     assert answers == [Status.UNIQUE, Status.EMPTY, Status.UNKNOWN]
+
+
+def test_at_039_the_attractor_has_period_16_and_not_8_as_the_papers_figure_says():
+    sixteen = attractor(EGG, 0.39, (0.05, 3.1))
+    eight = floats(Problem(EGG, (0,) * 8, lam=Rational(39, 100)), attractor(EGG, 0.388, (0.05, 3.1)))
+
+    assert len(sixteen) == 16
+    assert everywhere(EGG, (0,) * 16, sixteen, (0.39, 0.39001), Stability.ATTRACTING).proved
+    assert everywhere(EGG, (0,) * 8, eight, (0.39, 0.39001), Stability.SADDLE).proved

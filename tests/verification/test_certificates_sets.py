@@ -47,6 +47,13 @@ def test_what_exists_is_never_excluded():
     assert found.share < 1
 
 
+def test_a_box_that_cannot_be_halved_exactly_ends_the_proof():
+    found = no_triangles(ALPHA, Rational(45, 100), budget=10**6)  # the cycles that exist are met by going deep
+
+    assert found.excluded is None
+    assert found.boxes < 10**5
+
+
 def test_a_budget_that_ends_is_unknown_and_says_how_far_it_came():
     found = no_triangles(ALPHA, Rational(3, 10), budget=1000)
 

@@ -5,7 +5,7 @@ else in the box. The items and what they rest on:
 
 - `exists`, `unique`: the interval Newton operator maps the box into its interior;
 - `precise`: the radius is what was asked for;
-- `admissible`: convex table, bounces apart and inside their components, so every chord first-hits;
+- `admissible`: bounces inside their components, and every chord first-hits the next one;
 - `minimal_period`: no shorter cycle;
 - `simple_multiplier`, `transversal`, `nondegenerate`: the numbers of the normal form are not 0;
 - `other_multiplier_stable`: the other multiplier lies inside the unit circle.
@@ -18,6 +18,7 @@ from flint import arb
 from verification.arithmetic import balls, working
 from verification.certificates.admissible import convex, inside, minimal
 from verification.certificates.contraction import Enclosure, Status, contraction, slope_bits
+from verification.certificates.first_hit import first_hits
 from verification.shooting.normal_form import NormalForm, normal_form
 from verification.shooting.problem import Kind, Linearised, Problem, Rows
 
@@ -93,8 +94,7 @@ def proved(claim: Claim) -> Proof:
         if problem.mirror:
             whole = whole + [-x for x in whole]
         parts = problem.components * (len(whole) // problem.period)
-        apart = found and bool(convex(problem.table, shape)) and inside(problem.table, parts, whole)
-        checks["admissible"] = True if apart else None
+        checks["admissible"] = _admissible(problem, parts, whole, shape) if found else None
         checks["minimal_period"] = minimal(problem.table, parts, whole) if found else None
         if problem.kind is Kind.CYCLE:
             return Proof(claim, checks, enclosure)
@@ -104,6 +104,14 @@ def proved(claim: Claim) -> Proof:
             if None not in _generic(form).values():
                 break
         return Proof(claim, checks | _generic(form), enclosure, form)
+
+
+def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shape: tuple[arb, ...]) -> bool | None:
+    """In a convex table the bounces lie inside their parts; in any other each chord is examined too."""
+    placed = inside(problem.table, parts, whole)
+    if placed is not True or convex(problem.table, shape) is True:
+        return placed
+    return first_hits(problem.table, parts, whole, shape)
 
 
 def _form(problem: Problem, zero: list[arb], bits: int) -> NormalForm | None:

@@ -19,6 +19,7 @@ from verification.shooting.normal_form import normal_form
 from verification.shooting.problem import Kind, Linearised, Problem, Rows
 
 BITS = 80
+SMALLEST = 2.0**-40  # halves of halves must stay exact in floats
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ def doubling_curve(K: int = 3, budget: int = 4000) -> Sign:
         while queue:
             middle, half = queue.pop()
             spent += 1
-            if spent > budget:
+            if spent > budget or half < SMALLEST:
                 return Sign(None, spent)
             if not _supercritical(K, arb(middle, half), curve(arb(middle, half))[0]):
                 queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
@@ -57,4 +58,3 @@ def _supercritical(K: int, lam: arb, alpha: arb) -> bool:
         return False
     chain = at.plain
     return bool(-bend * chain.upper[0] * chain.upper[1] / chain.diagonal[0] < 0)
-

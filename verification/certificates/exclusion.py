@@ -28,6 +28,7 @@ from verification.certificates.admissible import convex
 from verification.shooting.chain import Vector
 
 BITS = 64
+SMALLEST = 2.0**-36  # ends of boxes must stay exact in floats
 Box = tuple[tuple[float, float], ...]  # midpoint and half width of: first bounce, first gap, second gap
 Tick = Callable[[float], None]
 
@@ -90,6 +91,8 @@ def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick
         smallest = min(smallest, *(half for _, half in box))
         widest = max(range(3), key=lambda i: box[i][1])
         middle, half = box[widest]
+        if half < SMALLEST:
+            return Exclusion(None, boxes, done, smallest)
         for side in (-half / 2, half / 2):
             queue.append(tuple((middle + side, half / 2) if i == widest else x for i, x in enumerate(box)))
     return Exclusion(None if queue else True, boxes, done, smallest)

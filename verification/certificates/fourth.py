@@ -32,7 +32,7 @@ def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50
         while queue:
             phi, wide, lam, half = queue.pop()
             boxes += 1
-            if boxes > budget:
+            if boxes > budget or max(wide, half) < SMALLEST:
                 return Fourth(None, boxes)
             if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING)):
                 continue
@@ -44,6 +44,7 @@ def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50
 
 
 ROUNDING = 2.0**-50  # neighbouring boxes overlap
+SMALLEST = 2.0**-40
 
 
 def _lands_inside(phi: arb, lam: arb) -> bool:

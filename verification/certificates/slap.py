@@ -1,8 +1,9 @@
 """All cycles of a slap map up to a period, enclosed: the cuspless cardioid has none of period 4.
 
 The slap map is one-dimensional, so subdivision settles it: a piece of the boundary is followed in
-balls. A piece that does not meet its image holds no periodic point; where `(T0**n)' - 1` keeps its sign it holds at most one; and
-pieces that touch are joined, so that what is left are as many periodic points as are known already.
+balls. A piece that does not meet its image holds no periodic point; where `(T0**n)' - 1` keeps its
+sign it holds at most one; and pieces that touch are joined, so that what is left are as many periodic
+points as are known already.
 Paper: section 5.4 (`the graph of the 4th iterate confirms that there are no period-4 orbits`).
 """
 

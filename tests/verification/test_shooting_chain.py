@@ -97,9 +97,7 @@ def test_newtons_correction_inverts_the_matrix_of_difference_quotients(problem, 
     up, down = ([x + s * h * d for x, d in zip(z, correction, strict=True)] for s in (1, -1))
     slope = [
         (a - b) / (2 * h)
-        for a, b in zip(
-            Linearised(rows, up, slope=False).value, Linearised(rows, down, slope=False).value, strict=True
-        )
+        for a, b in zip(Linearised(rows, up, slope=False).value, Linearised(rows, down, slope=False).value, strict=True)
     ]
     value = Linearised(rows, z).value
 

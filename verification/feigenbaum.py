@@ -7,13 +7,19 @@ the universal constant of Feigenbaum. Their difference is the error that is stat
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Any
 
 import mpmath
+from sympy import Expr
+
+from verification.balls import decimal
+from verification.ladder import ladder
+from verification.locate import certify
 
 DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # Feigenbaum; from the literature
 DIGITS = 60
+RUNG_DIGITS = 50
 
 
 @dataclass(frozen=True)
@@ -87,3 +93,29 @@ def aitken(values: Sequence[Any]) -> Any:
             following.append(c - (c - b) ** 2 / (c - 2 * b + a))
         here = following
     return here[-1]
+
+
+@dataclass(frozen=True)
+class Accumulation:
+    """The certified rungs of a ladder as decimals, and the estimates of where and how it ends."""
+
+    rungs: tuple[str, ...]
+    limit: Estimate
+    ratio: Estimate
+
+
+def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
+    """The ladder of the egg up to `lambda_highest`, each rung certified to 50 digits, and its end.
+
+    >>> from sympy import Rational
+    >>> found = accumulation(Rational(2, 25), 8)
+    >>> mpmath.nstr(found.limit.value, 8), found.limit.error < 1e-7
+    ('0.39352047', True)
+    """
+    rungs = []
+    for rung in islice(ladder(alpha), highest - 2):
+        proof = certify(rung.problem, rung.start, RUNG_DIGITS)
+        if not proof.certified:
+            raise ValueError(f"ladder: lambda_{rung.n} at alpha = {alpha} is not certified: {proof.checks}")
+        rungs.append(decimal(proof.value, RUNG_DIGITS)[0])
+    return Accumulation(tuple(rungs), limit(rungs), ratio(rungs))

@@ -28,6 +28,7 @@ from verification.shooting.problem import Kind, Problem
 from verification.shooting.small import corner, focus
 
 MOST_DIGITS = 20_000
+BUDGET = 4_000_000  # bounces times digits: some ten minutes
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
 
 
@@ -173,6 +174,11 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
 
 def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
     """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
+    if (period := 2 ** max(int(n) - 1, 0)) * digits > BUDGET and n <= ladder.HIGHEST:
+        raise ValueError(
+            f"locate doubling: period {period} with {digits} digits is more work than the budget allows; "
+            f"accepted for n = {n}: up to {BUDGET // period} digits"
+        )
     problem, start = ladder.critical_cycle(alpha, int(n))
     proof = certify(problem, start, digits)
     return Found(proof.value, proof.checks, proof, _direction(proof))

@@ -25,6 +25,12 @@ def test_a_certificate_is_verified_anew(fold):
     assert checked(fold).certified
 
 
+def test_a_certificate_of_five_thousand_digits_is_read_back():
+    made = json.loads(json.dumps(document("lambda-star", locate("lambda-star", 5000).proof)))
+
+    assert checked(made).certified
+
+
 def test_an_irrational_shape_is_kept_exactly():
     proof = locate("saddle-node", 20, alpha=sqrt(2) / 30).proof
     made = document("saddle-node", proof)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from flint import arb
+from flint import arb, fmpz
 
 from symbolic import tables
 from symbolic.formula import number
@@ -122,7 +122,7 @@ def _pair(x: arb) -> list[str]:
 
 
 def _ball(pair: Any) -> arb:
-    mantissa, exponent = (int(text) for text in pair)
+    mantissa, exponent = (fmpz(str(text)) for text in pair)  # int() refuses more than 4300 digits
     if abs(exponent) > LARGEST_BITS * 2:
         raise ValueError(f"certificate: the exponent {exponent} is out of range")
     return arb((mantissa, exponent))

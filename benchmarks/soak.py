@@ -22,8 +22,10 @@ def say(text):
     sys.stdout.flush()
 
 
-def main(collisions):
+def main(collisions, only):
     for name, shape in SCENES.items():
+        if only not in ("", name):
+            continue
         for lam in (0.95, 1):
             map = PinballMap(name, lam=lam, **shape)
             component, theta, phi = random_starts(map, BALLS, seed=3)
@@ -50,4 +52,4 @@ def main(collisions):
 
 
 if __name__ == "__main__":
-    main(float(sys.argv[1]) if len(sys.argv) > 1 else 1e9)
+    main(float(sys.argv[1]) if len(sys.argv) > 1 else 1e9, sys.argv[2] if len(sys.argv) > 2 else "")

@@ -13,6 +13,7 @@ from numeric.families.family import NEAR, SLAP, Landing, grazing
 from numeric.plane import Pair
 
 QUARTER = 0.25
+TINY = 2.0**-30  # landings from the wall are found relatively, down to this distance from a join
 
 
 class Cuspless(Cardioid):
@@ -33,25 +34,33 @@ class Cuspless(Cardioid):
         ahead, behind = (((cubic[3] * x + cubic[2]) * x + cubic[1]) * x + cubic[0] for x in (-reach, reach))
         onwards, across = ahead < nought, behind < nought
         to_wall = ops.negated(onwards | across | from_wall)
-        # from the wall, at height p and along (c, -s): a quartic in tan(theta1/2)
-        L = ops.fma(c, p, ops.number(-QUARTER) * s)
-        quartic = [two * s - L, ops.number(4.0) * c, -two * (s + L), nought, -L]
+        # from the wall, at height y after a mirroring that lets it fly upwards: a quartic in tan(theta1/2), or, where
+        # the flight skims the arc next to the join, in sqrt(3) - tan(theta1/2), so that nothing cancels there
+        y, up, four = -ops.times_sign(p, s), abs(s), ops.number(4.0)
+        L, below = ops.fma(c, y, ops.number(QUARTER) * up), ops.number(QUARTER) * root3 - y
+        skims = (c < ops.number(0.125)) & (below < ops.number(0.0625))
+        plain = [-two * up - L, four * c, two * (up - L), nought, -L]
+        turned = [ops.number(16.0) * c * below, four * c * (four * root3 * y - one)]
+        turned += [-ops.number(3.0) * up - ops.number(20.0) * c * y, four * root3 * L, -L]
+        quartic = [ops.select(skims, -a, b) for a, b in zip(turned, plain, strict=True)]
         # one polynomial for both, negative at low and positive at high
         cubic = [ops.select(across, -b, b) for b in cubic] + [nought]
         poly = [ops.select(from_wall, a, b) for a, b in zip(quartic, cubic, strict=True)]
-        low = ops.select(from_wall, -root3, ops.select(across, Q, -reach))
-        high = ops.select(from_wall, root3, ops.select(across, reach, Q))
+        low = ops.select(from_wall, ops.select(skims, nought, -root3), ops.select(across, Q, -reach))
+        high = ops.select(from_wall, ops.select(skims, two * root3, root3), ops.select(across, reach, Q))
         start = ops.select(from_wall, nought, ops.select(across, reach, Q - c))
         base = ops.select(from_wall, one, p)
-        S = ops.polynomial_zero(poly, start, low, high, base, self.steps, ops.negated(to_wall))
+        scale = ops.select(from_wall, ops.select(skims, ops.number(TINY), one), p)
+        S = ops.polynomial_zero(poly, start, low, high, scale, self.steps, ops.negated(to_wall))
+        tangent = ops.select(from_wall, -ops.times_sign(ops.select(skims, root3 - S, S), s), ops.times_sign(S, k))
         back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
-        landing = plane.normalised(ops, (base, ops.select(from_wall, S, ops.times_sign(S, k))))
+        landing = plane.normalised(ops, (base, tangent))
         # the arc is tangent to the wall: its distance is exactly (2*p**2 - 1/2)**2, its height 4*p**3*q
         gap = two * (p - ops.number(0.5)) * (p + ops.number(0.5))
         height = (two * p * p) * (two * p * q) - gap * gap * back[1] / back[0]
         w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
         sine, cosine = ops.select(to_wall, back[1], w[1]), ops.select(to_wall, back[0], -w[0])
-        join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(S) - root3 * base))
+        join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(tangent) - root3 * base))
         code = ops.select(ops.number(NEAR) * base < join, nought, one)
         if law != SLAP:
             code = ops.select(grazing(ops, sine, cosine), ops.number(3.0), code)

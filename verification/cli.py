@@ -14,6 +14,8 @@ import click
 
 COMMANDS = {
     "verify": "Is each claim of the paper true?",
+    "locate": "Where does it happen, to N certified digits?",
+    "check": "Does a certificate still hold, without the search?",
     "orbit": "Where does this ball go?",
     "lyapunov": "The two exponents, with error bars.",
     "slap": "The slap map: what remains at lambda = 0.",

@@ -21,8 +21,10 @@ class Fourth:
     boxes: int
 
 
-def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50_000) -> Fourth:
+def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50_000, or_lower: bool = False) -> Fourth:
     """Does the fourth collision lie on the wall for all `|phi| <= angle`, `lowest <= lam <= highest`?
+
+    `or_lower` accepts the lower half of the arc as well: `s_4 > s*` is all that is asked then.
 
     >>> fourth_on_wall(0.01, 0.0, 0.03).on_wall
     True
@@ -34,7 +36,7 @@ def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50
             boxes += 1
             if boxes > budget or max(wide, half) < SMALLEST:
                 return Fourth(None, boxes)
-            if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING)):
+            if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING), or_lower):
                 continue
             if wide > half:
                 queue += [(phi - wide / 2, wide / 2, lam, half), (phi + wide / 2, wide / 2, lam, half)]
@@ -47,7 +49,12 @@ ROUNDING = 2.0**-50  # neighbouring boxes overlap
 SMALLEST = 2.0**-40
 
 
-def _lands_inside(phi: arb, lam: arb) -> bool:
+def _lands_inside(phi: arb, lam: arb, or_lower: bool) -> bool:
     flights = Flights(lam)
     images = flights.iterated([Piece(ARC, flights.ends[ARC], arb(1), phi)], 4)
-    return images is not None and all(p.component == WALL and abs(p.theta) < flights.ends[WALL] for p in images)
+    if images is None:
+        return False
+    edge = flights.ends[WALL]
+    if or_lower:
+        return all(bool(p.theta > -edge) if p.component == WALL else bool(p.theta < 0) for p in images)
+    return all(p.component == WALL and bool(abs(p.theta) < edge) for p in images)

@@ -2,7 +2,8 @@
 
 from functools import cache
 
-from sympy import Rational, S
+from flint import fmpq
+from sympy import Integer, Rational, S
 
 from symbolic.cycles import trace_and_determinant
 from symbolic.named_cycles import egg_diameter
@@ -11,9 +12,12 @@ from symbolic.tables import egg
 from verification.certificates.branch import contracts, flips_nowhere
 from verification.certificates.curve import doubling_curve
 from verification.certificates.everywhere import Stability, everywhere
+from verification.certificates.fourth import fourth_on_wall
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, judges, zero
 from verification.claims.on_egg_period3 import side_of_fold
+from verification.feigenbaum import accumulation
+from verification.locate import Located, locate
 from verification.shooting.follow import attractor
 
 SHAPE = Rational(2, 25)
@@ -68,4 +72,79 @@ def period3_found(claim: Claim) -> Judgement:
         "attracting for every lambda_c < lam < 1; at lambda_c a multiplier is 1, at lam = 1 the orbit is elliptic",
         by("both multipliers inside the unit circle for lambda_c < lam < 1", *jury),
         "The range is open: attracting for lambda_c < lambda < 1, not at lambda_c itself nor at lambda = 1.",
+    )
+
+
+@cache
+def corner() -> Located:
+    """The orbit through both corners, with its checklist."""
+    return locate("lambda-star", 20)
+
+
+@judges("cuspless.corner_orbit_unstable")
+def corner_orbit_unstable(claim: Claim) -> Judgement:
+    """Half the orbit, mirrored, has a multiplier outside the unit circle on either side of the join."""
+    return Judgement(
+        by("on either side of the joins", answer(corner().checks["unstable"], "a multiplier outside the unit circle")),
+        "unstable from both sides: one multiplier below -1 on the arc's side, one above 1 on the wall's",
+    )
+
+
+@judges("cuspless.fourth_collision_below")
+def fourth_collision_below(claim: Claim) -> Judgement:
+    """Boxes of angle and contraction up to 0.07121; from there on the one-sided slopes at the kink."""
+    found = fourth_on_wall(0.04, 0.0, 0.071)
+    proved = bool(found.on_wall and corner().checks["s4_minimum_at_a_kink"])
+    return Judgement(
+        Finding(Outcome.UNKNOWN, "not proved between 0.071 and lambda*"),
+        "s_4 > s* for |phi| <= 0.04; at lambda* its minimum, a kink and not a smooth minimum, touches s*",
+        evidence=f"proved for |phi| <= 0.04 and 0 <= lam <= 0.071 ({found.boxes} boxes); at lambda* "
+        "the minimum is a kink"
+        if proved
+        else "",
+    )
+
+
+@judges("cuspless.fourth_collision_above")
+def fourth_collision_above(claim: Claim) -> Judgement:
+    """At a contraction well above, every small angle lands beyond the upper join again."""
+    found = fourth_on_wall(0.05, 0.9, 0.9, or_lower=True)
+    return Judgement(
+        counterexample("lam = 0.9", answer(found.on_wall, "s_4 > s* for every |phi| <= 0.05")),
+        "s_4 < s* for some small phi just above lambda*, not for every lam > lambda*",
+        answer(
+            corner().checks["s4_minimum_at_a_kink"], "at lambda* the minimum of s_4 is s*, a kink, and falls with lam"
+        ),
+        "Not for every lambda > lambda*: at lambda = 0.9 the fourth collision lies beyond s* again "
+        "for all |phi| <= 0.05.",
+    )
+
+
+@judges("egg.figure_attractors")
+def figure_attractors(claim: Claim) -> Judgement:
+    """The rung between 8 and 16 lies below 0.39."""
+    fourth = locate("doubling", 20, alpha=SHAPE, n=Integer(4))
+    below = bool(fourth.certified and fourth.ball < fmpq(39, 100))
+    born = fourth.notes.get("kind", "")
+    passed = answer(below, "lambda_4 = 0.38876... < 0.39, certified: the cycle of period 8 has doubled")
+    return Judgement(
+        counterexample("panel (b)", passed),
+        "at lam = 0.39 the attracting cycle has period 16",
+        answer(
+            below and born.startswith("supercritical"), "the flip at lambda_4 is supercritical: period 16 beyond it"
+        ),
+        "Panel (b): at lambda = 0.39 the attractor has period 16, not 8; period 8 is stable for "
+        "0.3712 < lambda < 0.3888.",
+    )
+
+
+@judges("egg.cascade")
+def cascade(claim: Claim) -> Judgement:
+    """Certified rungs, and their limit by two extrapolations."""
+    found = accumulation(SHAPE, 8)
+    return Judgement(
+        Finding(Outcome.UNKNOWN, "infinitely many rungs are not proved"),
+        "lambda_oo = 0.3935204..., estimated",
+        evidence=f"lambda_3 to lambda_8 certified, all supercritical; ratios tend to {float(found.ratio.value):.5f} "
+        f"+- {float(found.ratio.error):.0e} (Feigenbaum 4.66920), lambda_oo = {float(found.limit.value):.9f}",
     )

@@ -67,11 +67,11 @@ def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> 
 
 def show(console: "Console", entries: list[dict[str, Any]], how: str) -> None:
     """The first bounces, a line each."""
-    wide = 20 if isinstance(entries[0]["x"], float) else len(entries[0]["x"]) + 4
-    console.print("bounce  " + "".join(f"{key:<{9 if key == 'component' else wide}}" for key in KEYS))
-    for i, entry in enumerate(entries[:MOST]):
-        texts = (f"{_text(entry[key]):<{9 if key == 'component' else wide}}" for key in KEYS)
-        console.print(f"{i:<8}" + "".join(texts))
+    rows = [[key for key in KEYS], *([_text(entry[key]) for key in KEYS] for entry in entries[:MOST])]
+    wide = [max(len(text) for text in column) + 2 for column in zip(*rows, strict=True)]
+    for i, row in enumerate(rows):
+        texts = "".join(text.ljust(width) for text, width in zip(row, wide, strict=True))
+        console.print(f"{i - 1 if i else 'bounce':<8}{texts.rstrip()}")
     if len(entries) > MOST:
         console.print(f"... and {len(entries) - MOST} more; --json FILE has them all")
     console.print(f"{len(entries) - 1} bounces ({how})")

@@ -148,7 +148,7 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),
         (["verify", "--json", "."], "'.' is a directory; accepted: a file, or - for standard output"),
         (["verify", "--report", "/dev/null/x"], "--report '/dev/null/x' cannot be made"),
-        (["judge"], "no command is called 'judge'; accepted: verify, orbit"),
+        (["judge"], "no command is called 'judge'; accepted: verify, "),
         (["judge\nme\x1b"], "no command is called 'judge\\nme\\x1b'"),
     ],
 )
@@ -248,7 +248,7 @@ def test_the_shapes_known_here_are_those_of_the_tables():
         ("--polar theta.real --lam 1", "--polar: '.' at column 6 is no part of a formula"),
         ("--polar __import__('os').system('true') --lam 1", '--polar: "\'" at column 12 is no part of a formula'),
         ("--polar theta --lam 1", "polar: the boundary is not closed"),
-        ("--polar 1+2*cos(theta) --lam 1", "polar: the boundary meets itself"),
+        ("--polar 1+2*cos(theta) --lam 1", "polar: rho = 2*cos(theta) + 1 is not positive"),
         ("--parametric cos(theta) -sin(theta) --lam 1", "parametric: the boundary runs clockwise"),
         ("--lam 1 --parametric cos(theta)", "requires 2 arguments"),
     ],

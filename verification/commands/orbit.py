@@ -67,7 +67,7 @@ def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> 
 
 def show(console: "Console", entries: list[dict[str, Any]], how: str) -> None:
     """The first bounces, a line each."""
-    rows = [[key for key in KEYS], *([_text(entry[key]) for key in KEYS] for entry in entries[:MOST])]
+    rows = [list(KEYS), *([_text(entry[key]) for key in KEYS] for entry in entries[:MOST])]
     wide = [max(len(text) for text in column) + 2 for column in zip(*rows, strict=True)]
     for i, row in enumerate(rows):
         texts = "".join(text.ljust(width) for text, width in zip(row, wide, strict=True))

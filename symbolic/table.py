@@ -88,12 +88,17 @@ class Table:
                     f"{name} must lie in {interval_text(known[name].range)}"
                 )
             values[known[name].symbol] = value
-        return replace(
+        table = replace(
             self,
             components=tuple(_substituted(component, values) for component in self.components),
             shapes=tuple(p for p in self.shapes if p.symbol not in values),
             fixed=self.fixed + tuple((symbol.name, value) for symbol, value in values.items()),
         )
+        if not table.shapes:
+            from symbolic.validity import simple  # which needs this module
+
+            simple(table)
+        return table
 
     def component(self, name: str) -> Component:
         """The component called `name`."""

@@ -8,33 +8,27 @@ from dataclasses import replace
 from itertools import pairwise
 
 from sympy import (
-    Dummy,
     Expr,
     Float,
     I,
     Interval,
     Poly,
     S,
-    Symbol,
-    acos,
-    atan,
-    chebyshevu,
     cos,
     expand,
     integrate,
     nan,
     oo,
-    pi,
-    sign,
     sin,
     tan,
     together,
     zoo,
 )
 
+from symbolic.crossing import chord_of_length_zero, polygon_crossing
 from symbolic.fourier import boundary_coefficients, coefficients, in_half_tangent
 from symbolic.geometry import trigonometric
-from symbolic.signs import Outcome, bernstein, positive
+from symbolic.signs import Outcome, conjunction, positive
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
 from symbolic.zero import vanishes
@@ -47,7 +41,7 @@ def validated(table: Table) -> Table:
     table = closed_and_finite(table)
     _counterclockwise(table)
     if not table.shapes:
-        _simple(table)
+        simple(table)
     return table
 
 
@@ -63,24 +57,29 @@ def closed_and_finite(table: Table) -> Table:
 
 
 def positive_radius(name: str, rho: Expr) -> bool:
-    """True when `rho(theta) > 0` is proved, so that the polar curve is simple and counterclockwise.
+    """True when `rho(theta) > 0` is proved; `ValueError` when it is refuted.
 
     >>> positive_radius("flower", 1 + cos(5 * theta) / 40)
     True
     """
+    outcome = radius_sign(rho)
+    if outcome is Outcome.REFUTED:
+        wanted = "a polar table needs rho > 0, or its cusp named"
+        raise ValueError(f"{name}: rho = {rho} is not positive for every theta; {wanted}")
+    return outcome is Outcome.PROVED
+
+
+def radius_sign(rho: Expr) -> Outcome:
+    """Is `rho(theta) > 0` for every theta? A polar curve is then simple and counterclockwise."""
     half = in_half_tangent(rho)
     if half is None:
-        return bool(rho.is_positive)
+        return Outcome.PROVED if rho.is_positive else Outcome.UNKNOWN
     c = coefficients(rho) or {}
     if c.get(0, S.Zero) > sum(abs(value) for k, value in c.items() if k):
-        return True
+        return Outcome.PROVED
     polynomial, T, at_pi = half
-    findings = [positive(at_pi, {}), *(positive(polynomial.subs(T, s * T), {T: Interval(0, oo)}) for s in (1, -1))]
-    if any(finding.outcome is Outcome.REFUTED for finding in findings):
-        raise ValueError(
-            f"{name}: rho = {rho} is not positive for every theta; a polar table needs rho > 0, or its cusp named"
-        )
-    return all(findings)
+    sides = (positive(polynomial.subs(T, s * T), {T: Interval(0, oo)}) for s in (1, -1))
+    return conjunction(positive(at_pi, {}), *sides).outcome
 
 
 def _own_letters(table: Table, component: Component) -> Component:
@@ -160,56 +159,26 @@ def enclosed_area(table: Table) -> Expr | None:
     return expand(total)
 
 
-def _simple(table: Table) -> None:
-    if len(table.components) > 1 or table.undefined:
+def simple(table: Table) -> None:
+    """Refuses a boundary that crosses itself.
+
+    A positive radius or the exclusion of chords of length 0 proves that it does not; a boundary too
+    hard for either (pieces, high harmonics, no finite sum) is refused when its inscribed polygon crosses.
+    """
+    whole = table.components[0]
+    if any(c.free_symbols - {theta} for component in table.components for c in component.point):
         return
-    c = boundary_coefficients(table.components[0])
-    if c is None or max(abs(k) for k in c) > HIGHEST_HARMONIC:
-        return
-    crossing = self_crossing(c)
+    if len(table.components) == 1 and not table.undefined:
+        x, y = whole.point
+        radius = trigonometric(x * cos(theta) + y * sin(theta))
+        if trigonometric(y * cos(theta) - x * sin(theta)) == 0 and radius_sign(radius) is Outcome.PROVED:
+            return
+        c = boundary_coefficients(whole)
+        if c is not None and max(abs(k) for k in c) <= HIGHEST_HARMONIC:
+            crossing = chord_of_length_zero(c)
+            if crossing:
+                raise ValueError(f"{table.name}: {crossing}")
+            return
+    crossing = polygon_crossing(table)
     if crossing:
         raise ValueError(f"{table.name}: {crossing}")
-
-
-def self_crossing(c: dict[int, Expr]) -> str | None:
-    """A sentence on where `sum c_k exp(i*k*theta)` meets itself or stops; None when it is proved simple.
-
-    The chord between `m + B` and `m - B` is `2*i*sin(B)` times `sum sgn(k) c_k U_(|k|-1)(cos B)
-    exp(i*k*m)`. A simple regular curve has no zero of that sum for `-1 <= cos B <= 1`; boxes of
-    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part.
-
-    >>> self_crossing({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
-    'the boundary meets itself, or stops, near theta = -89 and 90 degrees'
-    """
-    T, C = Dummy("T", real=True), Dummy("C", real=True)
-    n = max(abs(k) for k in c)
-    total = S.Zero
-    for k, value in c.items():
-        if k:
-            wave = (1 + sign(k) * I * T) ** (2 * abs(k)) * (1 + T**2) ** (n - abs(k))
-            total += sign(k) * value * chebyshevu(abs(k) - 1, C) * wave
-    parts = [expand(part) for part in expand(total).as_real_imag()]
-    box = _unexcluded([p for p in parts if p != 0], {T: Interval(-1, 1), C: Interval(-1, 1)}, 14)
-    if box is None:
-        return None
-    m = 2 * atan((box[T].start + box[T].end) / 2)
-    half = acos((box[C].start + box[C].end) / 2)
-    ends = sorted((angle * 180 / pi).round() for angle in (m - half, m + half))
-    return f"the boundary meets itself, or stops, near theta = {ends[0]} and {ends[1]} degrees"
-
-
-def _unexcluded(parts: list[Expr], box: dict[Symbol, Interval], depth: int) -> dict[Symbol, Interval] | None:
-    """A box of the last generation in which no part keeps its sign; None when every box is excluded."""
-    for part in parts:
-        signs = {c.is_positive if c.is_nonzero else None for c in bernstein(part, box)}
-        if len(signs) == 1 and None not in signs:
-            return None
-    if depth == 0:
-        return box
-    x = max(box, key=lambda y: box[y].measure)
-    middle = (box[x].start + box[x].end) / 2
-    for half in (Interval(box[x].start, middle), Interval(middle, box[x].end)):
-        found = _unexcluded(parts, {**box, x: half}, depth - 1)
-        if found is not None:
-            return found
-    return None

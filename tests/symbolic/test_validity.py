@@ -1,19 +1,21 @@
 """Bad input is refused in one clear sentence; a table of one's own works."""
 
 from decimal import Decimal
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, nan, pi, simplify, sin
+from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin
 
+from symbolic.crossing import chord_of_length_zero
 from symbolic.fourier import boundary_coefficients
 from symbolic.length import perimeter
 from symbolic.symbols import a, theta
 from symbolic.table import Component, Shape, Table
 from symbolic.tables import arc, cardioid, cuspless, egg, ellipse, named, parametric, piecewise, polar
-from symbolic.validity import enclosed_area, self_crossing, validated
+from symbolic.validity import enclosed_area, validated
 
 b = Symbol("b")
 
@@ -154,7 +156,7 @@ def test_self_crossings_are_found_by_coordinates_alone(swing):
     swing = Rational(swing.numerator, swing.denominator)
     c = boundary_coefficients(Component("limacon", limacon(swing), -pi, pi))
 
-    assert (self_crossing(c) is None) == (abs(swing) < 1)
+    assert (chord_of_length_zero(c) is None) == (abs(swing) < 1)
 
 
 def test_an_area_too_hard_to_integrate_is_not_judged():
@@ -162,3 +164,33 @@ def test_an_area_too_hard_to_integrate_is_not_judged():
 
     assert enclosed_area(Table("hard", (Component("hard", (x, y), -pi, pi),))) is None
     assert parametric(x, y).components[0].at(Dummy("p") * 0) == (Rational(1, 3), 0)
+
+
+def polygon(*corners: tuple[int, int]) -> Table:
+    ring = [*corners, corners[0]]
+    sides = [(p, q) for p, q in pairwise(ring)]
+    return piecewise(
+        *(arc(f"{p} to {q}", p[0] + (q[0] - p[0]) * theta, p[1] + (q[1] - p[1]) * theta, 0, 1) for p, q in sides)
+    )
+
+
+CROSSED = {
+    "sides of unequal triangles": lambda: polygon((0, 0), (4, 2), (4, 0), (0, 3)),
+    "a high harmonic": lambda: parametric(cos(theta) + cos(12 * theta) / 2, sin(theta) + sin(12 * theta) / 2),
+    "no finite sum, wound twice": lambda: parametric(
+        exp(cos(theta)) * cos(2 * theta), exp(cos(theta)) * sin(2 * theta)
+    ),
+    "a family at one of its shapes": lambda: parametric(
+        cos(theta) + b * cos(2 * theta), sin(theta) + b * sin(2 * theta), shapes=[Shape(b, Interval(0, 5), "crosses")]
+    ).at(b=2),
+}
+
+
+@pytest.mark.parametrize("made", CROSSED.values(), ids=CROSSED.keys())
+def test_a_crossing_is_found_where_no_proof_reaches(made):
+    with pytest.raises(ValueError, match=r"crosses itself|meets itself|encloses area 0"):
+        made()
+
+
+def test_a_polygon_that_does_not_cross_is_a_table():
+    assert perimeter(polygon((0, 0), (4, 0), (4, 3), (0, 3))) == 14

@@ -98,7 +98,8 @@ def decimal(value: arb, digits: int) -> tuple[str, str]:
     ('0.33333', '3.5e-6')
     """
     with ctx.workprec(int(3.33 * digits) + 64):
-        shown = value.str(digits, radius=False)
+        known = digits if value.is_exact() else max(int(0.302 * value.rel_accuracy_bits()) + 2, 1)
+        shown = value.mid().str(min(digits, known), radius=False)
         gap = abs(value - arb(shown))
         bound = (arb(gap.abs_upper()) * arb("1.05")).str(2, radius=False)
     return shown, bound

@@ -192,6 +192,16 @@ def symmetry_breaking(digits: int, alpha: Expr) -> Found:
     return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
 
 
+def sampled_crisis(kind: str, alpha: Expr) -> Found:
+    """A crisis of the egg's chaotic attractor: an estimate by sampling, with its error. Paper: section 6.7."""
+    from verification.crises import crisis  # float64 kernels, which no other name needs
+
+    found = crisis(kind, str(alpha))
+    stays = ", ".join(f"{mean:.3g} at {lam:.7g}" for lam, mean in found.stays)
+    notes = {"method": f"sampled, {found.bounces:.2g} bounces; not proved", "mean_stay_in_bounces": stays}
+    return Found(arb(found.lam, found.error), {"proved": None}, None, notes)
+
+
 def _unit(letter: str, value: Expr) -> Expr:
     if not 0 <= value <= 1:
         raise ValueError(f"locate: {letter} = {value} is out of range; accepted: numbers from 0 to 1")
@@ -211,4 +221,7 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "saddle-node": (saddle_node, ("alpha",)),
     "doubling": (doubling, ("alpha", "n")),
     "symmetry-breaking": (symmetry_breaking, ("alpha",)),
+    "merging-crisis": (lambda digits, alpha: sampled_crisis("merging", alpha), ("alpha",)),
+    "boundary-crisis": (lambda digits, alpha: sampled_crisis("boundary", alpha), ("alpha",)),
 }
+SAMPLED = ("merging-crisis", "boundary-crisis")  # estimates; whatever else is located is proved

@@ -42,3 +42,10 @@ def test_period_3_is_excluded_up_to_the_fold_though_not_by_the_papers_argument()
 
     assert conclusion.verdict is argument.verdict is Verdict.CORRECTED
     assert "meets the diagonal" in argument.derived
+
+
+@pytest.mark.parametrize("name", ["egg.merging_crisis", "egg.boundary_crisis", "cardioid.slap_ergodic", "egg.cascade"])
+def test_what_sampling_or_extrapolation_shows_is_supported_and_not_confirmed(name: str):
+    (result,) = verify(name)
+
+    assert result.verdict is Verdict.SUPPORTED

@@ -11,7 +11,7 @@ from verification.certificates.files import document
 from verification.commands.check import command as check
 from verification.commands.locate import command as locate_command
 from verification.ladder import ladder
-from verification.locate import NAMES, locate
+from verification.locate import NAMES, SAMPLED, locate
 
 ALPHA = Rational(2, 25)
 SHAPES = {
@@ -33,13 +33,23 @@ KNOWN = {  # each from its second method: closed forms of the symbolic storey, o
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in SAMPLED])
 def test_each_name_is_located_and_certified(name):
     found = locate(name, 25, **SHAPES.get(name, {}))
 
     assert found.certified, found.checks
     assert found.value.startswith(KNOWN[name])
     assert float(found.radius) < 1e-25
+
+
+@pytest.mark.parametrize(("name", "near"), [("merging-crisis", 0.44343), ("boundary-crisis", 0.6622)])
+def test_a_crisis_is_an_estimate_and_says_so(name, near):
+    """Near: the paper's plots, 0.4435 and 0.66, and a bisection with 20 times the bounces."""
+    found = locate(name, 8, alpha=ALPHA)
+
+    assert not found.certified
+    assert abs(float(found.value) - near) < 1e-4
+    assert 0 < float(found.radius) < 1e-3
 
 
 def test_more_digits_agree_with_fewer():

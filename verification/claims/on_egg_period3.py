@@ -201,7 +201,7 @@ def rotate(claim: Claim) -> Judgement:
     )
 
 
-@judges("egg.period3_lambda_c", "egg.period3_end_caption")
+@judges("egg.period3_lambda_c")
 def fold_digits(claim: Claim) -> Judgement:
     """The closed form at `alpha = 0.08`."""
     return digits(claim, saddle_node().subs(alpha, at("0.08")), ("0.39", "0.378"))

@@ -1,0 +1,72 @@
+"""Claims supported by sampling, with its error: the crises, and the sizes of basins. Paper: sections 4.2, 6.4, 6.7."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from sympy import Rational
+
+from numeric import PinballMap
+from symbolic.polygons import saddle_node
+from symbolic.signs import Finding, Outcome
+from symbolic.symbols import alpha
+from verification.attractors import random_starts
+from verification.claims.claim import Claim, Judgement
+from verification.claims.judges import digits, judges
+from verification.crises import Crisis, crisis
+
+SHAPE = Rational(2, 25)
+SEED = 1
+
+
+def sampled(derived: str, evidence: str, agrees: bool) -> Judgement:
+    """A claim that sampling supports within the error it states, and leaves open where it does not."""
+    return Judgement(Finding(Outcome.UNKNOWN, evidence), derived, evidence=evidence if agrees else "")
+
+
+@cache
+def quick(kind: str) -> Crisis:
+    """A crisis to five digits in a second or two; `pinball locate` spends more and says more."""
+    return crisis(kind, str(SHAPE), tolerance=2e-5, budget=10**7)
+
+
+@judges("egg.merging_crisis", "egg.boundary_crisis", "egg.crisis_below")
+def crises(claim: Claim) -> Judgement:
+    """The contraction from which balls leave the attractor."""
+    kind, printed = ("merging", "0.4435") if "merging" in claim.id else ("boundary", "0.66")
+    found = quick(kind)
+    gap, unit = found.lam - float(printed), 10.0 ** -len(printed.partition(".")[2])
+    value = f"{found.lam:.5f} +- {found.error:.0e}"
+    said = f"sampled over {found.bounces:.0e} bounces: {value}, which differs from {printed} by {gap:+.1e}"
+    return sampled(f"{value}, estimated", said, abs(gap) < unit and (claim.id != "egg.crisis_below" or gap > 0))
+
+
+def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:
+    """The share of random starts that end on period 3: their neighbourhood shrinks, off the diameters."""
+    map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
+    component, theta, phi = random_starts(map, starts, SEED)
+    end = map.exponents(theta, phi, 200, bounces, component)
+    return float(np.mean((end.nu_plus < 0) & (np.abs(end.phi) > 0.15)))
+
+
+@judges("egg.period3_end_caption")
+def end_of_period_3(claim: Claim) -> Judgement:
+    """The fold in closed form, and why sampling sees it late: the basins are born with size 0."""
+    shares = ", ".join(f"{share_of_period_3(lam):.1%} at {lam}" for lam in ("0.3785", "0.38", "0.39", "0.42"))
+    found = digits(claim, saddle_node().subs(alpha, SHAPE), ("0.39", "0.378"))
+    return replace(found, derived=f"{found.derived}; random starts that reach period 3: {shares}, so plots see it late")
+
+
+@judges("cardioid.slap_ergodic")
+def slap_ergodic(claim: Claim) -> Judgement:
+    """Time averages along many orbits agree within their errors."""
+    map = PinballMap("cardioid", lam=0)
+    start = np.random.default_rng(SEED).uniform(-3, 3, 64)
+    orbit = map.orbit(start, np.zeros(64), 20_000)
+    values = np.sin(orbit.theta[1000:] / 2) ** 2  # s^2/16
+    blocks = values[: 19_000 // 500 * 500].reshape(-1, 500, 64).mean(axis=1)
+    means, errors = blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(blocks.shape[0])
+    chi = float(np.mean(((means - means.mean()) / errors) ** 2))
+    good = bool(np.all(orbit.code == 0)) and 0.5 < chi < 1.7
+    said = f"64 orbits of 19000 bounces: the averages of s^2/16 are {means.mean():.4f}, reduced chi^2 {chi:.2f}"
+    return sampled("one time average from every start", said, good)

@@ -5,9 +5,8 @@ is imported. Those of the paper's tables are kept on disk, so that a warm run ne
 """
 
 import json
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from numeric import cache
 from numeric.program import Program
@@ -15,8 +14,7 @@ from numeric.program import Program
 PAPER = ("circle", "ellipse", "cardioid", "cuspless", "egg")
 
 
-@dataclass(frozen=True)
-class ShapeRange:
+class ShapeRange(NamedTuple):
     """A shape parameter, its closed range (None for no bound) and what fails outside."""
 
     name: str
@@ -35,8 +33,7 @@ class ShapeRange:
             raise ValueError(f"{table}: {self.name} = {shown} {self.otherwise}; {self.name} must lie in {low}, {high}")
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """A component: its parameter's ends and its curve, as programs in `theta` and the shape.
 
     `curve` has the six outputs `x, y` and their first and second derivatives.
@@ -47,8 +44,7 @@ class Part:
     curve: Program
 
 
-@dataclass(frozen=True)
-class Blueprint:
+class Blueprint(NamedTuple):
     """A table as the kernels see it. `family` names the step that serves it."""
 
     table: str

@@ -5,6 +5,7 @@ disk, and never while a map runs.
 """
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 from sympy import Expr, Float, Pow, Symbol, cos, pi, sin
@@ -148,10 +149,27 @@ def _family(table: Table, symbols: list[Symbol]) -> tuple[str, dict[str, Program
 
     def chord(nodes: Any) -> list[Any]:
         ex, ey, bx, by = nodes.inputs
-        return flight.chord_polynomial(in_nodes(nodes, h), (ex, ey), (bx, by))
+        ahead = {k: seen_ahead(k, *vectors, (ex, ey)) for k, vectors in in_nodes(nodes, h).items() if k}
+        return flight.chord_polynomial(ahead, flight.ONE, (bx, by))
 
     programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
     return "fourier", programs
+
+
+def seen_ahead(
+    k: int, C: flight.Complex, S: flight.Complex, E: flight.Complex
+) -> tuple[flight.Complex, flight.Complex]:
+    """A harmonic in the frame of the flight, where `E = 1`; of the two vectors only the parts that a chord sees.
+
+    `exp(i*k*m)*conj(M_k)` is a number times `E**(k + 1)` and one times `E**(k - 1)`. With `|E| = 1` used here, a
+    circle's part of a table adds no rounding to the chord polynomial: its products `E*conj(E)` are one.
+    """
+    half = Fraction(1, 2)
+    up = flight.powers(E, k + 1)
+    above = (C[0] - S[1]) * half, (S[0] + C[1]) * -half
+    below = (C[0] + S[1]) * half, (C[1] - S[0]) * half
+    g = [x + y for x, y in zip(flight.times(above, up[k + 1]), flight.times(below, up[k - 1]), strict=True)]
+    return (g[0], 0), (-g[1], 0)
 
 
 def _bound(value: Expr) -> str | None:

@@ -6,15 +6,14 @@ Every lane computes what it would compute alone, so results depend neither on th
 import itertools
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric import machine
 from numeric.families.family import Family
-from numeric.question import OFTEN, Question, fields, rescaled
+from numeric.question import Question, fields, rescaled
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
@@ -22,16 +21,14 @@ PART = 1 << 24  # doubles recorded at a time
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
 
-@dataclass(frozen=True)
-class Result:
+class Result(NamedTuple):
     """Rows of the final state by name, and the recorded rows: bounce, field, ball."""
 
     rows: dict[str, Array]
     record: Array | None
 
 
-@dataclass(frozen=True)
-class Engine:
+class Engine(NamedTuple):
     """The runner of one family on one blueprint; `kernels` is False where NumPy was asked for."""
 
     family: Family
@@ -132,16 +129,13 @@ def _run_arrays(
     own = len(family.fields(question.law))
     extra = own + (2 if family.stops else 0)
     with np.errstate(all="ignore"):
-        carried = family.carried(ops, shape, question.law, list(state[:own])) if question.exponents else []
+        kept = family.kept(ops, shape, list(state[: len(family.position)])) if question.exponents else []
         for bounce in range(bounces):
             ball = [row.copy() for row in state[:own]]
             if question.exponents:
-                dp, omega, growth, ratio, volume = (row.copy() for row in state[extra:])
-                new, code, tangent, factor, carried = family.bounce_with_tangent(
-                    ops, question.law, shape, lam, ball, [dp, omega], carried
-                )
-                more = [*tangent, growth, ratio * factor, volume]
-                if bounce % OFTEN == OFTEN - 1:
+                vector = [row.copy() for row in state[extra:]]
+                new, code, more, kept = family.bounce_with_tangent(ops, question.law, shape, lam, ball, vector, kept)
+                if bounce % family.often == family.often - 1 or bounce == bounces - 1:
                     more = rescaled(ops, more)
             else:
                 new, code = family.bounce(ops, question.law, shape, lam, ball)

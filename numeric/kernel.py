@@ -12,7 +12,7 @@ import re
 from collections.abc import Sequence
 
 from numeric.families.family import ELASTIC, SLAP, Family
-from numeric.question import OFTEN, Question, fields, rescaled
+from numeric.question import TANGENT, Question, fields, rescaled
 from numeric.readers.lanes import Lane, Lanes
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
@@ -20,7 +20,7 @@ HEAD = (
     "define void @run(ptr noalias %state, ptr noalias %lam, ptr noalias %shape, ptr noalias %record, "
     "i64 %width, i64 %first, i64 %last, i64 %bounces) #0 {"
 )
-TAIL = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
+TAIL = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
 
 
 def kernel_text(family: Family, shape: Sequence[str], question: Question, width: int = 0) -> str:
@@ -38,9 +38,17 @@ def kernel_text(family: Family, shape: Sequence[str], question: Question, width:
     loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
     lam = _contraction(ops, question.law)
     ball = [Lane(ops, name) for name in loaded[:own]]
-    carried = [x.text for x in family.carried(ops, parameters, question.law, ball)] if question.exponents else []
+    place = ball[: len(family.position)]
+    carried = [x.text for x in family.kept(ops, parameters, place)] if question.exponents else []
     before = ops.block
-    ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %bounce, label %done"]
+    outer = [ops.fresh() for _ in [*names, *carried]]
+    ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %stretch, label %done"]
+    ops.label("stretch")
+    far = len(ops.lines)
+    ops.open()
+    stretch = f"add i64 %begun, {family.often}" if question.exponents else "add i64 %bounces, 0"
+    ops.lines += [f"  %full = {stretch}", "  %short = icmp slt i64 %full, %bounces"]
+    ops.lines += ["  %until = select i1 %short, i64 %full, i64 %bounces", "  br label %bounce"]
     ops.label("bounce")
     slot = len(ops.lines)
     ops.open()
@@ -49,13 +57,19 @@ def kernel_text(family: Family, shape: Sequence[str], question: Question, width:
     texts = [x.text for x in new]
     if question.record:
         _record(ops, texts[:own])
-    ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %bounces"]
-    ops.lines.append("  br i1 %more, label %bounce, label %done")
+    ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %until"]
+    ops.lines.append("  br i1 %more, label %bounce, label %measured")
+    ops.lines[slot:slot] = _joined(ops, "i", state, ("stretch", "%begun", outer), (ops.block, "%following", texts))
+    ops.close()
+    ops.label("measured")
+    if question.exponents:
+        at = own + (2 if family.stops else 0)
+        rows = [Lane(ops, name) for name in texts[at : at + len(TANGENT)]]
+        texts[at : at + len(TANGENT)] = [x.text for x in rescaled(ops, rows)]
+    ops.lines += ["  %again = icmp slt i64 %following, %bounces", "  br i1 %again, label %stretch, label %done"]
     last = ops.block
-    phis = [f"  %i = phi i64 [0, %{before}], [%following, %{last}]"]
-    for name, begin, end in zip(state, loaded + carried, texts, strict=True):
-        phis.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
-    ops.lines[slot:slot] = phis
+    origin = loaded + carried
+    ops.lines[far:far] = _joined(ops, "begun", outer, (before, "0", origin), (last, "%following", texts))
     ops.close()
     ops.label("done")
     finals = [ops.fresh() for _ in names]
@@ -66,6 +80,17 @@ def kernel_text(family: Family, shape: Sequence[str], question: Question, width:
     ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
     title = f"; {family.name}, {question.text}: written by numeric.kernel from numeric.families"
     return "\n".join([title, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
+
+
+def _joined(
+    ops: Lanes, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
+) -> list[str]:
+    """The head of a loop: what its index and its rows are on entry from a block, and after a pass from another."""
+    (before, zero, begins), (last, following, ends) = first, again
+    phis = [f"  %{index} = phi i64 [{zero}, %{before}], [{following}, %{last}]"]
+    for name, begin, end in zip(names, begins, ends, strict=True):
+        phis.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
+    return phis
 
 
 def _broadcast(ops: Lanes, i: int, name: str) -> Lane:
@@ -120,7 +145,7 @@ def operations(text: str) -> dict[str, int]:
     rare = True
     for line in text.splitlines():
         if line.endswith(":"):
-            rare = line.startswith(("entry", "start", "inside", "head"))
+            rare = line.startswith(("entry", "start", "stretch", "measured", "inside", "head"))
         elif not rare and " = " in line:
             word = line.partition(" = ")[2].split()[0]
             if word in words:
@@ -145,13 +170,9 @@ def _bounced(
     own, rest = state[:count], state[count:]
     outcome, rest = (rest[:2], rest[2:]) if family.stops else ([], rest)
     if question.exponents:
-        dp, omega, growth, ratio, volume, *carried = rest
-        ball, code, tangent, factor, carried = family.bounce_with_tangent(
-            ops, question.law, shape, lam, own, [dp, omega], carried
-        )
-        rows = [*tangent, growth, ratio * factor, volume]
-        bit = ops.emit(f"icmp eq i64 {ops.emit(f'and i64 %i, {OFTEN - 1}')}, {OFTEN - 1}")
-        rest_new = ops.branch(bit, rows, lambda: rescaled(ops, rows)) + carried
+        vector, kept = rest[: len(TANGENT)], rest[len(TANGENT) :]
+        ball, code, rows, kept = family.bounce_with_tangent(ops, question.law, shape, lam, own, vector, kept)
+        rest_new = rows + kept
     else:
         ball, code = family.bounce(ops, question.law, shape, lam, own)
         rest_new = []

@@ -1,10 +1,9 @@
 """`PinballMap`: a table with its shape and contraction, asked for steps, orbits, derivatives and exponents."""
 
 from copy import copy
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +15,7 @@ from numeric.engine import Engine
 from numeric.families.choice import PATHS, family_of
 from numeric.families.family import NEAR, PINBALL, SLAP, law_of
 from numeric.inputs import angles, components, contraction, counted, real, shape_value
-from numeric.question import Question
+from numeric.question import Question, starting
 from numeric.status import Status
 
 if TYPE_CHECKING:
@@ -26,8 +25,7 @@ Array = NDArray[np.float64]
 STATUSES = np.array(list(Status), dtype=object)
 
 
-@dataclass(frozen=True)
-class Orbit:
+class Orbit(NamedTuple):
     """Bounces along the first axis, balls along the others; `eta[0]` is nan, since nothing landed there.
 
     A ball that stopped repeats its last good state; `status` says from which bounce on, and why.
@@ -47,8 +45,7 @@ class Orbit:
         return STATUSES[self.code]
 
 
-@dataclass(frozen=True)
-class Exponents:
+class Exponents(NamedTuple):
     """Finite-time Lyapunov exponents per bounce, in the coordinates `(s, phi)`, and how far each ball came."""
 
     nu_plus: Array
@@ -65,8 +62,7 @@ class Exponents:
         return STATUSES[self.code]
 
 
-@dataclass(frozen=True)
-class Slap:
+class Slap(NamedTuple):
     """Iterates of the slap map along the first axis, and its slope at the start."""
 
     component: NDArray[np.int64]
@@ -127,7 +123,7 @@ class PinballMap:
     def step(self, theta: ArrayLike, phi: ArrayLike = 0.0, component: ArrayLike = 0) -> Orbit:
         """One bounce; all fields have the shape of the arguments."""
         whole = self.orbit(theta, phi, 1, component)
-        return Orbit(*(getattr(whole, name)[-1] for name in Orbit.__dataclass_fields__))
+        return Orbit(*(rows[-1] for rows in whole))
 
     def orbit(
         self, theta: ArrayLike, phi: ArrayLike, bounces: int, component: ArrayLike = 0, threads: int | None = None
@@ -167,11 +163,11 @@ class PinballMap:
         for ds, dphi in ((1.0, 0.0), (0.0, 1.0)):
             vector = ds / speed, curvature * ds + dphi
             rows = self._tangent_run(PINBALL if law == SLAP else law, where, theta, phi, 1, vector, None)
-            scale = np.exp2(rows["growth"])
+            scale = np.exp2(rows["growth"]) / rows["down"]
             place, at = self.states.place([rows[name] for name in self.family.position])
             shape = theta.shape
-            moved = (rows["dp"] * scale).reshape(shape) * self.states.rate(place, at).reshape(shape)
-            turned = (rows["omega"] * scale).reshape(shape) - self.states.curvature(place, at).reshape(shape) * moved
+            moved = -(rows["shift"] / rows["n0"] * scale).reshape(shape) * self.states.rate(place, at).reshape(shape)
+            turned = -(rows["omega"] * scale).reshape(shape) - self.states.curvature(place, at).reshape(shape) * moved
             columns.append([moved, turned])
         matrix = np.array(columns)
         return np.moveaxis(matrix, (0, 1), (-1, -2))
@@ -206,14 +202,15 @@ class PinballMap:
         rows = self._tangent_run(law, where, theta, phi, bounces, vector, early, threads)
         fields = [rows[name] for name in self.family.fields(law)]
         place, at = self.states.place(fields)
-        moved = rows["dp"] * self.states.rate(place, at)
+        moved = rows["shift"] / rows["n0"] * self.states.rate(place, at)
         turned = rows["omega"] - self.states.curvature(place, at) * moved
         lost = rows["lost"] if "lost" in rows else np.zeros(theta.size)
         made = np.maximum(bounces - lost, 1.0)
         with np.errstate(divide="ignore"):
-            plus = (np.log(np.hypot(moved, turned)) + rows["growth"] * np.log(2.0)) / made
-            ends = np.log(self.states.rate(place, at) / speed.ravel())
-            total = (np.log(rows["ratio"]) + rows["volume"] * np.log(2.0) + ends) / made + np.log(self._lams(theta))
+            plus = (np.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * np.log(2.0)) / made
+            ends = np.log(self.states.rate(place, at) / speed.ravel()) + np.log(rows["began"] / rows["n0"])
+            total = np.log(rows["up"] / rows["down"]) + rows["volume"] * np.log(2.0) + ends
+            total = total / made + np.log(self._lams(theta))
         code = rows["code"].astype(np.int64) if "code" in rows else np.zeros(theta.size, dtype=np.int64)
         if early is not None and "code" in early:
             code = np.maximum(code, early["code"].astype(np.int64))
@@ -270,10 +267,12 @@ class PinballMap:
         else:
             own = [early[name] for name in self.family.fields(law)]
         dp, omega = (np.broadcast_to(x, theta.shape).ravel().astype(float) for x in vector)
-        nought = np.zeros(theta.size)
-        tangent = [dp, omega, nought, nought + 1.0, nought]
+        with np.errstate(all="ignore"):
+            n0 = self.family.rate(self.states.ops, self.shape, law, own) + np.zeros(theta.size)
         question = Question(law, exponents=True)
-        return self.engine.run(question, own, self._lams(theta), self.shape, bounces, tangent, threads).rows
+        tangent = starting(n0 * dp, omega, n0)
+        rows = self.engine.run(question, own, self._lams(theta), self.shape, bounces, tangent, threads).rows
+        return rows | {"began": n0}
 
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
         name = self.blueprint.table

@@ -5,17 +5,15 @@ A program is a list of lines in a closed vocabulary, without names, branches or 
 hashed, and written to a file from which it is read back without importing SymPy.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 UNARY = {"neg", "sqrt", "sin", "cos"}
 BINARY = {"+", "-", "*", "/"}
 Line = tuple[Any, ...]  # a word of the vocabulary and the numbers of its operands
 
 
-@dataclass(frozen=True)
-class Program:
+class Program(NamedTuple):
     """`outputs` computed from `inputs` by `lines`; values are numbered, inputs first."""
 
     inputs: tuple[str, ...]

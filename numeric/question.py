@@ -1,16 +1,14 @@
 """What a kernel is asked, and the rows of state that the question needs."""
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from numeric.families.family import Family
 
-OFTEN = 8  # bounces; no single one grows a vector by more than 2**100, a double holds 2**1000
-TANGENT = ("dp", "omega", "growth", "ratio", "volume")
+TANGENT = ("shift", "omega", "growth", "up", "down", "volume", "n0")
+FAR = 2.0**100  # a double holds 2**1000
 
 
-@dataclass(frozen=True)
-class Question:
+class Question(NamedTuple):
     """What a kernel is asked besides the end of the trajectory."""
 
     law: str
@@ -29,12 +27,30 @@ def fields(family: Family, question: Question) -> tuple[str, ...]:
     return (*family.fields(question.law), *(("code", "lost") if family.stops else ()), *extra)
 
 
-def rescaled(ops: Any, rows: list[Any]) -> list[Any]:
-    """`dp, omega, growth, ratio, volume` with their mantissas brought back near one, to be done every `OFTEN` bounces.
+def starting(q: Any, omega: Any, n0: Any) -> list[Any]:
+    """The rows of a tangent vector at the start: `q` across the first flight, `omega`, and `N0` of its departure."""
+    nought = 0.0 * q
+    return [q, omega, nought, nought + 1.0, nought + 1.0, nought, n0]
 
-    What is taken out goes into the exponents `growth` and `volume`, so no logarithm is needed on the way.
+
+def rescaled(ops: Any, rows: list[Any]) -> list[Any]:
+    """The rows of a tangent vector, with mantissas far from one brought back, to be done every `Family.often` bounces.
+
+    The vector is `(q, omega)*2**growth/down` and the product of the ratios of cosines `2**volume*up/down`; so no
+    logarithm and no division is needed on the way.
     """
-    dp, omega, growth, ratio, volume = rows
-    small, gained = ops.power_of_two(ops.maximum(abs(dp), abs(omega)))
-    tiny, lost = ops.power_of_two(ratio)
-    return [dp * small, omega * small, growth + gained, ratio * tiny, volume + lost]
+    q, omega, growth, up, down, volume, n0 = rows
+    size, one, nought = ops.maximum(abs(q), abs(omega)), ops.number(1.0), ops.number(0.0)
+    away = (size < ops.number(1 / FAR)) | (ops.number(FAR) < size)
+    for product in (up, down):
+        away = away | (product < ops.number(1 / FAR)) | (ops.number(FAR) < product)
+
+    def nearer() -> list[Any]:
+        (small, gained), (smaller, rise), (smallest, fall) = (
+            [ops.select(away, x, otherwise) for x, otherwise in zip(ops.power_of_two(y), (one, nought), strict=True)]
+            for y in (size, up, down)
+        )
+        scaled = [q * small, omega * small, growth + gained - fall]
+        return [*scaled, up * smaller, down * smallest, volume + rise - fall, n0]
+
+    return list(ops.when(away, rows, nearer))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap, machine
 from numeric.kernel import kernel_text, operations
-from numeric.question import Question
+from numeric.question import Question, starting
 from verification.attractors import random_starts
 from verification.exact_map import ExactMap
 from verification.truth import errors
@@ -98,7 +98,7 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
         nought = np.zeros(balls)
         yield Row(name, "float64", kernel, error, run(Question(map.law)), runs)
         if kernels:
-            tangent = (nought + 1, nought, nought, nought + 1, nought)
+            tangent = tuple(starting(nought + 1, nought, nought + 1))
             yield Row(name, "float64", "llvm, exponents", error, run(Question(map.law, exponents=True), tangent), runs)
             yield Row(
                 name, "float64", "llvm, 2 threads", error, run(Question(map.law), threads=2, bounces=4 * bounces), runs

@@ -82,10 +82,10 @@ class Cardioid(Family):
     def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
         return exit[0]
 
-    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
-        return self.point(ops, position)
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return list(self.point(ops, position))
 
-    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
         return plane.dot((start[0] - end[0], start[1] - end[1]), landing.more["back"])
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:

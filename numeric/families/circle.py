@@ -3,7 +3,6 @@
 from typing import Any
 
 from numeric.families.family import SLAP, Family, Landing
-from numeric.plane import Pair
 
 
 class Circle(Family):
@@ -11,6 +10,7 @@ class Circle(Family):
 
     name = "circle"
     stops = False
+    often = 128  # a bounce grows no vector more than eightfold
     position = ("theta",)
     exit = ("phi",)
 
@@ -30,10 +30,7 @@ class Circle(Family):
     def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
         return ops.number(1.0)
 
-    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
-        return ops.number(0.0), ops.number(0.0)
-
-    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
         return ops.number(2.0)  # times cos(phi), which `departure` and `along` leave out as well
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:

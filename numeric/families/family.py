@@ -3,19 +3,19 @@
 Everything here runs on any arithmetic of `numeric.readers`. A *law* is `slap` (lam = 0, the exit
 is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.
 
-Tangent vectors are carried as `(dp, omega)`: a change of boundary parameter, `ds = speed*dp`, and a
-change of direction, `omega = K*ds + dphi`. In these the paper's derivative matrix needs one division:
+Tangent vectors are carried as `(q, omega)`: a shift across the flight, `q = N0*ds/speed` with
+`N0 = speed*cos(phi0)`, and a change of direction, `omega = K*ds + dphi`. A flight of length `t` turns `q`
+into `q + t*omega`. With `K*speed = above/below` at the landing, `N1 = speed*cos(eta1)` and `N0` the next
+departure's, the paper's derivative matrix then needs no division when the vector may grow by `below*N1` a bounce:
 
-    dp1 = -(N0*dp0 + t*omega0)/N1,    omega1 = (1 + lam)*bend1*dp1 - lam*omega0,
+    below*N1*q1 = -(q + t*omega)*N0*below,    below*N1*omega1 = -(1 + lam)*above*(q + t*omega) - lam*below*N1*omega.
 
-with `N0 = speed*cos(phi0)`, `N1 = speed*cos(eta1)`, `bend = K*speed`; its determinant is `lam*N0/N1`.
+The determinant is `lam*N0/N1` of the next departure and this landing.
 """
 
-from dataclasses import dataclass, field
 from typing import Any
 
 from numeric import plane
-from numeric.plane import Pair
 
 SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"
 GRAZE = 2.0**-50  # cos(eta) below this is a tangency
@@ -29,7 +29,6 @@ def law_of(lam_low: float, lam_high: float) -> str:
     return ELASTIC if lam_low == lam_high == 1 else PINBALL
 
 
-@dataclass
 class Landing:
     """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
 
@@ -37,11 +36,11 @@ class Landing:
     outcome that stops the ball (0 none, else `Status`), or is None where a family has none.
     """
 
-    position: list[Any]
-    across: Any
-    along: Any
-    code: Any = None
-    more: dict[str, Any] = field(default_factory=dict)
+    def __init__(
+        self, position: list[Any], across: Any, along: Any, code: Any = None, more: dict[str, Any] | None = None
+    ) -> None:
+        self.position, self.across, self.along, self.code = position, across, along, code
+        self.more = more if more is not None else {}
 
 
 class Family:
@@ -49,6 +48,7 @@ class Family:
 
     name = ""
     stops = True  # some landings are outcomes that stop the ball
+    often = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     position: tuple[str, ...] = ()
     exit: tuple[str, ...] = ()
@@ -69,16 +69,16 @@ class Family:
         """`N0 = speed*cos(phi0)`."""
         raise NotImplementedError
 
-    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
-        """The Cartesian point, up to a shift; only differences are used."""
-        raise NotImplementedError
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        """What `length` needs of either end of a flight, kept from one bounce to the next: often nothing."""
+        return []
 
-    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
-        """The length `t` of a flight."""
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        """The length `t` of a flight, from `N0` and what was `kept` at its ends."""
         return plane.dot((end[0] - start[0], end[1] - start[1]), landing.more["v"])
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
-        """`K*speed` at the landing as a quotient, negative where the boundary focuses."""
+        """`K*speed` at the landing as a quotient, negative where the boundary focuses; `below` is positive."""
         raise NotImplementedError
 
     def fields(self, law: str) -> tuple[str, ...]:
@@ -92,28 +92,32 @@ class Family:
         leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
         return landing.position + leaving, landing.code
 
-    def carried(self, ops: Any, shape: list[Any], law: str, state: list[Any]) -> list[Any]:
-        """What the tangent map needs of a departure, kept from the landing before: `N0` and the point."""
-        position, exit = self._split(ops, shape, law, state, whole=True)
-        return [self.departure(ops, shape, position, exit), *self.point_at(ops, shape, position)]
+    def rate(self, ops: Any, shape: list[Any], law: str, state: list[Any]) -> Any:
+        """`N0` of a ball that is about to leave."""
+        return self.departure(ops, shape, *self._split(ops, shape, law, state, whole=True))
 
     def bounce_with_tangent(
-        self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any], tangent: list[Any], carried: list[Any]
-    ) -> tuple[list[Any], Any, list[Any], Any, list[Any]]:
-        """As `bounce`, with the tangent vector and what is carried for it, and `N0/N1`."""
+        self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any], tangent: list[Any], kept: list[Any]
+    ) -> tuple[list[Any], Any, list[Any], list[Any]]:
+        """As `bounce`, with the rows of `Question` for a tangent vector, and what is kept for the next flight.
+
+        The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`.
+        """
         position, exit = self._split(ops, shape, law, state, whole=True)
         landing = self.fly(ops, shape, law, position, exit)
-        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
-        (dp, omega), (n0, *start) = tangent, carried
-        end = self.point_at(ops, shape, landing.position)
-        t = self.length(ops, (start[0], start[1]), end, exit, landing)
+        q, omega, growth, up, down, volume, n0 = tangent
+        end = self.kept(ops, shape, landing.position)
+        moved = self.length(ops, shape, n0, kept, end, landing) * omega + q
         above, below = self.bend(ops, shape, landing)
-        both = ops.number(1.0) / (landing.along * below)
-        inverse = both * below
-        moved = -((n0 * dp + t * omega) * inverse)
-        turned = (ops.number(1.0) + lam) * (above * both * landing.along) * moved - lam * omega
-        n1 = self.leaving_rate(ops, shape, landing, leaving)
-        return landing.position + leaving, landing.code, [moved, turned], n0 * inverse, [n1, *end]
+        fall = landing.along * below
+        turned = (ops.number(1.0) + lam) * above * moved + lam * omega * fall
+        down = down * fall
+        ops.settle(moved, turned, down, below)
+        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
+        n0 = self.leaving_rate(ops, shape, landing, leaving)
+        rise = n0 * below
+        rows = [moved * rise, turned, growth, up * rise, down, volume, n0]
+        return landing.position + leaving, landing.code, rows, end
 
     def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
         """`departure` at a landing, whose frame is known already."""

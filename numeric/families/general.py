@@ -160,10 +160,7 @@ class General(Family):
         _, _, dx, dy, _, _ = self.curve(ops, shape, *position)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
-    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
-        return ops.number(0.0), ops.number(0.0)
-
-    def length(self, ops: Any, start: Pair, end: Pair, exit: list[Any], landing: Landing) -> Any:
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
         return landing.more["t"]
 
     def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:

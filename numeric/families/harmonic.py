@@ -56,9 +56,8 @@ class Harmonic(Family):
         dx, dy = self.velocity(ops, *position, *shape)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
-    def point_at(self, ops: Any, shape: list[Any], position: list[Any]) -> Pair:
-        x, y = self.point(ops, *position, *shape)
-        return x, y
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return self.point(ops, *position, *shape)
 
     def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
         d = landing.more["d"]
@@ -84,7 +83,26 @@ class Ellipse(Harmonic):
         M = self.support(ops, v[1], -v[0], *shape)
         inverse = ops.number(1.0) / plane.dot((M[0], M[1]), (M[0], M[1]))
         x, y = plane.times(plane.squared((M[0], M[1])), (position[0], -position[1]))
-        return self.landed(ops, shape, law, plane.unit(ops, (x * inverse, y * inverse)), v)
+        landing = self.landed(ops, shape, law, plane.unit(ops, (x * inverse, y * inverse)), v)
+        landing.more["inverse"] = inverse
+        return landing
+
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return []
+
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        return ops.number(-2.0) * self.turning(ops, shape) * (n0 * landing.more["inverse"])
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        d = landing.more["d"]
+        return self.turning(ops, shape), plane.dot(d, d)
+
+    def turning(self, ops: Any, shape: list[Any]) -> Any:
+        """Acceleration times velocity, minus the determinant of the map from the circle: the same everywhere."""
+        start = ops.number(1.0), ops.number(0.0)
+        ax, ay = self.acceleration(ops, *start, *shape)
+        dx, dy = self.velocity(ops, *start, *shape)
+        return plane.cross((ax, ay), (dx, dy))
 
     def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
         dx, dy = self.velocity(ops, *position, *shape)
@@ -103,7 +121,9 @@ class Fourier(Harmonic):
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         v = exit[0], exit[1]
         E = v[1], -v[0]
-        B = plane.times(E, (position[0], -position[1]))
+        # the rounding of B moves the zero most where the boundary is flat, and is its own to the last bit here
+        u = position[0], position[1]
+        B = plane.unit(ops, (plane.exact_dot(ops, E, u), plane.exact_cross(ops, u, E)))
         p = self.chord(ops, *E, *B, *shape)
         _zero, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
         start = -(p[0] * p[1]) / (p[1] * p[1] - p[0] * p[2])  # Halley's step from T = 0

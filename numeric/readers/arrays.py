@@ -58,6 +58,9 @@ class Arrays:
         total_low = (product - (total - back)) + (z - back)
         return total + (product_low + total_low)
 
+    def settle(self, *values: Any) -> None:
+        """Nothing to do: every value is computed where it stands."""
+
     def angle(self, y: Any, x: Any) -> Any:
         """`atan2(y, x)` for `x >= 0`."""
         return functions.angle(self, y, x)

@@ -256,6 +256,11 @@ class Lanes:
         """The cosine, for `|x| <= pi`."""
         return self.turn(x)[0]
 
+    def settle(self, *values: Lane) -> None:
+        """Write these values here, where what they are made of is at hand, and not where they are needed."""
+        for x in values:
+            assert x.text
+
     def angle(self, y: Lane, x: Lane) -> Lane:
         """`atan2(y, x)` for `x >= 0`."""
         return functions.angle(self, y, x)  # type: ignore[no-any-return]
@@ -328,7 +333,8 @@ class Lanes:
         last = self.block
         self.close()
         self.label(after)
-        names = [self.fresh() for _ in values]
+        names = [y if x == y else self.fresh() for x, y in zip(then, otherwise, strict=True)]
         for name, x, y in zip(names, then, otherwise, strict=True):
-            self.lines.append(f"  {name} = phi {self.type} [{x}, %{last}], [{y}, %{before}]")
+            if x != y:
+                self.lines.append(f"  {name} = phi {self.type} [{x}, %{last}], [{y}, %{before}]")
         return [Lane(self, name) for name in names]

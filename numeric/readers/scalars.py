@@ -44,6 +44,9 @@ class Scalars:
         """The cosine."""
         return self.context.cos(x)
 
+    def settle(self, *values: Any) -> None:
+        """Nothing to do: every value is computed where it stands."""
+
     def angle(self, y: Any, x: Any) -> Any:
         """`atan2(y, x)`."""
         return self.context.atan2(y, x)

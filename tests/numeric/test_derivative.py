@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from sympy import lambdify
 
@@ -36,6 +36,7 @@ def by_formula(map, where, theta, phi, step):
 def test_the_numeric_derivative_is_the_symbolic_one(ball):
     map, where, theta, phi = ball.map, np.array(ball.component), np.array(ball.theta), np.array(ball.phi)
     step = map.step(theta, phi, where)
+    assume(step.code == 0)  # at a cusp there is no derivative
     found, formula = map.derivative(theta, phi, where), by_formula(map, where, theta, phi, step)
     sensitivity = 1 + (np.abs(formula).max() + 1) / np.cos(step.eta)  # of 1/cos(eta) to the rounded eta
 

@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, cos, expand, pi, sin, symbols
 
+from numeric.door import seen_ahead
 from symbolic import tables
-from symbolic.flight import chord_polynomial, flight_residual, harmonics, point_at, support
+from symbolic.flight import ONE, chord_polynomial, flight_residual, harmonics, point_at, support
 from symbolic.symbols import alpha, theta
 from symbolic.table import Component
 
@@ -61,3 +62,13 @@ def test_coefficients_of_the_cardioid_are_the_papers():
         2: ((Rational(1, 2), 0), (0, Rational(1, 2))),
     }
     assert all(low < high for low, high in pairwise(found))
+
+
+@pytest.mark.parametrize("K", [2, 3, 5])
+def test_in_the_frame_of_the_flight_the_chord_polynomial_is_the_same(K):
+    E, B = (((1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)) for t in (Rational(1, 3), Rational(-9, 4)))
+    h = harmonics(tables.named("egg", K).components[0])
+    ahead = {k: seen_ahead(k, *vectors, E) for k, vectors in h.items()}
+    differences = zip(chord_polynomial(ahead, ONE, B), chord_polynomial(h, E, B), strict=True)
+
+    assert [expand(p - q) for p, q in differences] == [0] * (2 * K + 2)

@@ -7,7 +7,7 @@ from numeric import PinballMap
 from numeric.engine import Engine
 from numeric.families.family import SLAP
 from numeric.kernel import kernel_text
-from numeric.question import Question
+from numeric.question import Question, starting
 
 LAMS = (0, 0.3, 1)
 
@@ -16,7 +16,7 @@ def record(map, count=200, bounces=30, seed=1, threads=1, engine=None, exponents
     where, theta, phi = (np.asarray(x) for x in map_starts(map, count, seed))
     own = map.states.enter(where, theta, phi, map.law)
     lam = np.full(count, float(map.lam))
-    tangent = [np.ones(count), np.zeros(count), np.zeros(count), np.ones(count), np.zeros(count)] if exponents else ()
+    tangent = starting(np.ones(count), np.zeros(count), np.ones(count)) if exponents else ()
     question = Question(map.law, record=not exponents, exponents=exponents)
     return (engine or map.engine).run(question, own, lam, map.shape, bounces, tangent, threads)
 

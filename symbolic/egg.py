@@ -1,9 +1,9 @@
 """Facts on the egg as polynomials in `C = cos(K*theta)`. Paper: section 6."""
 
-from sympy import Expr, Symbol, cos, expand, expand_trig
+from sympy import Expr, Poly, Symbol, cos, expand, expand_trig
 
 from symbolic.geometry import speed, turning
-from symbolic.symbols import theta
+from symbolic.symbols import alpha, theta
 from symbolic.tables import egg
 
 COSINE = Symbol("C", real=True)
@@ -40,3 +40,24 @@ def curvature_slope_polynomial(K: int = 3) -> Expr:
     """A polynomial with the sign of `d(-kappa)/dC`: `-kappa = N/Q**(3/2)` grows with C where `2*Q*N' - 3*Q'*N > 0`."""
     N, Q = turning_polynomial(K), squared_speed_polynomial(K)
     return expand(2 * Q * N.diff(COSINE) - 3 * Q.diff(COSINE) * N)
+
+
+def slap_critical_points(shape: Expr) -> int:
+    """How many `theta` have `T0' = 0` in the egg with `alpha = shape`: six for each root in `-1 < C < 1`.
+
+    `t*K0 + 1 = 0` says that the centre of curvature `e` lies on the boundary, `|e|**4 = |e|**3 +
+    alpha*Re(e**3)`. With `e = exp(i*theta)*(u + i*w*sin(3*theta))/N` that is a polynomial in `C`, whose
+    roots Sturm counts; squared, it needs `|e|**4 - alpha*Re(e**3) > 0` at a root.
+
+    >>> from sympy import Rational
+    >>> slap_critical_points(Rational(2, 25)), slap_critical_points(Rational(1, 20))
+    (6, 0)
+    """
+    C = COSINE
+    N, Q = (polynomial.subs(alpha, shape) for polynomial in (turning_polynomial(), squared_speed_polynomial()))
+    u, w, sine = (1 + shape * C) * (N - Q), -3 * shape * Q, 1 - C**2
+    modulus = u**2 + w**2 * sine
+    cube = C * (u**3 - 3 * u * w**2 * sine) - sine * (3 * u**2 * w - w**3 * sine)
+    side = expand(modulus**2 - shape * N * cube)
+    roots = Poly(expand(side**2 - modulus**3 * N**2), C).sqf_part().real_roots()
+    return 6 * sum(1 for root in roots if -1 < root < 1 and side.subs(C, root.eval_rational(n=30)) > 0)

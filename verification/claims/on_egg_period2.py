@@ -12,6 +12,7 @@ from sympy import (
 from symbolic.collision import slap_derivative
 from symbolic.cycles import is_double_normal, monodromy, trace_and_determinant
 from symbolic.double_normal import stability_number, trace_of
+from symbolic.egg import slap_critical_points
 from symbolic.named_cycles import c, egg_diameter, egg_parallel, parallel_shape
 from symbolic.signs import Finding, conjunction, nonnegative, positive
 from symbolic.symbols import alpha, lam
@@ -72,22 +73,22 @@ def critical_points(claim: Claim) -> Judgement:
     """`T0'` is even about each flat point, negative there and positive at the vertices."""
     shape = {alpha: at("0.08")}
     past = {alpha: Interval.Lopen(Rational(1, 18), Rational(1, 10))}
+    six = shown("exactly six at alpha = 0.08, by Sturm", slap_critical_points(at("0.08")) == 6)
     return Judgement(
         counterexample(
-            "at alpha = 0.08 T0' < 0 at the three flat points and > 0 at the three vertices between "
-            "them: six changes of sign",
+            "at alpha = 0.08 T0' < 0 at the three flat points and > 0 at the three vertices between them",
             positive(-slap_slope(False).subs(shape), {}),
             positive(slap_slope(True).subs(shape), {}),
         ),
-        "six critical points, a pair around each flat point, for alpha > sqrt(82) - 9",
+        "six critical points, one on each side of each flat point, for alpha > sqrt(82) - 9",
         by(
-            "T0' < 0 at the flat points and > 0 at the vertices",
+            "T0' < 0 at the flat points and > 0 at the vertices, so at least six",
             positive(-slap_slope(False), past),
             positive(slap_slope(True), past),
             zero("T0' = 0 at the flat points for alpha = sqrt(82) - 9", slap_slope(False).subs(alpha, sqrt(82) - 9)),
+            six,
         ),
-        "Three pairs, that is six critical points arise, one on each side of each flat point; three "
-        "only at the critical value itself.",
+        "Six critical points arise, one on each side of each flat point; three only at the critical value itself.",
     )
 
 

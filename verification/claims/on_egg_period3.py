@@ -171,7 +171,7 @@ def attracting(claim: Claim) -> Judgement:
             *polygon_facts(),
             greater(S.One, gamma * tan(gamma)),
         ),
-        "attracting for lam slightly below 1",
+        "attracting for lam slightly below 1, for 0 < alpha < 1/10",
     )
 
 

@@ -1,6 +1,7 @@
 """A kernel holds what its question needs and nothing else; a run imports what it needs and nothing else."""
 
 import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -73,7 +74,7 @@ def test_dead_lines_are_left_out():
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_warm_run_imports_numpy_and_llvmlite_only(name, tmp_path):
+def test_a_warm_run_imports_numpy_and_no_compiler(name, tmp_path):
     shape = ", ".join(f"{key}={value!r}" for key, value in SCENES[name].items())
     program = f"""
 import sys
@@ -81,7 +82,7 @@ from numeric import PinballMap
 map = PinballMap({name!r}, lam=0.5, {shape})
 map.orbit(0.3, 0.2, 5)
 map.exponents(0.3, 0.2, 5)
-print([x for x in {HEAVY!r} if x in sys.modules], "llvmlite" in sys.modules)
+print([x for x in {HEAVY!r} if x in sys.modules], "llvmlite.binding" in sys.modules)
 """
     environment = os.environ | {"PINBALL_CACHE": str(tmp_path)}
     for _ in range(2):
@@ -90,4 +91,5 @@ print([x for x in {HEAVY!r} if x in sys.modules], "llvmlite" in sys.modules)
         )
 
     assert done.stdout.split(" ", 1)[0] == "[]"
-    assert done.stdout.strip().endswith("True")
+    images = sys.platform == "linux" and platform.machine() == "x86_64"  # elsewhere LLVM loads what it wrote
+    assert done.stdout.split()[-1] == str(not images)

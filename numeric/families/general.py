@@ -18,6 +18,7 @@ from numeric.plane import Pair
 
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
+LONG = 2.0**20  # a parameter, whose rounding moves the point
 TURN = np.pi / 2  # of the tangent on one piece, at most
 
 
@@ -40,6 +41,10 @@ class General(Family):
         self.ends = states.ends
         self.closing = states.ends[0]
         for index, (low, high) in enumerate(states.ends):
+            if max(abs(low), abs(high)) > LONG:
+                name, part = states.blueprint.table, self.parts[index].name
+                runs = f"the parameter of {part} runs to {max(abs(low), abs(high)):.6g}"
+                raise ValueError(f"{name}: {runs}, where its rounding shows; start it within {LONG:.6g}")
             theta = np.linspace(low, high, GRID + 1)
             _, _, dx, dy, ax, ay = states.curve(np.full(theta.shape, index), theta)
             turning = dx * ay - dy * ax

@@ -47,8 +47,6 @@ def test_a_map_says_which_path_it_took(table, path):
 
 
 def test_the_general_way_agrees_with_the_special_ones(table):
-    if table.name == "cardioid":
-        pytest.skip("the cusp is no end of a component for the general way")
     map = table.map(0.8)
     other = generally(map)
     where, theta0, phi = table.starts(map, 300, seed=21, steepest=0.99)
@@ -103,6 +101,37 @@ def test_an_angle_never_grows_at_a_reflection(ball):
 
     assert abs(step.phi) <= abs(step.eta) + 4 * 2.0**-52
     assert step.phi == pytest.approx(-ball.lam * float(step.eta), abs=8 * 2.0**-52)
+
+
+@pytest.mark.parametrize("turns", [1, -3, 1000])
+def test_parameters_beyond_a_turn_are_reduced(turns):
+    shifted = tables.piecewise(
+        tables.arc(
+            "right", 1 + cos(theta), sin(theta), (2 * turns - Rational(1, 2)) * pi, (2 * turns + Rational(1, 2)) * pi
+        ),
+        *STADIUM.components[1:],
+        name="shifted stadium",
+    )
+    start, phi = np.linspace(-0.9, 0.9, 50), np.linspace(1.2, -1.2, 50)
+    one, other = (PinballMap(table, lam=0.9).step(start, phi, 2) for table in (STADIUM, shifted))
+    right = one.component == 0
+    turned = np.where(right, 2 * turns * np.pi, 0)
+    rounding = 16 * 2.0**-52 * (1 + np.abs(turned)) / np.cos(one.eta)
+
+    assert np.any(right)
+    assert np.array_equal(one.component, other.component)
+    assert np.all(np.abs(one.theta + turned - other.theta) <= rounding)
+    assert np.all(np.hypot(one.x - other.x, one.y - other.y) <= rounding)
+
+
+def test_parameters_of_a_million_are_refused():
+    low, high = (pi * (2 * 10**6 + Rational(k, 2)) for k in (-1, 1))
+    far = tables.piecewise(
+        tables.arc("right", 1 + cos(theta), sin(theta), low, high), *STADIUM.components[1:], name="far"
+    )
+
+    with pytest.raises(ValueError, match="far: the parameter of right runs to"):
+        PinballMap(far, lam=1)
 
 
 def test_a_word_outside_the_vocabulary_is_an_error():

@@ -1,6 +1,7 @@
 """A million points for each labelled case: did the kernel take the right zero, and how exact was it?
 
-The last two columns divide by one plus the row sums of the derivative matrix, the condition numbers.
+The two columns `/condition` divide by one plus the row sums of the derivative matrix, the condition numbers; the
+last two say how many points go beyond 4 (position) or 8 (direction), and the smallest condition number among them.
 The reference is the same step on 80-bit floats (NumPy's longdouble, 11 bits more than a double);
 that the step itself is right is what tests/numeric/test_accuracy.py shows at 50 digits.
 
@@ -103,7 +104,9 @@ def cases(count, rng):
 def main(count, word):
     rng = np.random.default_rng(11)
     say(f"{count} points a case; errors in units of 2**-52")
-    say(f"{'case':<40}{'stopped':>9}{'wrong':>7}{'position':>10}{'direction':>11}{'/condition':>16}")
+    say(
+        f"{'case':<40}{'stopped':>9}{'wrong':>7}{'position':>10}{'direction':>11}{'/condition':>18}{'beyond':>8}{'from':>9}"
+    )
     for label, map, component, theta, phi in cases(count, rng):
         if word not in label:
             continue
@@ -127,8 +130,11 @@ def main(count, word):
         conditions = 1 + matrix[:, 0].sum(axis=-1), 1 + matrix[:, 1].sum(axis=-1)
         worst = [np.max(e, initial=0) / EPS for e in (place, turned)]
         worst += [np.max(e / c, initial=0) / EPS for e, c in zip((place, turned), conditions, strict=True)]
+        beyond = [e > bound * EPS for e, bound in ((place, 4), (turned, 8))]
+        least = min(np.min(c[far], initial=np.inf) for far, c in zip(beyond, conditions, strict=True))
         say(
-            f"{label:<40}{np.sum(~going):>9}{wrong:>7}{worst[0]:>10.3g}{worst[1]:>11.3g}{worst[2]:>10.2g}{worst[3]:>6.2g}"
+            f"{label:<40}{np.sum(~going):>9}{wrong:>7}{worst[0]:>10.3g}{worst[1]:>11.3g}{worst[2]:>10.2g}"
+            f" {worst[3]:>7.2g}{np.sum(beyond[0] | beyond[1]):>8} {least:>8.2g}"
         )
 
 

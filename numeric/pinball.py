@@ -142,6 +142,7 @@ class PinballMap:
         component_at, theta_at = self.states.place(fields)
         theta_at[0], component_at[0] = theta.ravel(), where.ravel()
         phi_at = self.states.exit(component_at, theta_at, fields, law)
+        phi_at[1:] *= self._lams(theta) != 0  # exactly the normal, whatever atan2 rounds to
         phi_at[0] = phi.ravel()
         code = self._codes(result.rows, bounces, theta.size)
         eta = np.full_like(theta_at, np.nan)

@@ -61,7 +61,7 @@ def show(console: "Console", name: str, rows: "list[Row]") -> None:
         error = "-" if row.error is None else f"{row.error:.3g}"
         way = f"{row.arithmetic} {row.kernel}"
         ratio = row.seconds_per_bounce / reference
-        console.print(f"{mark} {letter}  {way:<38}{duration(row.seconds_per_bounce):>13}{ratio:>8.3g}     {error}")
+        console.print(f"{mark} {letter}  {way:<38}{duration(row.seconds_per_bounce):>13}{ratio:>10.3g}   {error}")
     console.print(diagram(rows))
 
 

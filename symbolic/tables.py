@@ -11,7 +11,7 @@ from sympy import Expr, Interval, Rational, S, cos, oo, pi, sin, sqrt
 from symbolic.formula import parse
 from symbolic.symbols import a, alpha, theta
 from symbolic.table import Component, Mark, Shape, Table
-from symbolic.validity import closed_and_finite, positive_radius, validated
+from symbolic.validity import closed_and_finite, counterclockwise_and_simple, positive_radius, validated
 
 __all__ = ["arc", "cardioid", "circle", "cuspless", "egg", "ellipse", "named", "parametric", "piecewise", "polar"]
 
@@ -35,7 +35,7 @@ def polar(
     whole = arc(name, rho * cos(theta), rho * sin(theta), -pi, pi)
     table = closed_and_finite(Table(name, (whole,), shapes, undefined))
     simple = not shapes and not undefined and positive_radius(name, rho)
-    return table if simple else validated(table)
+    return table if simple else counterclockwise_and_simple(table)
 
 
 def parametric(

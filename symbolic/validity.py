@@ -38,7 +38,11 @@ HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box
 
 def validated(table: Table) -> Table:
     """`table` with its letters made the package's own; `ValueError` when it is no table."""
-    table = closed_and_finite(table)
+    return counterclockwise_and_simple(closed_and_finite(table))
+
+
+def counterclockwise_and_simple(table: Table) -> Table:
+    """The part of `validated` that a polar table of positive radius does not need."""
     _counterclockwise(table)
     if not table.shapes:
         simple(table)

@@ -141,3 +141,15 @@ class Family:
 def grazing(ops: Any, across: Any, along: Any) -> Any:
     """The mask of landings that are tangent, or no landings at all."""
     return ops.negated(ops.number(GRAZE) * abs(across) < along)
+
+
+def reflected(ops: Any, law: str, lam: Any, landing: Landing) -> list[Any]:
+    """The unit direction after a reflection, from the flight's direction `v` and the boundary's velocity `d`."""
+    v, d = landing.more["v"], landing.more["d"]
+    if law == ELASTIC:
+        inverse = ops.number(1.0) / plane.dot(d, d)
+        x, y = plane.times(plane.squared(d), plane.conjugate(v))
+        return list(plane.unit(ops, (x * inverse, y * inverse)))
+    incidence = ops.angle(landing.across, landing.along)
+    c, s = ops.turn(lam * incidence + incidence)
+    return list(plane.unit(ops, plane.times((-v[0], -v[1]), (c, -s))))

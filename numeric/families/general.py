@@ -13,7 +13,7 @@ import numpy as np
 
 from numeric import plane
 from numeric.blueprint import Blueprint
-from numeric.families.family import ELASTIC, NEAR, Family, Landing, grazing
+from numeric.families.family import NEAR, Family, Landing, grazing, reflected
 from numeric.plane import Pair
 
 GRID = 4096  # points on which a component's turning is examined
@@ -148,14 +148,7 @@ class General(Family):
         return best
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
-        v, d = landing.more["v"], landing.more["d"]
-        if law == ELASTIC:
-            inverse = ops.number(1.0) / plane.dot(d, d)
-            x, y = plane.times(plane.squared(d), plane.conjugate(v))
-            return list(plane.unit(ops, (x * inverse, y * inverse)))
-        incidence = ops.angle(landing.across, landing.along)
-        c, s = ops.turn(lam * incidence + incidence)
-        return list(plane.unit(ops, plane.times((-v[0], -v[1]), (c, -s))))
+        return reflected(ops, law, lam, landing)
 
     def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
         _, _, dx, dy, _, _ = self.curve(ops, shape, *position)

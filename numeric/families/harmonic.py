@@ -8,7 +8,7 @@ from typing import Any
 
 from numeric import plane
 from numeric.blueprint import Blueprint
-from numeric.families.family import ELASTIC, SLAP, Family, Landing, grazing
+from numeric.families.family import SLAP, Family, Landing, grazing, reflected
 from numeric.plane import Pair
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
@@ -37,14 +37,7 @@ class Harmonic(Family):
         return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
-        v, d = landing.more["v"], landing.more["d"]
-        if law == ELASTIC:
-            inverse = ops.number(1.0) / plane.dot(d, d)
-            x, y = plane.times(plane.squared(d), plane.conjugate(v))
-            return list(plane.unit(ops, (x * inverse, y * inverse)))
-        incidence = ops.angle(landing.across, landing.along)
-        c, s = ops.turn(lam * incidence + incidence)
-        return list(plane.unit(ops, plane.times((-v[0], -v[1]), (c, -s))))
+        return reflected(ops, law, lam, landing)
 
     def slapped_with_unit(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
         dx, dy = self.velocity(ops, *position, *shape)

@@ -16,8 +16,8 @@ from verification.certificates.fourth import fourth_on_wall
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, judges, zero
 from verification.claims.on_egg_period3 import side_of_fold
+from verification.claims.on_located import located
 from verification.feigenbaum import accumulation
-from verification.locate import Located, locate
 from verification.shooting.follow import attractor
 
 SHAPE = Rational(2, 25)
@@ -75,17 +75,16 @@ def period3_found(claim: Claim) -> Judgement:
     )
 
 
-@cache
-def corner() -> Located:
-    """The orbit through both corners, with its checklist."""
-    return locate("lambda-star", 20)
+def corner(check: str, reason: str) -> Finding:
+    """One item of the checklist of the orbit through both corners."""
+    return answer(located("lambda-star").checks[check], reason)
 
 
 @judges("cuspless.corner_orbit_unstable")
 def corner_orbit_unstable(claim: Claim) -> Judgement:
     """Half the orbit, mirrored, has a multiplier outside the unit circle on either side of the join."""
     return Judgement(
-        by("on either side of the joins", answer(corner().checks["unstable"], "a multiplier outside the unit circle")),
+        by("on either side of the joins", corner("unstable", "a multiplier outside the unit circle")),
         "unstable from both sides: one multiplier below -1 on the arc's side, one above 1 on the wall's",
     )
 
@@ -94,7 +93,7 @@ def corner_orbit_unstable(claim: Claim) -> Judgement:
 def fourth_collision_below(claim: Claim) -> Judgement:
     """Boxes of angle and contraction up to 0.07121; from there on the one-sided slopes at the kink."""
     found = fourth_on_wall(0.04, 0.0, 0.071)
-    proved = bool(found.on_wall and corner().checks["s4_minimum_at_a_kink"])
+    proved = bool(found.on_wall and corner("s4_minimum_at_a_kink", ""))
     return Judgement(
         Finding(Outcome.UNKNOWN, "not proved between 0.071 and lambda*"),
         "s_4 > s* for |phi| <= 0.04; at lambda* its minimum, a kink and not a smooth minimum, touches s*",
@@ -112,9 +111,7 @@ def fourth_collision_above(claim: Claim) -> Judgement:
     return Judgement(
         counterexample("lam = 0.9", answer(found.on_wall, "s_4 > s* for every |phi| <= 0.05")),
         "s_4 < s* for some small phi just above lambda*, not for every lam > lambda*",
-        answer(
-            corner().checks["s4_minimum_at_a_kink"], "at lambda* the minimum of s_4 is s*, a kink, and falls with lam"
-        ),
+        corner("s4_minimum_at_a_kink", "at lambda* the minimum of s_4 is s*, a kink, and falls with lam"),
         "Not for every lambda > lambda*: at lambda = 0.9 the fourth collision lies beyond s* again "
         "for all |phi| <= 0.05.",
     )
@@ -123,7 +120,7 @@ def fourth_collision_above(claim: Claim) -> Judgement:
 @judges("egg.figure_attractors")
 def figure_attractors(claim: Claim) -> Judgement:
     """The rung between 8 and 16 lies below 0.39."""
-    fourth = locate("doubling", 20, alpha=SHAPE, n=Integer(4))
+    fourth = located("doubling", alpha=SHAPE, n=Integer(4))
     below = bool(fourth.certified and fourth.ball < fmpq(39, 100))
     born = fourth.notes.get("kind", "")
     passed = answer(below, "lambda_4 = 0.38876... < 0.39, certified: the cycle of period 8 has doubled")

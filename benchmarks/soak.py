@@ -10,7 +10,7 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.question import Question
-from verification.attractors import random_starts
+from numeric.sampling import phase_starts
 from verification.bench import SCENES
 
 BALLS, PART = 8192, 2000
@@ -28,7 +28,7 @@ def main(collisions, only):
             continue
         for lam in (0.95, 1):
             map = PinballMap(name, lam=lam, **shape)
-            component, theta, phi = random_starts(map, BALLS, seed=3)
+            component, theta, phi = phase_starts(map, BALLS, seed=3)[:3]
             fields = map.family.fields(map.law)
             rows = map.states.enter(component, theta, phi, map.law)
             began, lost, off = time.perf_counter(), {}, 0.0
@@ -42,7 +42,7 @@ def main(collisions, only):
                     for code in set(codes[codes > 0].tolist()):
                         lost[code] = lost.get(code, 0) + int(np.sum(codes == code))
                     again = codes > 0  # a ball that stopped starts anew
-                    fresh = map.states.enter(*random_starts(map, BALLS, seed=len(lost)), map.law)
+                    fresh = map.states.enter(*phase_starts(map, BALLS, seed=len(lost))[:3], map.law)
                     rows = [np.where(again, new, old) for new, old in zip(fresh, rows, strict=True)]
             component, theta = map.states.place(rows)
             x, y = map.states.point(component, theta)

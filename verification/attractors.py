@@ -6,32 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import Exponents, PinballMap
+from numeric.sampling import phase_starts
 
 LONGEST = 64  # period that is looked for
 CLOSE = 1e-7  # of a return, in the boundary parameter and the angle
-Array = NDArray[np.float64]
-
-
-def random_starts(map: PinballMap, count: int, seed: int) -> tuple[NDArray[np.int64], Array, Array]:
-    """Component, theta and phi of random balls, uniform in arc length and `sin(phi)`: the elastic map's own measure.
-
-    >>> component, theta, phi = random_starts(PinballMap("circle", lam=1), 3, seed=0)
-    >>> bool(np.all(np.abs(phi) < np.pi / 2)), component.tolist()
-    (True, [0, 0, 0])
-    """
-    rng = np.random.default_rng(seed)
-    ends = np.array(map.states.ends)
-    index = np.arange(len(ends))
-    low, high = map.arclength.s(ends[:, 0], index), map.arclength.s(ends[:, 1], index)
-    component = rng.choice(index, size=count, p=(high - low) / np.sum(high - low))
-    s = low[component] + (high - low)[component] * rng.uniform(1e-12, 1 - 1e-12, count)
-    phi = np.arcsin(rng.uniform(-1, 1, count) * (1 - 1e-12))
-    return component, map.arclength.theta(s, component), phi
 
 
 def survey(map: PinballMap, bounces: int, orbits: int, seed: int, transient: int) -> dict[str, Any]:
     """Exponents of random orbits, all together and for each attractor."""
-    component, theta, phi = random_starts(map, orbits, seed)
+    component, theta, phi = phase_starts(map, orbits, seed)[:3]
     if map.law == "slap":
         phi = np.zeros_like(phi)  # every exit is along the normal, the first one too
     found = map.exponents(theta, phi, bounces, transient, component)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from numeric import PinballMap, machine
 from numeric.kernel import kernel_text, operations
 from numeric.question import Question, starting
-from verification.attractors import random_starts
+from numeric.sampling import phase_starts
 from verification.exact_map import ExactMap
 from verification.truth import errors
 
@@ -126,8 +126,8 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
 
 def attracted(map: PinballMap, balls: int, transient: int = 100) -> list[Array]:
     """Fields of random balls after some bounces."""
-    component, theta, phi = random_starts(map, balls, seed=1)
-    own = map.states.enter(component, theta, phi, map.law)
+    starts = phase_starts(map, balls, seed=1)
+    own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
     rows = map.engine.run(Question(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows
     return [np.ascontiguousarray(rows[field]) for field in map.family.fields(map.law)]
 

@@ -7,10 +7,10 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
+from numeric.sampling import phase_starts
 from symbolic.polygons import saddle_node
 from symbolic.signs import Finding, Outcome
 from symbolic.symbols import alpha
-from verification.attractors import random_starts
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import digits, judges
 from verification.crises import Crisis, crisis
@@ -44,8 +44,8 @@ def crises(claim: Claim) -> Judgement:
 def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:
     """The share of random starts that end on period 3: their neighbourhood shrinks, off the diameters."""
     map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
-    component, theta, phi = random_starts(map, starts, SEED)
-    end = map.exponents(theta, phi, 200, bounces, component)
+    ball = phase_starts(map, starts, SEED)
+    end = map.exponents(ball.theta, ball.phi, 200, bounces, ball.component)
     return float(np.mean((end.nu_plus < 0) & (np.abs(end.phi) > 0.15)))
 
 

@@ -15,6 +15,8 @@ from numeric.coordinates import States
 
 Array = NDArray[np.float64]
 MOST = 1 << 14  # terms; a boundary that needs more is not smooth
+SETTLED = 1e-9  # radians: the step after one this short is below rounding
+ROUNDING = 4e-16  # of the mean speed: what a transform of exact samples leaves in a coefficient that is 0
 
 
 class ArcLength:
@@ -77,7 +79,10 @@ class ArcLength:
         theta = np.interp(s, length(grid), grid)
         where = np.full(theta.shape, index)
         for _ in range(6):
-            theta = np.clip(theta - (length(theta) - s) / self.states.speed(where, theta), low, high)
+            step = (length(theta) - s) / self.states.speed(where, theta)
+            theta = np.clip(theta - step, low, high)
+            if np.max(np.abs(step), initial=0.0) < SETTLED:
+                break
         return theta
 
     def _length(self, index: int) -> Callable[[Array], Array]:
@@ -101,10 +106,10 @@ class ArcLength:
             theta = 2 * np.pi * np.arange(count) / count - np.pi
             values = self.states.speed(np.full(count, index), theta)
             c = np.fft.rfft(values) / count * np.exp(1j * np.pi * np.arange(count // 2 + 1))
-            if np.max(np.abs(c[count // 3 :])) < 1e-17 * abs(c[0]) * 8 or count >= MOST:
+            if np.max(np.abs(c[count // 3 :])) < ROUNDING * abs(c[0]) or count >= MOST:
                 break
             count *= 2
-        kept = np.nonzero(np.abs(c) > 1e-18 * abs(c[0]))[0]
+        kept = np.nonzero(np.abs(c) > ROUNDING * abs(c[0]))[0]
         kept = kept[(kept > 0) & (kept < count // 3)]
         mean, k, terms = c[0].real, kept[:, None], 2 * c[kept][:, None] / kept[:, None]
 

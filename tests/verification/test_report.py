@@ -8,7 +8,8 @@ import pytest
 
 from verification.commands.output import write_whole
 from verification.commands.verify import write_report
-from verification.report import VERDICTS, document, markdown, section_order, summary
+from verification.report import VERDICTS, document, section_order, summary
+from verification.report.markdown import markdown
 
 VERSIONS = {"python": "3.11.0", "sympy": "1.13", "machine": "abacus"}
 Verdict = Enum("Verdict", {name.upper(): name for name in VERDICTS})
@@ -129,13 +130,13 @@ def test_json_has_the_keys_of_the_contract_in_order():
     ]  # fmt: skip
 
 
-def test_both_files_are_written_and_nothing_else(tmp_path):
+def test_the_four_files_are_written_and_nothing_else(tmp_path):
     write_report(tmp_path, [Result(), WRONG])
 
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.json", "report.md"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "report.json", "report.md", "report.tex"]
     written = json.loads((tmp_path / "report.json").read_text())
     assert written["schema"] == 1
-    assert set(written["made_with"]) == {"python", "sympy", "mpmath", "python-flint", "machine"}
+    assert set(written["made_with"]) == {"python", "sympy", "mpmath", "python-flint", "numpy", "machine"}
 
 
 def test_a_write_that_fails_leaves_the_old_text(tmp_path, monkeypatch):

@@ -39,7 +39,7 @@ def command(only: str, digits: int, folder: str, output: Output) -> int:
     write_report(directory, results)
     output.write(report.document(results))
     show(output.console, results)
-    output.console.print(f"The report is in {directory / 'report.md'} and {directory / 'report.json'}.")
+    output.console.print(f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex).")
     return FAILED if report.counts(results)["open"] else DONE
 
 
@@ -69,10 +69,16 @@ def prepared(folder: str) -> Path:
 
 
 def write_report(directory: Path, results: Sequence["Result"]) -> None:
-    """Writes `report.md` and `report.json`, each at once."""
+    """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once."""
+    from verification.report.markdown import markdown
+    from verification.report.page import page
+    from verification.report.tables import tables
+
     versions = report.made_with()
-    write_whole(directory / "report.md", report.markdown(results, versions))
     whole = report.document(results) | {"made_with": versions}
+    write_whole(directory / "report.html", page(results, versions))
+    write_whole(directory / "report.md", markdown(results, versions))
+    write_whole(directory / "report.tex", tables(results))
     write_whole(directory / "report.json", json.dumps(whole, indent=2) + "\n")
 
 

@@ -1,56 +1,19 @@
-"""The report on the paper, as Markdown for people and JSON for programs."""
+"""The report as Markdown: summary, errata, then each claim by section of the paper."""
 
-import platform
 import re
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
-from itertools import groupby
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from verification.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
     from verification.claims import Result
 
-VERDICTS = {
-    "confirmed": "proved, and as printed",
-    "corrected": "proved to differ from what is printed, and the right form is proved",
-    "refuted": "proved false",
-    "supported": "agrees within a stated error, not proved",
-    "open": "not settled",
-}
 SHORT = 90  # characters that stay inside a line
 PARAGRAPH = 400  # characters of a proof that are read as a sentence
 DIGITS = 60  # digits of a number on a line
 WORDS = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")  # two in a row make a text, not a formula
-
-
-def document(results: Iterable["Result"]) -> dict[str, Any]:
-    """The results under the JSON schema of `pinball verify`."""
-    return {"schema": 1, "claims": [result.to_dict() for result in results]}
-
-
-def counts(results: Iterable["Result"]) -> dict[str, int]:
-    """How many claims have each verdict, every verdict listed."""
-    found = Counter(result.verdict.value for result in results)
-    return {verdict: found[verdict] for verdict in VERDICTS}
-
-
-def summary(results: Sequence["Result"]) -> str:
-    """One line: so many claims, so many of each verdict."""
-    parts = ", ".join(f"{number} {verdict}" for verdict, number in counts(results).items())
-    return f"{len(results)} claims: {parts}."
-
-
-def made_with() -> dict[str, str]:
-    """The versions that a result depends on, and the type of machine."""
-    found = {"python": platform.python_version()}
-    for package in ("sympy", "mpmath", "python-flint"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "not installed"
-    return found | {"machine": platform.machine() or "unknown"}
 
 
 def markdown(results: Sequence["Result"], versions: Mapping[str, str]) -> str:
@@ -58,25 +21,12 @@ def markdown(results: Sequence["Result"], versions: Mapping[str, str]) -> str:
 
     Two runs differ in the seconds only.
     """
-    ordered = sorted(results, key=lambda result: section_order(result.section))
-    parts = ["# What the paper says, and what is true", summary(results), _legend(results), *_errata(ordered)]
-    for section, claims in groupby(ordered, key=lambda result: result.section):
+    parts = ["# What the paper says, and what is true", summary(results), _legend(results), *_errata(results)]
+    for section, claims in by_section(results):
         parts += [f"## {section}", *(_claim(result) for result in claims)]
     made = ", ".join(f"{name} {number}" for name, number in versions.items())
     parts += ["---", f"Made with {made}."]
     return "\n\n".join(parts) + "\n"
-
-
-def section_order(section: str) -> tuple[int, ...]:
-    """Where a section stands in the paper: the abstract, the numbered sections, the appendix.
-
-    >>> sorted(["A.1 Lyapunov", "10 End", "6.2 Slap", "6 Egg", "Abstract"], key=section_order)
-    ['Abstract', '6 Egg', '6.2 Slap', '10 End', 'A.1 Lyapunov']
-    """
-    label = section.split(" ")[0].split(".")
-    if label[0].isdigit():
-        return (1, *(int(part) for part in label if part.isdigit()))
-    return (2, *(int(part) for part in label[1:] if part.isdigit())) if len(label[0]) == 1 else (0,)
 
 
 def _legend(results: Sequence["Result"]) -> str:
@@ -85,15 +35,14 @@ def _legend(results: Sequence["Result"]) -> str:
 
 
 def _errata(results: Iterable["Result"]) -> list[str]:
-    wrong = [result for result in results if result.verdict.value in ("corrected", "refuted")]
+    wrong = errata(results)
     if not wrong:
         return ["## Errata", "None found."]
     return ["## Errata", *(_erratum(f"{n}. ", result) for n, result in enumerate(wrong, 1))]
 
 
 def _erratum(marker: str, result: "Result") -> str:
-    place = result.section if result.section == "Abstract" else f"Section {result.section}"
-    parts = [f"{place} (`{result.id}`). {_sentence(result.erratum)}", _quote(result.quote), _comparison(result)]
+    parts = [f"{place(result)} (`{result.id}`). {_sentence(result.erratum)}", _quote(result.quote), _comparison(result)]
     return marker + _indented("\n\n".join(parts), len(marker)).lstrip()
 
 

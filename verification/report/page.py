@@ -1,0 +1,84 @@
+"""The report as one page of HTML that needs no network: formulas in MathML, figures and script inside it."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+from verification.report import VERDICTS, by_section, counts, errata, place, summary
+from verification.report.mathml import formula, prose, remark
+
+if TYPE_CHECKING:
+    from verification.claims import Result
+
+FOLD = 48  # digits of a number before the rest is folded away
+LONG = 300  # characters of a method before it is folded
+OPENING = 120  # of which this many are shown
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure of the report: a PNG or SVG image, and the claims beside which it stands, as globs."""
+
+    name: str
+    caption: str
+    image: bytes
+    claims: tuple[str, ...] = ()
+    kind: str = "png"
+
+    @property
+    def source(self) -> str:
+        """The image as an address that holds it whole."""
+        mime = {"png": "image/png", "svg": "image/svg+xml"}[self.kind]
+        return f"data:{mime};base64,{base64.b64encode(self.image).decode('ascii')}"
+
+    def stands_by(self, claims: "Sequence[Result]") -> str | None:
+        """The id of the first of `claims` that it illustrates."""
+        return next((c.id for c in claims if any(fnmatchcase(c.id, glob) for glob in self.claims)), None)
+
+
+def page(results: "Sequence[Result]", versions: Mapping[str, str], pictures: Sequence[Picture] = ()) -> str:
+    """The whole page. Two runs differ in the seconds only."""
+    sections = by_section(results)
+    ordered = [result for _, claims in sections for result in claims]
+    beside: dict[str, list[Picture]] = {}
+    for picture in pictures:
+        beside.setdefault(picture.stands_by(ordered) or "", []).append(picture)
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters |= {"prose": prose, "said": said, "sentence": sentence, "opening": opening}
+    template = environment.from_string((files("verification.report") / "page.html").read_text(encoding="utf-8"))
+    return template.render(
+        summary=summary(results),
+        counts=counts(results),
+        meanings=VERDICTS,
+        errata=errata(results),
+        place=place,
+        sections=sections,
+        beside=beside,
+        made=", ".join(f"{name} {number}" for name, number in versions.items()),
+        seconds=sum(result.seconds for result in results),
+        fold=FOLD,
+        long=LONG,
+    )
+
+
+def said(text: str) -> Markup:
+    """A formula as MathML, anything else in words."""
+    return formula(text) or remark(text)
+
+
+def sentence(text: str) -> Markup:
+    """Words as a sentence: a capital at the beginning, a full stop at the end."""
+    first = text.split(" ", 1)[0]
+    text = text[:1].upper() + text[1:] if first.isalpha() and first.islower() else text
+    return remark(text if text.endswith((".", "!", "?")) else f"{text}.")
+
+
+def opening(text: str) -> Markup:
+    """The first words of a long text."""
+    return sentence(text[: text.rindex(" ", 0, OPENING)].rstrip(".,:;") + ".")[:-1]

@@ -6,7 +6,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test lint bench clean
+.PHONY: verify test browser lint bench clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -17,6 +17,10 @@ verify: $(VENV)/main.stamp
 
 test: lint
 	$(BIN)/python -m pytest -q -n $(JOBS)
+
+# The pages in a headless Chromium, which must be on the path or named by CHROMIUM.
+browser: $(VENV)/test.stamp $(VENV)/browser.stamp
+	$(BIN)/python -m pytest -q tests/browser
 
 lint: $(VENV)/test.stamp
 	$(BIN)/ruff check .
@@ -35,6 +39,7 @@ clean:
 $(VENV)/main.stamp: extras :=
 $(VENV)/test.stamp: extras := [test]
 $(VENV)/bench.stamp: extras := [bench]
+$(VENV)/browser.stamp: extras := [browser]
 
 $(VENV)/%.stamp: pyproject.toml $(VENV)/made.stamp
 	$(BIN)/python -m pip install --quiet --editable ".$(extras)"

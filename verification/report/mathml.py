@@ -113,7 +113,7 @@ def formula(text: str) -> Markup | None:
     try:
         code = re.sub(r"(?<![<>=!])=(?!=)", "==", text.strip().replace("^", "**"))
         tree = ast.parse(code, mode="eval").body
-        return Markup(mathml(_latex(tree)).replace("<math ", '<math displaystyle="true" ', 1))
+        return Markup(str(mathml(_latex(tree))).replace("<math ", '<math displaystyle="true" ', 1))
     except (SyntaxError, ValueError, RecursionError):
         return None
 

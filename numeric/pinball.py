@@ -14,6 +14,7 @@ from numeric.coordinates import States
 from numeric.engine import Engine
 from numeric.families.choice import PATHS, family_of
 from numeric.families.family import NEAR, PINBALL, SLAP, law_of
+from numeric.growth import Growth
 from numeric.inputs import angles, components, contraction, counted, real, shape_value
 from numeric.question import Question, starting
 from numeric.status import Status
@@ -187,41 +188,18 @@ class PinballMap:
         `nu_plus` is the growth of one vector, which starts in a fixed generic direction; `nu_minus` comes from
         the determinant. At `lam = 0` the map is one-dimensional and `nu_minus` is minus infinity.
         """
-        where, theta, phi = self._start(theta, phi, component)
-        bounces = counted("bounces", bounces)
-        law, early = self._law(phi), None
-        if counted("transient", transient, least=0):
-            own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
-            early = self.engine.run(Question(law), own, self._lams(theta), self.shape, transient, threads=threads).rows
-            fields = [early[name] for name in self.family.fields(law)]
-            flat_where, flat = self.states.place(fields)
-            where, theta = flat_where.reshape(theta.shape), flat.reshape(theta.shape)
-            phi = self.states.exit(flat_where, flat, fields, law).reshape(theta.shape)
-        speed, curvature = self.states.rate(where, theta), self.states.curvature(where, theta)
-        ds, dphi = (1.0, 0.0) if law == SLAP else (0.8, 0.6)
-        vector = ds / speed, curvature * ds + dphi
-        rows = self._tangent_run(law, where, theta, phi, bounces, vector, early, threads)
-        fields = [rows[name] for name in self.family.fields(law)]
-        place, at = self.states.place(fields)
-        moved = rows["shift"] / rows["n0"] * self.states.rate(place, at)
-        turned = rows["omega"] - self.states.curvature(place, at) * moved
-        lost = rows["lost"] if "lost" in rows else np.zeros(theta.size)
-        made = np.maximum(bounces - lost, 1.0)
+        bounces, transient = counted("bounces", bounces), counted("transient", transient, least=0)
+        growth = Growth(self, component, theta, phi)
+        growth.skip(transient, threads)
+        growth.advance(bounces, threads)
+        made = np.maximum(growth.bounces, 1)
         with np.errstate(divide="ignore"):
-            plus = (np.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * np.log(2.0)) / made
-            ends = np.log(self.states.rate(place, at) / speed.ravel()) + np.log(rows["began"] / rows["n0"])
-            total = np.log(rows["up"] / rows["down"]) + rows["volume"] * np.log(2.0) + ends
-            total = total / made + np.log(self._lams(theta))
-        code = rows["code"].astype(np.int64) if "code" in rows else np.zeros(theta.size, dtype=np.int64)
-        if early is not None and "code" in early:
-            code = np.maximum(code, early["code"].astype(np.int64))
-        out = self.states.exit(place, at, fields, law)
-        minus = total - plus
+            plus = growth.stretch / made
+            minus = growth.volume / made + np.log(growth.lam) - plus
         upper, lower = np.maximum(plus, minus), np.minimum(plus, minus)
-        came = (bounces - lost).astype(np.int64)
-        upper, lower, at, out = (a.reshape(theta.shape) for a in (upper, lower, at, out))
-        came, place, code = (a.reshape(theta.shape) for a in (came, place, code))
-        return Exponents(upper, lower, came, place, at, out, code)
+        shape = np.broadcast_shapes(*(np.shape(given) for given in (theta, phi, component)))
+        found = upper, lower, growth.bounces, growth.component, growth.theta, growth.phi, growth.code
+        return Exponents(*(np.asarray(field).reshape(shape) for field in found))
 
     def slap(self, theta: ArrayLike, iterates: int = 1, component: ArrayLike = 0) -> Slap:
         """The slap map `T_0` and its iterates, whatever this map's `lam`; the start comes first. Paper: section 2.2.

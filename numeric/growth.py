@@ -27,7 +27,7 @@ class Growth:
 
     >>> import numpy as np
     >>> from numeric import PinballMap
-    >>> growth = Growth(PinballMap("cardioid", lam=0), 0, np.pi / 3, 0.0)  # the vertical cycle, of slope 1 - t*|K| = -5/4
+    >>> growth = Growth(PinballMap("cardioid", lam=0), 0, np.pi / 3, 0.0)  # T0' = 1 - t*|K| = -5/4 there
     >>> growth.advance(2)
     >>> growth.advance(2)
     >>> bool(abs(growth.stretch[0] / 4 - np.log(5 / 4)) < 1e-14), int(growth.bounces[0])

@@ -24,7 +24,7 @@ RUNG_DIGITS = 50
 
 @dataclass(frozen=True)
 class Estimate:
-    """A limit and the size of the difference between two ways to it, as mpmath numbers."""
+    """A limit, and the largest difference from other ways to it, as mpmath numbers."""
 
     value: Any
     error: Any
@@ -56,11 +56,11 @@ def ratio(values: Sequence[str]) -> Estimate:
     context.dps = DIGITS
     gaps = [b - a for a, b in pairwise(context.mpf(v) for v in values)]
     ratios = [a / b for a, b in pairwise(gaps)]
-    return _compared(wynn(ratios), aitken(ratios))
+    return _compared(wynn(ratios), aitken(ratios), wynn(ratios[:-1]))  # on four terms the first two are one
 
 
-def _compared(one: Any, two: Any) -> Estimate:
-    return Estimate(one, abs(one - two))
+def _compared(one: Any, *others: Any) -> Estimate:
+    return Estimate(one, max(abs(one - other) for other in others))
 
 
 def wynn(values: Sequence[Any]) -> Any:

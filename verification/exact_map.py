@@ -2,22 +2,24 @@
 
 Flights are found by `numeric.families.general` on mpmath numbers, that is on the flight function as
 the paper has it, with every zero bracketed and the first hit taken. Nothing is shared with the
-closed forms and the deflated polynomials of the kernels but the exact table itself.
+closed forms and the deflated polynomials of the kernels but the exact table itself. Beyond 50 digits
+the first hit is found with 50 and sharpened by Newton's method on the same flight function.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import mpmath
 
-from numeric import PinballMap
-from numeric.families.family import law_of
+from numeric import PinballMap, Status
+from numeric.families.family import NEAR, law_of
 from numeric.families.general import General
 from numeric.readers.scalars import Scalars
 
 GUARD = 30  # digits more than asked for: a grazing flight loses as many as its angle has zeros
+COARSE = 50  # digits of the search for the first hit, when more are asked for
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,8 @@ class ExactMap:
         parts = map.blueprint.parts
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in parts]
         self.general.ends = self.ends
+        self.cusped = map.family.name == "cardioid"
+        self.coarse = ExactMap(map, COARSE, lam) if digits > COARSE else None
 
     def ball(self, component: int, theta: Any, phi: Any) -> Ball:
         """The ball at `theta` that leaves at the exit angle `phi`, both taken exactly."""
@@ -77,15 +81,47 @@ class ExactMap:
     def bounce(self, ball: Ball) -> Ball:
         """One flight and one reflection."""
         mp = self.context
-        state = [mp.mpf(ball.component), ball.theta], list(ball.v)
-        landing = self.general.fly(self.ops, self.shape, "pinball", *state)
-        component, theta = int(landing.position[0]), landing.position[1]
+        component, theta, code = self._landing(ball)
+        if self.cusped and (mp.cos(theta / 2) < NEAR or self._meets_the_cusp(ball)):
+            return replace(ball, eta=None, code=Status.CUSP.code)
         tx, ty, x, y = self._frame(component, theta)
         vx, vy = ball.v
         eta = -mp.atan2(vx * tx + vy * ty, vx * ty - vy * tx)
         phi = -self.lam * eta
         c, s = mp.cos(phi), mp.sin(phi)
-        return Ball(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y, eta, int(landing.code))
+        return Ball(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y, eta, code)
+
+    def _landing(self, ball: Ball) -> tuple[int, Any, int]:
+        """Component and parameter of the first hit, and the code of its outcome."""
+        mp = self.context
+        if self.coarse is not None:
+            component, theta, code = self.coarse._landing(ball)
+            sharp = None if code else self._sharpened(ball, component, mp.mpf(theta))
+            if sharp is not None:
+                return component, sharp, code
+        state = [mp.mpf(ball.component), mp.mpf(ball.theta)], [mp.mpf(x) for x in ball.v]
+        landing = self.general.fly(self.ops, self.shape, "pinball", *state)
+        return int(landing.position[0]), landing.position[1], int(landing.code)
+
+    def _meets_the_cusp(self, ball: Ball) -> bool:
+        """Does the flight pass the origin, which every point of the cardioid sees, closer than any landing tells?"""
+        (x, y), (vx, vy) = (ball.x, ball.y), ball.v
+        return bool(x * vx + y * vy < 0 and abs(x * vy - y * vx) < NEAR * NEAR)
+
+    def _sharpened(self, ball: Ball, component: int, theta: Any) -> Any:
+        """The zero of the flight function that Newton's method reaches; None if it is not the one nearby."""
+        mp, first = self.context, theta
+        vx, vy = ball.v
+        for _ in range(self.digits):
+            x, y, dx, dy, _, _ = self.general.parts[component].curve(self.ops, theta, *self.shape)
+            slope = vx * dy - vy * dx
+            step = (vx * (y - ball.y) - vy * (x - ball.x)) / slope if slope else mp.inf
+            theta -= step
+            if not abs(theta - first) < mp.mpf(10) ** (-COARSE):
+                return None
+            if abs(step) < mp.mpf(10) ** (-mp.dps * 3 // 5):  # the next one would be lost in rounding
+                return theta
+        return None
 
     def orbit(self, ball: Ball, bounces: int) -> list[Ball]:
         """The ball and its next `bounces` bounces; shorter when an outcome stops it."""
@@ -102,6 +138,11 @@ class ExactMap:
         x, y, dx, dy, _, _ = self.general.parts[component].curve(self.ops, theta, *self.shape)
         speed = self.context.hypot(dx, dy)
         return dx / speed, dy / speed, x, y
+
+    def middle(self, ball: Any) -> Any:
+        """The midpoint of a ball of python-flint."""
+        man, exp = ball.mid().man_exp()
+        return self.context.ldexp(self.context.mpf(int(man)), int(exp))
 
     def exactly(self, value: Any) -> Any:
         if isinstance(value, Fraction):

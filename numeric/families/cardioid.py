@@ -68,7 +68,8 @@ class Cardioid(Family):
         code = ops.number(0.0)
         if law != SLAP:
             code = ops.select(grazing(ops, w[1], -w[0]), ops.number(3.0), code)
-        code = ops.select(ops.number(NEAR) < landing[0], code, ops.number(2.0))
+        aside = ops.number(0.0) < coefficients[3]  # else the flight meets the cusp itself, and there the map jumps
+        code = ops.select(aside & (ops.number(NEAR) < landing[0]), code, ops.number(2.0))
         return Landing(list(landing), w[1], -w[0], code, {"back": back})
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:

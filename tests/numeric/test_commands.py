@@ -1,6 +1,7 @@
 """`pinball orbit`, `lyapunov`, `slap` and `bench`, as the contract has them."""
 
 import json
+import math
 
 import pytest
 
@@ -62,6 +63,46 @@ def test_a_formula_makes_a_table(capsys):
 
     assert status == 0
     assert document["bounces"][1]["component"] == "polar"
+
+
+WAISTED = ("--polar", "1 + cos(2*theta)/2", "--lam", "9/10")  # the line that touches both sides of a waist
+
+
+def test_balls_prove_first_hits_where_the_table_is_not_convex(capsys):
+    question = ("orbit", *WAISTED, "--start", "1,1/2", "--bounces", "6", "--digits", "20")
+    (status, proved, _), (_, plain, _) = (run(capsys, *question, "--arithmetic", name) for name in ("arb", "float64"))
+
+    assert status == 0
+    for one, two in zip(proved["bounces"], plain["bounces"], strict=True):
+        assert float(one["theta"]) == pytest.approx(two["theta"], abs=1e-12)
+
+
+def test_what_cannot_be_proved_is_not_given(capsys):
+    question = ("orbit", *EGG, "--start", "1,pi/2-1/10^13", "--bounces", "3", "--arithmetic", "arb", "--digits", "15")
+    status, document, told = run(capsys, *question)
+
+    assert status == 1
+    assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "unproved"]
+    assert document["bounces"][1]["theta"] == document["bounces"][0]["theta"]
+    assert "no proof that the next flight meets nothing before it lands" in told
+
+
+@pytest.mark.parametrize("arithmetic", ["float64", "mpmath", "arb"])
+def test_a_flight_into_the_cusp_is_no_bounce(capsys, arithmetic):
+    """From `theta` the exit angle `theta/2` aims at the cusp."""
+    question = ("orbit", "cardioid", "--lam", "0.9", "--start", "1,1/2", "--bounces", "2")
+    _, document, _ = run(capsys, *question, "--arithmetic", arithmetic)
+
+    assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "cusp"]
+
+
+@pytest.mark.parametrize("arithmetic", ["float64", "mpmath", "arb"])
+def test_a_start_may_lie_whole_turns_away(capsys, arithmetic):
+    question = ("orbit", *EGG, "--start", "7,0.3", "--bounces", "1", "--arithmetic", arithmetic)
+    _, document, _ = run(capsys, *question)
+
+    assert float(document["bounces"][0]["theta"]) == pytest.approx(7 - 2 * math.pi)
+    assert float(document["bounces"][1]["x"]) == pytest.approx(-0.8625824708767529)  # by either of the others
 
 
 def test_a_ball_that_stops_is_reported(capsys):

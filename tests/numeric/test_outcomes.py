@@ -7,12 +7,14 @@ from numeric import PinballMap, Status
 
 
 @pytest.mark.parametrize("kernels", [True, False])
-def test_a_ball_aimed_at_the_cusp(kernels):
+@pytest.mark.parametrize("theta", [0.0, 0.3, -1.0, 2.5])
+def test_a_ball_aimed_at_the_cusp(kernels, theta):
+    """Along the axis, and on the line by the tip that passes on one side of it and lands at it on the other."""
     map = PinballMap("cardioid", lam=0.9, kernels=kernels)
-    step = map.step(0.0, 0.0)  # along the axis
+    step = map.step(theta, theta / 2)
 
     assert step.status == Status.CUSP
-    assert (step.theta, step.phi) == (0.0, 0.0)
+    assert (step.theta, step.phi) == (theta, theta / 2)
 
 
 @pytest.mark.parametrize("kernels", [True, False])

@@ -1,0 +1,34 @@
+"""The notebooks run from their first cell to the last, and each is the same as its text."""
+
+import importlib.util
+from pathlib import Path
+
+import jupytext
+import pytest
+
+HERE = Path(__file__).parents[2] / "notebooks"
+SPEC = importlib.util.spec_from_file_location("execute", HERE / "execute.py")
+execute = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(execute)
+TEXTS = execute.texts()
+
+
+def sources(path):
+    return [(cell.cell_type, cell.source) for cell in jupytext.read(path).cells]
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=lambda path: path.stem)
+def test_a_notebook_derives_what_it_says(text):
+    notebook = execute.executed(text)
+
+    assert all(cell.get("execution_count") for cell in notebook.cells if cell.cell_type == "code")
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=lambda path: path.stem)
+def test_a_notebook_and_its_text_say_the_same(text):
+    assert sources(text.with_suffix(".ipynb")) == sources(text)
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=lambda path: path.stem)
+def test_a_notebook_ends_with_a_check_that_can_fail(text):
+    assert "assert " in sources(text)[-1][1]

@@ -38,6 +38,7 @@ SIGNS = {
     ast.NotEq: r"\neq",
     ast.In: r"\in",
 }
+TYPED = {"``": "\u201c", "''": "\u201d", "--": "\u2013", "~": "\u00a0", "\\ ": " ", "\\'e": "\u00e9"}
 PLAIN = {"<=": "\u2264", ">=": "\u2265", "!=": "\u2260", "->": "\u2192", "+-": "\u00b1", "sqrt": "\u221a"}
 GREEK = {
     "lam": "\u03bb",
@@ -100,8 +101,10 @@ def _greek(found: re.Match[str]) -> str:
 
 
 def _words(text: str) -> Markup:
-    plain = str(escape(text.replace("``", "\u201c").replace("''", "\u201d").replace("--", "\u2013")))
-    return Markup(TEXT_MACRO.sub(r"<em>\1</em>", plain.replace("~", "\u00a0").replace(r"\ ", " ")))
+    for typed, shown in TYPED.items():
+        text = text.replace(typed, shown)
+    plain = str(escape(text))
+    return Markup(TEXT_MACRO.sub(r"<em>\1</em>", plain))
 
 
 def formula(text: str) -> Markup | None:

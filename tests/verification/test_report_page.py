@@ -1,0 +1,143 @@
+"""The HTML and LaTeX forms of the report: whole, faithful, self-contained."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from verification import claims
+from verification.report.mathml import formula, mathml, prose, remark
+from verification.report.page import FOLD, Picture, page
+from verification.report.tables import escaped, tables
+
+RESULTS = [*claims.verify("ellipse.*"), *claims.verify("circle.*")]
+HTML = page(RESULTS, {"python": "3"})
+VOID = {"meta", "input", "br", "img"}
+
+
+class Reader(HTMLParser):
+    """Every tag closed in the order it was opened, and what each refers to."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.links, self.sources = [], [], [], []
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.ids += [given["id"]] if "id" in given else []
+        self.links += [given["href"]] if "href" in given else []
+        self.sources += [given["src"]] if "src" in given else []
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.handle_starttag(tag, attributes)
+        self.handle_endtag(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def read(text):
+    reader = Reader()
+    reader.feed(text)
+    assert reader.open == []
+    return reader
+
+
+def leaves(text):
+    """The letters, digits and signs of a formula in MathML, in order."""
+    return re.sub(r"\s|&#x02061;", "", re.sub("<[^>]+>", "", str(text)))
+
+
+def test_the_page_is_well_formed_and_its_links_lead_somewhere():
+    found = read(HTML)
+
+    assert len(set(found.ids)) == len(found.ids)
+    assert {link[1:] for link in found.links} <= set(found.ids)
+
+
+def test_the_page_needs_no_network():
+    found = read(page(RESULTS, {}, [Picture("x", "y", b"z")]))
+
+    assert all(link.startswith("#") for link in found.links)
+    assert all(source.startswith("data:") for source in found.sources)
+    assert not re.search(r"url\(|@import|<link|<script src", HTML)
+
+
+def test_every_claim_and_every_erratum_is_on_the_page():
+    assert HTML.count("<article") == len(RESULTS)
+    assert HTML.count('class="erratum') == sum(r.verdict.value in ("corrected", "refuted") for r in RESULTS) > 0
+
+
+def test_two_runs_differ_in_nothing():
+    assert page(RESULTS, {"python": "3"}) == HTML
+
+
+@pytest.mark.parametrize("claim", claims.catalogue(), ids=lambda claim: claim.id)
+def test_every_quotation_of_the_paper_is_set_whole(claim):
+    shown = prose(claim.quote)
+
+    assert "\\" not in re.sub(r'alttext="[^"]*"', "", str(shown))
+    assert "$" not in shown
+
+
+def test_a_formula_is_set_as_it_is_written_and_not_evaluated():
+    assert leaves(formula("2*(lam + lam) - 0")) == "2(&#x003BB;+&#x003BB;)&#x02212;0".replace("(", "&#x00028;").replace(
+        ")", "&#x00029;"
+    ).replace("+", "&#x0002B;")
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("-(a + b)*c", r"-\left(a + b\right) \, c"),
+        ("a - (b - c)", r"a - \left(b - c\right)"),
+        ("(a + b)^2/c", r"\frac{\left(a + b\right)^{2}}{c}"),
+        ("(-a)^2", r"\left(-a\right)^{2}"),
+        ("a/b/c", r"\frac{\frac{a}{b}}{c}"),
+        ("a*(b*c)", r"a \, \left(b \, c\right)"),
+        ("2*3", r"2 \cdot 3"),
+        ("0 <= lam < 1", r"0 \leq \lambda < 1"),
+    ],
+)
+def test_parentheses_stand_where_the_formula_needs_them(text, latex):
+    assert f'alttext="{latex.replace("<", "&lt;")}"' in str(formula(text))
+
+
+@pytest.mark.parametrize("text", ["the table is a circle", "a b", "", "lambda: 0", "x.y", "[a for a in b]"])
+def test_what_is_no_formula_is_left_to_words(text):
+    assert formula(text) is None
+
+
+def test_words_cannot_become_markup():
+    assert "<script>" not in remark("<script>alert(1)</script>")
+    assert "<script>" not in prose("it is <script> and $a<b$")
+    assert "<b>" not in mathml("a <b> c")
+
+
+def test_long_digits_fold_and_none_is_lost():
+    result = next(r for r in claims.verify("cuspless.lambda_c", 100) if r.value)
+    html = page([result], {})
+
+    assert f"<p>{result.value}</p>" in html
+    assert f"<summary>{result.value[:FOLD]}…</summary>" in html
+
+
+def test_a_picture_stands_by_the_first_claim_it_illustrates():
+    html = page(RESULTS, {}, [Picture("x", "The picture.", b"z", ("ellipse.P*",))])
+
+    assert html.index('id="ellipse.P1"') < html.index("figure-x") < html.index('id="ellipse.P2"')
+
+
+def test_latex_tables_are_balanced_and_plain():
+    text = tables(RESULTS)
+
+    assert text.count(r"\begin{longtable}") == text.count(r"\end{longtable}") == 3
+    bare = re.sub(r"\\[{}]", "", text)
+    assert bare.count("{") == bare.count("}")
+    assert not re.search(r"(?<!\\)[$#_^]", text.split("\n", 1)[1])
+
+
+def test_every_character_that_latex_acts_on_is_escaped():
+    assert escaped(r"\a{b}$&#_%~^") == (r"\textbackslash{}a\{b\}\$\&\#\_\%\textasciitilde{}\textasciicircum{}")

@@ -6,6 +6,7 @@ the folder, or without numba, the benchmark goes on with its own rows only.
 
 import importlib.util
 from collections.abc import Iterable
+from decimal import Decimal
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from numeric import PinballMap
-from verification.bench import LAWS, SCENES, Row, best
+from verification.bench import LAWS, Row, best
 from verification.exact_map import ExactMap
+from verification.labelled import DIGITS, SCENES
 
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 BALLS = 24  # whose errors are measured
@@ -84,9 +86,9 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
         yield Row(name, "float64", "the paper's way, in Python", error, best(papers, runs) / BALLS, runs)
 
 
-def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> float:
+def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:
     """The largest error of parameter or angle over the first balls, in units of 2**-52."""
-    exact = ExactMap(map, 40)
+    exact = ExactMap(map, DIGITS)
     mp, worst = exact.context, 0.0
     for i in range(BALLS):
         truth = exact.bounce(exact.ball(0, theta[i], phi[i]))
@@ -94,4 +96,4 @@ def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> float:
         if truth.component == 0:
             gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))
         worst = max(worst, float(abs(gap)), float(abs(mp.mpf(float(out[i])) - truth.phi)))
-    return worst * 2.0**52
+    return Decimal(f"{worst * 2.0**52:.3g}")

@@ -1,0 +1,78 @@
+"""Cycles that shadow a homoclinic tangency: their folds converge to it, which locates it without any manifold.
+
+A cycle that leaves a saddle along its unstable manifold and comes back along the stable one stays
+some rounds near the saddle in between. Each such family folds once, at a letter that approaches the
+tangency like `unstable**-rounds`. A fold is a problem of the chord system, solved with as many digits
+as wanted, and provable; a long cycle gives the tangency itself.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from verification.arithmetic import FLOAT64
+from verification.manifolds.recurrence import Pinball
+from verification.manifolds.series import horner
+from verification.manifolds.tangency import Contact, Gap
+from verification.shooting.problem import Kind, Problem
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """A cycle near a homoclinic tangency: the problem of its fold, and a start for Newton's method."""
+
+    problem: Problem
+    start: list[float]
+
+
+def shadow(contact: Contact, map: Pinball, letter: float, rounds: int) -> Shadow:
+    """The cycle that spends about `rounds` rounds of the saddle near it, a few more where symmetry asks for it."""
+    if contact.unstable != contact.stable:
+        raise ValueError("shadow: the tangency is heteroclinic; a cycle shadows homoclinic ones only")
+    floats = map.over(FLOAT64)
+    gap = Gap(contact, floats, letter, 28, 1e-16)
+    for more in range(6):
+        points, bent, image = period(gap, rounds + more)
+        sign, turns = image
+        if sign == -1 or turns % map.turn == 0:
+            unit = 2 * floats.words["pi"] / map.turn
+            if sign == -1:  # a mirror: turned so that its axis is theta = 0
+                points = [x + turns * unit for x in points]
+            points = [*points[bent + 1 :], *(sign * x for x in points[: bent + 1])]
+            problem = Problem(map.table, (0,) * len(points), Kind.FOLD, "lam", mirror=sign == -1)
+            return Shadow(problem, [*points, letter])
+    raise ValueError("shadow: no number of rounds closes the cycle up to a mirror")
+
+
+def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
+    """One period of the cycle, the bounce that moves most with it, and the symmetry that continues it."""
+    turn, orbit = gap.map.turn, gap.out.saddle.orbit
+    unit = 2 * gap.map.words["pi"] / turn
+    once = orbit.sign, orbit.shift[0] * turn // orbit.shift[1]
+    z, _, end = gap.extremum()
+    points: list[float] = []
+    image = 1, 0
+
+    def extend(round: list[Any]) -> None:
+        points.extend(float(image[0] * x + image[1] * unit) for x in round)
+
+    for k in range(rounds // 2, 0, -1):
+        extend([horner(c, z / gap.out.factor**k) for c in gap.out.coefficients])
+        image = composed(image, once)
+    flight = gap.orbit(z)
+    bent = len(points) + max(range(gap.bounces), key=lambda i: abs(flight[i].c[1]))
+    extend([jet.c[0] for jet in flight[: gap.bounces]])
+    target = gap.into.points(end.c[0])[0]
+    image = composed(image, (gap.sign, round((flight[-2].c[0] - gap.sign * target) / unit)))
+    for k in range(rounds - rounds // 2):
+        extend([horner(c, end.c[0] * gap.into.factor**k) for c in gap.into.coefficients])
+        image = composed(image, once)
+    return points, bent, image
+
+
+def composed(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
+    """The symmetry `x -> sign*x + turns` after another.
+
+    >>> composed((-1, 2), (-1, 5))
+    (1, -3)
+    """
+    return first[0] * second[0], first[0] * second[1] + first[1]

@@ -17,8 +17,14 @@ COMMANDS = {
     "locate": "Where does it happen, to N certified digits?",
     "check": "Does a certificate still hold, without the search?",
     "orbit": "Where does this ball go?",
+    "follow": "What becomes of this cycle as lambda changes?",
     "lyapunov": "The two exponents, with error bars.",
+    "attractor": "Where do balls end, and in how many ways?",
     "slap": "The slap map: what remains at lambda = 0.",
+    "bifurcation": "The attractors against the contraction.",
+    "sweep": "Grids of tasks, on all cores or a Dask cluster, into a Zarr store.",
+    "figure": "One of the paper's figures, or the data behind it.",
+    "explore": "A live table on a page of this machine.",
     "bench": "Error against run time, for every arithmetic and every kernel.",
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
@@ -64,8 +70,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the last flush complains
         return BROKEN_PIPE
-    except (KeyboardInterrupt, click.Abort):
-        return _told("interrupted", INTERRUPTED)
+    except (KeyboardInterrupt, click.Abort) as stop:
+        return _told(str(stop) or "interrupted", INTERRUPTED)
     except click.ClickException as error:
         return _told(sentence(error), BAD_INPUT)
     except ValueError as error:

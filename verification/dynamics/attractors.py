@@ -7,55 +7,25 @@ that its orbits join (`verification.dynamics.clouds`). Whatever is still leaving
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from numeric import PinballMap, Status
+from numeric.sampling import interior_starts
+from symbolic.symmetry import group
+from symbolic.table import Table
 from verification.dynamics.clouds import clouds
-from verification.dynamics.cycles import Cycle, multipliers, polished
-from verification.dynamics.places import Array, Places, advanced, embedded, places, together
+from verification.dynamics.kinds import Attractor, Kind, Share
+from verification.dynamics.places import Array, Places, places
+from verification.dynamics.recognition import UNSETTLED, Labels, at_clouds, at_cycles, recognised, same
+from verification.dynamics.symmetry import with_images
 
-UNSETTLED = -1
-LONGEST = 256  # period that is looked for
-RETURN, LOOSE = 1e-9, 1e-2  # of a ball to where it was: it is a cycle; it may be near one
+__all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find"]
 SAMPLE = 64  # balls looked at for new cycles
 ROUNDS = 6
-REACHES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # radii tried for a cycle's neighbourhood
-UNIT = 1e-7  # how near 1 a multiplier is that counts as 1
-Labels = NDArray[np.int64]
-
-
-class Kind(Enum):
-    """What a ball ends on."""
-
-    CYCLE = "an attracting cycle"
-    CHAOTIC = "a chaotic set: an attractor when lam < 1"
-    NEUTRAL = "cycles or curves that neither attract nor repel"
-    STOPPED = "no attractor: the map is undefined there"
-
-
-@dataclass(frozen=True, eq=False)
-class Attractor:
-    """An attractor: its points (a cycle's in order, a cloud of others), and what was measured of it.
-
-    `reach` is the distance in `(x, y, sin(phi))` within which balls are taken to be caught: sampled, not proved.
-    `stay` bounds the mean number of bounces before a ball leaves a chaotic attractor from below, with 95 per
-    cent confidence: none of the balls seen left.
-    """
-
-    kind: Kind
-    period: int
-    points: Places
-    multipliers: tuple[complex, complex] | None = None
-    nu_plus: float = float("nan")
-    nu_minus: float = float("nan")
-    reach: float = 0.0
-    stay: float = float("inf")
-    status: Status = Status.REGULAR
+MEASURED = 64  # balls whose exponents are averaged
 
 
 class Classified(NamedTuple):
@@ -139,7 +109,7 @@ class _Sorting:
     def _entered(self, new: Attractor) -> int:
         """The index of an attractor, in the list if it was not there."""
         for index, old in enumerate(self.attractors):
-            if (old.kind, old.period, old.status) == (new.kind, new.period, new.status) and _same(self.map, old, new):
+            if same(self.map, old, new):
                 return index
         self.attractors.append(new)
         return len(self.attractors) - 1
@@ -177,111 +147,61 @@ class _Sorting:
                     self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
 
 
-def _same(map: PinballMap, old: Attractor, new: Attractor) -> bool:
-    if old.kind is not Kind.CYCLE:
-        return True
-    first = embedded(map, new.points.only(slice(0, 1)))
-    return bool(np.min(np.linalg.norm(embedded(map, old.points) - first, axis=1)) < RETURN**0.5 / 10)
+def find(
+    map: PinballMap,
+    orbits: int,
+    seed: int,
+    table: Table | None = None,
+    transient: int = 1000,
+    bounces: int = 4000,
+    known: Sequence[Attractor] = (),
+) -> tuple[Attractor, ...]:
+    """The attractors that random starts reach, the most visited first, each with the share of starts it attracts.
 
+    Starts are those of the paper's appendix. With the exact `table` the images under its symmetries belong
+    to the result, also those that no start has reached: their share is 0 out of `orbits`.
 
-def at_cycles(map: PinballMap, balls: Places, attractors: Sequence[Attractor]) -> Labels:
-    """The cycle within whose reach each ball is, or the neutral family to which it belongs; -1 for none."""
-    found = np.full(balls.size, UNSETTLED)
-    cycles = [i for i, a in enumerate(attractors) if a.kind is Kind.CYCLE]
-    if cycles:
-        owner = np.repeat(cycles, [attractors[i].period for i in cycles])
-        tree = cKDTree(embedded(map, together(*(attractors[i].points for i in cycles))))
-        reach = np.array([attractors[i].reach for i in owner])
-        distance, nearest = tree.query(embedded(map, balls), distance_upper_bound=2 * REACHES[0])
-        near = distance < np.append(reach, 0.0)[nearest]
-        found[near] = owner[nearest[near]]
-    for index, attractor in enumerate(attractors):
-        left = np.nonzero(found == UNSETTLED)[0]
-        if attractor.kind is Kind.NEUTRAL and attractor.period and left.size:
-            here = balls.only(left)
-            there = advanced(map, here, attractor.period).places
-            back = np.linalg.norm(embedded(map, there) - embedded(map, here), axis=1) < RETURN
-            found[left[back]] = index
-    return found
-
-
-def at_clouds(map: PinballMap, balls: Places, attractors: Sequence[Attractor]) -> Labels:
-    """The chaotic attractor nearest to each ball; -1 when it is not near any."""
-    chaotic = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
-    if not chaotic:
-        return np.full(balls.size, UNSETTLED)
-    owner = np.repeat(chaotic, [attractors[i].points.size for i in chaotic])
-    tree = cKDTree(embedded(map, together(*(attractors[i].points for i in chaotic))))
-    distance, nearest = tree.query(embedded(map, balls))
-    return np.where(distance < 0.1, owner[nearest], UNSETTLED)
-
-
-def recognised(map: PinballMap, balls: Places, calm: NDArray[np.bool_]) -> list[Attractor]:
-    """The cycles on which some of the balls are, or near which one of the `calm` ones is: they still draw nearer."""
-    if balls.size == 0:
-        return []
-    orbit = map.orbit(balls.theta, balls.phi, LONGEST, balls.component)
-    track = np.stack([orbit.x, orbit.y, np.sin(orbit.phi)], axis=-1)
-    gaps = np.linalg.norm(track[1:] - track[:1], axis=-1)
-    found: list[Attractor] = []
-    for i in range(balls.size):
-        period = _period(gaps[:, i], LOOSE if calm[i] else RETURN)
-        if period == 0 or any(_at(map, attractor, track[0, i]) for attractor in found):
-            continue
-        points = Places(orbit.component[:period, i], orbit.theta[:period, i], orbit.phi[:period, i])
-        attractor = _attractor(map, points, float(gaps[period - 1, i]))
-        if attractor is not None:
-            found.append(attractor)
-    return found
-
-
-def _period(gaps: Array, loose: float) -> int:
-    """The bounces after which a ball is back, or else comes nearest within `loose`; 0 for never."""
-    back = np.nonzero(gaps < RETURN)[0]
-    if back.size:
-        return int(back[0]) + 1
-    nearest = int(np.argmin(gaps))
-    return nearest + 1 if gaps[nearest] < loose else 0
-
-
-def _at(map: PinballMap, attractor: Attractor, point: Array) -> bool:
-    return bool(np.min(np.linalg.norm(embedded(map, attractor.points) - point, axis=1)) < attractor.reach)
-
-
-def _attractor(map: PinballMap, points: Places, miss: float) -> Attractor | None:
-    """The attracting or neutral cycle that runs near the points, which return with a gap of `miss`."""
-    if miss < RETURN and abs(abs(multipliers(map, points)[0]) - 1) < UNIT:
-        return Attractor(Kind.NEUTRAL, points.size, points, multipliers(map, points), 0.0)
-    cycle = polished(map, points)
-    if cycle is None or abs(cycle.multipliers[0]) >= 1 - UNIT:
-        return None
-    with np.errstate(divide="ignore"):
-        nu = np.log(np.abs(cycle.multipliers)) / cycle.period
-    new = Attractor(Kind.CYCLE, cycle.period, cycle.points, cycle.multipliers, float(nu[0]), float(nu[1]))
-    return replace(new, reach=reach(map, cycle))
-
-
-def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
-    """The largest radius tried such that balls that far from the cycle all come ten times nearer: sampled.
-
-    >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), places(0, [1.5, -1.6], 0.0))
-    >>> reach(PinballMap("ellipse", a=2, lam="0.5"), cycle)
-    0.01
+    >>> from symbolic.tables import egg
+    >>> found = find(PinballMap("egg", alpha="0.08", lam="0.7"), 200, seed=1, table=egg(3).at(alpha="0.08"))
+    >>> [(a.kind.name, a.period, a.symmetry, a.family) for a in found]
+    [('CYCLE', 3, 'C3', 0), ('CYCLE', 3, 'C3', 0)]
     """
-    rng, tree = np.random.default_rng(seed), cKDTree(embedded(map, cycle.points))
-    many = together(*[cycle.points] * (1 + 63 // cycle.period))
-    speed = map.states.speed(many.component, many.theta)
-    size = max(abs(cycle.multipliers[0]), 1e-3)
-    turns = min(int(np.ceil(np.log(0.03) / np.log(size))) + 4, 20_000 // cycle.period + 1)
-    ends = np.array(map.states.ends)[many.component]
-    for radius in REACHES:
-        angle = rng.uniform(0, 2 * np.pi, many.size)
-        theta = many.theta + radius * np.cos(angle) / speed
-        if len(map.states.ends) > 1:
-            theta = np.clip(theta, ends[:, 0], ends[:, 1])
-        phi = np.clip(many.phi + radius * np.sin(angle), -1.57, 1.57)
-        end = advanced(map, Places(many.component, theta, phi), turns * cycle.period)
-        distance = tree.query(embedded(map, end.places))[0]
-        if np.max(distance) < radius / 10 and not np.any(end.code):
-            return radius
-    return REACHES[-1]
+    starts = interior_starts(map, orbits, seed)
+    phi = np.zeros(orbits) if map.law == "slap" else starts.phi  # then every exit is along the normal
+    label, attractors = classify(map, starts.component, starts.theta, phi, transient, known)
+    found = [
+        replace(measured(map, attractor, bounces), share=wilson(int(np.sum(label == i)), orbits))
+        for i, attractor in enumerate(attractors)
+    ]
+    if table is not None:
+        images = with_images(map, found, group(table))
+        found = [a if a.share else replace(a, share=wilson(0, orbits)) for a in images]
+    found.sort(key=lambda a: -a.share.count if a.share else 0)
+    order = list(dict.fromkeys(a.family for a in found))
+    return tuple(replace(a, family=order.index(a.family)) for a in found)
+
+
+def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
+    """The attractor with the exponents of a chaotic one, and their standard errors over as many balls."""
+    if attractor.kind is not Kind.CHAOTIC:
+        return attractor
+    points = attractor.points
+    some = points.only(np.linspace(0, points.size - 1, MEASURED).astype(int))
+    end = map.exponents(some.theta, some.phi, bounces, 100, some.component)
+    good = end.code == 0
+    plus, minus = end.nu_plus[good], end.nu_minus[good]
+    root = np.sqrt(max(np.sum(good), 1))
+    errors = float(np.std(plus) / root), float(np.std(minus) / root) if np.all(np.isfinite(minus)) else 0.0
+    return replace(attractor, nu_plus=float(np.mean(plus)), nu_minus=float(np.mean(minus)), errors=errors)
+
+
+def wilson(count: int, of: int, z: float = 1.96) -> Share:
+    """The share with Wilson's interval, which never leaves 0 to 1 and is not empty at either.
+
+    >>> share = wilson(0, 100)
+    >>> share.low, round(share.high, 4)
+    (0.0, 0.037)
+    """
+    p, w = count / of, z * z / of
+    middle, half = (p + w / 2) / (1 + w), z * np.sqrt(p * (1 - p) / of + w / (4 * of)) / (1 + w)
+    return Share(count, of, float(middle - half) if count else 0.0, float(middle + half) if count < of else 1.0)

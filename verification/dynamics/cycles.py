@@ -26,11 +26,19 @@ class Cycle:
 
     points: Places
     multipliers: tuple[complex, complex]
+    volume: float  # the mean of log |det DT| along it
 
     @property
     def period(self) -> int:
         """The number of bounces."""
         return self.points.size
+
+    @property
+    def exponents(self) -> tuple[float, float]:
+        """Both Lyapunov exponents, per bounce; their sum is exactly the mean of `log |det DT|`."""
+        with np.errstate(divide="ignore"):
+            plus = float(np.log(abs(self.multipliers[0])) / self.period)
+        return plus, self.volume - plus
 
 
 def polished(map: PinballMap, near: Places) -> Cycle | None:
@@ -78,15 +86,29 @@ def shortest(map: PinballMap, cycle: Places) -> Cycle:
     once = cycle.only(slice(0, period))
     order = np.lexsort((np.round(once.phi, 6), np.round(once.theta, 6), once.component))
     once = once.turned(int(order[0]))
-    return Cycle(once, multipliers(map, once))
+    slopes = map.derivative(once.theta, once.phi, once.component)
+    with np.errstate(divide="ignore"):
+        volume = float(np.mean(np.log(np.abs(np.linalg.det(slopes))))) if map.law != "slap" else -np.inf
+    return Cycle(once, eigenvalues(slopes), volume)
 
 
 def multipliers(map: PinballMap, cycle: Places) -> tuple[complex, complex]:
-    """The eigenvalues of the derivative along the cycle, the larger one first. Paper: section 2.1."""
+    """The eigenvalues of the derivative along a cycle, the larger one first. Paper: section 2.1."""
+    return eigenvalues(map.derivative(cycle.theta, cycle.phi, cycle.component))
+
+
+def eigenvalues(slopes: Array) -> tuple[complex, complex]:
+    """Those of the product of the matrices; the smaller one from the product of the determinants.
+
+    >>> [mu.real for mu in eigenvalues(np.array([[[2.0, 0.0], [0.0, 1.0]], [[4.0, 0.0], [0.0, 0.5]]]))]
+    [8.0, 0.5]
+    """
     product = np.eye(2)
-    for matrix in map.derivative(cycle.theta, cycle.phi, cycle.component):
+    for matrix in slopes:
         product = matrix @ product
     first, second = sorted((complex(x) for x in np.linalg.eigvals(product)), key=lambda mu: -abs(mu))
+    if first.imag == 0 and first != 0:
+        second = complex(np.prod(np.linalg.det(slopes)) / first.real)
     return first, second
 
 

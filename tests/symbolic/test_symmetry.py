@@ -1,0 +1,59 @@
+"""Laws of the symmetry groups: closed, complete on the paper's tables, and proved in the plane."""
+
+import pytest
+from sympy import Matrix, Rational, S, cos, eye, pi, simplify, sin
+
+from symbolic.symbols import alpha, theta
+from symbolic.symmetry import group, order_of_rotation
+from symbolic.tables import cardioid, circle, cuspless, egg, ellipse, polar
+
+TABLES = (ellipse.at(a=2), cardioid, cuspless, egg(3).at(alpha="0.08"), egg(4).at(alpha="0.02"), egg(7))
+
+
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.name)
+def test_a_symmetry_takes_the_point_at_a_parameter_to_the_point_at_its_image(table):
+    for symmetry in group(table):
+        for index, part in enumerate(table.components):
+            image = table.components[symmetry.onto[index]]
+            for value in (part.start + (part.end - part.start) * share for share in (Rational(1, 3), Rational(3, 5))):
+                moved = symmetry.matrix * Matrix(part.at(value))
+                there = Matrix(image.at(symmetry.sign * value + symmetry.shift[index]))
+                assert max(abs(complex(x)) for x in (moved - there).subs(alpha, S(1) / 60).evalf(30)) < 1e-25
+
+
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.name)
+def test_two_symmetries_make_a_third(table):
+    matrices = [symmetry.matrix for symmetry in group(table)]
+
+    for left in matrices:
+        for right in matrices:
+            product = (left * right).evalf(20)
+            assert any((product - m.evalf(20)).norm() < 1e-15 for m in matrices)
+
+
+@pytest.mark.parametrize("K", [2, 3, 4, 5, 7, 12])
+def test_the_egg_with_k_points_has_the_dihedral_group_of_the_k_gon(K):
+    found = group(egg(K))
+
+    assert [sum(symmetry.sign == sign for symmetry in found) for sign in (1, -1)] == [K, K]
+
+
+def test_the_identity_comes_first():
+    assert all(group(table)[0].matrix == eye(2) for table in TABLES)
+
+
+def test_a_table_without_a_mirror_has_only_turns():
+    twisted = polar(1 + sin(3 * theta) / 40 + cos(6 * theta) / 80 + sin(6 * theta) / 90)
+
+    assert [symmetry.sign for symmetry in group(twisted)] == [1, 1, 1]
+
+
+def test_a_turned_egg_has_its_mirrors_turned():
+    turned = group(polar(1 + cos(3 * (theta - pi / 6)).expand(trig=True) / 20))
+
+    assert {simplify(symmetry.angle) for symmetry in turned if symmetry.sign < 0} == {pi / 3, pi, 5 * pi / 3}
+
+
+def test_the_circle_is_listed_by_the_symmetries_of_the_square():
+    assert order_of_rotation(circle.components[0]) == 4
+    assert len(group(circle)) == 8

@@ -1,49 +1,197 @@
-"""The border collision at the corner orbit: the prediction beside the map."""
+"""The border collision at the corner orbit: the proofs, the piecewise linear limit, and the map beside them."""
 
+import math
+
+import numpy as np
 import pytest
+from flint import arb
 
-from verification.arithmetic import FLOAT64
-from verification.border import Border, sampled
-from verification.certificates.corner import at_corner
+from numeric import PinballMap
+from verification.arithmetic import FLOAT64, working
+from verification.border import border, measured
+from verification.certificates.birth import birth
+from verification.certificates.border_collision import Kind, exponents, extent, fixed_point, kind, robust
+from verification.certificates.corner import at_corner, enclosed
+from verification.certificates.half_return import limit, pieces
+from verification.certificates.kink import exit_angle, kink, kink_falls, minimum_at_kink
+from verification.certificates.polygon import Piece, expansion, grown, trapped
+from verification.certificates.trail import ARC, BITS, WALL
 from verification.locate import locate
 from verification.shooting.newton import floats
 from verification.shooting.small import corner
 
-BORDER = Border()
+THETA1, STAR = (float(x.mid()) for x in enclosed())
+CORNER = 2 * math.pi / 3
+SQUARE = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
 
 
-def test_both_sides_expand_so_no_cycle_there_is_stable():
-    for out, back in zip(BORDER.out.values(), BORDER.back.values(), strict=True):
-        half = [[sum(-back[2 * i + k] * out[2 * k + j] for k in (0, 1)) for j in (0, 1)] for i in (0, 1)]
-        trace, determinant = half[0][0] + half[1][1], half[0][0] * half[1][1] - half[0][1] * half[1][0]
+def affine(a: float, b: float, c: float, d: float, p: float = 0.0, q: float = 0.0) -> Piece:
+    return Piece(((arb(a), arb(b)), (arb(c), arb(d))), (arb(p), arb(q)))
 
-        assert abs(trace) > 1 + determinant  # a real multiplier outside the unit circle
+
+def by_the_map(u: float, v: float, e: float) -> tuple[float, float]:
+    """Half a return in float64, from the two bounces that `(u, v)` stands for."""
+    map = PinballMap("cuspless", lam=STAR + e)
+    before = -THETA1 + e * u
+    component, theta = (ARC, CORNER + e * v) if v <= 0 else (WALL, -math.sqrt(3) / 4 + e * v)
+    (x, y), (px, py) = (_point(component, theta), _point(ARC, before))
+    tangent = _tangent(component, theta)
+    eta = math.atan2((px - x) * tangent[0] + (py - y) * tangent[1], (py - y) * tangent[0] - (px - x) * tangent[1])
+    orbit = map.orbit(np.array([theta]), np.array([-(STAR + e) * eta]), 2, np.array([component]))
+    landing = orbit.theta[2, 0]
+    beyond = -landing - CORNER if orbit.component[2, 0] == ARC else -landing + math.sqrt(3) / 4
+    return (-orbit.theta[1, 0] + THETA1) / e, beyond / e
+
+
+def _point(component: int, theta: float) -> tuple[float, float]:
+    r = 1 + math.cos(theta)
+    return (-0.25, -theta) if component == WALL else (r * math.cos(theta), r * math.sin(theta))
+
+
+def _tangent(component: int, theta: float) -> tuple[float, float]:
+    if component == WALL:
+        return 0.0, -1.0
+    return -math.sin(1.5 * theta), math.cos(1.5 * theta)
+
+
+@pytest.mark.parametrize("e", [1e-5, 1e-3, 1e-2])
+def test_the_map_lies_in_the_family_that_encloses_it(e):
+    region = grown(limit(), (-0.5, -1.7), 0.1)
+    family = pieces(region, (0.5 * e, e))
+    random = np.random.default_rng(3)
+    for _ in range(60):
+        shares = random.dirichlet(np.ones(len(region)))
+        u, v = shares @ np.array(region)
+        found = by_the_map(u, v, e * random.uniform(0.5, 1))
+        with working(BITS):
+            image = family[WALL if v > 0 else ARC].of((arb(u), arb(v)))
+
+        assert all(x - 1e-9 < y < x + 1e-9 or x.contains(y) for x, y in zip(image, found, strict=True))
+
+
+def test_the_one_sided_half_returns_are_those_of_the_derivative_matrices():
+    """The traces and determinants of `certificates.corner`, from curvatures, against chords of two components."""
+    sides = at_corner(FLOAT64, *floats(corner(), [0.2545, 0.0712]))
+    for component, (trace, determinant) in ((ARC, sides.arc), (WALL, sides.wall)):
+        assert abs(float(limit()[component].trace.mid()) - trace) < 1e-12
+        assert abs(float(limit()[component].determinant.mid()) - determinant) < 1e-12
+
+
+def test_two_unstable_orbits_of_period_4_are_born_with_the_attractor_and_none_is_there_before():
+    found = border()
+
+    assert found.kind is Kind.FOLD
+    assert found.robust
+    assert fixed_point(found.pieces[ARC])[1] < 0 < fixed_point(found.pieces[WALL])[1]
+    assert all(abs(p.trace) > 1 + p.determinant for p in found.pieces.values())
+
+
+def test_a_stable_side_is_no_robust_chaos_and_one_fixed_point_may_cross():
+    crossing = {ARC: affine(0.5, 0, 0, 0.2, 0, 1), WALL: affine(0.5, 0, 0, -0.5, 0, 1)}
+
+    assert robust(crossing) is None
+    assert kind(crossing) is Kind.PERSISTENCE
+    assert extent(crossing) is None
+
+
+def test_a_polygon_is_trapped_only_when_its_image_is_inside():
+    shrinking, swelling = affine(0.5, 0, 0, 0.5), affine(2, 0, 0, 0.5)
+
+    assert trapped({ARC: shrinking, WALL: shrinking}, SQUARE) is True
+    assert trapped({ARC: shrinking, WALL: swelling}, SQUARE) is None
+    assert trapped({ARC: affine(1, 0, 0, 1), WALL: shrinking}, SQUARE) is None  # the image touches the sides
+
+
+def test_a_cone_is_found_where_directions_are_kept_and_not_in_a_rotation():
+    stretching, rotation = affine(0.1, 0.2, 0.1, 3), affine(0, -2, 2, 0)
+
+    assert expansion({ARC: stretching, WALL: stretching}).least > 2.9
+    assert expansion({ARC: rotation, WALL: stretching}) is None
+
+
+def test_the_bounds_of_the_attractor_meet_and_the_map_attains_them():
+    bounds = border()
+    lowest, highest = (float(x.mid()) for x in bounds.extent.inner)
+    (found,) = measured([1e-6], 60_000)
+
+    assert min(v for _, v in bounds.extent.outer) > lowest - 1e-4
+    assert max(v for _, v in bounds.extent.outer) < highest + 2e-4
+    assert found.lengths == pytest.approx((lowest, highest), abs=2e-3)  # 2e4 points near an end of slope 1
+    assert found.angles == pytest.approx(bounds.angles, abs=2e-4)
+    for width, (_, most) in zip(found.widths, bounds.extent.strips, strict=True):
+        assert 0.97 * most < width < most + 1e-5
+
+
+def test_the_exponent_lies_between_its_bounds():
+    least, most = border().exponent
+    coarse = exponents(border().pieces, border().extent.outer, length=2)
+    (found,) = measured([1e-5], 60_000)
+
+    assert 0 < coarse[0] < least < found.exponent < most
+    assert abs(found.exponent - 0.2525) < 3e-3  # the scatter of 6e4 bounces
+
+
+def test_the_attractor_grows_in_proportion_and_stays_thin():
+    for found in measured([1e-4, 1e-3, 8.8e-3, 0.0288], 20_000):
+        assert found.lengths[0] == pytest.approx(-1.689, abs=5e-3)
+        assert found.lengths[1] == pytest.approx(1.958, abs=0.045)
+        assert max(found.widths) < 0.02
+
+
+def test_a_region_traps_and_stretches_from_lambda_star_on():
+    found = birth(0.075)
+
+    assert found.proved
+    assert found.steps[0].e[0] == 0
+    assert STAR + found.reached >= 0.075
+    assert all(step.expansion.least > 1.1 for step in found.steps)
+    assert 0 < found.exponent[0] < 0.25 < found.exponent[1]
+
+
+def test_a_small_budget_leaves_the_birth_unknown_and_says_how_far_it_came():
+    found = birth(0.08, budget=2)
+
+    assert found.proved is None
+    assert 0 < found.reached < 0.08 - STAR
+
+
+def test_orbits_stay_in_the_region_that_is_proved_to_trap_them():
+    step = birth(0.075).steps[-1]
+    e = step.e[1]
+    (found,) = measured([e], 20_000)
+    heights = [v for _, v in step.region]
+
+    assert min(heights) < found.lengths[0] < found.lengths[1] < max(heights)
+    assert float(step.expansion.least.lower()) < math.exp(2 * found.exponent) < float(step.expansion.most.upper())
 
 
 def test_the_kink_of_s4_moves_as_the_one_sided_derivatives_say():
-    theta1, lam = floats(corner(), [0.2545, 0.0712])
-    exact = at_corner(FLOAT64, theta1, lam)
+    exact = at_corner(FLOAT64, THETA1, STAR)
     balls_of_it = locate("lambda-star", 15)
 
     assert exact.minimum_at_kink
     assert abs(exact.descent + 1.68078633425) < 1e-9
     assert balls_of_it.checks["s4_dips_below"]
     assert balls_of_it.checks["unstable"]
+    assert kink(enclosed()[1]).speed.overlaps(arb(exact.descent, 1e-6))
 
 
-def test_an_orbit_is_carried_away_below_and_kept_above():
-    assert BORDER.attractor(-1, 5000) is None
-    assert BORDER.attractor(1, 5000) is not None
+def test_the_least_fourth_position_passes_the_corner_at_lambda_star_and_nowhere_else():
+    with working(BITS):
+        below, above = (kink(arb(lam)) for lam in (0.0712, 0.07122))
+
+        assert minimum_at_kink(0.03, 0.0712, 0.0713)
+        assert kink_falls(0.0712, 0.0713)
+        assert below.value > 0 > above.value
+        assert abs(exit_angle(enclosed()[0]) + 0.0289794737869139599) < 1e-15
 
 
-def test_the_exponent_is_positive_as_soon_as_the_attractor_exists():
-    assert abs(BORDER.attractor(1, 100_000).exponent - 0.2525) < 2e-3  # the scatter of 1e5 returns
+def test_the_least_fourth_position_agrees_with_orbits():
+    lam = 0.0705
+    phi = np.linspace(-0.04, 0.04, 4001)
+    orbit = PinballMap("cuspless", lam=lam).orbit(np.full(phi.size, CORNER), phi, 4)
+    least = orbit.theta[4].min() + math.sqrt(3) / 4
 
-
-@pytest.mark.parametrize("e", [1e-4, 1e-6])
-def test_the_size_of_the_attractor_is_the_predicted_multiple_of_the_distance(e):
-    low, high = sampled(e, 20_000)
-    predicted = BORDER.attractor(1, 50_000)
-
-    assert abs(low - predicted.lowest) < 0.02  # an end of the attractor is met in 1e4 returns to about 1 %
-    assert abs(high - predicted.highest) < 0.02
+    assert np.all(orbit.component[4] == WALL)
+    with working(BITS):
+        assert abs(kink(arb(lam)).value - least) < 1e-4  # 2e-5 between angles, slope 4.5

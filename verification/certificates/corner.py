@@ -6,6 +6,7 @@ has two values. Paper: section 5.2.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from flint import arb
@@ -16,9 +17,12 @@ from symbolic.collision import derivative_matrix
 from symbolic.geometry import curvature
 from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
 from symbolic.tables import cuspless
-from verification.arithmetic import Arithmetic
-from verification.shooting.small import corner_parameter
+from verification.arithmetic import Arithmetic, bits_of, working
+from verification.certificates.contraction import Status, contraction, exact_balls
+from verification.shooting.newton import refined
+from verification.shooting.small import corner, corner_parameter
 
+NEAR = (0.2545, 0.0712)  # theta1 and lambda-star, from where Newton's method finds them
 Matrix = tuple[Any, Any, Any, Any]
 
 
@@ -126,3 +130,19 @@ def _product(m: Matrix, n: Matrix) -> Matrix:
         m[2] * n[0] + m[3] * n[2],
         m[2] * n[1] + m[3] * n[3],
     )
+
+
+@cache
+def enclosed(digits: int = 25) -> tuple[arb, arb]:
+    """The orbit itself, `(theta1, lambda-star)`, proved by interval Newton.
+
+    >>> print(enclosed()[1].str(12, radius=False))
+    0.0712172452489
+    """
+    solution, bits = refined(corner(), NEAR, digits), bits_of(digits, 64)
+    with working(bits):
+        found = contraction(corner(), exact_balls(solution.z), (arb(10) ** -(digits - 3)).mid(), bits)
+    if found.status is not Status.UNIQUE:
+        raise ArithmeticError(f"the orbit through both corners is not proved to {digits} digits")
+    theta1, contracted = found.zero
+    return theta1, contracted

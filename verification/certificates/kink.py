@@ -1,0 +1,153 @@
+"""The fourth collision near `lambda-star`: its least position is at a kink, and crosses the corner there.
+
+A ball leaves the upper corner of the cuspless cardioid towards `theta1` on the arc; its second bounce
+is near the lower corner, its fourth the distance `s4` beyond the upper one (on the wall when positive:
+the paper's `s_4 > s*`). Where the second bounce passes the corner, `s4` has a kink. Proved on boxes: `s4`
+falls with `theta1` while the second bounce is on the wall and grows when it is on the arc, so that its
+minimum is the kink; and the value there falls with `lam`. It is 0 at `lambda-star`, by the corner orbit.
+So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from flint import arb
+
+from verification.arithmetic import working
+from verification.certificates.boxes import cuts, halves, joined
+from verification.certificates.corner import enclosed
+from verification.certificates.trail import (
+    ARC,
+    BITS,
+    WALL,
+    Bounce,
+    Quantity,
+    angle,
+    at_corner,
+    beyond,
+    constant,
+    corners,
+    following,
+    parameter,
+)
+
+LONGEST_THETA, LONGEST_LAM = 2e-3, 5e-4  # sides of boxes
+Tick = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Course:
+    """One course of the orbit over a box: the part that the second bounce is on, and two distances beyond a corner."""
+
+    component: int
+    second: Quantity
+    fourth: Quantity
+
+
+def courses(theta1: arb, lam: arb) -> list[Course]:
+    """What a box of first bounces and contractions does; the derivatives are by these two."""
+    spread = theta1 - arb(theta1.mid()), lam - arb(lam.mid())
+    contraction = parameter(arb(lam.mid()), 1, spread)
+    start = Bounce(ARC, constant(corners()[ARC], spread))
+    first = Bounce(ARC, parameter(arb(theta1.mid()), 0, spread))
+    found = []
+    for second in at_corner(start, first, False, contraction, spread):
+        third = following(first, second, ARC, -float(enclosed()[0].mid()), contraction, spread)
+        for fourth in at_corner(second, third, True, contraction, spread):
+            found.append(Course(second.component, beyond(second, False), beyond(fourth, True)))
+    return found
+
+
+def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick | None = None) -> bool | None:
+    """For all `|phi| <= most` and contractions of the range: has `s4` one kink, and its minimum there?
+
+    Once all boxes turn as they should, the second bounce need only be on the wall at one end and on the arc
+    at the other.
+
+    >>> minimum_at_kink(0.03, 0.0712, 0.0713)
+    True
+    """
+    with working(BITS):
+        theta1 = float(enclosed()[0].mid())
+        left, right = theta1 - 2.2 * (most + 0.029), theta1 + 1.3 * max(most - 0.028, 0.002)
+        if not (exit_angle(arb(left)) > most and exit_angle(arb(right)) < -most):
+            return None
+        strips, lams = cuts(left, right, LONGEST_THETA), cuts(lowest, highest, LONGEST_LAM)
+        try:
+            for strip in strips:
+                if not all(_turns(course) for lam in lams for course in _followed(strip, lam)):
+                    return None
+                if tick:
+                    tick(1 / len(strips))
+            ends = [{c.component for lam in lams for c in courses(arb(end), lam)} for end in (left, right)]
+        except ArithmeticError:
+            return None
+    return True if ends == [{WALL}, {ARC}] else None
+
+
+def _followed(theta1: arb, lam: arb, depth: int = 0) -> list[Course]:
+    try:
+        return courses(theta1, lam)
+    except ArithmeticError:
+        if depth == 4:
+            raise
+    return [course for half in halves(theta1) for course in _followed(half, lam, depth + 1)]
+
+
+def _turns(course: Course) -> bool:
+    """The second bounce moves from the wall to the arc as `theta1` grows; `s4` falls there and grows here."""
+    slope = course.fourth.slopes[0]
+    return bool(course.second.slopes[0] < 0 and (slope < 0 if course.component == WALL else slope > 0))
+
+
+def exit_angle(theta1: arb) -> arb:
+    """The exit angle at the upper corner of a ball that flies to `theta1`; it falls as `theta1` grows."""
+    return angle(Bounce(ARC, constant(corners()[ARC], ())), Bounce(ARC, constant(theta1, ())))[0]
+
+
+@dataclass(frozen=True)
+class Kink:
+    """Over a stretch of contractions: where the kink is, `s4` at it, and how fast that grows with `lam`."""
+
+    lam: arb
+    theta1: arb
+    value: arb
+    speed: arb
+
+
+def kink(lam: arb) -> Kink:
+    """The kink for every contraction of a ball; `ArithmeticError` when it is not enclosed."""
+    with working(BITS):
+        near = _near(arb(lam.mid()))
+        radius = 0.6 * float(lam.rad()) + 1e-9  # it moves half as fast as lam
+        box = arb(near, radius)
+        sides = [courses(arb(end), lam) for end in (near - radius, near + radius)]
+        if not (all(c.second.whole > 0 for c in sides[0]) and all(c.second.whole < 0 for c in sides[1])):
+            raise ArithmeticError("the kink is not enclosed")
+        found = courses(box, lam)
+        speeds = [c.fourth.slopes[1] - c.fourth.slopes[0] * c.second.slopes[1] / c.second.slopes[0] for c in found]
+        middle = courses(arb(near), arb(lam.mid()))
+        room = arb(0, float(abs(middle[0].second.whole).upper()) * 4)  # the middle may miss the kink by rounding
+        value, speed = joined([c.fourth.whole for c in middle]) + room, joined(speeds)
+        return Kink(lam, box, value + speed * (lam - arb(lam.mid())), speed)
+
+
+def _near(lam: arb) -> float:
+    near = float(enclosed()[0].mid())
+    for _ in range(8):
+        (course, *_) = courses(arb(near), lam)
+        near -= float((course.second.centre / course.second.slopes[0]).mid())
+    return near
+
+
+def kink_falls(lowest: float, highest: float) -> bool | None:
+    """Does `s4` at the kink fall with `lam` over the whole range?
+
+    >>> kink_falls(0.071, 0.0713)
+    True
+    """
+    try:
+        with working(BITS):
+            return True if all(kink(lam).speed < 0 for lam in cuts(lowest, highest, LONGEST_LAM)) else None
+    except ArithmeticError:
+        return None

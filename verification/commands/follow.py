@@ -1,0 +1,199 @@
+"""`pinball follow`: what becomes of this cycle as lambda changes?"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verification.cli import DONE, FAILED
+from verification.commands.output import Output, json_option
+from verification.commands.scene import Scene, exact, table_options
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from verification.continuation.branch import Branch
+
+ROWS = 12  # points of a branch shown to people, and all its events
+
+
+@click.command(epilog="Example: pinball follow egg --alpha 0.08 --cycle triangle --lam 0.37:1 --digits 20")
+@table_options
+@click.option("--lam", "interval", required=True, metavar="LOW:HIGH", help="The contractions, between 0 and 1.")
+@click.option("--cycle", metavar="NAME", help="A cycle of the paper: diameter, triangle, horizontal, ...")
+@click.option("--start", metavar="THETA,...", help="Or the bounces of one, roughly.")
+@click.option("--components", metavar="NAME,...", help="Where the bounces of --start lie, on a table of several parts.")
+@click.option("--at", metavar="NUMBER", help="The contraction of the start; LOW, or the named cycle's own.")
+@click.option("--points", type=click.IntRange(2, 100_000), default=400, show_default=True, help="At most, each way.")
+@click.option("--switch", type=click.IntRange(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
+@click.option("--digits", type=click.IntRange(1, 1000), help="Certify the events to so many digits.")
+@click.option("--plot", metavar="FILE", help="Draw the branches, as PNG, PDF or SVG.")
+@json_option
+def command(
+    scene: Scene,
+    interval: str,
+    cycle: str | None,
+    start: str | None,
+    components: str | None,
+    at: str | None,
+    points: int,
+    switch: int,
+    digits: int | None,
+    plot: str | None,
+    output: Output,
+) -> int:
+    """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
+
+    Exit status 1 when a branch stops inside the interval; what was found is kept.
+    """
+    from verification.continuation.arc import Steps
+    from verification.continuation.branch import branch
+    from verification.continuation.dataset import record
+    from verification.continuation.starts import named, typed
+
+    low, high = interval_of(interval)
+    if (cycle is None) == (start is None):
+        raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
+    table = scene.table()
+    if cycle is not None:
+        ring, x, own = named(cycle, table)
+    else:
+        names = components.split(",") if components else None
+        (ring, x), own = typed(table, [float(exact("--start", t)) for t in str(start).split(",")], names), None
+    value = float(exact("--at", at)) if at is not None else low if own is None else own
+    steps = Steps(most=points)
+    with output.progress("Following", points) as tick:
+        found = [branch(ring, x, "lam", value, (low, high), steps=steps, tick=lambda p: tick(f"lam = {p.z[-1]:.4f}"))]
+        found += turned_off(found[0], (low, high), steps, switch)
+    certificates = {}
+    if digits:
+        events = [event for one in found for event in one.events]
+        with output.progress("Certifying", len(events)) as tick:
+            for event in events:
+                certificates[id(event)] = certificate(event, digits)
+                tick(event.what.value)
+    documents = []
+    for one in found:
+        document = record(one)
+        document["events"] = [noted(event, certificates.get(id(event))) for event in one.events]
+        documents.append(document)
+    output.write({"table": scene.table_name, "branches": documents})
+    if plot:
+        drawn(found, plot)
+    for document in documents:
+        show(output.console, document)
+    return told(output.console, found)
+
+
+def interval_of(text: str) -> tuple[float, float]:
+    """`LOW:HIGH` as two numbers.
+
+    >>> interval_of("0.25:1/2")
+    (0.25, 0.5)
+    """
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise ValueError(f"--lam {text!r} is no interval; accepted: LOW:HIGH such as 0.37:1")
+    low, high = (float(exact("--lam", part)) for part in parts)
+    if not 0 <= low < high <= 1:
+        raise ValueError(f"--lam {text} is no interval of contractions; accepted: LOW:HIGH with 0 <= LOW < HIGH <= 1")
+    return low, high
+
+
+def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth: int) -> list["Branch"]:
+    """The branches that leave at events, and at theirs, `depth` deep."""
+    from verification.continuation.arc import LostError
+    from verification.continuation.switching import switched
+
+    found, newest = [], [first]
+    for _ in range(depth):
+        following = []
+        for one in newest:
+            for event in one.events:
+                try:
+                    following += switched(one, event, interval, steps)
+                except LostError:
+                    continue
+        found += following
+        newest = following
+    return found
+
+
+def certificate(event: Any, digits: int) -> dict[str, Any] | None:
+    """Value, radius and checklist of an event, or None where there is no certificate."""
+    from verification.balls import decimal
+    from verification.continuation.certified import proof_of
+
+    try:
+        proof = proof_of(event, digits)
+    except ValueError:
+        return None
+    if proof is None:
+        return None
+    value, radius = decimal(proof.value, digits + 1)
+    return {"value": value, "radius": radius, "certified": proof.certified, "checks": proof.checks}
+
+
+def noted(event: Any, proof: dict[str, Any] | None) -> dict[str, Any]:
+    """An event for JSON."""
+    form = event.form
+    return {
+        "event": event.what.value,
+        "lam": event.value,
+        "theta": [float(x) for x in event.point.z[:-1]],
+        "branch_coefficient": form.branch if form else None,
+        "supercritical": form.supercritical if form else None,
+        "certificate": proof,
+    }
+
+
+def drawn(branches: list["Branch"], path: str) -> None:
+    """Writes the picture."""
+    from verification.continuation.plot import plotted
+
+    if Path(path).suffix not in (".png", ".pdf", ".svg"):
+        raise ValueError(f"--plot {path} has no known ending; accepted: .png, .pdf, .svg")
+    try:
+        plotted(branches).savefig(path)
+    except OSError as error:
+        raise ValueError(f"--plot {path} cannot be written ({error.strerror or error})") from None
+
+
+def show(console: "Console", document: dict[str, Any]) -> None:
+    """Some points of a branch, and its events."""
+    points = document["points"]
+    stride = max(1, len(points) // ROWS)
+    console.print(f"{document['cycle']}: {len(points)} points")
+    console.print("  lam             multipliers                            stable  event")
+    for i, point in enumerate(points):
+        if i % stride and not point["event"] and i != len(points) - 1:
+            continue
+        shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
+        console.print(f"  {point['lam']:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
+    for event in document["events"]:
+        proof = event["certificate"]
+        said = (
+            f"{proof['value']} +- {proof['radius']} ({'' if proof['certified'] else 'not '}certified)"
+            if proof
+            else (f"{event['lam']:.12g}")
+        )
+        side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
+        console.print(f"  {event['event']} at lam = {said}{side}")
+
+
+def said_stable(point: dict[str, Any]) -> str:
+    """Whether a point of a branch is stable; at an event it is on the edge."""
+    return "-" if point["event"] else "yes" if point["stable"] else "no"
+
+
+def told(console: "Console", branches: list["Branch"]) -> int:
+    """Says where and why branches stopped inside the interval; the exit status."""
+    from verification.continuation.arc import End
+
+    status = DONE
+    for one in branches:
+        for point, (end, why) in zip((one.points[0], one.points[-1]), one.ends, strict=True):
+            if end in (End.OBSTACLE, End.LOST, End.ENOUGH):
+                console.print(f"{one.system.label}: the branch stopped at lam = {point.z[-1]:.9g}: {why}")
+                status = DONE if end is End.ENOUGH and status == DONE else FAILED
+    return status

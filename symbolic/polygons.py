@@ -10,7 +10,7 @@ radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lan
 The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
 """
 
-from sympy import Expr, Rational, atan, cos, diff, pi, simplify, sin, sqrt
+from sympy import Expr, Rational, asin, atan, cos, diff, pi, simplify, sin, sqrt, tan
 
 from symbolic.symbols import alpha, lam, theta
 
@@ -58,6 +58,19 @@ def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
     """
     gamma, delta = half_turn(p, q), atan(largest_tilt(K))
     return (gamma - delta) / (gamma + delta)
+
+
+def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
+    """The bounce, a polar angle, of the polygon that is at the flat point `pi/K` at `lam = 1`; for `lam >= lambda_c`.
+
+    `rho'/rho = T` is `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. The polygon turns
+    counterclockwise as `lam` falls, and so does the ball; its mirror image turns and runs clockwise.
+
+    >>> near_flat().subs(lam, 1)
+    pi/3
+    """
+    T = tan(required_tilt(p, q))
+    return (pi + asin(T / (alpha * sqrt(K**2 + T**2))) - atan(T / K)) / K
 
 
 def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: Expr) -> tuple[Expr, Expr]:

@@ -8,6 +8,7 @@ from symbolic.geometry import curvature, normal
 from symbolic.polygons import (
     half_turn,
     largest_tilt,
+    near_flat,
     required_tilt,
     saddle_node,
     tilt_tangent,
@@ -111,6 +112,20 @@ def test_both_branches_obey_the_collision_law_on_their_chords_and_fold_from_eith
         signs.append(mp.sign(number((1 - trace + det).subs(values))))
 
     assert sorted(signs) == [-1, 1]  # a saddle and a node
+
+
+@pytest.mark.parametrize(("K", "p", "q"), POLYGONS)
+def test_the_polygon_near_the_flat_points_has_the_tilt_it_needs_and_ends_at_the_fold(K, p, q):
+    fold = saddle_node(K, p, q).subs(alpha, SHAPE)
+    for share in (Rational(1, 3), Rational(9, 10)):
+        at = {alpha: SHAPE, lam: fold + (1 - fold) * share}
+        bounce = number(near_flat(K, p, q).subs(at))
+
+        assert abs(number(tilt_tangent(K).subs(at), bounce) + number(tan(required_tilt(p, q).subs(at)))) < NOTHING
+        assert number(pi / K) < bounce < number((2 * pi - acos(-SHAPE)) / K)
+    end = near_flat(K, p, q).subs(alpha, SHAPE).subs(lam, fold)
+
+    assert abs(mp.cos(K * number(end)) + number(SHAPE)) < mp.mpf(10) ** -25  # asin is steep at 1
 
 
 @pytest.mark.parametrize(("K", "p", "q"), POLYGONS)

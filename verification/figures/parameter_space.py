@@ -1,0 +1,59 @@
+"""The figure of the egg's parameter space: chaos or none. Paper: section 6.5."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from symbolic.symbols import lam as lam_letter
+from symbolic.thresholds import alpha_tilde
+from verification.figures.panel import Curve, Fact, Panel, Panels, Raster, scaled
+from verification.figures.phase import SEED
+from verification.figures.sheet import BLACK, sheet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NAMES = ("no chaos found", "chaos", "undecided")
+
+
+def parameter_space(fine: float = 1.0) -> Panels:
+    """Which pairs `(alpha, lam)` have a chaotic orbit among 60 random starts, and `alpha_tilde(lam)`. In print, 100.
+
+    Each sign counts beyond twice its error (`verification.sweeps.signs`); a pair with no chaotic orbit and one whose
+    sign its error leaves open is undecided.
+    """
+    from symbolic.codegen import kernel, load
+    from verification.arithmetic import ARRAYS
+    from verification.sweeps import run
+    from verification.sweeps.parameter_space import parameter_space as sweep
+
+    side, starts = scaled(32, fine**0.5, 3), scaled(60, min(fine, 5 / 3), 4)
+    bounces = scaled(1000, min(fine, 2.0), 40)
+    alphas, lams = np.round(np.linspace(0, 0.1, side + 1), 12), np.round(np.linspace(0, 1, side + 1), 12)
+    found = run(sweep(alphas, lams, starts, bounces, bounces, seed=SEED))
+    chaotic = found["chaotic"].values > 0
+    undecided = ~chaotic & (found["regular"].values < starts)
+    raster = Raster(lams, alphas, np.where(chaotic, 1, np.where(undecided, 2, 0)), NAMES)
+    lam = np.linspace(0, 1, 201)
+    tilde = load(kernel("alpha_tilde", [lam_letter], {"alpha": alpha_tilde()}), ARRAYS)(lam)[0]
+    known: dict[str, Fact] = {"table": "egg", "seed": SEED, "starts": starts, "bounces": bounces, "transient": bounces}
+    return (Panel("", "lam", "alpha", {"alpha_tilde": Curve(lam, tilde)}, raster, known),)
+
+
+def draw_parameter_space(panels: Panels) -> "Figure":
+    """Crosses and small plus signs, as in the paper; the doubling of period 2 as a black curve."""
+    figure, (ax,) = sheet(panels, columns=1, height=3.6)
+    (panel,) = panels
+    assert panel.raster is not None
+    lams, alphas, labels, names = panel.raster
+    x, y = np.meshgrid(lams, alphas)
+    looks = (("+", "0.72", 2.5, 0.4), ("x", "#a01010", 3.5, 0.8), (".", "0.4", 2.0, 0.0))
+    for value, (marker, color, size, width) in enumerate(looks):
+        here = labels == value
+        if np.any(here):
+            ax.plot(x[here], y[here], ls="", marker=marker, color=color, ms=size, mew=width, label=names[value])
+    ax.plot(*panel.curves["alpha_tilde"], color=BLACK, lw=1.8, label=r"$\tilde\alpha(\lambda)$")
+    ax.set_xlim(-0.015, 1.015)
+    ax.set_ylim(-0.0015, 0.1015)
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4, handletextpad=0.4)
+    return figure

@@ -19,7 +19,13 @@ BALLS = 20_000  # of a task, at most; what a core does in a second or less
 
 FIELDS = (
     Field("chaotic", ("alpha", "lam"), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
-    Field("regular", ("alpha", "lam"), "int32", "orbits", "orbits whose largest exponent is not positive; the rest is undecided or stopped"),
+    Field(
+        "regular",
+        ("alpha", "lam"),
+        "int32",
+        "orbits",
+        "orbits whose largest exponent is not positive; the rest is undecided or stopped",
+    ),
     Field("nu_max", ("alpha", "lam"), "float64", "1/bounce", "largest nu_plus of all orbits"),
     Field("nu_max_error", ("alpha", "lam"), "float64", "1/bounce", "its standard error, over blocks of the orbit"),
     Field("nu_min", ("alpha", "lam"), "float64", "1/bounce", "smallest nu_plus of all orbits"),
@@ -63,7 +69,7 @@ class Pairs:
 
 def egg(K: int, alpha: float) -> str:
     """The scene of one shape, the decimal that `alpha` shows."""
-    return text_of(Scene("egg", {"alpha": str(Fraction(repr(alpha)))}, K=K))
+    return text_of(Scene("egg", {"alpha": str(Fraction(repr(float(alpha))))}, K=K))
 
 
 def parameter_space(

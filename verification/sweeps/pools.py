@@ -47,7 +47,9 @@ def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
 
     dask: Any = import_module("distributed")  # untyped
     try:
-        client = dask.Client(address, timeout=ANSWER, set_as_default=False)
+        if "://" not in address:
+            raise ValueError
+        client = dask.Client(address, timeout=ANSWER)
     except (OSError, ValueError, TypeError):
         raise ValueError(
             f"--scheduler {address}: no Dask scheduler answers there; accepted: the address that "

@@ -8,6 +8,7 @@ import fcntl
 import json
 import os
 import shutil
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -76,7 +77,7 @@ class Stored:
         """All results, labelled, read when they are looked at."""
         import xarray as xr
 
-        found: xr.Dataset = xr.open_zarr(self.path, consolidated=False)
+        found: xr.Dataset = xr.open_zarr(self.path)
         return found
 
     def _has(self, field: Field, index: Index) -> bool:
@@ -132,6 +133,9 @@ def _made(sweep: Sweep, path: Path) -> None:
                 array[:] = axis.values
             for field in sweep.fields:
                 _field(group, sweep, field)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # Zarr's, that version 3 has no rule for it; xarray asks for it
+                zarr.consolidate_metadata(group.store)
             draft.replace(path)
         finally:
             shutil.rmtree(draft, ignore_errors=True)

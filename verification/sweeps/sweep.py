@@ -120,13 +120,13 @@ class Sweep:
     def attributes(self) -> dict[str, Any]:
         """What labels the results: scene, seed, settings and versions."""
         return {
-            "title": self.about,
             "sweep": self.name,
             "scene": self.scene,
             "seed": self.seed,
             "settings": json.dumps(dict(self.settings), sort_keys=True),
             "versions": json.dumps(versions(), sort_keys=True),
             "grid": self.grid(),
+            "title": self.about,
         }
 
     def grid(self) -> str:

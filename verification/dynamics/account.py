@@ -1,0 +1,117 @@
+"""A survey of exponents as plain data: means, error bars and how they were made, for each attractor."""
+
+from typing import Any
+
+import numpy as np
+
+from numeric import PinballMap
+from verification.dynamics.exponents import CHANGED, Group, Measured, Survey
+from verification.dynamics.kinds import Kind
+from verification.dynamics.places import Places
+from verification.dynamics.statistics import Estimate
+from verification.dynamics.sum_rule import checked
+
+METHOD = (
+    "batch means over orbits and blocks, batches merged until their ends matter little and put right with the "
+    "integrated autocorrelation time; the last level is one batch for each independent orbit"
+)
+CHECKED_BALLS, CHECKED_BOUNCES = 32, 500
+
+
+def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
+    """The document of `pinball lyapunov`. At the top stands the one attractor's result; null where there are several.
+
+    >>> from numeric.sampling import phase_starts
+    >>> from verification.dynamics.exponents import surveyed
+    >>> circle = PinballMap("circle", lam="0.25")
+    >>> document = account(circle, surveyed(circle, phase_starts(circle, 10, seed=1), 200, 100))
+    >>> round(document["sum"], 12), document["groups"][0]["kind"]  # log(1/4)
+    (-1.38629436112, 'neutral')
+    """
+    groups = [described(group, survey) for group in survey.groups]
+    settled = [group for group in survey.groups if group.attractor and group.attractor.kind is not Kind.STOPPED]
+    families = {group.attractor.family if group.attractor else -1 for group in settled}
+    one = len(settled) == 1 or (len(families) == 1 and -1 not in families)
+    whole = survey.count.measured(np.concatenate([group.members for group in settled])) if one else None
+    return {
+        **numbers(whole),
+        "orbits": int(survey.count.growth.theta.size),
+        "counted": survey.count.bounces,
+        "transient": survey.transient,
+        "ended": survey.ended,
+        "method": METHOD,
+        "attractors": len(settled),
+        "sum_rule": sum_rule(map, survey),
+        "groups": groups,
+    }
+
+
+def numbers(measured: Measured | None) -> dict[str, Any]:
+    """Exponents and sum with standard errors, null where there is no finite number."""
+    whole = measured or Measured(None, None, None)
+    found: dict[str, Any] = {}
+    for name, value in (("nu_plus", whole.upper), ("nu_minus", whole.lower), ("sum", whole.total)):
+        found[name] = None if value is None else value.mean
+        found[f"{name}_stderr"] = None if value is None or np.isnan(value.error) else value.error
+    return found
+
+
+def described(group: Group, survey: Survey) -> dict[str, Any]:
+    """One group: its kind and size, its exponents, and how far their error bars can be trusted."""
+    attractor, measured = group.attractor, group.measured
+    lost = group.kind.startswith("stopped") or group.kind == CHANGED
+    found: dict[str, Any] = {
+        "kind": group.kind,
+        "orbits": int(group.members.size),
+        **numbers(None if lost else measured),
+    }
+    if attractor is not None and attractor.family >= 0:
+        found["family"] = attractor.family
+    if attractor is not None and attractor.kind is Kind.CYCLE:
+        found["period"] = attractor.period
+        finite = np.isfinite(attractor.nu_minus)
+        found["from_multipliers"] = {
+            "nu_plus": attractor.nu_plus,
+            "nu_minus": attractor.nu_minus if finite else None,
+        }
+    if lost or measured.upper is None:
+        return found
+    upper, length = measured.upper, survey.count.length
+    return {
+        **found,
+        "batch_bounces": upper.level.batch * length,
+        "batches": upper.level.count,
+        "trusted": bool(trusted(measured)),
+        "interval_95": upper.interval if np.isfinite(upper.interval) else None,
+        "autocorrelation_time": measured.tau,
+        "naive_stderr": measured.naive,
+        "trace": trace(group, survey),
+    }
+
+
+def trusted(measured: Measured) -> bool:
+    """Are all error bars of a group made of enough batches, longer than the memory?"""
+    return all(x.trusted for x in measured[:3] if isinstance(x, Estimate))
+
+
+def trace(group: Group, survey: Survey) -> list[dict[str, Any]]:
+    """How estimate and error came to be: after the first block, two, four, ... and after all of them."""
+    blocks, count = 1, survey.count
+    found = []
+    while blocks < 2 * len(count.up):
+        used = min(blocks, len(count.up))
+        bounces = used * count.length
+        found.append({"collisions": bounces * int(group.members.size), **numbers(count.measured(group.members, used))})
+        blocks *= 2
+    return found
+
+
+def sum_rule(map: PinballMap, survey: Survey) -> dict[str, Any]:
+    """`log|det D(T^n)|` by the tangent kernel and from the angles alone, along the same orbits."""
+    end = survey.count.growth
+    few = np.nonzero(end.code == 0)[0][:CHECKED_BALLS]
+    if few.size == 0:
+        return {"difference": None, "bounces": 0, "balls": 0}
+    lam = end.lam[few]
+    balls = Places(end.component[few], end.theta[few], end.phi[few])
+    return checked(map.at(lam), balls, CHECKED_BOUNCES)._asdict()

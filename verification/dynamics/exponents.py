@@ -1,0 +1,256 @@
+"""Lyapunov exponents of many orbits, counted block by block, until their error is small enough.
+
+Balls first run until they are where they end: those that a cycle attracts within its reach. Then growth is counted
+in blocks of equal length for every ball; two blocks become one when there are too many, so a run of any length fits
+in memory. Balls are sorted by the attractor they reach, before the count and once more after it; nothing is
+averaged across attractors. A run can be interrupted: what was counted stays.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from numeric.growth import Growth
+from numeric.sampling import Starts
+from verification.dynamics.attractors import Attractor, Classified, classify
+from verification.dynamics.kinds import Kind
+from verification.dynamics.places import Places
+from verification.dynamics.recognition import at_cycles
+from verification.dynamics.statistics import Estimate, estimate
+
+Array = NDArray[np.float64]
+Labels = NDArray[np.int64]
+MOST = 1024  # blocks kept to an orbit
+KEPT = 1 << 22  # numbers kept of each exponent
+ALIGNED = 256  # bounces after which a tangent vector has turned to the direction of growth
+PATIENCE = 8  # doublings of the wait for balls that are on their way
+SINGLE, WATCHED = 1024, 32  # bounces and balls that are watched one by one, for the naive error
+CHANGED = "reached another attractor while it was counted"
+
+
+def nothing(_: float) -> None:
+    """Says nothing."""
+
+
+class Measured(NamedTuple):
+    """Both exponents per bounce and their sum, each with its error; `lower` and `total` are None at `lam = 0`.
+
+    `naive` is what the error of `upper` would be if single bounces were independent.
+    """
+
+    upper: Estimate | None
+    lower: Estimate | None
+    total: Estimate | None
+    naive: float | None = None
+
+    @property
+    def tau(self) -> float | None:
+        """The integrated autocorrelation time of the growth of single bounces, by batch means; 1/2 for none."""
+        return None if not self.naive or self.upper is None else (self.upper.error / self.naive) ** 2 / 2
+
+
+@dataclass(eq=False)
+class Count:
+    """What orbits grew by: blocks along the first axis, balls along the second, per bounce."""
+
+    growth: Growth
+    length: int
+    most: int
+    up: Array = field(init=False)
+    volume: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.up = np.empty((0, self.growth.theta.size))
+        self.volume = self.up
+
+    @property
+    def bounces(self) -> int:
+        """Counted so far, for each ball."""
+        return self.length * len(self.up)
+
+    def more(self, blocks: int) -> Iterator[int]:
+        """Counts further blocks; says how many bounces at each, and keeps them if it is left there."""
+        new_up, new_volume = [], []
+        try:
+            for _ in range(blocks):
+                before = self.growth.stretch, self.growth.volume
+                self.growth.advance(self.length)
+                new_up.append((self.growth.stretch - before[0]) / self.length)
+                new_volume.append((self.growth.volume - before[1]) / self.length)
+                yield self.length
+        finally:
+            made = min(len(new_up), len(new_volume))
+            if made:
+                self.up = np.concatenate([self.up, *(x[None] for x in new_up[:made])])
+                self.volume = np.concatenate([self.volume, *(x[None] for x in new_volume[:made])])
+            while len(self.up) > self.most:
+                odd = len(self.up) % 2
+                self.up = (self.up[odd::2] + self.up[odd + 1 :: 2]) / 2
+                self.volume = (self.volume[odd::2] + self.volume[odd + 1 :: 2]) / 2
+                self.length *= 2
+
+    def measured(self, members: Labels, blocks: int | None = None) -> Measured:
+        """The exponents over some of the balls, from all blocks or from the first few."""
+        plus = self.up[:blocks, members]
+        if self.growth.lam[members[0]] == 0:
+            return Measured(estimate(plus), None, None)
+        total = self.volume[:blocks, members] + np.log(self.growth.lam[members])
+        minus = total - plus
+        if np.mean(plus) < np.mean(minus):
+            plus, minus = minus, plus
+        return Measured(estimate(plus), estimate(minus), estimate(total))
+
+
+class Group(NamedTuple):
+    """Balls that share an attractor (None: they do not stay on one), and the exponents found along them."""
+
+    kind: str
+    attractor: Attractor | None
+    members: Labels
+    measured: Measured
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """The groups, largest first, with the count they come from and why it ended."""
+
+    groups: tuple[Group, ...]
+    count: Count
+    transient: int
+    ended: str
+
+    @property
+    def error(self) -> float:
+        """The largest standard error of an exponent in a group that has one."""
+        return worst(tuple(group.measured for group in self.groups))
+
+
+def worst(measured: tuple[Measured, ...]) -> float:
+    """The largest error of an exponent; 0 when there is none to speak of."""
+    errors = [x.error for m in measured for x in (m.upper, m.lower) if x is not None]
+    return float(np.nanmax([0.0, *errors])) if errors else 0.0
+
+
+def surveyed(
+    map: PinballMap,
+    starts: Starts,
+    bounces: int,
+    transient: int,
+    until: float | None = None,
+    budget: int = 0,
+    say: Callable[[float], None] = nothing,
+) -> Survey:
+    """The exponents along orbits from `starts`, by attractor. Paper: appendix; figures in sections 4.1 and 5.3.
+
+    With `until` the count goes on, twice as long each time, until every error is at most that, or until `budget`
+    bounces, of all balls together, are spent. `say` hears the part of the work that is done.
+
+    >>> from numeric.sampling import interior_starts
+    >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
+    >>> found = surveyed(ellipse, interior_starts(ellipse, 20, seed=1), 1000, 1000)
+    >>> [(group.attractor.period, round(group.measured.total.mean, 12)) for group in found.groups]  # log(1/2)
+    [(2, -0.69314718056)]
+    """
+    growth = arrived(map, starts)
+    growth.skip(max(transient - ALIGNED, 0))
+    classified = classify(map, growth.component, growth.theta, growth.phi)
+    waited = max(transient - ALIGNED, 0) + _settle(map, growth, classified, max(transient, ALIGNED))
+    growth.advance(min(transient, ALIGNED))
+    most = max(1, min(MOST, KEPT // growth.theta.size))
+    count = Count(growth, -(-bounces // most), most)
+    goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
+    ended, blocks = "bounces", bounces // count.length
+    try:
+        while True:
+            for _ in count.more(blocks):
+                say(count.bounces / goal)
+            if until is None:
+                break
+            if worst(tuple(count.measured(m) for _, m in _sorted(classified.label))) <= until:
+                ended = "error"
+                break
+            if 2 * count.bounces > goal:
+                ended = "budget"
+                break
+            blocks = len(count.up)
+    except KeyboardInterrupt:
+        ended = "interrupted"
+        if not count.bounces:
+            raise
+    return Survey(_groups(map, count, classified), count, waited + min(transient, ALIGNED), ended)
+
+
+def arrived(map: PinballMap, starts: Starts) -> Growth:
+    """Balls on their way from their starts; at `lam = 0` from their first landing, since the slap map forgets phi."""
+    if map.law == "slap":
+        landed = map.step(starts.theta, starts.phi, starts.component)
+        return Growth(map, landed.component, landed.theta, 0.0 * landed.phi)
+    return Growth(map, starts.component, starts.theta, starts.phi)
+
+
+def _settle(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> int:
+    """Waits for the balls that a cycle attracts to arrive within its reach; how long it took."""
+    waited = 0
+    cyclic = np.isin(classified.label, [i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE])
+    for _ in range(PATIENCE):
+        if np.array_equal(_caught(map, growth, classified)[cyclic], classified.label[cyclic]):
+            break
+        growth.skip(wait)
+        waited, wait = waited + wait, 2 * wait
+    return waited
+
+
+def _caught(map: PinballMap, growth: Growth, classified: Classified) -> Labels:
+    return at_cycles(map, Places(growth.component, growth.theta, growth.phi), classified.attractors)
+
+
+def _sorted(label: Labels) -> list[tuple[int, Labels]]:
+    return [(int(index), np.nonzero(label == index)[0]) for index in np.unique(label)]
+
+
+def _groups(map: PinballMap, count: Count, classified: Classified) -> tuple[Group, ...]:
+    """The balls sorted once more: one that is on a cycle now, and was not to reach it, changed on the way."""
+    caught = _caught(map, count.growth, classified)
+    cycle = np.array([a.kind is Kind.CYCLE for a in classified.attractors] + [False])
+    changed = (caught != classified.label) & (cycle[caught] | cycle[classified.label]) & (count.growth.code == 0)
+    stopped = count.growth.code > 0
+    groups = []
+    for index, members in _sorted(np.where(changed, -2, np.where(stopped, -3, classified.label))):
+        attractor = classified.attractors[index] if index >= 0 else None
+        measured = count.measured(members)
+        if attractor is not None and attractor.kind is Kind.CHAOTIC:
+            measured = _remembering(map, count, members, measured)
+        groups.append(Group(_kind(index, attractor), attractor, members, measured))
+    return tuple(sorted(groups, key=lambda group: -group.members.size))
+
+
+def _kind(index: int, attractor: Attractor | None) -> str:
+    if attractor is None:
+        return {-2: CHANGED, -3: "stopped: the map is undefined there"}.get(index, "unsettled")
+    if attractor.kind is Kind.CYCLE:
+        theta, phi = attractor.points.theta[0], attractor.points.phi[0]
+        return f"cycle of period {attractor.period} through ({theta:.4f}, {phi + 0.0:.4f})"
+    if attractor.kind is Kind.STOPPED:
+        return f"stopped: {attractor.status.name.lower()}"
+    return attractor.kind.name.lower()
+
+
+def _remembering(map: PinballMap, count: Count, members: Labels, measured: Measured) -> Measured:
+    """With the naive error, from the growth of single bounces of a few balls."""
+    few, end = members[:WATCHED], count.growth
+    watched = Growth(map.at(end.lam[few]), end.component[few], end.theta[few], end.phi[few])
+    watched.advance(ALIGNED)
+    track = np.empty((SINGLE + 1, few.size))
+    track[0] = watched.stretch
+    for bounce in range(1, SINGLE + 1):
+        watched.advance(1)
+        track[bounce] = watched.stretch
+    steps = np.diff(track, axis=0)[:, watched.code == 0]
+    if steps.size == 0:
+        return measured
+    naive = float(np.std(steps) / np.sqrt(count.bounces * members.size))
+    return measured._replace(naive=naive)

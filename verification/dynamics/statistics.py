@@ -1,0 +1,135 @@
+"""Error bars of time averages: batch means over orbits and blocks, with batches long enough to forget.
+
+Blocks of an orbit depend on each other, so their standard deviation over the square root of their number is wrong,
+by a factor that can be anything. Neighbouring blocks are merged two by two (Flyvbjerg and Petersen 1989) until
+only as many batches are left as an error bar needs, and further while neighbours are seen to be correlated; what
+their ends still share is put right with the autocorrelation time. The last level has one batch for each orbit: orbits
+start independently, so that level is right however long the memory.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ENOUGH = 32  # batches: the error bar is then known to one part in eight
+FEWEST = 8  # batches, below which an error bar is a guess
+SHARE = 0.25  # of a batch that the autocorrelation time may take
+UNCORRELATED = 2.5  # standard deviations that the correlation of neighbours may show
+WINDOW = 6.0  # autocorrelation times to sum over (Sokal)
+SHORTEST = 32  # steps to sum over at least
+
+
+@dataclass(frozen=True)
+class Batches:
+    """One level of merging: blocks to a batch, how many batches, the error they give, their correlation.
+
+    `score` is the correlation of neighbours in units of its own standard deviation, were they independent.
+    """
+
+    batch: int
+    count: int
+    error: float
+    score: float
+    inside: bool  # more than one batch to an orbit
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A mean with its standard error, the level of merging that gave it, and the memory `tau` in blocks."""
+
+    mean: float
+    error: float
+    level: Batches
+    tau: float
+
+    @property
+    def share(self) -> float:
+        """The part of a batch that its neighbours know of; none when a batch is a whole orbit."""
+        return self.tau / self.level.batch if self.level.inside else 0.0
+
+    @property
+    def trusted(self) -> bool:
+        """Enough batches, and longer than the memory."""
+        return self.level.count >= FEWEST and self.share < SHARE
+
+    @property
+    def interval(self) -> float:
+        """Half the 95 per cent interval: Student's factor for this many batches times the error."""
+        from scipy.stats import t
+
+        return float(t.ppf(0.975, max(self.level.count - 1, 1)) * self.error)
+
+
+def levels(blocks: Array) -> list[Batches]:
+    """The error at each level of merging, from single blocks to whole orbits. Blocks run along the first axis.
+
+    The first blocks that make no power of two are left out of the errors.
+
+    >>> [(level.batch, level.count) for level in levels(np.arange(18.0).reshape(9, 2))]
+    [(1, 16), (2, 8), (4, 4), (8, 2)]
+    """
+    x = blocks[len(blocks) - (1 << (len(blocks).bit_length() - 1)) :]
+    found, batch = [], 1
+    grand = float(np.mean(x))
+    while True:
+        away = x - grand
+        variance = float(np.sum(away**2)) / max(x.size - 1, 1)
+        score = 0.0
+        if len(x) > 1 and variance > 0:
+            pairs = away[1:] * away[:-1]
+            score = float(np.mean(pairs) / variance + 1 / x.size) * pairs.size**0.5
+        error = float(np.sqrt(variance / x.size)) if x.size > 1 else float("nan")
+        found.append(Batches(batch, x.size, error, score, len(x) > 1))
+        if len(x) < 2:
+            return found
+        x, batch = (x[::2] + x[1::2]) / 2, 2 * batch
+
+
+def estimate(blocks: Array) -> Estimate:
+    """The mean over all blocks and orbits with its standard error; blocks run along the first axis.
+
+    >>> white = np.random.default_rng(0).normal(size=(256, 10))
+    >>> found = estimate(white)
+    >>> found.level.batch, found.level.count, bool(0.8 < found.error * np.sqrt(2560) < 1.25), found.trusted
+    (64, 40, True, True)
+    """
+    merged = levels(blocks)
+    chosen = merged[0]
+    for level in merged[1:]:
+        if level.count < ENOUGH and (level.count < FEWEST or chosen.score < UNCORRELATED):
+            break
+        chosen = level
+    tau = autocorrelation_time(blocks)
+    shared = (tau - 1 / (4 * tau)) / chosen.batch if chosen.inside and tau > 0.5 else 0.0  # exact for one exponential
+    missing = min(shared, 2 * SHARE)
+    return Estimate(float(np.mean(blocks)), chosen.error / float(np.sqrt(1 - missing)), chosen, tau)
+
+
+def autocorrelation_time(series: Array) -> float:
+    """The integrated autocorrelation time `1/2 + sum of rho_k`, in steps of the series; 1/2 for independent steps.
+
+    Steps run along the first axis, independent orbits along the second. The sum stops at `WINDOW` times its own
+    value (Sokal), beyond which it is noise; partial sums over the second half of the window are averaged, since on an
+    attractor of several pieces, visited in turn, correlations swing for ever.
+
+    >>> white = np.random.default_rng(1).normal(size=(4096, 16))
+    >>> bool(abs(autocorrelation_time(white) - 0.5) < 0.05)
+    True
+    >>> bool(autocorrelation_time(white + 3 * np.cos(np.pi * np.arange(4096))[:, None]) < 0.1)
+    True
+    """
+    steps = len(series)
+    away = series - np.mean(series)
+    power = np.abs(np.fft.rfft(away, 2 * steps, axis=0)) ** 2
+    covariance = np.fft.irfft(np.sum(power, axis=1))[:steps] / (steps - np.arange(steps)) / series.shape[1]
+    if not covariance[0] > 0:
+        return 0.5
+    times = np.cumsum(covariance / covariance[0]) - 0.5
+    lag = np.arange(1, steps + 1)
+    sums = np.concatenate([[0.0], np.cumsum(times)])
+    half = lag // 2
+    mean = (sums[lag] - sums[half]) / (lag - half)
+    enough = (lag >= WINDOW * mean) & (lag >= min(SHORTEST, steps // 4))
+    return max(float(mean[np.argmax(enough)] if np.any(enough) else mean[steps // 4]), 0.0)

@@ -37,6 +37,8 @@ def command(name: str | None, out: str | None, full: bool, listing: bool, everyt
         )
         show(output.console, known)
         return DONE
+    if everything and name is not None:
+        raise ValueError(f"{name} and --all: name one figure, or ask for all")
     chosen = list(known.values()) if everything else [_picture(known, name)]
     files = _files(chosen, out, everything, drawn=out is not None or output.path is None)
     documents: list[dict[str, Any]] = []

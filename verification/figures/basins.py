@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ACROSS, UP = 240, 160  # cells of a draft
+ACROSS, UP = 360, 240  # cells of a draft
 TRANSIENT = 1000  # bounces before a ball is first looked at
 BLANK, SHADE = (1.0, 1.0, 1.0), (0.78, 0.84, 0.78)
 

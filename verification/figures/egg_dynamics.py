@@ -112,7 +112,14 @@ def bifurcation(fine: float = 1.0) -> Panels:
     found = run(sweep(text_of(Scene("egg", {"alpha": ALPHA})), lams, orbits, points, 80, 3000, seed=SEED))
     theta = found["theta"].values.ravel()
     curve = Curve(theta, np.repeat(lams, orbits * points))
-    known: dict[str, Fact] = {"table": "egg", "alpha": float(ALPHA), "seed": SEED, "orbits": orbits, "transient": 3080}
+    known: dict[str, Fact] = {
+        "table": "egg",
+        "alpha": float(ALPHA),
+        "seed": SEED,
+        "orbits": orbits,
+        "points": points,
+        "transient": 3080,
+    }
     return (Panel(rf"$\alpha = {ALPHA}$", "theta", "lam", {"attractors": curve}, facts=known),)
 
 

@@ -1,5 +1,7 @@
 """The evolutes of the tables, which every flight of the slap map touches. Paper: section 2.2; no figure there."""
 
+from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,7 +9,7 @@ import numpy as np
 from numeric import PinballMap
 from symbolic.geometry import evolute
 from symbolic.symbols import theta
-from verification.figures.panel import Curve, Panel, Panels, scaled
+from verification.figures.panel import Array, Curve, Panel, Panels, scaled
 from verification.figures.phase import facts, flights, outline
 from verification.figures.sheet import BLACK, OUTLINE, sheet
 
@@ -22,30 +24,34 @@ TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 
 
-def evolutes(fine: float = 1.0) -> Panels:
-    """The envelope of the normals, from the exact formula, with flights of the slap map that touch it.
-
-    The wall of the cuspless cardioid is straight and has its centre of curvature at infinity.
-    """
+@cache
+def centres(table: str, **shape: str) -> Callable[[Array], tuple[Array, Array]]:
+    """The centre of curvature of the first component against `theta`, from the exact formula."""
     from symbolic.codegen import kernel, load
     from symbolic.tables import named
     from verification.arithmetic import ARRAYS
 
+    x, y = evolute(named(table).at(**shape).components[0])
+    return load(kernel("evolute", [theta], {"x": x, "y": y}), ARRAYS)
+
+
+def evolutes(fine: float = 1.0) -> Panels:
+    """The envelope of the normals, with flights of the slap map that touch it.
+
+    The wall of the cuspless cardioid is straight and has its centre of curvature at infinity.
+    """
     panels = []
     for table, shape in TABLES:
         map = PinballMap(table, lam=0, **shape)
-        x, y = evolute(named(table).at(**shape).components[0])
         low, high = map.states.ends[0]
-        centre = load(kernel("evolute", [theta], {"x": x, "y": y}), ARRAYS)
         starts = low + (high - low) * (np.arange(40) + 0.5) / 40
         curves = {
             "boundary": outline(map),
             "flights": flights(map.orbit(starts, np.zeros(40), 1)),
-            "evolute": Curve(*centre(np.linspace(low, high, scaled(400, fine, 20)))),
+            "evolute": Curve(*centres(table, **shape)(np.linspace(low, high, scaled(400, fine, 20)))),
         }
-        title = table + "".join(
-            rf", $\{name} = {value}$" if len(name) > 1 else f", ${name} = {value}$" for name, value in shape.items()
-        )
+        letters = {"alpha": r"\alpha"}
+        title = table + "".join(f", ${letters.get(name, name)} = {value}$" for name, value in shape.items())
         panels.append(Panel(title, "x", "y", curves, facts=facts(map)))
     return tuple(panels)
 

@@ -17,7 +17,7 @@ NAMES = ("no chaos found", "chaos", "undecided")
 
 
 def parameter_space(fine: float = 1.0) -> Panels:
-    """Which pairs `(alpha, lam)` have a chaotic orbit among 60 random starts, and `alpha_tilde(lam)`. In print, 100.
+    """Which pairs `(alpha, lam)` have a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
 
     Each sign counts beyond twice its error (`verification.sweeps.signs`); a pair with no chaotic orbit and one whose
     sign its error leaves open is undecided.
@@ -27,7 +27,7 @@ def parameter_space(fine: float = 1.0) -> Panels:
     from verification.sweeps import run
     from verification.sweeps.parameter_space import parameter_space as sweep
 
-    side, starts = scaled(32, fine**0.5, 3), scaled(60, min(fine, 5 / 3), 4)
+    side, starts = scaled(40, fine**0.5, 3), scaled(100, min(fine, 1.0), 4)
     bounces = scaled(1000, min(fine, 2.0), 40)
     alphas, lams = np.round(np.linspace(0, 0.1, side + 1), 12), np.round(np.linspace(0, 1, side + 1), 12)
     found = run(sweep(alphas, lams, starts, bounces, bounces, seed=SEED))

@@ -21,6 +21,7 @@ COMMANDS = {
     "lyapunov": "The two exponents, with error bars.",
     "attractor": "Where do balls end, and in how many ways?",
     "slap": "The slap map: what remains at lambda = 0.",
+    "basins": "Which attractor does each start reach?",
     "bifurcation": "The attractors against the contraction.",
     "sweep": "Grids of tasks, on all cores or a Dask cluster, into a Zarr store.",
     "figure": "One of the paper's figures, or the data behind it.",

@@ -1,0 +1,97 @@
+"""The live table in a real browser: it draws, follows what is dragged and typed, and finds cycles."""
+
+import re
+import subprocess
+import sys
+from urllib.request import urlopen
+
+import pytest
+from playwright.sync_api import expect
+
+from verification.explore.app import serve
+
+PATIENCE = 30_000  # milliseconds
+
+
+@pytest.fixture(scope="module")
+def address():
+    """The page of `pinball explore`, served by the command itself."""
+    asked = [sys.executable, "-u", "-m", "verification", "explore", "--no-open"]
+    with subprocess.Popen(asked, stdout=subprocess.PIPE, text=True) as process:
+        found = re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
+        for _ in range(120):
+            try:
+                urlopen(found, timeout=5).close()
+                break
+            except OSError:
+                with pytest.raises(subprocess.TimeoutExpired):
+                    process.wait(0.25)
+        yield found
+        process.terminate()
+
+
+def outside(url):
+    return url.startswith("http") and not url.startswith("http://127.0.0.1:")
+
+
+@pytest.fixture
+def table(chromium, address):
+    page = chromium.new_page(viewport={"width": 1400, "height": 1000})
+    page.set_default_timeout(PATIENCE)
+    said = []
+    page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("request", lambda asked: said.append(asked.url) if outside(asked.url) else None)
+    page.goto(address)
+    page.get_by_role("button", name="Find the cycle").wait_for()
+    yield page
+    page.close()
+    assert said == []
+
+
+def command(page, start):
+    """Waits until the page offers a command that begins so."""
+    expect(page.get_by_label("As a command")).to_have_value(re.compile(f"^{start}"), timeout=PATIENCE)
+
+
+def test_it_shows_a_table_and_phase_space(table):
+    assert table.locator("canvas").count() >= 2
+    command(table, "pinball orbit egg --alpha 0.08 --lam 0.45")
+
+
+def test_another_table_brings_its_own_shape(table):
+    table.get_by_label("Table").select_option("ellipse")
+
+    table.get_by_label("a, shape of the ellipse").wait_for()
+    command(table, "pinball orbit ellipse --a 1.5")
+
+
+def test_a_formula_that_is_none_is_answered_with_a_sentence(table):
+    table.get_by_label("Table").select_option("polar formula")
+    field = table.get_by_label("Radius, a formula in theta")
+    field.fill("1 + __import__('os')")
+    field.press("Enter")
+
+    table.get_by_text("accepted:").wait_for()
+
+
+def test_the_cycle_near_the_ball_is_found_with_its_multipliers(table):
+    table.get_by_role("button", name="Find the cycle").click()
+
+    table.get_by_text("A cycle of period").wait_for()
+
+
+def test_a_click_in_phase_space_starts_there(table):
+    space = max((each.bounding_box() for each in table.locator("canvas").all()), key=lambda box: box["x"])
+    table.mouse.click(space["x"] + space["width"] * 0.6, space["y"] + space["height"] * 0.4)
+
+    command(table, r"pinball orbit egg --alpha 0.08 --lam 0.45 --start=(?!0\.3,)")
+
+
+def test_it_is_served_on_loopback_only(monkeypatch):
+    given = {}
+    monkeypatch.setattr("panel.serve", lambda *_, **options: given.update(options))
+    serve(5006, show=False)
+
+    assert given["address"] == "127.0.0.1"
+    assert all(origin.split(":")[0] in ("127.0.0.1", "localhost") for origin in given["websocket_origin"])

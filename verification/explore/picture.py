@@ -1,0 +1,108 @@
+"""What the live table draws: the boundary, an orbit, phase space, and the cycle near a point."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import Orbit, PinballMap
+from numeric.sampling import boundary, interior_starts
+from verification.dynamics.cycles import Cycle, polished, shortest
+from verification.dynamics.places import places
+
+Array = NDArray[np.float64]
+POINTS = 400  # of the outline
+LONGEST = 64  # period of a cycle that is looked for
+STEEPEST = 0.999 * np.pi / 2
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A place on the boundary and an exit angle."""
+
+    component: int
+    theta: float
+    phi: float
+
+
+def outline(map: PinballMap) -> tuple[Array, Array]:
+    """The boundary, once around."""
+    s = np.linspace(0, map.arclength.perimeter, POINTS) - map.arclength.perimeter / 2
+    x, y = map.states.point(*boundary(map, s))
+    return x, y
+
+
+def ball_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> Ball:
+    """The ball on the boundary point nearest to `(x, y)` that flies towards a point.
+
+    >>> ball = ball_at(PinballMap("circle", lam=1), 0.0, 2.0, (0.0, 0.0))
+    >>> round(ball.theta, 6), round(ball.phi, 6) + 0.0
+    (1.570796, 0.0)
+    """
+    s, span = 0.0, map.arclength.perimeter
+    for _ in range(4):  # each time on a grid a hundred times finer
+        near = s + span * np.linspace(-0.5, 0.5, 257)
+        bx, by = map.states.point(*boundary(map, near))
+        s, span = float(near[np.argmin(np.hypot(bx - x, by - y))]), span / 100
+    where, theta = boundary(map, np.array([s]))
+    px, py = (float(value[0]) for value in map.states.point(where, theta))
+    tx, ty = (float(value[0]) for value in map.states.tangent(where, theta))
+    vx, vy = towards[0] - px, towards[1] - py
+    phi = float(np.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
+    return Ball(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
+
+
+def tip(map: PinballMap, ball: Ball, length: float) -> tuple[float, float]:
+    """The point at `length` from the ball in its direction of flight."""
+    where, theta = np.array([ball.component]), np.array([ball.theta])
+    x, y = map.states.point(where, theta)
+    vx, vy = map.states.direction(where, theta, np.array([ball.phi]))
+    return float(x[0] + length * vx[0]), float(y[0] + length * vy[0])
+
+
+def phase(map: PinballMap, orbit: Orbit) -> tuple[Array, Array]:
+    """`s` from `-L/2` to `L/2` and `sin(phi)` of every bounce that was made."""
+    made = orbit.code.ravel() == 0
+    component, theta, phi = (field.ravel()[made] for field in (orbit.component, orbit.theta, orbit.phi))
+    s = np.empty_like(theta)
+    for part in np.unique(component):
+        s[component == part] = map.arclength.s(theta[component == part], int(part))
+    whole = map.arclength.perimeter
+    return np.mod(s + whole / 2, whole) - whole / 2, np.sin(phi)
+
+
+def ball_in_phase(map: PinballMap, s: float, sin_phi: float) -> Ball:
+    """The ball at a point of phase space."""
+    component, theta = boundary(map, np.array([s]))
+    phi = float(np.arcsin(np.clip(sin_phi, -0.999, 0.999)))
+    return Ball(int(component[0]), float(theta[0]), phi)
+
+
+def filling(map: PinballMap, balls: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[tuple[Array, Array]]:
+    """Phase space in portions, for ever: random balls, each portion a few bounces further."""
+    starts = interior_starts(map, balls, seed)
+    component, theta, phi = starts.component, starts.theta, starts.phi
+    while True:
+        orbit = map.orbit(theta, phi, bounces, component)
+        yield phase(map, orbit)
+        component, theta, phi = orbit.component[-1], orbit.theta[-1], orbit.phi[-1]
+
+
+def cycle_near(map: PinballMap, ball: Ball) -> Cycle | None:
+    """The cycle that Newton's method finds from the nearest return of the ball; None when it finds none.
+
+    >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), Ball(0, 1.5, 0.01))
+    >>> axis.period
+    2
+    """
+    orbit = map.orbit(ball.theta, ball.phi, LONGEST, ball.component)
+    if orbit.code[-1]:
+        return None
+    away = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) + np.abs(orbit.phi[1:] - orbit.phi[0])
+    for period in np.argsort(away)[:8] + 1:
+        near = places(orbit.component[:period], orbit.theta[:period], orbit.phi[:period])
+        found = polished(map, near)
+        if found is not None:
+            return shortest(map, found.points)
+    return None

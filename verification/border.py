@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.arithmetic import working
-from verification.certificates.border_collision import Extent, Kind, exponents, extent, kind, robust
+from verification.certificates.birth import START
+from verification.certificates.border_collision import Extent, Kind, exponents, extent, kind, robust, strips
 from verification.certificates.corner import enclosed
-from verification.certificates.half_return import limit
-from verification.certificates.polygon import Pieces, Polygon, hull, part
+from verification.certificates.half_return import limit, pieces
+from verification.certificates.polygon import Pieces, Polygon, grown, hull, part, trapped
 from verification.certificates.trail import ARC, BITS, WALL, Bounce, angle, constant, corners
 
 Array = NDArray[np.float64]
@@ -52,14 +53,14 @@ def border() -> Border:
     ('FOLD', True, [0.18, 0.383])
     """
     with working(BITS):
-        pieces = limit()
-        bounds = extent(pieces)
+        linear = limit()
+        bounds = extent(linear)
         if bounds is None:
             raise ArithmeticError("the attractor of the piecewise linear map is not enclosed")
-        rates = exponents(pieces, bounds.outer, length=9)
+        rates = exponents(linear, bounds.outer, length=9)
         if rates is None:
             raise ArithmeticError("the piecewise linear map is not proved to expand a cone")
-        return Border(pieces, kind(pieces), robust(pieces), bounds, _angles(bounds.outer), rates)
+        return Border(linear, kind(linear), robust(linear), bounds, _angles(bounds.outer), rates)
 
 
 def _angles(region: Polygon) -> tuple[float, float]:
@@ -71,6 +72,22 @@ def _angles(region: Polygon) -> tuple[float, float]:
         eta, by_v, by_u = angle(here, Bounce(ARC, constant(-theta1, ())))
         found += [-eta - star * (by_v * v + by_u * u) for u, v in part(region, component)]
     return min(float(x.lower()) for x in found), max(float(x.upper()) for x in found)
+
+
+def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | None:
+    """Length and width of two convex sets that hold the attractor of the map itself, arc's and wall's, proved.
+
+    In units of `lam - lambda-star`, for all `lam` up to `lambda-star + last`; None when not proved.
+
+    >>> [width < 1e-3 for _, width in strips_of_the_map()]
+    [True, True]
+    """
+    with working(BITS):
+        region = grown(limit(), START, 5e-4)
+        if region is None:
+            return None
+        family = pieces(region, (0.0, last))
+        return strips(family, region) if trapped(family, region) else None
 
 
 @dataclass(frozen=True)

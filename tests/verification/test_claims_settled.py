@@ -1,9 +1,14 @@
 """Numerical claims of the paper that proofs have settled, with what they came out as."""
 
 import pytest
+from sympy import Rational
 
-from verification.claims import verify
+from verification.certificates.birth import Birth
+from verification.claims import on_border, verify
 from verification.claims.claim import Verdict
+from verification.claims.on_border import born
+from verification.claims.on_sets import without_triangles
+from verification.progress import heard
 
 LOCATED = {
     "cuspless.lambda_star": (Verdict.CORRECTED, "0.07121724524891598"),
@@ -42,6 +47,46 @@ def test_period_3_is_excluded_up_to_the_fold_though_not_by_the_papers_argument()
 
     assert conclusion.verdict is argument.verdict is Verdict.CORRECTED
     assert "meets the diagonal" in argument.derived
+
+
+CORNER_ORBIT = {
+    "cuspless.fourth_collision_below": Verdict.CONFIRMED,
+    "cuspless.fourth_collision_above": Verdict.CORRECTED,
+    "cuspless.corner_orbit_unstable": Verdict.CONFIRMED,
+    "cuspless.coexistence": Verdict.CORRECTED,
+    "cuspless.thin_at_birth": Verdict.CONFIRMED,
+    "cuspless.chaotic_above_star": Verdict.SUPPORTED,
+}
+
+
+@pytest.mark.parametrize("name", CORNER_ORBIT)
+def test_what_happens_at_the_corner_orbit_is_proved_as_far_as_the_proof_goes(name: str):
+    (result,) = verify(name)
+
+    assert result.verdict is CORNER_ORBIT[name]
+
+
+def test_a_proof_that_stops_early_leaves_its_claims_without_a_verdict(monkeypatch: pytest.MonkeyPatch):
+    stopped = Birth(None, 0.001, born().steps[:1])
+    monkeypatch.setattr(on_border, "born", lambda: stopped)
+    monkeypatch.setattr(on_border, "kink_falls", lambda lowest, highest: None)
+    verdicts = {name: next(iter(verify(name))).verdict for name in CORNER_ORBIT}
+
+    assert verdicts["cuspless.chaotic_above_star"] is Verdict.OPEN
+    assert verdicts["cuspless.thin_at_birth"] is Verdict.OPEN
+    assert verdicts["cuspless.coexistence"] is Verdict.REFUTED
+    assert verdicts["cuspless.fourth_collision_above"] is Verdict.REFUTED
+    assert verdicts["cuspless.fourth_collision_below"] is Verdict.OPEN
+
+
+def test_a_long_claim_tells_the_share_that_is_done():
+    told: list[tuple[str, float]] = []
+    with heard(lambda about, share: told.append((about, share))):
+        without_triangles.__wrapped__(Rational(1, 20), Rational(1, 32))
+
+    assert {about for about, _ in told} == {"triangles excluded at alpha = 1/20"}
+    assert [share for _, share in told] == sorted(share for _, share in told)
+    assert told[-1][1] > 0.99
 
 
 @pytest.mark.parametrize("name", ["egg.merging_crisis", "egg.boundary_crisis", "cardioid.slap_ergodic", "egg.cascade"])

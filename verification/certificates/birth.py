@@ -10,7 +10,6 @@ Paper: section 5.2. The two ideas are those of Glendinning and Simpson for the p
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from verification.arithmetic import working
@@ -18,12 +17,12 @@ from verification.certificates.corner import enclosed
 from verification.certificates.half_return import limit, pieces
 from verification.certificates.polygon import Expansion, Pieces, Polygon, expansion, grown, trapped
 from verification.certificates.trail import BITS
+from verification.progress import Tick, silent
 
 START = -0.5, -1.7  # near the lowest point of the attractor, in units of e
 ROOM = 0.03  # what a polygon has to spare, in units of e
 FIRST, LONGEST, SHORTEST = 1e-3, 2e-3, 1e-5  # steps of e
 TRIES = 4
-Tick = Callable[[float], None]
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class Birth:
         return math.log(least) / 2, math.log(most) / 2
 
 
-def birth(last: float, budget: int = 200, tick: Tick | None = None) -> Birth:
+def birth(last: float, budget: int = 200, tick: Tick = silent) -> Birth:
     """The proof for `lambda-star < lam <= last`; `proved` is None when the budget of steps ends first.
 
     >>> birth(0.0725).proved, birth(0.0725, budget=1).proved
@@ -72,8 +71,7 @@ def birth(last: float, budget: int = 200, tick: Tick | None = None) -> Birth:
                 continue
             near, made = found
             steps.append(made)
-            if tick:
-                tick((e[1] - reached) / end)
+            tick((e[1] - reached) / end)
             reached, length = e[1], min(length * 1.3, LONGEST)
             if reached >= end:
                 return Birth(True, reached, tuple(steps))

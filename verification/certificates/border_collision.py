@@ -93,7 +93,12 @@ def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 1
     if outer is None or not trapped(pieces, outer):
         return None
     inner = min(heights, key=lambda v: float(v.mid())), max(heights, key=lambda v: float(v.mid()))
-    return Extent(inner, outer, tuple(_strip(_image(piece, part(outer, c))) for c, piece in pieces.items()))
+    return Extent(inner, outer, strips(pieces, outer))
+
+
+def strips(pieces: Pieces, region: Polygon) -> tuple[tuple[float, float], ...]:
+    """Length and width of the images of both sides of a region: a trapped one has its attractor in them."""
+    return tuple(_strip(_image(piece, part(region, component))) for component, piece in pieces.items())
 
 
 def _to_border(piece: Piece) -> Row | None:

@@ -15,6 +15,7 @@ from symbolic.symbols import lam as letter
 from symbolic.tables import egg
 from symbolic.thresholds import alpha_tilde
 from verification.arithmetic import balls, working
+from verification.progress import Tick, silent
 from verification.shooting.normal_form import normal_form
 from verification.shooting.problem import Kind, Linearised, Problem, Rows
 
@@ -30,7 +31,7 @@ class Sign:
     balls: int
 
 
-def doubling_curve(K: int = 3, budget: int = 4000) -> Sign:
+def doubling_curve(K: int = 3, budget: int = 4000, tick: Tick = silent) -> Sign:
     """Is the period doubling of the diameters supercritical for every `0 <= lam < 1`?
 
     >>> doubling_curve().supercritical
@@ -44,7 +45,9 @@ def doubling_curve(K: int = 3, budget: int = 4000) -> Sign:
             spent += 1
             if spent > budget or half < SMALLEST:
                 return Sign(None, spent)
-            if not _supercritical(K, arb(middle, half), curve(arb(middle, half))[0]):
+            if _supercritical(K, arb(middle, half), curve(arb(middle, half))[0]):
+                tick(2 * half)
+            else:
                 queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
     return Sign(True, spent)
 

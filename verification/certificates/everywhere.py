@@ -18,6 +18,7 @@ from verification.arithmetic import balls, working
 from verification.certificates.admissible import convex, inside, minimal
 from verification.certificates.contraction import Status
 from verification.certificates.krawczyk import dense, krawczyk
+from verification.progress import Tick, silent
 from verification.shooting.chain import Chain
 from verification.shooting.jets import Jet, jets
 from verification.shooting.newton import floats
@@ -51,6 +52,7 @@ def everywhere(
     ends: tuple[float, float],
     wanted: Stability,
     budget: int = 2000,
+    tick: Tick = silent,
 ) -> Everywhere:
     """Is there a cycle of the `wanted` stability for every `lam` between `ends`, near `start` at the first?
 
@@ -78,6 +80,7 @@ def everywhere(
             rates = [abs(x - y) / abs(middle - at) for x, y in zip(moved, theta, strict=True)]
         radii = [abs(step) * (0.7 * rate + 0.2 * max(rates)) + 1e-12 for rate in rates]
         if _proved(table, components, moved, middle, abs(step) / 2, radii) is wanted:
+            tick(step / (end - ends[0]))
             lam, at, theta, step = lam + step, middle, moved, step * 1.3
         else:
             step /= 2

@@ -25,12 +25,12 @@ from symbolic.codegen import kernel, load
 from symbolic.tables import egg
 from verification.arithmetic import balls, working
 from verification.certificates.admissible import convex
+from verification.progress import Tick, silent
 from verification.shooting.chain import Vector
 
 BITS = 64
 SMALLEST = 2.0**-36  # ends of boxes must stay exact in floats
 Box = tuple[tuple[float, float], ...]  # midpoint and half width of: first bounce, first gap, second gap
-Tick = Callable[[float], None]
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Exclusion:
     smallest: float
 
 
-def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick: Tick | None = None) -> Exclusion:
+def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick: Tick = silent) -> Exclusion:
     """Has the K-pointed egg no period-3 cycle for any `0 <= lam <= most`?
 
     >>> from sympy import Rational
@@ -77,7 +77,7 @@ def _gap(angle: Any, largest: arb) -> float:
     return 0.0
 
 
-def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick: Tick | None) -> Exclusion:
+def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick: Tick) -> Exclusion:
     queue, boxes, done, smallest = [start], 0, 0.0, 1.0
     while queue and boxes < budget:
         box = queue.pop()
@@ -85,8 +85,7 @@ def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick
         share = _volume(box) / _volume(start)
         if impossible(box):
             done += share
-            if tick:
-                tick(share)
+            tick(share)
             continue
         smallest = min(smallest, *(half for _, half in box))
         widest = max(range(3), key=lambda i: box[i][1])

@@ -11,6 +11,10 @@ from flint import arb
 
 from verification.arithmetic import working
 from verification.certificates.flights import ARC, BITS, WALL, Flights, Piece
+from verification.progress import Tick, silent
+
+ROUNDING = 2.0**-50  # neighbouring boxes overlap
+SMALLEST = 2.0**-40
 
 
 @dataclass(frozen=True)
@@ -21,7 +25,14 @@ class Fourth:
     boxes: int
 
 
-def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50_000, or_lower: bool = False) -> Fourth:
+def fourth_on_wall(
+    angle: float,
+    lowest: float,
+    highest: float,
+    budget: int = 50_000,
+    or_lower: bool = False,
+    tick: Tick = silent,
+) -> Fourth:
     """Does the fourth collision lie on the wall for all `|phi| <= angle`, `lowest <= lam <= highest`?
 
     `or_lower` accepts the lower half of the arc as well: `s_4 > s*` is all that is asked then.
@@ -30,6 +41,7 @@ def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50
     True
     """
     queue, boxes = [(0.0, angle, (lowest + highest) / 2, (highest - lowest) / 2)], 0
+    area = angle * (highest - lowest) / 2 or 1.0
     with working(BITS):
         while queue:
             phi, wide, lam, half = queue.pop()
@@ -37,16 +49,13 @@ def fourth_on_wall(angle: float, lowest: float, highest: float, budget: int = 50
             if boxes > budget or max(wide, half) < SMALLEST:
                 return Fourth(None, boxes)
             if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING), or_lower):
+                tick(wide * half / area)
                 continue
             if wide > half:
                 queue += [(phi - wide / 2, wide / 2, lam, half), (phi + wide / 2, wide / 2, lam, half)]
             else:
                 queue += [(phi, wide, lam - half / 2, half / 2), (phi, wide, lam + half / 2, half / 2)]
     return Fourth(True, boxes)
-
-
-ROUNDING = 2.0**-50  # neighbouring boxes overlap
-SMALLEST = 2.0**-40
 
 
 def _lands_inside(phi: arb, lam: arb, or_lower: bool) -> bool:

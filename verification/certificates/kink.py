@@ -8,7 +8,6 @@ minimum is the kink; and the value there falls with `lam`. It is 0 at `lambda-st
 So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from flint import arb
@@ -30,9 +29,9 @@ from verification.certificates.trail import (
     following,
     parameter,
 )
+from verification.progress import Tick, silent
 
 LONGEST_THETA, LONGEST_LAM = 2e-3, 5e-4  # sides of boxes
-Tick = Callable[[float], None]
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
     return found
 
 
-def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick | None = None) -> bool | None:
+def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = silent) -> bool | None:
     """For all `|phi| <= most` and contractions of the range: has `s4` one kink, and its minimum there?
 
     Once all boxes turn as they should, the second bounce need only be on the wall at one end and on the arc
@@ -77,8 +76,7 @@ def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick | Non
             for strip in strips:
                 if not all(_turns(course) for lam in lams for course in _followed(strip, lam)):
                     return None
-                if tick:
-                    tick(1 / len(strips))
+                tick(1 / len(strips))
             ends = [{c.component for lam in lams for c in courses(arb(end), lam)} for end in (left, right)]
         except ArithmeticError:
             return None

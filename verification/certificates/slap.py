@@ -13,6 +13,7 @@ from flint import arb
 
 from verification.arithmetic import working
 from verification.certificates.flights import ARC, BITS, WALL, Flights, Piece
+from verification.progress import Tick, silent
 
 SMALLEST = 2.0**-30
 
@@ -25,7 +26,7 @@ class PeriodicPoints:
     boxes: int
 
 
-def periodic_points(n: int, budget: int = 200_000) -> PeriodicPoints:
+def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> PeriodicPoints:
     """Where `T0**n(x) = x` on the cuspless cardioid, in stretches of the arc and of the wall.
 
     >>> [(c, round(a, 2), round(b, 2)) for c, a, b in periodic_points(2).stretches or []]
@@ -43,10 +44,12 @@ def periodic_points(n: int, budget: int = 200_000) -> PeriodicPoints:
                 return PeriodicPoints(None, boxes)
             box = arb(middle, half)
             images = slap.iterated([Piece(component, box, arb(1), arb(0))], n)
-            if images is not None and not any(p.component == component and p.theta.overlaps(box) for p in images):
-                continue
-            if images is not None and len(images) == 1 and _monotone(images[0].slope) and half < 1e-2:
+            apart = images is not None and not any(p.component == component and p.theta.overlaps(box) for p in images)
+            once = images is not None and len(images) == 1 and _monotone(images[0].slope) and half < 1e-2
+            if once and not apart:
                 found.append((component, middle - half, middle + half))
+            if apart or once:
+                tick(half / sum(_halves(end)[1] for end in slap.ends.values()))
                 continue
             queue += [(component, middle - half / 2, half / 2), (component, middle + half / 2, half / 2)]
         return PeriodicPoints(_joined(sorted(found)), boxes)

@@ -111,8 +111,9 @@ def at_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spread
     """The bounce after `here`, near a corner: on one part of the boundary, or on either.
 
     The table is convex, so a zero of the collision rule that is proved to lie on a true part of the
-    boundary is the landing. Zeros of both prolonged parts whose balls hold the corner hold the landing
-    too: the angle is monotone on either ball, and has one value at the corner.
+    boundary is the landing. When the ball of the arc's zero holds the corner, the angle is monotone there,
+    and so it is along the whole line of the wall; at the corner both have one value. So the landing is the
+    arc's zero when that of the wall lies before the wall, and one of the two when it may lie on the wall.
     """
     sign, found, places = 1 if upper else -1, {}, {}
     for component in (ARC, WALL):
@@ -126,8 +127,11 @@ def at_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spread
         return [found[ARC]]
     if WALL in found and places[WALL] > 0:
         return [found[WALL]]
-    if len(found) == 2 and all(place.contains(0) for place in places.values()):
-        return list(found.values())
+    if len(found) == 2 and places[ARC].contains(0):
+        if places[WALL] < 0:
+            return [found[ARC]]
+        if places[WALL].contains(0):
+            return list(found.values())
     raise ArithmeticError("a landing near a corner is not enclosed")
 
 

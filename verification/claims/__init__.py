@@ -16,7 +16,17 @@ from verification.claims.claim import Claim, Judgement, Verdict, load
 from verification.claims.judges import JUDGES
 
 TABLES = ("map", "circle", "ellipse", "cardioid", "cuspless", "egg", "appendix")
-JUDGING = (*TABLES, "ellipse_stability", "egg_period2", "egg_period3", "located", "sets", "stability", "samples")
+JUDGING = (
+    *TABLES,
+    "ellipse_stability",
+    "egg_period2",
+    "egg_period3",
+    "located",
+    "sets",
+    "stability",
+    "border",
+    "samples",
+)
 
 
 @dataclass(frozen=True)

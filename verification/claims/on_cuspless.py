@@ -234,17 +234,19 @@ def mu_nonpositive(claim: Claim) -> Judgement:
 @judges("cuspless.mu_above_minus_one")
 def mu_above_minus_one(claim: Claim) -> Judgement:
     """The characteristic polynomial at -1 factors with `lambda_c` and its inverse."""
+    return Judgement(attracting_below(), "-1 < mu for 0 <= lam < lambda_c")
+
+
+def attracting_below() -> Finding:
+    """The horizontal orbit attracts below `lambda_c`: real multipliers, not positive, above -1."""
     trace, det = horizontal()
     factored = Rational(5, 16) * (lam - lambda_c()) * (lam - 1 / lambda_c())
-    return Judgement(
-        by(
-            "the characteristic polynomial at -1 is 5/16*(lam - lambda_c)*(lam - 1/lambda_c) > 0 "
-            "below lambda_c, and det < 1",
-            real_multipliers(),
-            equal(1 + trace + det, factored, {}),
-            greater(1 / lambda_c(), lambda_c()),
-        ),
-        "-1 < mu for 0 <= lam < lambda_c",
+    return by(
+        "the characteristic polynomial at -1 is 5/16*(lam - lambda_c)*(lam - 1/lambda_c) > 0 "
+        "below lambda_c, and det < 1",
+        real_multipliers(),
+        equal(1 + trace + det, factored, {}),
+        greater(1 / lambda_c(), lambda_c()),
     )
 
 

@@ -12,6 +12,7 @@ from verification.certificates.projection import PRODUCED, SLAP, witness
 from verification.certificates.slap import periodic_points
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, greater, judges
+from verification.progress import telling
 
 SHAPE = Rational(2, 25)
 BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
@@ -20,7 +21,7 @@ BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
 @cache
 def without_triangles(shape: Expr, most: Expr) -> Finding:
     """No cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
-    found = no_triangles(shape, most)
+    found = no_triangles(shape, most, tick=telling(f"triangles excluded at alpha = {shape}"))
     if found.excluded is True:
         return Finding(
             Outcome.PROVED, f"no period 3 at alpha = {shape} for lam <= {most}: {found.boxes} boxes excluded"
@@ -75,7 +76,7 @@ def projection_misses(claim: Claim) -> Judgement:
 @judges("cuspless.slap_no_period4")
 def slap_no_period4(claim: Claim) -> Judgement:
     """Four stretches hold at most one point each of period dividing 4, and the two orbits of period 2 take them."""
-    found = periodic_points(4)
+    found = periodic_points(4, tick=telling("boundary followed"))
     four = found.stretches is not None and len(found.stretches) == 4
     outcome = Outcome.PROVED if four else Outcome.UNKNOWN
     return Judgement(

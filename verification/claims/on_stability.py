@@ -1,4 +1,4 @@
-"""Claims that a cycle is attracting or unstable over a range of contractions. Paper: sections 5.2, 6.2 to 6.5."""
+"""Claims that a cycle is attracting or unstable over a range of contractions. Paper: sections 6.2 to 6.5."""
 
 from functools import cache
 
@@ -12,12 +12,12 @@ from symbolic.tables import egg
 from verification.certificates.branch import contracts, flips_nowhere
 from verification.certificates.curve import doubling_curve
 from verification.certificates.everywhere import Stability, everywhere
-from verification.certificates.fourth import fourth_on_wall
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, judges, zero
 from verification.claims.on_egg_period3 import side_of_fold
 from verification.claims.on_located import located
 from verification.feigenbaum import accumulation
+from verification.progress import telling
 from verification.shooting.follow import attractor
 
 SHAPE = Rational(2, 25)
@@ -32,7 +32,7 @@ def answer(holds: bool | None, reason: str) -> Finding:
 @judges("egg.period4_created")
 def period4_created(claim: Claim) -> Judgement:
     """The sign of the flip's normal-form coefficient along all of alpha-tilde, in balls of `lam`."""
-    sign = doubling_curve()
+    sign = doubling_curve(tick=telling("alpha-tilde"))
     supercritical = answer(sign.supercritical, f"the flip is supercritical for 0 <= lam < 1, in {sign.balls} balls")
     area = zero("det D(T^2) = 1 at lam = 1", trace_and_determinant(egg_diameter(), S.One)[1] - 1)
     return Judgement(
@@ -49,7 +49,10 @@ def attracting_4() -> Finding:
     table = egg(3).at(alpha=SHAPE)
     start = attractor(table, *PERIOD_4)
     lam = PERIOD_4[0]
-    found = [everywhere(table, (0,) * 4, start, (lam, end), Stability.ATTRACTING) for end in (0.0, 0.28)]
+    found = [
+        everywhere(table, (0,) * 4, start, (lam, end), Stability.ATTRACTING, tick=telling(f"lam up to {end}"))
+        for end in (0.0, 0.28)
+    ]
     return answer(all(f.proved for f in found), "proved for every lam in [0, 0.28], interval by interval")
 
 
@@ -72,48 +75,6 @@ def period3_found(claim: Claim) -> Judgement:
         "attracting for every lambda_c < lam < 1; at lambda_c a multiplier is 1, at lam = 1 the orbit is elliptic",
         by("both multipliers inside the unit circle for lambda_c < lam < 1", *jury),
         "The range is open: attracting for lambda_c < lambda < 1, not at lambda_c itself nor at lambda = 1.",
-    )
-
-
-def corner(check: str, reason: str) -> Finding:
-    """One item of the checklist of the orbit through both corners."""
-    return answer(located("lambda-star").checks[check], reason)
-
-
-@judges("cuspless.corner_orbit_unstable")
-def corner_orbit_unstable(claim: Claim) -> Judgement:
-    """Half the orbit, mirrored, has a multiplier outside the unit circle on either side of the join."""
-    return Judgement(
-        by("on either side of the joins", corner("unstable", "a multiplier outside the unit circle")),
-        "unstable from both sides: one multiplier below -1 on the arc's side, one above 1 on the wall's",
-    )
-
-
-@judges("cuspless.fourth_collision_below")
-def fourth_collision_below(claim: Claim) -> Judgement:
-    """Boxes of angle and contraction up to 0.07121; from there on the one-sided slopes at the kink."""
-    found = fourth_on_wall(0.04, 0.0, 0.071)
-    proved = bool(found.on_wall and corner("s4_minimum_at_a_kink", ""))
-    return Judgement(
-        Finding(Outcome.UNKNOWN, "not proved between 0.071 and lambda*"),
-        "s_4 > s* for |phi| <= 0.04; at lambda* its minimum, a kink and not a smooth minimum, touches s*",
-        evidence=f"proved for |phi| <= 0.04 and 0 <= lam <= 0.071 ({found.boxes} boxes); at lambda* "
-        "the minimum is a kink"
-        if proved
-        else "",
-    )
-
-
-@judges("cuspless.fourth_collision_above")
-def fourth_collision_above(claim: Claim) -> Judgement:
-    """At a contraction well above, every small angle lands beyond the upper join again."""
-    found = fourth_on_wall(0.05, 0.9, 0.9, or_lower=True)
-    return Judgement(
-        counterexample("lam = 0.9", answer(found.on_wall, "s_4 > s* for every |phi| <= 0.05")),
-        "s_4 < s* for some small phi just above lambda*, not for every lam > lambda*",
-        corner("s4_minimum_at_a_kink", "at lambda* the minimum of s_4 is s*, a kink, and falls with lam"),
-        "Not for every lambda > lambda*: at lambda = 0.9 the fourth collision lies beyond s* again "
-        "for all |phi| <= 0.05.",
     )
 
 

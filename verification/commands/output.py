@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verification.progress import heard
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -53,7 +55,10 @@ class Output:
 
     @contextmanager
     def progress(self, about: str, total: int) -> Iterator[Callable[[str], None]]:
-        """A verb to call with a word on each step done; a bar shows on a terminal after two seconds."""
+        """A verb to call with a word on each step done; a bar shows on a terminal after two seconds.
+
+        What a long proof tells of itself within a step (`verification.progress`) moves the bar as well.
+        """
         from rich.console import Console
         from rich.progress import Progress
 
@@ -65,8 +70,19 @@ class Output:
         task = bar.add_task(about, total=total)
         timer = Timer(PATIENCE, bar.start)
         timer.start()
+        done = 0
+
+        def step(word: str) -> None:
+            nonlocal done
+            done += 1
+            bar.update(task, completed=done, description=f"{about} {word}")
+
+        def within(what: str, share: float) -> None:
+            bar.update(task, completed=done + share, description=f"{about}: {what}, {share:.0%}")
+
         try:
-            yield lambda step: bar.update(task, advance=1, description=f"{about} {step}")
+            with heard(within):
+                yield step
         finally:
             timer.cancel()
             timer.join()

@@ -5,13 +5,16 @@ from typing import TYPE_CHECKING
 
 import click
 
+from verification.commands.basins import command as basins
 from verification.commands.bifurcation import command as bifurcation
+from verification.commands.scene import Scene, table_options
 from verification.commands.sweeping import How, carried_out, span, sweep_options
 
 if TYPE_CHECKING:
     import xarray as xr
 
-TEXT_WIDTH = 100  # contractions shown to people
+TEXT_WIDTH = 100  # letters of the picture shown to people
+ROWS = 24  # contractions shown to people
 
 
 class Kinds(click.Group):
@@ -75,4 +78,46 @@ def picture(found: "xr.Dataset") -> list[str]:
     return shown
 
 
+@command.command(
+    "exponents", epilog="Example: pinball sweep exponents cuspless --lams 0:1:51 --orbits 100 --json exponents.json"
+)
+@table_options
+@click.option("--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, with both ends.")
+@click.option("--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random balls for each.")
+@click.option("--groups", type=click.IntRange(1, 64), default=6, show_default=True, help="Attractors kept for each.")
+@click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
+@click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+@sweep_options
+def exponents(
+    scene: Scene, lams: str, orbits: int, groups: int, bounces: int, transient: int, seed: int, how: How
+) -> int:
+    """Both Lyapunov exponents against the contraction, with standard errors, for each attractor."""
+    import numpy as np
+
+    from verification.sweeps import exponents as kind
+    from verification.sweeps.scenes import map_of, text_of
+
+    values, text = np.array(span("--lams", lams)), text_of(scene)
+    map_of(text, values[0])  # a bad shape is refused before anything runs
+    return carried_out(kind.exponents(text, values, orbits, groups, bounces, transient, seed), how, table_of_groups)
+
+
+def table_of_groups(found: "xr.Dataset") -> list[str]:
+    """For some contractions, a line for each attractor."""
+    shown = ["lam        orbits  period  nu_plus               nu_minus"]
+    for i in range(0, found.lam.size, max(1, found.lam.size // ROWS)):
+        one = found.isel(lam=i).load()
+        for j in range(found.group.size):
+            group = one.isel(group=j)
+            if int(group.orbits) > 0:
+                shown.append(
+                    f"{float(one.lam):<11.6g}{int(group.orbits):<8d}{int(group.period) or '-':<8}"
+                    f"{float(group.nu_plus):<11.6f}+- {float(group.nu_plus_error):<8.1g}"
+                    f"{float(group.nu_minus):<11.6f}+- {float(group.nu_minus_error):.1g}"
+                )
+    return shown
+
+
 command.add_command(bifurcation, "bifurcation")
+command.add_command(basins, "basins")

@@ -1,0 +1,88 @@
+"""Two sweeps against the kernel alone, for as many bounces with exponents: seconds of both on all cores, and the ratio.
+
+python benchmarks/sweeps.py [--quick]
+
+The sweeps are the paper's parameter space at 100 x 100 pairs with 100 starts of 2000 bounces, and a picture of
+1000 x 1000 basins of the cuspless table at lam = 0.09. Sweep and kernel take turns, so that both meet the same machine.
+"""
+
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from numeric.question import Question, starting
+from verification.commands.scene import Scene
+from verification.dynamics.basins import starts_at
+from verification.sweeps.basins import basins
+from verification.sweeps.cost import cores
+from verification.sweeps.parameter_space import egg, parameter_space
+from verification.sweeps.pools import on_threads
+from verification.sweeps.scenes import map_of, spread, text_of
+
+TURNS = 10
+
+
+def parameter_space_of(pairs, starts=100, bounces=2000):
+    """The sweep, and what makes the balls of a part of it."""
+    grid = np.linspace(0, 1, pairs)
+    sweep = parameter_space(grid.round(9) / 10, grid, starts, bounces, transient=0)
+
+    def balls(part):
+        return spread(egg(3, part.values["alpha"][0]), part.values["lam"], starts, part.seed)
+
+    return sweep, balls, bounces
+
+
+def basins_of(cells, transient=1000):
+    """The sweep, and what makes the balls of a part of it."""
+    text = text_of(Scene("cuspless"))
+    sweep = basins(text, 0.09, cells, cells, transient=transient)
+
+    def balls(part):
+        columns, rows = part.values["s"], part.values["sin_phi"]
+        map = map_of(text, 0.09)
+        return map, starts_at(map, np.tile(columns, rows.size), np.repeat(rows, columns.size))
+
+    return sweep, balls, transient
+
+
+def kernel(map, balls, bounces):
+    """A call that runs the compiled loop on these balls, and does nothing else."""
+    own = map.states.enter(balls.component, balls.theta, balls.phi, "pinball")
+    one = np.ones(balls.theta.size)
+    lam = np.broadcast_to(map.lam, one.shape).astype(float)
+    question = Question("pinball", exponents=True)
+    return lambda: map.engine.run(question, own, lam, map.shape, bounces, starting(one, 0 * one, one), 1)
+
+
+def seconds(action):
+    begun = time.perf_counter()
+    action()
+    return time.perf_counter() - begun
+
+
+def ratio(name, sweep, balls, bounces):
+    whole, bare, workers = 0.0, 0.0, cores()
+    next(iter(on_threads(sweep, sweep.indices()[:1], 1)))  # compiles
+    for turn in range(TURNS):
+        indices = sweep.indices()[turn::TURNS]
+        calls = [kernel(*balls(sweep.part(at)), bounces) for at in indices]
+        whole += seconds(lambda indices=indices: list(on_threads(sweep, indices, workers)))
+        with ThreadPoolExecutor(workers) as pool:
+            bare += seconds(lambda pool=pool, calls=calls: list(pool.map(lambda call: call(), calls)))
+    sys.stdout.write(
+        f"{name:<16}{sweep.collisions:.2g} bounces on {workers} cores: {whole:6.2f} s, "
+        f"the kernel alone {bare:6.2f} s, ratio {whole / bare:.2f}\n"
+    )
+
+
+def main(arguments):
+    quick = "--quick" in arguments
+    ratio("parameter space", *parameter_space_of(20 if quick else 100))
+    ratio("basins", *basins_of(400 if quick else 1000))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -6,7 +6,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test browser lint bench clean
+.PHONY: verify test browser lint docs bench clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -28,17 +28,21 @@ lint: $(VENV)/test.stamp
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+docs: $(VENV)/docs.stamp
+	$(BIN)/sphinx-build -q -W -b html docs docs/_build
+
 bench: $(VENV)/bench.stamp
 	$(BIN)/pinball bench
 
 clean:
-	rm -rf $(VENV) report dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) report dist docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is a finished installation; it is made again when pyproject.toml changes.
 $(VENV)/main.stamp: extras :=
 $(VENV)/test.stamp: extras := [test]
 $(VENV)/bench.stamp: extras := [bench]
+$(VENV)/docs.stamp: extras := [docs,plot,sweep]
 $(VENV)/browser.stamp: extras := [browser]
 
 $(VENV)/%.stamp: pyproject.toml $(VENV)/made.stamp

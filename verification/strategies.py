@@ -1,4 +1,4 @@
-"""Hypothesis strategies for tables, shapes, contractions and phase points, for your own tables too.
+"""Hypothesis strategies for tables, shapes, contractions and phase points, for your own tables too::
 
     from hypothesis import given
     from verification import strategies

@@ -1,0 +1,55 @@
+"""The documentation is true: its Python gives what it shows, its commands run, its pages are all reached."""
+
+import doctest
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from verification.cli import main
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGES = sorted(DOCS.rglob("*.md"))
+PYTHON = [page for page in PAGES if ">>> " in page.read_text()]
+COMMANDS = [
+    pytest.param(page, block, id=f"{page.stem}-{number}")
+    for page in PAGES
+    for number, block in enumerate(re.findall(r"```console\n(.*?)```", page.read_text(), re.DOTALL))
+]
+
+
+def named(page):
+    return page.stem
+
+
+@pytest.mark.parametrize("page", PYTHON, ids=named)
+def test_python_on_a_page_gives_what_the_page_shows(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = doctest.testfile(str(page), module_relative=False)
+
+    assert result.attempted > 0
+    assert result.failed == 0
+
+
+@pytest.mark.parametrize(("page", "block"), COMMANDS)
+def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for line in block.splitlines():
+        prompt, command, *arguments = shlex.split(line)
+
+        assert (prompt, command) == ("$", "pinball")
+        assert main(arguments) in (0, 1), capsys.readouterr().err
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_every_page_is_reached_from_the_index(page):
+    entries = re.findall(r"^[a-z_/0-9]+$", (DOCS / "index.md").read_text(), re.MULTILINE)
+
+    assert page.stem == "index" or str(page.relative_to(DOCS).with_suffix("")) in entries
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_links_between_pages_lead_somewhere(page):
+    for link in re.findall(r"\]\(([^)#:]+\.md)\)", page.read_text()):
+        assert (page.parent / link).is_file(), link

@@ -26,6 +26,7 @@ JUDGING = (
     "stability",
     "border",
     "samples",
+    "figures",
 )
 
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from numeric import PinballMap
 from verification.figures.panel import Panel, Panels, scaled
-from verification.figures.phase import SEED, by_arc_length, facts, flights, outline, settled
+from verification.figures.phase import SEED, balls_of, by_arc_length, facts, flights, outline, settled
 from verification.figures.sheet import BLACK, OUTLINE, cloud, sheet
 
 if TYPE_CHECKING:
@@ -22,7 +22,8 @@ def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
     """
     bounces = scaled(200, fine, 20)
     orbit = settled(map, BALLS, bounces).orbit
-    few = type(orbit)(*(field[:60, :FLIGHTS] for field in orbit))
+    theta, phi, component = (field[-1, :FLIGHTS] for field in (orbit.theta, orbit.phi, orbit.component))
+    few = map.orbit(theta, phi, 60, component)
     known = facts(map, seed=SEED, balls=BALLS, bounces=bounces)
     room = Panel("the table", "x", "y", {"outline": outline(map), "flights": flights(few)}, facts=known)
     space = Panel("phase space", "s", "sin_phi", {"bounces": by_arc_length(map, orbit)}, facts=known)

@@ -17,6 +17,7 @@ COMMANDS = {
     "locate": "Where does it happen, to N certified digits?",
     "check": "Does a certificate still hold, without the search?",
     "orbit": "Where does this ball go?",
+    "cycles": "Which cycles are there, up to a period?",
     "follow": "What becomes of this cycle as lambda changes?",
     "lyapunov": "The two exponents, with error bars.",
     "attractor": "Where do balls end, and in how many ways?",

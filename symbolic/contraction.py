@@ -1,0 +1,85 @@
+"""How much area a bounce contracts: at a point, on average, and near the elastic case. Paper: sections 1 and 4.1.
+
+A flight keeps the area `ds d(sin(phi))`; the reflection turns `sin(eta)` into `sin(lam*eta)`. So in these coordinates
+a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends on the incidence angle alone.
+
+- Not pointwise: `g` grows with `|eta|` from `lam` without bound, so for `0 < lam < 1` areas shrink where `|eta|` is
+  below the root of `g = 1` and grow beyond it. As `lam` tends to 1 that root tends to the one of `eta*tan(eta) = 1`.
+- Along an orbit `log|det D(T^n)|` is the sum of `log(g)` up to an end term, in `(s, phi)` and in `(s, sin(phi))`:
+  the exact sum rule `nu_plus + nu_minus = log(lam) + <log(cos(lam*eta)/cos(eta))>`.
+- So `nu_plus + nu_minus >= log(lam)` on every orbit, with equality only on double normals.
+- And `nu_plus + nu_minus <= 0` for almost every start: `T^n` is injective into phase space, whose area is finite, so
+  the set where it multiplies areas by more than `exp(e*n)` is smaller than `exp(-e*n)` times the whole; these sets have
+  a finite sum, and almost every start lies in finitely many of them (Borel and Cantelli), for each `e > 0`.
+- On single orbits the sum may be positive: a cycle of the elastic table on which `eta*tan(eta)` is above 1 on average
+  expands areas for `lam` just below 1. Over the whole of phase space that average is exactly 1, so the
+  sum of the exponents of a chaotic elastic table leaves 0 with slope 0.
+"""
+
+from sympy import Expr, Symbol, cos, diff, integrate, log, pi, simplify, sin, symbols, tan, trigsimp
+
+from symbolic.collision import birkhoff_matrix, derivative_matrix, determinant
+from symbolic.symbols import cos_eta1, cos_phi0, eta, lam
+
+
+def area_factor() -> Expr:
+    """`g(eta)`: what a bounce that lands at the incidence angle `eta` multiplies `ds d(sin(phi))` by.
+
+    >>> area_factor()
+    lam*cos(eta*lam)/cos(eta)
+    """
+    factor = birkhoff_matrix(derivative_matrix(), cos_phi0, cos(lam * eta)).det()
+    return simplify(factor.subs(cos_eta1, cos(eta)))
+
+
+def telescoped(bounces: int) -> Expr:
+    """`prod det DT / (prod g * cos(phi_0)/cos(phi_n))` along an orbit, in `(s, phi)`: 1, which is the sum rule.
+
+    >>> telescoped(3)
+    1
+    """
+    angles = symbols(f"eta1:{bounces + 1}", real=True)
+    start = Symbol("phi_0", real=True)
+    exits = [cos(start), *(cos(lam * angle) for angle in angles)]  # cos(phi_k) = cos(lam*eta_k)
+    ratio: Expr = exits[-1] / exits[0]
+    for leaving, angle in zip(exits, angles, strict=False):
+        ratio *= determinant().subs({cos_phi0: leaving, cos_eta1: cos(angle)}) / area_factor().subs(eta, angle)
+    return simplify(ratio)
+
+
+def steepening() -> Expr:
+    """`d log(g)/d eta`: positive for `0 < eta < pi/2` and `lam < 1`, since the tangent grows.
+
+    >>> steepening()
+    -lam*tan(eta*lam) + tan(eta)
+    """
+    return trigsimp(simplify(diff(log(area_factor()), eta))).rewrite(tan)
+
+
+def weak_dissipation() -> Expr:
+    """`d log(g)/d lam` at `lam = 1`: what one bounce contributes when the elastic law is left.
+
+    >>> weak_dissipation()
+    -eta*tan(eta) + 1
+    """
+    return simplify(diff(log(area_factor()), lam).subs(lam, 1))
+
+
+def elastic_mean(f: Expr) -> Expr:
+    """The mean of `f(eta)` over phase space with the elastic map's own measure, `cos(eta)/2 d(eta)`.
+
+    >>> elastic_mean(weak_dissipation())
+    0
+    """
+    density = simplify(f * cos(eta)).replace(lambda x: x.func is tan, lambda x: sin(x.args[0]) / cos(x.args[0]))
+    return simplify(integrate(simplify(density), (eta, -pi / 2, pi / 2)) / 2)
+
+
+def image_share() -> Expr:
+    """The share of phase space that the image of `T` may fill: the mean of `g` over it.
+
+    >>> image_share()
+    sin(pi*lam/2)
+    """
+    angle = Symbol("angle", real=True)  # the exit angle, lam*eta
+    return simplify(integrate(cos(angle), (angle, -lam * pi / 2, lam * pi / 2)) / 2)

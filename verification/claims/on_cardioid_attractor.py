@@ -1,0 +1,118 @@
+"""Claims on the cardioid's chaotic attractor, supported by sampling with its error. Paper: section 4.1."""
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Rational
+
+from numeric import PinballMap
+from numeric.growth import Growth
+from numeric.sampling import interior_starts
+from symbolic.slap_cardioid import expands_by, forward_once, parametrised
+from verification.claims.claim import Claim, Judgement
+from verification.claims.judges import by, judges
+from verification.claims.on_samples import sampled
+from verification.claims.spectra import BALLS, BOUNCES, CELLS, EARLY, SEED, spectrum, uneven, visited
+
+TENTHS = tuple(k / 10 for k in range(11))
+FIFTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
+LONG = 12_000  # bounces: 20 to a cell, if every cell is visited
+DUE = 15  # visits of one orbit to a cell, below which it may miss it by chance
+Array = NDArray[np.float64]
+
+
+@cache
+def coverage(table: str) -> Array:
+    """Visits to cells at every fifth of a contraction, 16 orbits each."""
+    return visited(table, FIFTHS, 16, LONG)
+
+
+@judges("cardioid.lyapunov_signs", "cardioid.nonuniformly_hyperbolic")
+def signs(claim: Claim) -> Judgement:
+    """Every sampled orbit has both signs, away from 0."""
+    found = spectrum("cardioid", TENTHS)
+    least, most = float(np.min(found.plus)), float(np.max(found.minus[1:]))
+    said = (
+        f"every one of {found.plus.size} orbits of {BOUNCES} bounces, {BALLS} at each of lam = 0, 0.1, ..., 1, has "
+        f"nu_+ >= {least:.3f} and (lam > 0) nu_- <= {most:.3f}"
+    )
+    means = np.mean(found.plus, axis=1), np.mean(found.minus[1:], axis=1)
+    derived = (
+        f"means over orbits: nu_+ >= {np.min(means[0]):.3f} and nu_- <= {np.max(means[1]):.3f} at every lam sampled"
+    )
+    return sampled(derived, said, least > 0.3 and most < -0.5)
+
+
+@judges("cardioid.chaotic_attractor")
+def chaotic(claim: Claim) -> Judgement:
+    """At `lam = 0` the map expands; above, every sampled orbit has a positive exponent and none is caught."""
+    found = spectrum("cardioid", TENTHS[:-1])
+    least = float(np.min(found.plus))
+    slap = by("(T0^2)' >= 3/2", parametrised(), forward_once(), expands_by(Rational(3, 2)))
+    said = (
+        "at lam = 0 no orbit is attracted by a cycle, since (T0^2)' >= 3/2 is proved; sampled at lam = 0, 0.1, ..., "
+        f"0.9, every one of {found.plus.size} orbits has nu_+ >= {least:.3f}"
+    )
+    return sampled("an attractor with nu_+ > 0 for every lam sampled", said, bool(slap) and least > 0.3)
+
+
+@judges("cardioid.attractor_grows", "cuspless.attractor_fills")
+def grows(claim: Claim) -> Judgement:
+    """The share of cells visited, against the contraction."""
+    counts = coverage(claim.id.partition(".")[0])
+    shares = [float(np.mean(c.sum(axis=0) > 0)) for c in counts]
+    rough = uneven(counts[-1])
+    listed = ", ".join(f"{x:.0%} at {value:g}" for x, value in zip(shares, FIFTHS, strict=True))
+    said = (
+        f"16 orbits of {LONG} bounces visit this share of {CELLS}x{CELLS} cells of (s, sin phi): {listed}; at lam = 1 "
+        f"the cells' shares vary by {rough:.1%} beyond counting; |sin phi| <= sin(lam*pi/2) bounds the attractor"
+    )
+    good = bool(np.all(np.diff(shares) > 0)) and shares[-1] == 1 and rough < 0.05
+    return sampled("it grows at each step sampled; uniform at lam = 1, the map's own measure", said, good)
+
+
+@judges("cardioid.transitive")
+def transitive(claim: Claim) -> Judgement:
+    """Single orbits visit the same cells, equally often."""
+    worst = 1.0
+    for counts in coverage("cardioid"):
+        often = counts.sum(axis=0) > len(counts) * DUE
+        worst = min(worst, float(np.mean(counts[:, often] > 0)))
+    said = (
+        f"16 orbits each at lam = 0.2, ..., 1 together visit at least {worst:.2%} of the pairs of an orbit and a cell "
+        f"where {DUE} visits are due"
+    )
+    return sampled("every sampled orbit visits the whole attractor", said, worst > 0.999)
+
+
+@cache
+def approaches(contraction: str) -> Array:
+    """The smallest distance to the cusp after so many bounces, one column for each of 256 balls."""
+    map = PinballMap("cardioid", lam=contraction)
+    start = interior_starts(map, 256, SEED)
+    growth = Growth(map, start.component, start.theta, start.phi if map.law != "slap" else 0 * start.phi)
+    growth.skip(EARLY)
+    orbit = map.orbit(growth.theta, growth.phi, 4096)
+    return np.asarray(np.minimum.accumulate(np.hypot(orbit.x, orbit.y), axis=0))
+
+
+@judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
+def near_cusp(claim: Claim) -> Judgement:
+    """The nearest approach to the cusp against the number of bounces, and what is proved at `lam = 0`.
+
+    There a landing at the distance `d` has come from `s` of the order `d**(3/2)`, so `d` falls like `n**(-2/3)`.
+    """
+    told, powers = [], []
+    for contraction in ("0", "3/10", "8/10"):
+        first, last = np.median(approaches(contraction)[[64, 4096]], axis=1)
+        powers.append(float(np.log(last / first) / np.log(64)))
+        told.append(f"{first:.1e} after 64 bounces and {last:.1e} after 4096 at lam = {contraction}")
+    listed = ", ".join(f"{x:.2f}" for x in powers)
+    said = (
+        f"the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to the "
+        f"powers {listed} (-2/3 follows at lam = 0, -1 for the elastic measure); at lam = 0 it is proved that every "
+        "interval comes arbitrarily near: (T0^2)' >= 3/2 lets it grow until it holds s = 0, the only jump, whose image "
+        "is the cusp"
+    )
+    return sampled("distances to the cusp have no positive bound on the attractor", said, max(powers) < -0.6)

@@ -20,10 +20,10 @@ from numeric import PinballMap
 from verification.arithmetic import working
 from verification.certificates.birth import START
 from verification.certificates.border_collision import Extent, Kind, exponents, extent, kind, robust, strips
-from verification.certificates.corner import enclosed
+from verification.certificates.corner import ARC, WALL, enclosed
 from verification.certificates.half_return import limit, pieces
 from verification.certificates.polygon import Pieces, Polygon, grown, hull, part, trapped
-from verification.certificates.trail import ARC, BITS, WALL, Bounce, angle, constant, corners
+from verification.certificates.trail import BITS, Bounce, angle, constant, corners
 
 Array = NDArray[np.float64]
 

@@ -15,6 +15,7 @@ from symbolic import tables
 from symbolic.symbols import lam as lam_letter
 from symbolic.table import Table
 from symbolic.thresholds import alpha_tilde
+from verification.progress import telling
 from verification.shooting.follow import FEIGENBAUM, attractor, doubled, next_critical
 from verification.shooting.newton import floats
 from verification.shooting.problem import Kind, Problem
@@ -97,7 +98,9 @@ def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
         raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
     if n == 2:
         return _second(alpha)
-    rung = next(islice(ladder(alpha), n - 3, None))
+    tick = telling("rungs in float64")
+    for rung in islice(ladder(alpha), n - 2):
+        tick(2.0 ** (rung.n - n - 1))  # a rung costs twice the one before
     return rung.problem, rung.start
 
 

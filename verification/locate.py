@@ -23,12 +23,14 @@ from verification.balls import decimal
 from verification.certificates.bifurcation import Checks, Claim, Proof, proved
 from verification.certificates.contraction import Status, exact_balls
 from verification.certificates.special import SpecialClaim, SpecialProof, specially_proved
+from verification.progress import telling
 from verification.shooting.newton import refined
 from verification.shooting.problem import Kind, Problem
 from verification.shooting.small import corner, focus
 
 MOST_DIGITS = 20_000
 BUDGET = 4_000_000  # bounces times digits: some ten minutes
+MPMATH_SHARE = 0.7  # of the time that a proof and its approximation take
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
 
 
@@ -84,7 +86,9 @@ def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
 
 def certify(problem: Problem, start: list[float], digits: int) -> Proof:
     """The proof for the solution near `start`: mpmath to a few digits more, then balls around it."""
+    tick = telling(f"{digits} digits")
     solution = refined(problem, start, digits)
+    tick(MPMATH_SHARE)
     bits = bits_of(digits, 64 + 8 * problem.period.bit_length())
     with working(bits):
         radius = (arb(10) ** -(digits + 2)).mid()
@@ -118,7 +122,9 @@ def _special(value: str, start: list[float], digits: int, lam: Expr | None = Non
     bits = bits_of(digits, 100)
     with working(bits):
         radius = (arb(10) ** -(digits + 3)).mid()
+    tick = telling(f"{digits} digits")
     solution = refined(corner() if lam is None else focus(lam), start, digits + 5)
+    tick(MPMATH_SHARE)
     return specially_proved(SpecialClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam))
 
 
@@ -192,14 +198,24 @@ def symmetry_breaking(digits: int, alpha: Expr) -> Found:
     return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
 
 
-def sampled_crisis(kind: str, alpha: Expr) -> Found:
-    """A crisis of the egg's chaotic attractor: an estimate by sampling, with its error. Paper: section 6.7."""
-    from verification.crises import crisis  # float64 kernels, which no other name needs
+def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
+    """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch. Not proved. Paper: section 6.7."""
+    from verification.manifolds.located import crisis, decimals  # NumPy, which no other name needs
 
-    found = crisis(kind, str(alpha))
-    stays = ", ".join(f"{mean:.3g} at {lam:.7g}" for lam, mean in found.stays)
-    notes = {"method": f"sampled, {found.bounces:.2g} bounces; not proved", "mean_stay_in_bounces": stays}
-    return Found(arb(found.lam, found.error), {"proved": None}, None, notes)
+    found = crisis(kind, alpha, digits)
+    stable, unstable = found.touch.multipliers[:2]
+    orbit = found.touch.contact.unstable
+    notes = {
+        "mechanism": f"homoclinic tangency of the {orbit.name}, multipliers {unstable:.6g} and {stable:.6g}",
+        "method": f"fold of a cycle of period {found.period} that shadows it; estimated error, not a proof",
+        "second_method": f"tangency of the manifolds, {found.apart:.1e} away with error {found.touch.error:.1e}",
+        "transient": f"grows like a power of the distance above, exponent {found.exponent:.4f} in the limit",
+    }
+    value, error = decimals(found)
+    with working(bits_of(digits, 100)):
+        ball = arb(value, error)
+    checks: Checks = {"two_methods_agree": found.agrees, "tangency_proved": None, "is_the_crisis": None}
+    return Found(ball, checks, None, notes)
 
 
 def _unit(letter: str, value: Expr) -> Expr:
@@ -221,7 +237,7 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "saddle-node": (saddle_node, ("alpha",)),
     "doubling": (doubling, ("alpha", "n")),
     "symmetry-breaking": (symmetry_breaking, ("alpha",)),
-    "merging-crisis": (lambda digits, alpha: sampled_crisis("merging", alpha), ("alpha",)),
-    "boundary-crisis": (lambda digits, alpha: sampled_crisis("boundary", alpha), ("alpha",)),
+    "merging-crisis": (lambda digits, alpha: egg_crisis("merging", digits, alpha), ("alpha",)),
+    "boundary-crisis": (lambda digits, alpha: egg_crisis("boundary", digits, alpha), ("alpha",)),
 }
 SAMPLED = ("merging-crisis", "boundary-crisis")  # estimates; whatever else is located is proved

@@ -7,18 +7,18 @@ import pytest
 from flint import arb
 
 from numeric import PinballMap
+from symbolic.collision import derivative_matrix
+from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic import FLOAT64, working
 from verification.border import border, measured
 from verification.certificates.birth import birth
 from verification.certificates.border_collision import Kind, exponents, extent, fixed_point, kind, robust
-from verification.certificates.corner import at_corner, enclosed
+from verification.certificates.corner import ARC, WALL, at_corner, enclosed
 from verification.certificates.half_return import limit, pieces
 from verification.certificates.kink import exit_angle, kink, kink_falls, minimum_at_kink
 from verification.certificates.polygon import Piece, expansion, grown, trapped
-from verification.certificates.trail import ARC, BITS, WALL
+from verification.certificates.trail import BITS
 from verification.locate import locate
-from verification.shooting.newton import floats
-from verification.shooting.small import corner
 
 THETA1, STAR = (float(x.mid()) for x in enclosed())
 CORNER = 2 * math.pi / 3
@@ -69,12 +69,27 @@ def test_the_map_lies_in_the_family_that_encloses_it(e):
         assert all(x - 1e-9 < y < x + 1e-9 or x.contains(y) for x, y in zip(image, found, strict=True))
 
 
+def curved_flight(start: float, end: float, leaving: float, landing: float) -> np.ndarray:
+    """The derivative matrix of one flight at `lambda-star`, from curvatures at its ends."""
+    (x, y), (x1, y1) = _point(ARC, start), _point(ARC, end)
+    chord = np.array([x1 - x, y1 - y])
+    length = np.hypot(*chord)
+    tangents = [_tangent(ARC, at) for at in (start, end)]
+    cosines = [abs(u * chord[1] - v * chord[0]) / length for u, v in tangents]
+    letters = {K0: leaving, K1: landing, t: length, cos_phi0: cosines[0], cos_eta1: cosines[1], lam: STAR}
+    return np.array(derivative_matrix().subs(letters), float)
+
+
 def test_the_one_sided_half_returns_are_those_of_the_derivative_matrices():
-    """The traces and determinants of `certificates.corner`, from curvatures, against chords of two components."""
-    sides = at_corner(FLOAT64, *floats(corner(), [0.2545, 0.0712]))
-    for component, (trace, determinant) in ((ARC, sides.arc), (WALL, sides.wall)):
-        assert abs(float(limit()[component].trace.mid()) - trace) < 1e-12
-        assert abs(float(limit()[component].determinant.mid()) - determinant) < 1e-12
+    """Chords of the two components against the paper's matrix with either curvature; the mirror is -1."""
+    sides, bend = at_corner(FLOAT64, THETA1, STAR), -1.5 / (2 * math.cos(THETA1 / 2))
+    for component, curvature, (trace, determinant) in ((ARC, -1.5, sides.arc), (WALL, 0.0, sides.wall)):
+        half = curved_flight(THETA1, -CORNER, bend, curvature) @ curved_flight(CORNER, THETA1, curvature, bend)
+
+        assert abs(np.trace(half) + trace) < 1e-12
+        assert abs(np.linalg.det(half) - determinant) < 1e-12
+        assert abs(limit()[component].trace - trace) < 1e-12
+        assert abs(limit()[component].determinant - determinant) < 1e-12
 
 
 def test_two_unstable_orbits_of_period_4_are_born_with_the_attractor_and_none_is_there_before():
@@ -178,7 +193,7 @@ def test_the_kink_of_s4_moves_as_the_one_sided_derivatives_say():
 
 def test_the_least_fourth_position_passes_the_corner_at_lambda_star_and_nowhere_else():
     with working(BITS):
-        below, above = (kink(arb(lam)) for lam in (0.0712, 0.07122))
+        below, above = (kink(arb(x)) for x in (0.0712, 0.07122))
 
         assert minimum_at_kink(0.03, 0.0712, 0.0713)
         assert kink_falls(0.0712, 0.0713)
@@ -187,11 +202,11 @@ def test_the_least_fourth_position_passes_the_corner_at_lambda_star_and_nowhere_
 
 
 def test_the_least_fourth_position_agrees_with_orbits():
-    lam = 0.0705
+    below = 0.0705
     phi = np.linspace(-0.04, 0.04, 4001)
-    orbit = PinballMap("cuspless", lam=lam).orbit(np.full(phi.size, CORNER), phi, 4)
+    orbit = PinballMap("cuspless", lam=below).orbit(np.full(phi.size, CORNER), phi, 4)
     least = orbit.theta[4].min() + math.sqrt(3) / 4
 
     assert np.all(orbit.component[4] == WALL)
     with working(BITS):
-        assert abs(kink(arb(lam)).value - least) < 1e-4  # 2e-5 between angles, slope 4.5
+        assert abs(kink(arb(below)).value - least) < 1e-4  # 2e-5 between angles, slope 4.5

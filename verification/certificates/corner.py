@@ -2,7 +2,8 @@
 
 A bounce at a corner has a tangent (the joins are C1) and two curvatures, that of the arc and that of
 the wall. So the collision rules hold there, but the derivative of whatever passes the lower corner
-has two values. Paper: section 5.2.
+has two values. Both parameters run counterclockwise, and at a corner at the speed of arc length.
+Paper: section 5.2.
 """
 
 from dataclasses import dataclass
@@ -10,20 +11,19 @@ from functools import cache
 from typing import Any
 
 from flint import arb
+from sympy import pi, sqrt
 
 from symbolic.chords import chord_kernel
 from symbolic.codegen import kernel, load
-from symbolic.collision import derivative_matrix
-from symbolic.geometry import curvature
-from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
 from symbolic.tables import cuspless
 from verification.arithmetic import Arithmetic, bits_of, working
 from verification.certificates.contraction import Status, contraction, exact_balls
 from verification.shooting.newton import refined
-from verification.shooting.small import corner, corner_parameter
+from verification.shooting.small import corner
 
+ARC, WALL = 0, 1
 NEAR = (0.2545, 0.0712)  # theta1 and lambda-star, from where Newton's method finds them
-Matrix = tuple[Any, Any, Any, Any]
+Place = tuple[int, Any]  # component and parameter
 
 
 @dataclass(frozen=True)
@@ -60,76 +60,60 @@ class Corner:
         return False if left > 0 or right < 0 else None
 
 
+@dataclass(frozen=True)
+class Rule:
+    """The collision rule at a bounce, linearised: the parameter of the next one by those before it and `lam`."""
+
+    lower: Any
+    diagonal: Any
+    upper: Any
+    eta: Any
+
+    def next(self, before: Any, here: Any, lam: Any) -> Any:
+        """How the next parameter moves when the two before it, and `lam`, move so."""
+        return -(self.lower * before + self.diagonal * here + self.eta * lam) / self.upper
+
+
+def rule(arithmetic: Arithmetic, before: Place, here: Place, after: Place, contraction: Any) -> Rule:
+    """The rule at `here`."""
+    back = load(chord_kernel(cuspless, here[0], before[0], 1), arithmetic)(here[1], before[1])
+    forth = load(chord_kernel(cuspless, here[0], after[0], 1), arithmetic)(here[1], after[1])
+    return Rule(contraction * back[2], forth[1] + contraction * back[1], forth[2], back[0])
+
+
+def corners(arithmetic: Arithmetic) -> tuple[Any, Any]:
+    """The parameters of the upper corner, on the arc and on the wall; those of the lower have the other sign."""
+    arc, wall = load(kernel("corners", [], {"arc": 2 * pi / 3, "wall": -sqrt(3) / 4}), arithmetic)()
+    return arc, wall
+
+
 def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
     """The one-sided derivatives at a solution of `shooting.small.corner`."""
-    edge = corner_parameter(arithmetic)
-    bend = load(kernel("curvature", [theta], {"curvature": curvature(cuspless.components[0])}), arithmetic)
-    middle, sharp = bend(theta1)[0], bend(edge)[0]
-
-    def down(K: Any) -> Matrix:  # from the arc's bounce to the lower corner, on the side of curvature K
-        return flight(arithmetic, theta1, -edge, middle, K, contraction)
-
-    def up(K: Any) -> Matrix:  # from the lower corner to the mirrored bounce
-        return flight(arithmetic, -edge, -theta1, K, middle, contraction)
-
-    first = flight(arithmetic, edge, theta1, sharp, middle, contraction)  # its second column holds no K0
-    last = flight(arithmetic, -theta1, edge, middle, sharp, contraction)  # its first row holds no K1
-    slopes = [_product(last, _product(up(K), _product(down(K), first)))[1] for K in (0, sharp)]
-    halves = []
-    for K in (0, sharp):
-        half = _product(down(K), flight(arithmetic, edge, theta1, K, middle, contraction))
-        halves.append((-(half[0] + half[3]), half[0] * half[3] - half[1] * half[2]))  # the mirror is -1
-    motion = _product(down(0), first)[1]
-    descent = _descent(arithmetic, theta1, first, down(0), up(0), last, motion)
-    return Corner(slopes[0], slopes[1], motion, halves[0], halves[1], descent)
-
-
-def _descent(
-    arithmetic: Arithmetic, theta1: Any, first: Matrix, down: Matrix, up: Matrix, last: Matrix, motion: Any
-) -> Any:
-    """`d s_4/d lam` along the angles that hit the lower corner: each reflection shifts `phi` by `-eta`."""
-    angle, edge = load(chord_kernel(cuspless, 0, 0, 0), arithmetic), corner_parameter(arithmetic)
-    eta1, eta2 = angle(theta1, edge)[0], angle(-edge, theta1)[0]  # the mirrored bounces have -eta1, -eta2
-    turned = down[1] * -eta1 / motion  # with this much less of the initial angle the lower corner stays hit
-    x = _times(first, (0, -turned))
-    x = _times(down, (x[0], x[1] - eta1))
-    x = _times(up, (0, x[1] - eta2))
-    return _times(last, (x[0], x[1] + eta1))[0]
+    edge = corners(arithmetic)
+    top, right, left = (ARC, edge[ARC]), (ARC, theta1), (ARC, -theta1)
+    bottom = {component: (component, -edge[component]) for component in (ARC, WALL)}
+    to_bottom = rule(arithmetic, top, right, bottom[ARC], contraction)
+    to_top = rule(arithmetic, bottom[ARC], left, top, contraction)
+    by_angle = load(chord_kernel(cuspless, ARC, ARC, 1), arithmetic)(edge[ARC], theta1)[2]  # d phi/d theta1
+    slopes, descents, halves = [], [], []
+    for component in (ARC, WALL):
+        around = rule(arithmetic, right, bottom[component], left, contraction)
+        moved = []
+        for first, lam in ((1, 0), (0, 1)):  # by theta1, by lam
+            second = to_bottom.next(0, first, lam)
+            third = around.next(first, second, lam)
+            moved.append((second, to_top.next(second, third, lam)))
+        (motion, slope), (shift, growth) = moved
+        slopes.append(slope / by_angle)
+        descents.append(growth - slope * shift / motion)
+        halves.append(_half(around, to_top))  # the mirror image of a corner is the other one
+    return Corner(slopes[WALL], slopes[ARC], motion / by_angle, halves[WALL], halves[ARC], descents[WALL])
 
 
-def _times(m: Matrix, x: tuple[Any, Any]) -> tuple[Any, Any]:
-    return m[0] * x[0] + m[1] * x[1], m[2] * x[0] + m[3] * x[1]
-
-
-def flight(arithmetic: Arithmetic, start: Any, end: Any, leaving: Any, landing: Any, contraction: Any) -> Matrix:
-    """The derivative matrix of one flight between two points of the arc."""
-    angle = load(chord_kernel(cuspless, 0, 0, 0), arithmetic)
-    here, there = (load(_place(), arithmetic)(x) for x in (start, end))
-    dx, dy = there[0] - here[0], there[1] - here[1]
-    length, cos = arithmetic["sqrt"](dx * dx + dy * dy), arithmetic["cos"]
-    entries: Matrix = load(_matrix(), arithmetic)(
-        leaving, landing, length, cos(angle(start, end)[0]), cos(angle(end, start)[0]), contraction
-    )
-    return entries
-
-
-def _place() -> Any:
-    x, y = cuspless.components[0].point
-    return kernel("place", [theta], {"x": x, "y": y})
-
-
-def _matrix() -> Any:
-    entries = dict(zip(("a", "b", "c", "d"), derivative_matrix(), strict=True))
-    return kernel("derivative_matrix", [K0, K1, t, cos_phi0, cos_eta1, lam], entries)
-
-
-def _product(m: Matrix, n: Matrix) -> Matrix:
-    return (
-        m[0] * n[0] + m[1] * n[2],
-        m[0] * n[1] + m[1] * n[3],
-        m[2] * n[0] + m[3] * n[2],
-        m[2] * n[1] + m[3] * n[3],
-    )
+def _half(first: Rule, second: Rule) -> tuple[Any, Any]:
+    """Trace and determinant of half a return on two successive parameters; the mirror turns the trace around."""
+    third = [first.next(x, y, 0) for x, y in ((1, 0), (0, 1))]
+    return -(third[0] + second.next(1, third[1], 0)), first.lower * second.lower / (first.upper * second.upper)
 
 
 @cache

@@ -15,12 +15,10 @@ from flint import arb
 
 from verification.arithmetic import working
 from verification.certificates.boxes import cuts, halves, joined
-from verification.certificates.corner import enclosed
+from verification.certificates.corner import ARC, WALL, enclosed
 from verification.certificates.polygon import Piece, Pieces, Polygon, Row, clipped
 from verification.certificates.trail import (
-    ARC,
     BITS,
-    WALL,
     Bounce,
     Quantity,
     at_corner,

@@ -14,11 +14,9 @@ from flint import arb
 
 from verification.arithmetic import working
 from verification.certificates.boxes import cuts, halves, joined
-from verification.certificates.corner import enclosed
+from verification.certificates.corner import ARC, WALL, enclosed
 from verification.certificates.trail import (
-    ARC,
     BITS,
-    WALL,
     Bounce,
     Quantity,
     angle,

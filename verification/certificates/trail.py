@@ -11,15 +11,15 @@ from dataclasses import dataclass
 from functools import cache
 
 from flint import arb
-from sympy import pi, sqrt
 
 from symbolic.chords import chord_kernel
-from symbolic.codegen import kernel, load
+from symbolic.codegen import load
 from symbolic.tables import cuspless
 from verification.arithmetic import balls, working
+from verification.certificates import corner
+from verification.certificates.corner import ARC, WALL
 
 BITS = 64
-ARC, WALL = 0, 1
 Spread = tuple[arb, ...]  # the box of the parameters, around 0
 Angle = Callable[[arb, arb], tuple[arb, arb, arb]]
 
@@ -62,8 +62,7 @@ def _angles() -> dict[tuple[int, int], Angle]:
 def corners() -> tuple[arb, arb]:
     """The parameters of the upper corner, on the arc and on the wall; those of the lower have the other sign."""
     with working(BITS):
-        arc, wall = load(kernel("corners", [], {"arc": 2 * pi / 3, "wall": -sqrt(3) / 4}), balls(BITS))()
-        return arc, wall
+        return corner.corners(balls(BITS))
 
 
 def angle(here: Bounce, there: Bounce) -> tuple[arb, arb, arb]:
@@ -103,8 +102,8 @@ def following(previous: Bounce, here: Bounce, component: int, near: float, lam: 
 def beyond(bounce: Bounce, upper: bool) -> Quantity:
     """How far beyond the upper corner a bounce lies, or beyond the lower one in the mirror image."""
     sign, at = 1 if upper else -1, bounce.at
-    corner = corners()[bounce.component]
-    return Quantity(sign * at.centre - corner, tuple(sign * s for s in at.slopes), sign * at.whole - corner)
+    edge = corners()[bounce.component]
+    return Quantity(sign * at.centre - edge, tuple(sign * s for s in at.slopes), sign * at.whole - edge)
 
 
 def at_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spread: Spread) -> list[Bounce]:

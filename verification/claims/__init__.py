@@ -26,6 +26,9 @@ JUDGING = (
     "stability",
     "border",
     "samples",
+    "contraction",
+    "cardioid_attractor",
+    "exponents",
     "figures",
 )
 

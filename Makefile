@@ -39,7 +39,7 @@ clean:
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is a finished installation; it is made again when pyproject.toml changes.
-$(VENV)/main.stamp: extras :=
+$(VENV)/main.stamp: extras := [plot,sweep]
 $(VENV)/test.stamp: extras := [test]
 $(VENV)/bench.stamp: extras := [bench]
 $(VENV)/docs.stamp: extras := [docs,plot,sweep]

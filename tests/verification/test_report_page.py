@@ -58,7 +58,7 @@ def test_the_page_is_well_formed_and_its_links_lead_somewhere():
 
 
 def test_the_page_needs_no_network():
-    found = read(page(RESULTS, {}, [Picture("x", "y", b"z")]))
+    found = read(page(RESULTS, {}, [Picture("x", "y", "7", b"z")]))
 
     assert all(link.startswith("#") for link in found.links)
     assert all(source.startswith("data:") for source in found.sources)
@@ -124,10 +124,13 @@ def test_long_digits_fold_and_none_is_lost():
     assert f"<summary>{result.value[:FOLD]}…</summary>" in html
 
 
-def test_a_picture_stands_by_the_first_claim_it_illustrates():
-    html = page(RESULTS, {}, [Picture("x", "The picture.", b"z", ("ellipse.P*",))])
+def test_a_picture_stands_by_the_first_claim_that_quotes_its_caption_else_by_the_first_of_its_section():
+    claim = next(result for result in RESULTS if result.id == "ellipse.P2")
+    first = next(result for result in RESULTS if result.section == claim.section)
 
-    assert html.index('id="ellipse.P1"') < html.index("figure-x") < html.index('id="ellipse.P2"')
+    assert Picture("x", f"In (a), {claim.quote}, and so on.", claim.section, b"z").stands_by(RESULTS) == claim.id
+    assert Picture("x", "Something else.", claim.section, b"z").stands_by(RESULTS) == first.id
+    assert Picture("x", "Something else.", "9", b"z").stands_by(RESULTS) == ""
 
 
 def test_latex_tables_are_balanced_and_plain():

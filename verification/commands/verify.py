@@ -2,9 +2,10 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,14 +19,16 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.claims import Result
+    from verification.report.page import Picture
 
 
 @click.command(epilog="Example: pinball verify --only 'egg.*' --digits 30")
 @click.option("--only", metavar="GLOB", default="*", show_default=True, help="Judge the claims whose id matches.")
 @click.option("--digits", type=click.IntRange(1, 10_000), default=15, show_default=True, help="Digits of the values.")
 @click.option("--report", "folder", metavar="DIR", default="report", show_default=True, help="Where the report goes.")
+@click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the paper's figures in the report.")
 @json_option
-def command(only: str, digits: int, folder: str, output: Output) -> int:
+def command(only: str, digits: int, folder: str, figures: bool, output: Output) -> int:
     """Is each claim of the paper true? Exit status 1 when one is open."""
     from verification import claims
 
@@ -36,7 +39,8 @@ def command(only: str, digits: int, folder: str, output: Output) -> int:
         for result in claims.verify(only, digits):
             results.append(result)
             step(result.id)
-    write_report(directory, results)
+    pictures = drawn({result.section for result in results}, output) if figures else []
+    write_report(directory, results, pictures)
     output.write(report.document(results))
     show(output.console, results)
     output.console.print(f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex).")
@@ -68,7 +72,25 @@ def prepared(folder: str) -> Path:
     return directory
 
 
-def write_report(directory: Path, results: Sequence["Result"]) -> None:
+def drawn(sections: Collection[str], output: Output) -> "list[Picture]":
+    """The figures of those sections, as drafts; none where Matplotlib is missing."""
+    from verification.figures.catalogue import pictures
+    from verification.report.page import Picture
+
+    if find_spec("matplotlib") is None:
+        output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
+        return []
+    wanted = [picture for picture in pictures().values() if picture.section in sections]
+    found = []
+    with output.progress("Drawing", len(wanted)) as step:
+        for picture in wanted:
+            image = picture.image(picture.data(), ".png")
+            found.append(Picture(picture.name, picture.caption, picture.section, image))
+            step(picture.name)
+    return found
+
+
+def write_report(directory: Path, results: Sequence["Result"], pictures: "Sequence[Picture]" = ()) -> None:
     """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once."""
     from verification.report.markdown import markdown
     from verification.report.page import page
@@ -76,7 +98,7 @@ def write_report(directory: Path, results: Sequence["Result"]) -> None:
 
     versions = report.made_with()
     whole = report.document(results) | {"made_with": versions}
-    write_whole(directory / "report.html", page(results, versions))
+    write_whole(directory / "report.html", page(results, versions, pictures))
     write_whole(directory / "report.md", markdown(results, versions))
     write_whole(directory / "report.tex", tables(results))
     write_whole(directory / "report.json", json.dumps(whole, indent=2) + "\n")

@@ -3,7 +3,6 @@
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -23,23 +22,23 @@ OPENING = 120  # of which this many are shown
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of the report: a PNG or SVG image, and the claims beside which it stands, as globs."""
+    """A figure of the report: a PNG image, its caption as printed, and its section of the paper."""
 
     name: str
     caption: str
+    section: str
     image: bytes
-    claims: tuple[str, ...] = ()
-    kind: str = "png"
 
     @property
     def source(self) -> str:
         """The image as an address that holds it whole."""
-        mime = {"png": "image/png", "svg": "image/svg+xml"}[self.kind]
-        return f"data:{mime};base64,{base64.b64encode(self.image).decode('ascii')}"
+        return f"data:image/png;base64,{base64.b64encode(self.image).decode('ascii')}"
 
-    def stands_by(self, claims: "Sequence[Result]") -> str | None:
-        """The id of the first of `claims` that it illustrates."""
-        return next((c.id for c in claims if any(fnmatchcase(c.id, glob) for glob in self.claims)), None)
+    def stands_by(self, claims: "Sequence[Result]") -> str:
+        """The first claim that quotes the caption, else the first of the section; empty when there is neither."""
+        caption = _plain(self.caption)
+        quoting = (c.id for c in claims if c.section == self.section and _plain(c.quote) in caption)
+        return next(quoting, next((c.id for c in claims if c.section == self.section), ""))
 
 
 def page(results: "Sequence[Result]", versions: Mapping[str, str], pictures: Sequence[Picture] = ()) -> str:
@@ -48,7 +47,7 @@ def page(results: "Sequence[Result]", versions: Mapping[str, str], pictures: Seq
     ordered = [result for _, claims in sections for result in claims]
     beside: dict[str, list[Picture]] = {}
     for picture in pictures:
-        beside.setdefault(picture.stands_by(ordered) or "", []).append(picture)
+        beside.setdefault(picture.stands_by(ordered), []).append(picture)
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"prose": prose, "said": said, "sentence": sentence, "opening": opening}
     template = environment.from_string((files("verification.report") / "page.html").read_text(encoding="utf-8"))
@@ -82,3 +81,8 @@ def sentence(text: str) -> Markup:
 def opening(text: str) -> Markup:
     """The first words of a long text."""
     return sentence(text[: text.rindex(" ", 0, OPENING)].rstrip(".,:;") + ".")[:-1]
+
+
+def _plain(text: str) -> str:
+    """Words and formulas without what sets them."""
+    return "".join(letter for letter in text if letter not in "${}\\ \n")

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 ACROSS, UP = 360, 240  # cells of a draft
 TRANSIENT = 1000  # bounces before a ball is first looked at
 BLANK, SHADE = (1.0, 1.0, 1.0), (0.78, 0.84, 0.78)
+RED = (0.87, 0.55, 0.5)
 
 
 def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
@@ -86,7 +87,7 @@ def draw_egg(panels: Panels) -> "Figure":
     figure, axes = sheet(panels, height=3.0)
     for ax, panel in zip(axes, panels, strict=True):
         assert panel.raster is not None
-        paint(ax, panel.raster, {"chaotic": SHADE} if "chaotic" in panel.curves else {"period 3": (0.72, 0.3, 0.25)})
+        paint(ax, panel.raster, {"chaotic": SHADE} if "chaotic" in panel.curves else {"period 3": RED})
         points(ax, panel)
     return figure
 

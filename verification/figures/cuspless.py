@@ -107,23 +107,28 @@ def draw_corner(panels: Panels) -> "Figure":
 def exponents(fine: float = 1.0) -> Panels:
     """Both exponents against `lam`, averaged over 100 orbits, and apart for those on cycles and on chaotic sets."""
     count = min(fine, 2.0)
-    lams = np.concatenate([np.linspace(0.005, 0.15, scaled(30, count, 3)), np.linspace(0.18, 1, scaled(30, count, 3))])
+    stretches = ((0.005, 0.055, 10), (0.06, 0.1, 30), (0.11, 1, 30))  # of lam, and how many in a draft
+    lams = np.concatenate([np.linspace(low, high, scaled(many, count, 3)) for low, high, many in stretches])
     return (averaged("cuspless", lams, scaled(1000, fine, 50)),)
 
 
 def draw_exponents(panels: Panels) -> "Figure":
-    """The paper's averages as circles; lines for `nu_plus` on either kind of attractor."""
+    """The paper's averages as circles, lines for `nu_plus` on each kind of attractor; where both coexist, enlarged."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     (panel,) = panels
-    for place in (float(STAR), LAMBDA_C):
-        ax.axvline(place, **FAINT)
-    ax.axhline(0, **FAINT)
-    ax.plot(*panel.curves["nu_plus_chaotic"], color=MIDDLE, lw=1.2, label=r"$\nu_+$, chaotic orbits only")
-    ax.plot(*panel.curves["nu_plus_periodic"], color="0.6", lw=1.2, ls="--", label=r"$\nu_+$, periodic orbits only")
-    ax.plot(*panel.curves["nu_plus"], ls="", marker="o", ms=2.6, color=BLACK, label=r"$\nu_+$, all orbits")
+    inset = ax.inset_axes((0.42, 0.08, 0.55, 0.46))
+    for here in (ax, inset):
+        for place in (float(STAR), LAMBDA_C):
+            here.axvline(place, **FAINT)
+        here.axhline(0, **FAINT)
+        here.plot(*panel.curves["nu_plus_chaotic"], color=MIDDLE, lw=1.2, label=r"$\nu_+$, chaotic orbits only")
+        here.plot(*panel.curves["nu_plus_periodic"], color="0.5", ls="--", label=r"$\nu_+$, periodic orbits only")
+        here.plot(*panel.curves["nu_plus"], ls="", marker="o", ms=2.6, color=BLACK, label=r"$\nu_+$, all orbits")
     ax.plot(*panel.curves["nu_minus"], ls="", marker="o", ms=2.6, mfc="white", color=DARK, label=r"$\nu_-$, all orbits")
+    inset.set_xlim(0.055, 0.11)
+    inset.set_ylim(-0.08, 0.32)
     ax.set_xlim(0, 1.01)
-    ax.legend()
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
     return figure
 
 

@@ -81,7 +81,7 @@ def draw_attractors(panels: Panels) -> "Figure":
     """The smaller set on top of the larger one; period 3 as crosses."""
     figure, (left, right) = sheet(panels, height=3.0)
     whole, enlarged = panels
-    for start, color, label in (("0.45", MIDDLE, r"$\lambda = 0.45$"), ("0.43", DARK, r"$\lambda = 0.43$")):
+    for start, color, label in (("0.45", MIDDLE, r"$\lambda = 0.45$"), ("0.43", BLACK, r"$\lambda = 0.43$")):
         chaotic = [curve for name, curve in whole.curves.items() if name.startswith("chaotic") and name.endswith(start)]
         for i, curve in enumerate(chaotic):
             cloud(left, curve, color, label=None if i else label)

@@ -7,6 +7,7 @@ from numeric import PinballMap
 from numeric.sampling import interior_starts
 from verification.figures.panel import Array, Curve, Panel
 from verification.figures.phase import SEED, TRANSIENT, facts
+from verification.sweeps.signs import floor_of
 
 ORBITS = 100  # the paper's number for each contraction
 
@@ -24,7 +25,7 @@ def averaged(table: str, lams: Array, bounces: int, orbits: int = ORBITS) -> Pan
     plus, minus = (
         np.where(stopped, np.nan, values).reshape(lams.size, orbits) for values in (found.nu_plus, found.nu_minus)
     )
-    chaotic = plus > 0
+    chaotic = plus > floor_of(bounces)
     curves = {
         "nu_plus": Curve(lams, np.nanmean(plus, axis=1)),
         "nu_minus": Curve(lams, np.nanmean(minus, axis=1)),
@@ -32,7 +33,7 @@ def averaged(table: str, lams: Array, bounces: int, orbits: int = ORBITS) -> Pan
         "nu_plus_stderr": Curve(lams, np.nanstd(plus, axis=1, ddof=1) / np.sqrt(orbits)),
         "nu_minus_stderr": Curve(lams, np.nanstd(minus, axis=1, ddof=1) / np.sqrt(orbits)),
         "nu_plus_chaotic": Curve(lams, _mean(plus, chaotic)),
-        "nu_plus_periodic": Curve(lams, _mean(plus, plus <= 0)),
+        "nu_plus_periodic": Curve(lams, _mean(plus, plus <= floor_of(bounces))),
         "chaotic_share": Curve(lams, chaotic.mean(axis=1)),
     }
     known = facts(map, seed=SEED, orbits=orbits, bounces=bounces, transient=TRANSIENT)

@@ -47,7 +47,7 @@ def draw_parameter_space(panels: Panels) -> "Figure":
     assert panel.raster is not None
     lams, alphas, labels, names = panel.raster
     x, y = np.meshgrid(lams, alphas)
-    looks = (("+", "0.72", 2.5, 0.4), ("x", "#a01010", 3.5, 0.8), (".", "0.4", 2.0, 0.0))
+    looks = (("+", "0.72", 2.5, 0.4), ("x", "#a01010", 3.5, 0.8), ("$\\circ$", "0.3", 3.5, 0.2))
     for value, (marker, color, size, width) in enumerate(looks):
         here = labels == value
         if np.any(here):

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from numeric import PinballMap
 from verification.figures.panel import Panel, Panels, scaled
-from verification.figures.phase import SEED, balls_of, by_arc_length, facts, flights, outline, settled
+from verification.figures.phase import SEED, by_arc_length, facts, flights, outline, settled
 from verification.figures.sheet import BLACK, OUTLINE, cloud, sheet
 
 if TYPE_CHECKING:

@@ -117,7 +117,7 @@ def cloud(ax: "Axes", curve: Curve, color: str, size: float = 0.6, label: str | 
 
 def legend(ax: "Axes", columns: int = 3) -> None:
     """A legend below the axes, whose marks are large enough to be told apart."""
-    shown = ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=columns, handletextpad=0.2)
+    shown = ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=columns, handletextpad=0.4)
     handles: list[Any] = shown.legend_handles
     for handle in handles:
         handle.set_markersize(max(5.0, handle.get_markersize()))

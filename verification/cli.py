@@ -24,7 +24,7 @@ COMMANDS = {
     "slap": "The slap map: what remains at lambda = 0.",
     "basins": "Which attractor does each start reach?",
     "bifurcation": "The attractors against the contraction.",
-    "sweep": "Grids of tasks, on all cores or a Dask cluster, into a Zarr store.",
+    "sweep": "Grids of tasks, on all cores or a Dask cluster.",
     "figure": "One of the paper's figures, or the data behind it.",
     "explore": "A live table on a page of this machine.",
     "bench": "Error against run time, for every arithmetic and every kernel.",

@@ -97,7 +97,7 @@ def test_verify_writes_the_report_and_says_where(engine, capsys, tmp_path):
     assert main(["verify"]) == 0
 
     printed = capsys.readouterr().out
-    assert "report/report.md" in printed
+    assert "report/report.html" in printed
     assert "corrected  ellipse.P1: the identity [0, 1] holds" in printed
     assert (tmp_path / "report" / "report.md").exists()
     assert len(json.loads((tmp_path / "report" / "report.json").read_text())["claims"]) == 2
@@ -143,7 +143,7 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--digits", "0"], "accepted: integers from 1 to 10000"),
         (["verify", "--digits", "9" * 5000], "accepted: integers from 1 to 10000"),
         (["verify", "--digits"], "'--digits' requires an argument"),
-        (["verify", "--nope"], "no option is called --nope; accepted: --digits, --help, --json, --only, --report, -h"),
+        (["verify", "--nope"], "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, -h"),
         (["verify", "more"], "unexpected extra argument (more); pinball verify --help shows what is accepted"),
         (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),
         (["verify", "--json", "."], "'.' is a directory; accepted: a file, or - for standard output"),

@@ -6,9 +6,10 @@ varies: the contraction of the pinball map, `a` of the Henon map. A map is bound
 kind of number: floats, arrays, mpmath or balls, or jets of these.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -17,8 +18,8 @@ from sympy import Expr
 from symbolic.chords import chord_kernel
 from symbolic.codegen import load
 from symbolic.table import Table
-from verification.arithmetic import ARRAYS, Arithmetic
-from verification.shooting.jets import Jet
+from verification.arithmetic import ARRAYS, FLOAT64, Arithmetic
+from verification.shooting.jets import Jet, jets
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found in float64
 NEWTON = 60  # steps at most after that, in other numbers and order by order in jets
@@ -40,6 +41,10 @@ class Recurrence(Protocol):
 
     def over(self, words: Arithmetic) -> Self:
         """The same map over another kind of number."""
+
+    @property
+    def lifted(self) -> Self:
+        """The same map over jets of its numbers."""
 
     def rule(self, previous: Any, here: Any, following: Any, letter: Any) -> Any:
         """0 along an orbit."""
@@ -73,6 +78,10 @@ class Henon:
 
     def over(self, words: Arithmetic) -> "Henon":
         return replace(self, words=words)
+
+    @cached_property
+    def lifted(self) -> "Henon":
+        return self.over(jets(self.words))
 
     def rule(self, previous: Any, here: Any, following: Any, letter: Any) -> Any:
         return self.following(previous, here, letter) - following
@@ -114,6 +123,10 @@ class Pinball:
     def over(self, words: Arithmetic) -> "Pinball":
         return replace(self, words=words)
 
+    @cached_property
+    def lifted(self) -> "Pinball":
+        return self.over(jets(self.words))
+
     def rule(self, previous: Any, here: Any, following: Any, letter: Any) -> Any:
         return self.angle(here, following)[0] + letter * self.angle(here, previous)[0]
 
@@ -136,14 +149,9 @@ class Pinball:
         loaded: Callable[..., Any] = load(chord_kernel(self.table, 0, 0, 1), self.words)
         return loaded
 
-    @cached_property
-    def _in_floats(self) -> Callable[..., Any]:
-        loaded: Callable[..., Any] = load(chord_kernel(self.table, 0, 0, 1), ARRAYS)
-        return loaded
-
     def _other_end(self, here: Any, phi: Any, turns: int) -> Any:
         """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`."""
-        start = landing(self._in_floats, floating(here), floating(phi), turns)
+        start = landing(self.table, floating(here), floating(phi), turns)
         if self.words is ARRAYS:
             return start
         x = here * 0 + (start if np.ndim(start) else float(start))
@@ -159,28 +167,43 @@ class Pinball:
         return x
 
 
-def landing(angle: Callable[..., Any], here: Any, phi: Any, turns: int) -> Any:
-    """Newton's method on arrays, between bounds: the angle falls from pi/2 to -pi/2 on the way round."""
-    low = here + 2 * np.pi * turns
-    high = low + 2 * np.pi
-    x = low + np.pi - 2 * phi
+@cache
+def angle_over(table: Table, arrays: bool) -> Callable[..., Any]:
+    """The angle of a chord in float64, on arrays or, which is faster, on single numbers."""
+    loaded: Callable[..., Any] = load(chord_kernel(table, 0, 0, 1), ARRAYS if arrays else FLOAT64)
+    return loaded
+
+
+def landing(table: Table, here: Any, phi: Any, turns: int) -> Any:
+    """Newton's method between bounds: the angle falls from pi/2 to -pi/2 on the way round."""
+    arrays = bool(np.ndim(here) or np.ndim(phi))
+    angle, pick = angle_over(table, arrays), np.where if arrays else _either
+    if not arrays and not abs(phi) < math.pi / 2:
+        return math.nan
+    low = here + 2 * math.pi * turns
+    high = low + 2 * math.pi
+    x = low + math.pi - 2 * phi
     with np.errstate(all="ignore"):
-        x = np.where((x > low) & (x < high), x, low + np.pi)
+        x = pick((x > low) & (x < high), x, low + math.pi)
         for _ in range(SWEEPS):
             value, _, slope = angle(here, x)[:3]
-            low, high = np.where(value > phi, x, low), np.where(value > phi, high, x)
+            low, high = pick(value > phi, x, low), pick(value > phi, high, x)
             better = x - (value - phi) / slope
-            better = np.where((better > low) & (better < high), better, (low + high) / 2)
-            moved, x = np.max(np.abs(better - x), initial=0.0, where=np.isfinite(better)), better
-            if moved < CLOSE:
+            better = pick((better > low) & (better < high), better, (low + high) / 2)
+            moved, x = abs(better - x), better
+            if np.max(moved, initial=0.0, where=np.isfinite(moved)) < CLOSE if arrays else moved < CLOSE:
                 break
-    return np.where(np.abs(phi) < np.pi / 2, x, np.nan)[()]
+    return np.where(np.abs(phi) < math.pi / 2, x, math.nan) if arrays else x
+
+
+def _either(condition: bool, yes: float, no: float) -> float:
+    return yes if condition else no
 
 
 def floating(x: Any) -> Any:
     """A number, or the constant term of a jet, in float64."""
     middle = x.c[0] if isinstance(x, Jet) else x
-    return np.asarray(middle, dtype=float)[()]
+    return np.asarray(middle, dtype=float) if np.ndim(middle) else float(middle)
 
 
 def largest(x: Any) -> float:

@@ -14,7 +14,7 @@ from typing import Any
 
 from verification.manifolds.recurrence import Recurrence
 from verification.manifolds.saddle import Saddle, matrix, slopes
-from verification.shooting.jets import Jet, jets
+from verification.shooting.jets import Jet
 from verification.shooting.small import solved
 
 Series = list[list[Any]]  # for each bounce the coefficients of 1, z, z**2, ...
@@ -85,7 +85,7 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
     known, orbit = len(series[0]), saddle.orbit
     powers = _powers(factor, length)
     ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
-    map = saddle.map.over(jets(saddle.map.words))
+    map = saddle.map.lifted
     triples = [ring[i : i + 3] for i in range(len(series))]
     rules = [map.rule(*triple, saddle.letter) for triple in triples]
     slopes_of = [[_coefficients(s, length) for s in map.slopes(*triple, saddle.letter)] for triple in triples]

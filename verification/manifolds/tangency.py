@@ -17,7 +17,7 @@ from verification.arithmetic import FLOAT64, multiprecision
 from verification.manifolds.recurrence import Recurrence, floating
 from verification.manifolds.saddle import Orbit, saddle
 from verification.manifolds.series import Local, horner, local
-from verification.shooting.jets import Jet, jets
+from verification.shooting.jets import Jet
 
 STEPS = 30
 
@@ -61,16 +61,15 @@ class Gap:
     """The distance from the stable manifold, on orbits that start on the unstable one, at one letter."""
 
     def __init__(self, contact: Contact, map: Recurrence, letter: Any, order: int, tail: float) -> None:
-        self.map, self.letter = map, letter
+        self.old, self.map, self.letter = contact, map, letter
         self.out = local(saddle(contact.unstable, map, letter), True, order, tail)
         self.into = local(saddle(contact.stable, map, letter), False, order, tail)
         early = rounds(contact.z / self.out.unit, float(self.out.factor))
         late = rounds(contact.end / self.into.unit, 1 / float(self.into.factor))
         self.bounces = contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
         self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
-        self.start = contact.z / self.out.unit / float(self.out.factor) ** early
-        self.end = contact.end / self.into.unit * float(self.into.factor) ** late
-        self.words = jets(map.words)
+        self.scales = self.out.unit * float(self.out.factor) ** early, self.into.unit / float(self.into.factor) ** late
+        self.start, self.end = contact.z / self.scales[0], contact.end / self.scales[1]
 
     def at(self, z: Any) -> tuple[Jet, Jet]:
         """The gap at `z` to second order, and the parameter on the stable manifold."""
@@ -81,7 +80,7 @@ class Gap:
 
     def orbit(self, z: Any) -> list[Jet]:
         """The bounces from `z` on, with two derivatives by `z`."""
-        map = self.map.over(self.words)
+        map = self.map.lifted
         found = list(self.out.points(Jet(z, z * 0 + 1, z * 0)))
         for _ in range(self.bounces):
             found.append(map.following(*found[-2:], self.letter))
@@ -114,6 +113,16 @@ class Gap:
                 return z, gap, end
             z, before = z - step, size
         raise ValueError(f"tangency: at {float(self.letter)} the manifolds come nowhere closest near the start")
+
+    def contact(self) -> Contact:
+        """The same contact with starts taken from here."""
+        z, _, end = self.extremum()
+        ends = {
+            name: replace(getattr(self.old, name), start=tuple(float(x) for x in local.saddle.points))
+            for name, local in (("unstable", self.out), ("stable", self.into))
+        }
+        places = {"z": float(z) * self.scales[0], "end": float(end.c[0]) * self.scales[1]}
+        return replace(self.old, **ends, **places, letter=float(self.letter))
 
 
 def rounds(z: float, factor: float) -> int:

@@ -1,13 +1,12 @@
 """Lyapunov exponents of many orbits, counted block by block, until their error is small enough.
 
 Balls first run until they are where they end: those that a cycle attracts within its reach. Then growth is counted
-in blocks of equal length for every ball; two blocks become one when there are too many, so a run of any length fits
-in memory. Balls are sorted by the attractor they reach, before the count and once more after it; nothing is
+in blocks. Balls are sorted by the attractor they reach, before the count and once more after it; nothing is
 averaged across attractors. A run can be interrupted: what was counted stays.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -53,45 +52,46 @@ class Measured(NamedTuple):
         return None if not self.naive or self.upper is None else (self.upper.error / self.naive) ** 2 / 2
 
 
-@dataclass(eq=False)
 class Count:
-    """What orbits grew by: blocks along the first axis, balls along the second, per bounce."""
+    """What orbits grew by: blocks along the first axis, balls along the second, per bounce.
 
-    growth: Growth
-    length: int
-    most: int
-    up: Array = field(init=False)
-    volume: Array = field(init=False)
+    Blocks begin with a single bounce; at `most` of them two become one. So there is an estimate at every moment, and
+    a run of any length fits in memory.
+    """
 
-    def __post_init__(self) -> None:
-        self.up = np.empty((0, self.growth.theta.size))
-        self.volume = self.up
+    def __init__(self, growth: Growth, most: int = MOST) -> None:
+        self.growth = growth
+        self.most = max(2, min(most, KEPT // growth.theta.size // 2 * 2))
+        self.length, self.blocks = 1, 0
+        self._rows = np.empty((2, self.most, growth.theta.size))
+
+    @property
+    def up(self) -> Array:
+        """Growth of the tangent vectors."""
+        return self._rows[0, : self.blocks]
+
+    @property
+    def volume(self) -> Array:
+        """Growth of areas, without the factors `lam`."""
+        return self._rows[1, : self.blocks]
 
     @property
     def bounces(self) -> int:
         """Counted so far, for each ball."""
-        return self.length * len(self.up)
+        return self.length * self.blocks
 
-    def more(self, blocks: int) -> Iterator[int]:
-        """Counts further blocks; says how many bounces at each, and keeps them if it is left there."""
-        new_up, new_volume = [], []
-        try:
-            for _ in range(blocks):
-                before = self.growth.stretch, self.growth.volume
-                self.growth.advance(self.length)
-                new_up.append((self.growth.stretch - before[0]) / self.length)
-                new_volume.append((self.growth.volume - before[1]) / self.length)
-                yield self.length
-        finally:
-            made = min(len(new_up), len(new_volume))
-            if made:
-                self.up = np.concatenate([self.up, *(x[None] for x in new_up[:made])])
-                self.volume = np.concatenate([self.volume, *(x[None] for x in new_volume[:made])])
-            while len(self.up) > self.most:
-                odd = len(self.up) % 2
-                self.up = (self.up[odd::2] + self.up[odd + 1 :: 2]) / 2
-                self.volume = (self.volume[odd::2] + self.volume[odd + 1 :: 2]) / 2
-                self.length *= 2
+    def until(self, bounces: int) -> Iterator[int]:
+        """Counts on to as many bounces as whole blocks make, and yields their number after each block."""
+        while self.bounces + self.length <= bounces:
+            stretch, volume = self.growth.stretch, self.growth.volume
+            self.growth.advance(self.length)
+            self._rows[0, self.blocks] = (self.growth.stretch - stretch) / self.length
+            self._rows[1, self.blocks] = (self.growth.volume - volume) / self.length
+            self.blocks += 1
+            if self.blocks == self.most:
+                self._rows[:, : self.most // 2] = (self._rows[:, ::2] + self._rows[:, 1::2]) / 2
+                self.blocks, self.length = self.most // 2, 2 * self.length
+            yield self.bounces
 
     def measured(self, members: Labels, blocks: int | None = None) -> Measured:
         """The exponents over some of the balls, from all blocks or from the first few."""
@@ -160,23 +160,22 @@ def surveyed(
     classified = classify(map, growth.component, growth.theta, growth.phi)
     waited = max(transient - ALIGNED, 0) + _settle(map, growth, classified, max(transient, ALIGNED))
     growth.advance(min(transient, ALIGNED))
-    most = max(1, min(MOST, KEPT // growth.theta.size))
-    count = Count(growth, -(-bounces // most), most)
+    count = Count(growth)
     goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
-    ended, blocks = "bounces", bounces // count.length
+    ended, target = "bounces", bounces
     try:
         while True:
-            for _ in count.more(blocks):
-                say(count.bounces / goal)
+            for counted in count.until(target):
+                say(counted / goal)
             if until is None:
                 break
             if worst(tuple(count.measured(m) for _, m in _sorted(classified.label))) <= until:
                 ended = "error"
                 break
-            if 2 * count.bounces > goal:
+            if 2 * target > goal:
                 ended = "budget"
                 break
-            blocks = len(count.up)
+            target *= 2
     except KeyboardInterrupt:
         ended = "interrupted"
         if not count.bounces:

@@ -262,3 +262,11 @@ def test_without_matplotlib_the_way_out_is_named(monkeypatch, capsys):
 
     assert main(["figure", "egg-slap"]) == 2
     assert "install pinball-billiards[plot]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["egg-parameter-space", "egg-bifurcation"])
+def test_figures_of_sweeps_need_no_extra_but_plots(name, monkeypatch):
+    for package in ("xarray", "zarr", "dask", "distributed"):
+        monkeypatch.setitem(sys.modules, package, None)
+
+    assert pictures()[name].data(TINY)

@@ -9,6 +9,7 @@ from verification.figures.attracting import cycle_points, found, orbit_on, share
 from verification.figures.panel import Curve, Fact, Panel, Panels, scaled
 from verification.figures.phase import SEED, by_angle, facts, flights, outline
 from verification.figures.sheet import BLACK, CROSS, DARK, LIGHT, MIDDLE, OUTLINE, cloud, legend, sheet
+from verification.figures.swept import swept
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -103,14 +104,13 @@ def draw_attractors(panels: Panels) -> "Figure":
 def bifurcation(fine: float = 1.0) -> Panels:
     """Where balls from random starts are after a long time, for contractions around the cascade and the merging."""
     from verification.commands.scene import Scene
-    from verification.sweeps import run
     from verification.sweeps.bifurcation import bifurcation as sweep
     from verification.sweeps.scenes import text_of
 
     lams = np.linspace(*RANGE, scaled(300, fine**0.5, 4))
     orbits, points = scaled(12, fine**0.25, 4), scaled(40, fine**0.25, 8)
-    found = run(sweep(text_of(Scene("egg", {"alpha": ALPHA})), lams, orbits, points, 80, 3000, seed=SEED))
-    theta = found["theta"].values.ravel()
+    found = swept(sweep(text_of(Scene("egg", {"alpha": ALPHA})), lams, orbits, points, 80, 3000, seed=SEED))
+    theta = found["theta"].ravel()
     curve = Curve(theta, np.repeat(lams, orbits * points))
     known: dict[str, Fact] = {
         "table": "egg",

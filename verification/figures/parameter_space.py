@@ -9,6 +9,7 @@ from symbolic.thresholds import alpha_tilde
 from verification.figures.panel import Curve, Fact, Panel, Panels, Raster, scaled
 from verification.figures.phase import SEED
 from verification.figures.sheet import BLACK, sheet
+from verification.figures.swept import swept
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,15 +25,14 @@ def parameter_space(fine: float = 1.0) -> Panels:
     """
     from symbolic.codegen import kernel, load
     from verification.arithmetic import ARRAYS
-    from verification.sweeps import run
     from verification.sweeps.parameter_space import parameter_space as sweep
 
     side, starts = scaled(40, fine**0.5, 3), scaled(100, min(fine, 1.0), 4)
     bounces = scaled(1000, min(fine, 2.0), 40)
     alphas, lams = np.round(np.linspace(0, 0.1, side + 1), 12), np.round(np.linspace(0, 1, side + 1), 12)
-    found = run(sweep(alphas, lams, starts, bounces, bounces, seed=SEED))
-    chaotic = found["chaotic"].values > 0
-    undecided = ~chaotic & (found["regular"].values < starts)
+    found = swept(sweep(alphas, lams, starts, bounces, bounces, seed=SEED))
+    chaotic = found["chaotic"] > 0
+    undecided = ~chaotic & (found["regular"] < starts)
     raster = Raster(lams, alphas, np.where(chaotic, 1, np.where(undecided, 2, 0)), NAMES)
     lam = np.linspace(0, 1, 201)
     tilde = load(kernel("alpha_tilde", [lam_letter], {"alpha": alpha_tilde()}), ARRAYS)(lam)[0]

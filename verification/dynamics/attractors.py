@@ -16,7 +16,7 @@ from numeric import PinballMap, Status
 from numeric.sampling import interior_starts
 from symbolic.symmetry import group
 from symbolic.table import Table
-from verification.dynamics.clouds import clouds
+from verification.dynamics.clouds import gathered
 from verification.dynamics.kinds import Attractor, Kind, Share
 from verification.dynamics.places import Array, Places, places
 from verification.dynamics.recognition import UNSETTLED, Labels, at_clouds, at_cycles, recognised, same
@@ -143,8 +143,18 @@ class _Sorting:
             self.label[self.going] = near
             self._keep(near == UNSETTLED, self.growth)
             if self.going.size:
-                for points in clouds(self.map, self.balls.only(self.going)):
-                    self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
+                self._gather(stay)
+
+    def _gather(self, stay: float) -> None:
+        """Labels a few of the balls with the set their orbits lie on, known or new."""
+        spread = [i for i, a in enumerate(self.attractors) if a.kind is Kind.CHAOTIC]
+        balls = self.balls.only(self.going)
+        found = gathered(self.map, balls, [self.attractors[i].points for i in spread])
+        for points in found.sets[len(spread) :]:
+            spread.append(len(self.attractors))
+            self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
+        self.label[self.going[found.looked]] = np.array(spread)[found.member]
+        self._keep(~np.isin(np.arange(balls.size), found.looked), self.growth)
 
 
 def find(

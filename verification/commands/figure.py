@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @click.argument("name", required=False)
 @click.option("--out", metavar="FILE", help="A .png, .pdf or .svg file; NAME.png in the current folder if left out.")
 @click.option("--full", is_flag=True, help="In print quality: minutes, where a draft takes seconds.")
-@click.option("--list", "listing", is_flag=True, help="The names, with what the paper prints below each figure.")
+@click.option("--list", "listing", is_flag=True, help="The names, each with the first sentence of its caption.")
 @click.option("--all", "everything", is_flag=True, help="Every figure, as PNG files in the folder --out.")
 @json_option
 def command(name: str | None, out: str | None, full: bool, listing: bool, everything: bool, output: Output) -> int:

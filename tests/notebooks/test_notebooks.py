@@ -32,3 +32,7 @@ def test_a_notebook_and_its_text_say_the_same(text):
 @pytest.mark.parametrize("text", TEXTS, ids=lambda path: path.stem)
 def test_a_notebook_ends_with_a_check_that_can_fail(text):
     assert "assert " in sources(text)[-1][1]
+
+
+def test_there_are_notebooks_one_to_eight():
+    assert [int(text.name[0]) for text in TEXTS] == list(range(1, 9))

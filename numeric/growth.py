@@ -63,6 +63,8 @@ class Growth:
 
     def advance(self, bounces: int, threads: int | None = None) -> None:
         """Moves balls and vectors on."""
+        if not bounces:
+            return
         going = self.code == 0
         rows = self._run(Question(self.law, exponents=True), bounces, self.tangent, threads)
         self.tangent = [rows[name] for name in TANGENT]

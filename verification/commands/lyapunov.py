@@ -20,6 +20,7 @@ LAWS = {
     "phase": "uniform in arc length and in sin(phi)",
 }
 SIZE = 1_000_000_000
+LONG = 10_000  # bounces of a transient, unless it is given
 
 
 @click.command(epilog="Example: pinball lyapunov cuspless --lam 0.8 --bounces 10000 --orbits 100 --seed 1")
@@ -27,7 +28,7 @@ SIZE = 1_000_000_000
 @click.option("--bounces", type=click.IntRange(10, SIZE), required=True, help="Bounces that count, each.")
 @click.option("--orbits", type=click.IntRange(2, 10_000_000), required=True, help="How many random starts.")
 @click.option("--seed", type=click.IntRange(0), required=True, help="Of the random starts.")
-@click.option("--transient", type=click.IntRange(0, SIZE), help="Bounces before; --bounces if left out.")
+@click.option("--transient", type=click.IntRange(0, SIZE), help="Bounces before; if left out --bounces, at most 10000.")
 @click.option(
     "--start-law", type=click.Choice(list(LAWS)), default="interior", show_default=True, help="Of the starts."
 )
@@ -70,7 +71,7 @@ def command(
                 heard += 1
                 step("")
 
-        transient = bounces if transient is None else transient
+        transient = min(bounces, LONG) if transient is None else transient
         survey = surveyed(map, starts, bounces, transient, until_error, budget, say)
     survey = with_families(scene, map, survey)
     document = {**account(map, survey), "bounces": bounces, "seed": seed, "start_law": start_law}

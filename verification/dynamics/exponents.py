@@ -28,6 +28,7 @@ KEPT = 1 << 22  # numbers kept of each exponent
 ALIGNED = 256  # bounces after which a tangent vector has turned to the direction of growth
 PATIENCE = 8  # doublings of the wait for balls that are on their way
 SINGLE, WATCHED = 1024, 32  # bounces and balls that are watched one by one, for the naive error
+HEARD = 50_000_000  # bounces of all balls at a time
 CHANGED = "reached another attractor while it was counted"
 
 
@@ -156,9 +157,10 @@ def surveyed(
     [(2, -0.69314718056)]
     """
     growth = arrived(map, starts)
-    growth.skip(max(transient - ALIGNED, 0))
+    skipped(growth, max(transient - ALIGNED, 0))
     classified = classify(map, growth.component, growth.theta, growth.phi)
-    waited = max(transient - ALIGNED, 0) + _settle(map, growth, classified, max(transient, ALIGNED))
+    label, waited = _settled(map, growth, classified, max(transient, ALIGNED))
+    classified, waited = classified._replace(label=label), waited + max(transient - ALIGNED, 0)
     growth.advance(min(transient, ALIGNED))
     count = Count(growth)
     goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
@@ -191,16 +193,28 @@ def arrived(map: PinballMap, starts: Starts) -> Growth:
     return Growth(map, starts.component, starts.theta, starts.phi)
 
 
-def _settle(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> int:
-    """Waits for the balls that a cycle attracts to arrive within its reach; how long it took."""
+def skipped(growth: Growth, bounces: int) -> None:
+    """Moves balls on uncounted, a second's work at a time, so that an interruption is heard."""
+    piece = max(1, HEARD // growth.theta.size)
+    for done in range(0, bounces, piece):
+        growth.skip(min(piece, bounces - done))
+
+
+def _settled(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> tuple[Labels, int]:
+    """The cycle within whose reach each ball is, else what it was classified as, and how long was waited for that.
+
+    After a long chaotic transient rounding decides which of several cycles a ball reaches; where it is counts.
+    """
     waited = 0
     cyclic = np.isin(classified.label, [i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE])
+    caught = _caught(map, growth, classified)
     for _ in range(PATIENCE):
-        if np.array_equal(_caught(map, growth, classified)[cyclic], classified.label[cyclic]):
+        if np.all(caught[cyclic] >= 0):
             break
-        growth.skip(wait)
+        skipped(growth, wait)
         waited, wait = waited + wait, 2 * wait
-    return waited
+        caught = _caught(map, growth, classified)
+    return np.where(caught >= 0, caught, classified.label), waited
 
 
 def _caught(map: PinballMap, growth: Growth, classified: Classified) -> Labels:

@@ -1,8 +1,9 @@
 """What certified digits cost: `python benchmarks/certificates.py [--full]`, from the repository's root.
 
 Three columns for each value: Newton's method in mpmath, the same in balls, and the certificate that
-the first of them leads to. Then the ladder at 50 digits, whose cost must grow like the period, and
-its end. `--full` goes to 10,000 digits and to period 2**15, a few minutes.
+the first of them leads to. Whole searches beside what was asked of them, and beside the check of the
+certificate alone. Proofs over sets. Then the ladder at 50 digits, whose cost must grow like the
+period, and its end. `--full` goes to 10,000 digits, to period 2**15 and to `lam = 0.14`, a few minutes.
 """
 
 import sys
@@ -15,17 +16,22 @@ import mpmath
 from flint import arb
 from rich.console import Console
 from rich.table import Table as Shown
-from sympy import Expr, N, Rational, acos, pi
+from sympy import Expr, Integer, N, Rational, acos, pi
 
 from symbolic import tables
 from symbolic.polygons import saddle_node
 from symbolic.symbols import alpha as letter
 from verification.arithmetic import balls, bits_of, working
 from verification.certificates.bifurcation import Claim, proved
-from verification.certificates.contraction import contraction, exact_balls
+from verification.certificates.birth import birth
+from verification.certificates.contraction import exact_balls
+from verification.certificates.exclusion import no_triangles
+from verification.certificates.files import checked, document
+from verification.certificates.kink import kink_falls, minimum_at_kink
+from verification.certificates.special import SpecialClaim, specially_proved
 from verification.feigenbaum import limit, ratio
 from verification.ladder import ladder
-from verification.locate import GMPY2
+from verification.locate import GMPY2, locate
 from verification.shooting.newton import GUARD, System, floats, levels, refined
 from verification.shooting.problem import Kind, Problem
 from verification.shooting.small import corner
@@ -59,7 +65,7 @@ def certificate(system: System, z: list[Any], digits: int) -> None:
     if isinstance(system, Problem):
         assert proved(Claim(system, tuple(exact_balls(z)), radius, bits, digits)).certified
     else:
-        assert contraction(system, exact_balls(z), radius, bits).status.name == "UNIQUE"
+        assert specially_proved(SpecialClaim("lam", tuple(exact_balls(z)), radius, bits, digits)).certified
 
 
 def systems() -> dict[str, tuple[System, list[float]]]:
@@ -91,6 +97,53 @@ def digits_table(console: Console, most: int) -> None:
     console.print(shown)
 
 
+BARS = (
+    ("lambda-star", 1000, {}, 1),
+    ("lambda-star", 10_000, {}, 60),
+    ("saddle-node", 1000, {"alpha": ALPHA}, 5),
+    ("doubling", 50, {"alpha": ALPHA, "n": Integer(10)}, 30),
+)
+
+
+def bars_table(console: Console, most: int) -> None:
+    """Seconds of a whole search, after start-up, beside the seconds it may take and those of the check alone."""
+    shown = Shown("value", "digits", "search and proof", "may take", "check alone", "share", title="seconds")
+    for name, digits, shape, bar in BARS:
+        if digits > most:
+            continue
+        locate(name, 16, **shape)
+        whole, found = timed(lambda n=name, d=digits, s=shape: locate(n, d, **s))
+        made = document(name, found.proof)
+        alone, again = timed(lambda m=made: checked(m))
+        assert found.certified
+        assert again.certified
+        shown.add_row(name, str(digits), f"{whole:.3f}", str(bar), f"{alone:.3f}", f"{alone / whole:.0%}")
+    console.print(shown)
+
+
+def sets_table(console: Console, full: bool) -> None:
+    """Proofs over sets: what they took."""
+    shown = Shown("proof", "pieces", "seconds", title="proofs over sets")
+    last = 0.14 if full else 0.1
+    proofs: dict[str, Callable[[], tuple[bool | None, int]]] = {
+        "no period 3 for lam <= 0.378": lambda: (
+            (found := no_triangles(ALPHA, Rational(378, 1000))).excluded,
+            found.boxes,
+        ),
+        "s_4 has its minimum at a kink, 0.071 <= lam <= 0.0713": lambda: (minimum_at_kink(0.04, 0.071, 0.0713), 0),
+        "and that falls": lambda: (kink_falls(0.071, 0.0713), 0),
+        f"a chaotic attractor for lambda-star < lam <= {last}": lambda: (
+            (found := birth(last)).proved,
+            len(found.steps),
+        ),
+    }
+    for name, proof in proofs.items():
+        seconds, (holds, pieces) = timed(proof)
+        assert holds
+        shown.add_row(name, str(pieces or ""), f"{seconds:.2f}")
+    console.print(shown)
+
+
 def ladder_table(console: Console, highest: int) -> None:
     """Period against seconds at 50 digits, and where the ladder ends."""
     shown = Shown("n", "period", "start in float64", "mpmath", "certificate", "lambda_n", title="seconds at 50 digits")
@@ -117,6 +170,8 @@ def main() -> None:
     full = "--full" in sys.argv[1:]
     console.print(f"gmpy2 under mpmath: {'yes' if GMPY2 else 'no'}")
     digits_table(console, 10_000 if full else 1000)
+    bars_table(console, 10_000 if full else 1000)
+    sets_table(console, full)
     ladder_table(console, 15 if full else 10)
 
 

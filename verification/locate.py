@@ -170,7 +170,9 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
     """The contraction at which the egg's period-3 cycles are born. Paper: section 6.4."""
     table = tables.egg(3).at(alpha=alpha)
     if alpha == 0:
-        raise ValueError("locate saddle-node: alpha = 0 is a circle, whose triangles exist at lam = 1 only")
+        raise ValueError(
+            "locate saddle-node: alpha = 0 is a circle, with triangles at lam = 1 only; accepted: 0 < alpha <= 1/10"
+        )
     exact = polygons.saddle_node().subs(alpha_letter, alpha)
     turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
     problem = Problem(table, (0, 0, 0), Kind.FOLD, "lam")

@@ -6,13 +6,18 @@ from flint import arb
 from sympy import Rational, acos
 
 from symbolic.polygons import saddle_node
+from symbolic.signs import Outcome
 from symbolic.symbols import alpha as letter
+from verification.certificates.birth import birth
+from verification.certificates.branch import flips_nowhere
 from verification.certificates.contraction import Status, contraction, exact_balls
 from verification.certificates.curve import doubling_curve
 from verification.certificates.exclusion import no_triangles
 from verification.certificates.fourth import fourth_on_wall
+from verification.certificates.kink import minimum_at_kink
 from verification.certificates.projection import PRODUCED, SLAP, witness
 from verification.certificates.slap import periodic_points
+from verification.claims.on_sets import points_of_period_4, without_triangles
 from verification.feigenbaum import DELTA, aitken, limit, ratio, wynn
 from verification.locate import closed_form
 from verification.shooting.newton import refined
@@ -34,9 +39,7 @@ LADDER = [  # lambda_3 to lambda_12 at alpha = 2/25, each certified by `pinball 
 
 
 def test_the_egg_has_no_period_3_cycle_below_the_fold():
-    found = no_triangles(ALPHA, Rational(378, 1000))
-
-    assert found.excluded is True
+    assert without_triangles(ALPHA, Rational(378, 1000)).outcome is Outcome.PROVED  # proved once a run
     assert saddle_node().subs(letter, ALPHA) > Rational(378, 1000)
 
 
@@ -62,9 +65,35 @@ def test_a_budget_that_ends_is_unknown_and_says_how_far_it_came():
     assert found.boxes == 1000
 
 
+def test_every_subdivision_whose_budget_ends_leaves_its_question_open():
+    assert periodic_points(4, budget=50).stretches is None
+    assert doubling_curve(budget=3).supercritical is None
+    assert fourth_on_wall(0.04, 0.0, 0.06, budget=10).on_wall is None
+    assert flips_nowhere(ALPHA, budget=1) is None
+
+
+@pytest.mark.parametrize(
+    "proof",
+    [
+        lambda tick: no_triangles(ALPHA, Rational(1, 16), tick=tick),
+        lambda tick: periodic_points(2, tick=tick),
+        lambda tick: doubling_curve(tick=tick),
+        lambda tick: fourth_on_wall(0.02, 0.0, 0.02, tick=tick),
+        lambda tick: birth(0.073, tick=tick),
+        lambda tick: minimum_at_kink(0.03, 0.0712, 0.0713, tick=tick),
+    ],
+)
+def test_the_shares_that_a_proof_tells_add_up_to_all_of_it(proof):
+    shares = []
+    proof(shares.append)
+
+    assert min(shares) > 0
+    assert abs(sum(shares) - 1) < 1e-6
+
+
 def test_the_cuspless_slap_map_has_no_cycle_of_period_4():
     ends_of_period_2 = {(0, -mpmath.pi / 3), (0, 0), (0, mpmath.pi / 3), (1, 0)}
-    stretches = periodic_points(4).stretches
+    stretches = points_of_period_4().stretches
 
     assert len(stretches) == 4
     for component, low, high in stretches:
@@ -96,8 +125,8 @@ def test_more_rungs_agree_with_the_stated_error():
 
 
 def test_below_lambda_star_the_fourth_collision_is_on_the_wall():
-    assert fourth_on_wall(0.08, 0.0, 0.04).on_wall is True
-    assert fourth_on_wall(0.08, 0.0712, 0.0713, budget=3000).on_wall is None  # lambda-star lies between
+    assert fourth_on_wall(0.06, 0.0, 0.03).on_wall is True
+    assert fourth_on_wall(0.06, 0.0712, 0.0713, budget=1000).on_wall is None  # lambda-star lies between
 
 
 def test_the_diameters_double_supercritically_along_the_whole_curve():

@@ -125,6 +125,14 @@ def test_a_certificate_that_fails_exits_with_one(tmp_path):
     assert CliRunner().invoke(check, [str(tmp_path / "c.json")], standalone_mode=False).return_value == 1
 
 
+def test_a_certificate_that_cannot_be_written_is_refused_before_the_work(tmp_path):
+    nowhere = str(tmp_path / "none" / "c.json")
+    with pytest.raises(ValueError, match="cannot be written; accepted: a file in a directory of yours"):
+        CliRunner().invoke(
+            locate_command, ["lambda-c", "--certificate", nowhere], standalone_mode=False, catch_exceptions=False
+        )
+
+
 @pytest.mark.parametrize("digits", ["0", "1000000000", "-3", "many"])
 def test_digits_out_of_range_are_refused(digits):
     done = CliRunner().invoke(locate_command, ["lambda-c", "--digits", digits])

@@ -86,6 +86,8 @@ def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb,
     checks["s4_dips_below"] = True if sides.descent < 0 else False if sides.descent > 0 else None
     checks["unstable"] = sides.unstable
     notes = {
+        "equations": "the collision rules at the upper corner and at theta1, for theta1 and lam; the mirror image "
+        "of theta1 is the third bounce",
         "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
         "half_return_traces": f"{sides.arc[0].str(8)} on the arc, {sides.wall[0].str(8)} on the wall",
         "half_return_determinant": sides.wall[1].str(8),

@@ -9,7 +9,7 @@ from symbolic.signs import Finding, Outcome
 from symbolic.symbols import alpha
 from verification.certificates.exclusion import no_triangles
 from verification.certificates.projection import PRODUCED, SLAP, witness
-from verification.certificates.slap import periodic_points
+from verification.certificates.slap import PeriodicPoints, periodic_points
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, greater, judges
 from verification.progress import telling
@@ -73,10 +73,16 @@ def projection_misses(claim: Claim) -> Judgement:
     )
 
 
+@cache
+def points_of_period_4() -> PeriodicPoints:
+    """Where the fourth iterate of the cuspless slap map may return."""
+    return periodic_points(4, tick=telling("boundary followed"))
+
+
 @judges("cuspless.slap_no_period4")
 def slap_no_period4(claim: Claim) -> Judgement:
     """Four stretches hold at most one point each of period dividing 4, and the two orbits of period 2 take them."""
-    found = periodic_points(4, tick=telling("boundary followed"))
+    found = points_of_period_4()
     four = found.stretches is not None and len(found.stretches) == 4
     outcome = Outcome.PROVED if four else Outcome.UNKNOWN
     return Judgement(

@@ -1,6 +1,7 @@
 """`pinball locate`: where does it happen, to N certified digits?"""
 
 import json
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,8 @@ def command(
     shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}
     if "n" in shape and not shape["n"].is_Integer:
         raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
+    if certificate is not None:
+        writable(certificate)
     with output.progress(f"Locating {name}", 1) as step:
         found = locate(name, digits, **shape)
         step(name)
@@ -61,14 +64,27 @@ def command(
     output.console.print(f"{name} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
     for item, value in found.checks.items():
         output.console.print(f"  {item.replace('_', ' '):28} {WORDS[value]}")
-    for item, text in found.notes.items():
+    notes = {
+        **found.notes,
+        "arithmetic": f"mpmath {'on' if GMPY2 else 'without'} gmpy2 for the search, arb for the proof",
+    }
+    for item, text in notes.items():
         output.console.print(f"  {item.replace('_', ' '):28} {text}")
     return DONE if found.certified else FAILED
+
+
+def writable(path: str) -> None:
+    """Refuses, before any work, a file that could not be written."""
+    where = Path(path)
+    if where.is_dir() or not where.parent.is_dir() or not os.access(where if where.exists() else where.parent, os.W_OK):
+        raise ValueError(f"--certificate {path!r} cannot be written; accepted: a file in a directory of yours")
 
 
 def _write(path: str, found: "Located") -> None:
     from verification.certificates.files import document
 
     if found.proof is None:
-        raise ValueError(f"--certificate: {found.name} has none here, it degenerates; accepted: other values of --lam")
+        raise ValueError(
+            f"--certificate: {found.name} was not proved here; accepted: names and shapes that are certified"
+        )
     write_whole(Path(path), json.dumps(document(found.name, found.proof), indent=1) + "\n")

@@ -42,7 +42,7 @@ def summary(results: Sequence["Result"]) -> str:
 def made_with() -> dict[str, str]:
     """The versions that a result depends on, and the type of machine."""
     found = {"python": platform.python_version()}
-    for package in ("sympy", "mpmath", "python-flint", "numpy"):
+    for package in ("sympy", "mpmath", "gmpy2", "python-flint", "numpy"):
         try:
             found[package] = version(package)
         except PackageNotFoundError:

@@ -76,16 +76,15 @@ class _Sorting:
             self._conserved(transient)
         self._catch()
         bounces, leaving = transient, True
-        for _ in range(rounds):
-            before = self.going.size
+        for turn in range(rounds):
+            bounces, before = transient << turn, self.going.size
             if before == 0:
                 break
             self._advance(bounces)
             self._catch()
             leaving = self.going.size < before
-            if not leaving and np.all(self.growth > 0):
+            if not leaving and np.all(self.growth > calm(bounces)):
                 break
-            bounces *= 2
         if not leaving:
             self._spread(bounces)
         return Classified(self.label, tuple(self.attractors))
@@ -128,7 +127,7 @@ class _Sorting:
 
     def _conserved(self, bounces: int) -> None:
         """At `lam = 1` nothing attracts: a ball spreads like a power of the time, or exponentially."""
-        regular = self.growth < 3 * np.log(bounces + 1) / bounces
+        regular = self.growth < calm(bounces)
         if np.any(regular):
             points = self.balls.only(self.going[regular])
             self.label[self.going[regular]] = self._entered(Attractor(Kind.NEUTRAL, 0, points))
@@ -137,7 +136,7 @@ class _Sorting:
     def _spread(self, bounces: int) -> None:
         """Shares out the balls that spread among the chaotic attractors; new ones are made for those near none."""
         stay = self.going.size * bounces / 3
-        self._keep(self.growth > 0, self.growth)
+        self._keep(self.growth > calm(bounces), self.growth)
         while self.going.size:
             near = at_clouds(self.map, self.balls.only(self.going), self.attractors)
             self.label[self.going] = near
@@ -155,6 +154,15 @@ class _Sorting:
             self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
         self.label[self.going[found.looked]] = np.array(spread)[found.member]
         self._keep(~np.isin(np.arange(balls.size), found.looked), self.growth)
+
+
+def calm(bounces: int) -> float:
+    """The exponent up to which a growth over so many bounces may be no more than a power of their number.
+
+    >>> round(calm(1000), 4)
+    0.0207
+    """
+    return float(3 * np.log(bounces + 1) / bounces)
 
 
 def find(

@@ -1,0 +1,21 @@
+"""Texts that a coverage-guided fuzzer found (`benchmarks/fuzz.py`): each is a formula or one sentence."""
+
+import json
+from pathlib import Path
+
+import pytest
+from sympy import Expr
+
+from symbolic.formula import number, parse
+
+TEXTS = json.loads((Path(__file__).parent / "corpus.json").read_text())
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=range(len(TEXTS)))
+@pytest.mark.parametrize("reader", [parse, lambda text: number(text, "--alpha")], ids=["formula", "number"])
+def test_what_was_found_by_fuzzing_is_a_formula_or_refused_in_one_line(text, reader):
+    try:
+        assert isinstance(reader(text), Expr)
+    except ValueError as error:
+        assert "accepted" in str(error) or "is not a real number" in str(error) or "at most" in str(error)
+        assert "\n" not in str(error)

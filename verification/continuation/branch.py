@@ -28,6 +28,7 @@ from verification.continuation.systems import Cycles
 from verification.shooting.problem import Kind
 
 NOISE = 1e-9  # a test function that small has no sign
+NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
 Interval = tuple[float, float]
 
 
@@ -120,8 +121,11 @@ def branch(
         raise ValueError(f"the start at {letter} = {value} lies outside the interval {interval[0]}:{interval[1]}")
     z = np.append(np.asarray(x, dtype=float), value)
     row = np.append(np.zeros(len(z) - 1), 1.0)
+    given = z
     try:
         z, _ = arc.corrected(system, z, row, value)
+        if np.max(np.abs(z - given)) > NEARBY:
+            raise LostError(f"{ring.label}: the nearest cycle is {np.max(np.abs(z - given)):.2g} away")
     except LostError:
         raise ValueError(f"{ring.label}: the start is no cycle at {letter} = {value}, nor is one near it") from None
     why = system.obstacle(z)

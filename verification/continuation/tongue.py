@@ -111,14 +111,19 @@ class Accumulation:
 
 
 def accumulation(rungs: list[Rung], alphas: Array) -> Accumulation:
-    """The end of the cascade at each shape that all the doublings reach, by two extrapolations that must agree."""
+    """The end of the cascade at each shape that all the doublings reach.
+
+    The error is the difference to a second extrapolation, or to the same one without the last rung if that is larger.
+    """
     doublings = [rung for rung in rungs if rung.what is What.FLIP and rung.period > 2]
     found = []
     for alpha in alphas:
         values = [rung.lam(float(alpha)) for rung in doublings]
         if any(value is None for value in values):
             continue
-        estimate = limit([repr(value) for value in values])
-        found.append((float(alpha), float(estimate.value), float(estimate.error)))
+        decimals = [repr(value) for value in values]
+        estimate, shorter = limit(decimals), limit(decimals[:-1])
+        error = max(estimate.error, abs(estimate.value - shorter.value))
+        found.append((float(alpha), float(estimate.value), float(error)))
     rows = np.array(found).reshape(-1, 3)
     return Accumulation(rows[:, 0], rows[:, 1], rows[:, 2])

@@ -1,0 +1,111 @@
+"""All cycles: known counts, laws of index, a second count, and proofs of completeness."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from sympy import Rational
+
+from numeric import PinballMap
+from symbolic.tables import cuspless, egg, ellipse
+from verification.all_cycles.cells import fixed_points
+from verification.all_cycles.exclusion import no_others
+from verification.all_cycles.search import all_cycles
+from verification.certificates.slap import periodic_points
+from verification.commands.cycles import command as cycles
+
+TABLE = egg(3).at(alpha="2/25")
+LAM = Rational(2, 5)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return all_cycles(TABLE, LAM, 6)
+
+
+def test_the_index_sums_vanish_for_every_period_and_every_number_of_turns(found):
+    for n in range(2, 7):
+        sums = found.catalogue.index_sums(n)
+
+        assert set(sums.values()) <= {0}
+    assert all(found.balanced.values())
+
+
+def test_the_cycles_that_continuation_knows_are_among_them(found):
+    """At lam = 0.4: three diameters and three parallels, four triangles, and of period 4 one symmetric cycle
+    and two without the symmetry around each diameter."""
+    counts = {n: found.catalogue.count(n) for n in range(2, 7)}
+
+    assert counts == {2: 6, 3: 4, 4: 9, 5: 0, 6: 0}
+    assert [c.spectrum.stable for c in found.catalogue.cycles].count(True) == 2  # a triangle each way round
+
+
+def test_every_cycle_obeys_the_map(found):
+    map = PinballMap(TABLE, lam=float(LAM))
+    for cycle in found.catalogue.cycles:
+        landed = map.step(np.array(cycle.theta), np.array(cycle.phi))
+
+        assert np.max(np.abs(np.sin((landed.theta - np.roll(cycle.theta, -1)) / 2))) < 1e-9
+        assert np.max(np.abs(landed.phi - np.roll(cycle.phi, -1))) < 1e-9
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_the_count_on_cells_agrees_with_the_search(found, n):
+    zeros = fixed_points(PinballMap(TABLE, lam=float(LAM)), n)
+    own = [sum(c.period for c in found.catalogue.of(n) if c.index(n) == sign) for sign in (1, -1)]
+
+    assert zeros.open == 0
+    assert [zeros.positive, zeros.negative] == own
+
+
+def test_at_lam_zero_the_count_is_that_of_the_slap_map():
+    searched = all_cycles(TABLE, Rational(0), 4).catalogue
+    for n in (2, 4):
+        zeros = fixed_points(PinballMap(TABLE, lam=0), n)
+
+        assert zeros.positive + zeros.negative == sum(c.period for c in searched.of(n))
+
+
+def test_the_slap_map_of_the_cuspless_cardioid_has_the_cycles_that_subdivision_encloses():
+    searched = all_cycles(cuspless, Rational(0), 2).catalogue
+
+    assert sum(c.period for c in searched.of(2)) == len(periodic_points(2).stretches)
+
+
+def test_completeness_is_proved_for_short_periods_and_left_open_without_budget(found):
+    assert no_others(found.catalogue, LAM, 2).complete is True
+    assert no_others(found.catalogue, LAM, 3, budget=50).complete is None
+    short = all_cycles(egg(3).at(alpha="2/25"), Rational(0), 3).catalogue
+    assert no_others(short, Rational(0), 3).complete is True  # paper: section 6.2, no period 3 at lam = 0
+
+
+def test_a_catalogue_that_lacks_a_cycle_is_not_proved_complete():
+    catalogue = all_cycles(ellipse.at(a="3/2"), Rational(1, 2), 2).catalogue
+    assert no_others(catalogue, Rational(1, 2), 2).complete is True
+    catalogue.cycles.pop()
+
+    assert no_others(catalogue, Rational(1, 2), 2, budget=1500).complete is None
+    assert any(catalogue.index_sums(2).values())
+
+
+def test_the_command_writes_every_cycle(tmp_path):
+    file = tmp_path / "cycles.json"
+    words = ["egg", "--alpha", "0.08", "--lam", "0.2", "--period", "4", "--count", "2", "--prove", "2"]
+    result = CliRunner().invoke(cycles, [*words, "--json", str(file)], standalone_mode=False)
+    document = json.loads(file.read_text())
+
+    assert result.return_value == 0
+    assert [row["cycles"] for row in document["periods"]] == [6, 0, 3]
+    assert all(row["index_sums_vanish"] for row in document["periods"])
+    assert [row["agrees"] for row in document["second_count"]] == [True]
+    assert document["completeness"][0]["complete"] is True
+
+
+def test_a_count_on_cells_is_refused_for_a_table_with_joins():
+    result = CliRunner().invoke(
+        cycles, ["cuspless", "--lam", "0.2", "--period", "2", "--count", "2"], standalone_mode=False
+    )
+
+    assert isinstance(result.exception, ValueError)
+    assert "not convex and smooth" in str(result.exception)

@@ -11,11 +11,18 @@ from symbolic.formula import number, parse
 TEXTS = json.loads((Path(__file__).parent / "corpus.json").read_text())
 
 
+def answered(reader, text):
+    """The formula, or the sentence that refuses it."""
+    try:
+        return reader(text)
+    except ValueError as error:
+        return str(error)
+
+
 @pytest.mark.parametrize("text", TEXTS, ids=range(len(TEXTS)))
 @pytest.mark.parametrize("reader", [parse, lambda text: number(text, "--alpha")], ids=["formula", "number"])
 def test_what_was_found_by_fuzzing_is_a_formula_or_refused_in_one_line(text, reader):
-    try:
-        assert isinstance(reader(text), Expr)
-    except ValueError as error:
-        assert "accepted" in str(error) or "is not a real number" in str(error) or "at most" in str(error)
-        assert "\n" not in str(error)
+    answer = answered(reader, text)
+
+    assert isinstance(answer, Expr) or any(word in answer for word in ("accepted", "at most", "is not a real number"))
+    assert "\n" not in str(answer)

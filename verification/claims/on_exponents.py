@@ -92,11 +92,14 @@ def jumps(claim: Claim) -> Judgement:
     """The basin of period 2 shrinks to nothing, so the average rises steeply, and joins on."""
     points = ("0.09", "0.092", "0.093", "0.0933", "0.095")
     exact = float(lambda_c())
+    gaps, shares = [exact - float(x) for x in points[:4]], [1 - averaged(x)[2] for x in points[:4]]
+    power = float(np.polyfit(np.log(gaps), np.log(shares), 1)[0])
     said = (
         f"sampled, the average has no jump at lambda_c = {exact:.4f}: the flip is subcritical, so the basin of period "
-        f"2 shrinks to nothing there, and its nu_+ = log|mu_-|/2 tends to 0: {listed(points)}"
+        f"2 shrinks to nothing there, like (lambda_c - lam)^{power:.2f}, and its nu_+ = log|mu_-|/2 tends to 0: "
+        f"{listed(points)}"
     )
-    near, after = averaged(points[-2])[0], averaged(points[-1])[0]
+    near, after = averaged(points[3])[0], averaged(points[4])[0]
     return sampled("a steep rise, like the square root of lambda_c - lam, and no jump", said, after - near > 0.1)
 
 

@@ -23,6 +23,7 @@ from symbolic.symbols import eta
 def flux(x: Expr) -> Expr:
     """`f(x) = x*cos(x)`, whose ratio over a reflection is the factor of area.
 
+    >>> from symbolic.symbols import lam
     >>> simplify(flux(lam * eta) / flux(eta) - area_factor())
     0
     """
@@ -37,6 +38,7 @@ def flux_slope(x: Expr) -> Expr:
 def cycle_determinant(angles: list[Expr]) -> Expr:
     """`det M` of a cycle with these incidence angles.
 
+    >>> from sympy import S
     >>> cycle_determinant([S.Zero, S.Zero])
     lam**2
     """
@@ -55,6 +57,7 @@ def polygon_slope(p: int = 1, q: int = 3) -> Expr:
 def polygon_factor(delta: Expr, p: int = 1, q: int = 3) -> Expr:
     """`det M` of one bounce of a polygon whose normal is tilted by `delta`: `f(gamma - delta)/f(gamma + delta)`.
 
+    >>> from sympy import S
     >>> polygon_factor(S.Zero, 1, 5)
     1
     """

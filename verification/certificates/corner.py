@@ -50,6 +50,12 @@ class Corner:
         return True if both else None
 
     @property
+    def robust(self) -> bool | None:
+        """True in the region of robust chaos: one trace above `1 + det`, the other below `-(1 + det)`."""
+        (high, over), (low, under) = self.wall, self.arc
+        return True if high > 1 + over and low < -(1 + under) else None
+
+    @property
     def minimum_at_kink(self) -> bool | None:
         """True when `s_4` falls up to `phi-star` and grows from there: it touches with a corner of its curve."""
         left, right = (self.slope_wall, self.slope_arc) if self.motion > 0 else (self.slope_arc, self.slope_wall)

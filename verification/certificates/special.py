@@ -92,4 +92,9 @@ def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb,
         "half_return_traces": f"{sides.arc[0].str(8)} on the arc, {sides.wall[0].str(8)} on the wall",
         "half_return_determinant": sides.wall[1].str(8),
     }
+    if sides.robust:
+        notes["kind"] = (
+            "border collision, from no orbit to robust chaos: the traces lie beyond 1 + det on either side of 0, so "
+            "two unstable orbits of period 4 and a chaotic attractor are born"
+        )
     return value, notes

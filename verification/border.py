@@ -14,15 +14,25 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from flint import arb
 from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.arithmetic import working
 from verification.certificates.birth import START
-from verification.certificates.border_collision import Extent, Kind, exponents, extent, kind, robust, strips
+from verification.certificates.border_collision import (
+    Extent,
+    Kind,
+    exponents,
+    extent,
+    fixed_point,
+    kind,
+    robust,
+    strips,
+)
 from verification.certificates.corner import ARC, WALL, enclosed
 from verification.certificates.half_return import limit, pieces
-from verification.certificates.polygon import Pieces, Polygon, grown, hull, part, trapped
+from verification.certificates.polygon import SIGNS, Pieces, Polygon, Row, grown, hull, part, sides, trapped
 from verification.certificates.trail import BITS, Bounce, angle, constant, corners
 
 Array = NDArray[np.float64]
@@ -88,6 +98,28 @@ def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | N
             return None
         family = pieces(region, (0.0, last))
         return strips(family, region) if trapped(family, region) else None
+
+
+def saddles(last: float = 3e-6) -> dict[int, Row] | None:
+    """The two orbits of period 4 that are born at `lambda-star`, for all `lam` up to `lambda-star + last`, proved.
+
+    Where half the return has its fixed points `(u, v)` in units of `lam - lambda-star`, on the arc and on the
+    wall: `base + (1 - A)^-1 (H(base)/e - base)`, with the `A` of a point of the region, lies in a ball inside of it,
+    so that there is one; and there is one only. From 0.07122 on `certificates.everywhere` follows both.
+
+    >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
+    {0: '-0.532', 1: '10.1'}
+    """
+    region = [(-1.0, -1.0), (1.0, -1.0), (7.0, 12.0), (4.0, 12.0)]
+    with working(BITS):
+        family = pieces(region, (0.0, last))
+        found = {component: fixed_point(piece) for component, piece in family.items()}
+        for component, (u, v) in found.items():
+            trace, determinant = family[component].trace, family[component].determinant
+            within = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(region))
+            if not (within and v * SIGNS[component] > 0 and abs(trace) > 1 + determinant):
+                return None
+        return found
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from numeric import PinballMap
 from symbolic.collision import derivative_matrix
 from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic import FLOAT64, working
-from verification.border import border, measured
+from verification.border import border, measured, saddles
 from verification.certificates.birth import birth
 from verification.certificates.border_collision import Kind, exponents, extent, fixed_point, kind, robust
 from verification.certificates.corner import ARC, WALL, at_corner, enclosed
@@ -99,6 +99,15 @@ def test_two_unstable_orbits_of_period_4_are_born_with_the_attractor_and_none_is
     assert found.robust
     assert fixed_point(found.pieces[ARC])[1] < 0 < fixed_point(found.pieces[WALL])[1]
     assert all(abs(p.trace) > 1 + p.determinant for p in found.pieces.values())
+
+
+def test_the_two_orbits_of_period_4_exist_for_the_map_itself_as_soon_as_lambda_star_is_passed():
+    e = 2e-6
+    for u, v in saddles(3e-6).values():
+        found = by_the_map(float(u.mid()), float(v.mid()), e)
+
+        assert abs(found[0] - float(u.mid())) < 1e-3
+        assert abs(found[1] - float(v.mid())) < 1e-2
 
 
 def test_a_stable_side_is_no_robust_chaos_and_one_fixed_point_may_cross():

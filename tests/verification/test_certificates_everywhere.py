@@ -52,6 +52,14 @@ def test_the_unstable_cycle_born_at_lambda_c_lives_down_to_the_corners():
     assert everywhere(cuspless, (1, 0, 1, 0), start, (lam, 0.07122), Stability.SADDLE).proved
 
 
+def test_its_partner_on_the_arc_is_a_saddle_from_the_corners_on():
+    corner = [2.0943943, 0.2545256, -2.0943943, -0.2545256]  # lam = 0.07122, from `border.saddles`
+    problem = Problem(cuspless, (0,) * 4, lam=Rational(7122, 10**5))
+    start = floats(problem, corner)
+
+    assert everywhere(cuspless, (0,) * 4, start, (0.07122, 0.1), Stability.SADDLE).proved
+
+
 def test_what_is_not_so_is_not_proved():
     start = attractor(EGG, 0.36, (0.05, 3.1))
     found = everywhere(EGG, (0,) * 4, start, (0.36, 0.38), Stability.ATTRACTING, budget=300)

@@ -30,6 +30,8 @@ JUDGING = (
     "cardioid_attractor",
     "exponents",
     "figures",
+    "elastic",
+    "parameter_space",
 )
 
 

@@ -41,6 +41,11 @@ class Measured(NamedTuple):
         """Not above the floor. An orbit that is neither chaotic nor regular is undecided."""
         return np.asarray((self.code == 0) & (self.nu_plus <= self.floor))
 
+    def ended(self, which: NDArray[np.int64]) -> Starts:
+        """Where some of the orbits end, to go on from there."""
+        component, theta, phi, x, y = self.end
+        return Starts(component[which], theta[which], phi[which], x[which], y[which])
+
 
 def floor_of(bounces: int) -> float:
     """The exponent up to which so many bounces cannot tell growth from shear.

@@ -7,13 +7,13 @@ a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends
   below the root of `g = 1` and grow beyond it. As `lam` tends to 1 that root tends to the one of `eta*tan(eta) = 1`.
 - Along an orbit `log|det D(T^n)|` is the sum of `log(g)` up to an end term, in `(s, phi)` and in `(s, sin(phi))`:
   the exact sum rule `nu_plus + nu_minus = log(lam) + <log(cos(lam*eta)/cos(eta))>`.
-- So `nu_plus + nu_minus >= log(lam)` on every orbit, with equality only on double normals.
+- So `nu_plus + nu_minus >= log(lam)` on every orbit, with equality where the incidence tends to normal.
 - And `nu_plus + nu_minus <= 0` for almost every start: `T^n` is injective into phase space, whose area is finite, so
   the set where it multiplies areas by more than `exp(e*n)` is smaller than `exp(-e*n)` times the whole; these sets have
   a finite sum, and almost every start lies in finitely many of them (Borel and Cantelli), for each `e > 0`.
 - On single orbits the sum may be positive: a cycle of the elastic table on which `eta*tan(eta)` is above 1 on average
-  expands areas for `lam` just below 1. Over the whole of phase space that average is exactly 1, so the
-  sum of the exponents of a chaotic elastic table leaves 0 with slope 0.
+  expands areas for `lam` just below 1. Over the whole of phase space that average is exactly 1: to first order
+  in `1 - lam`, expansion and contraction cancel there.
 """
 
 from sympy import Expr, Symbol, cos, diff, integrate, log, pi, simplify, sin, symbols, tan, trigsimp

@@ -1,0 +1,70 @@
+"""Every bifurcation curve that starts from the cycles of one scene, with its points of codimension two.
+
+All cycles up to a period are found, each is followed in `lam`, and every fold, doubling and pitchfork on
+the way is followed on as a curve in `(alpha, lam)`. Cycles that a symmetry maps to each other count once.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from sympy import Expr
+
+from symbolic.tables import egg
+from verification.all_cycles.search import all_cycles
+from verification.continuation.arc import Steps
+from verification.continuation.branch import Event, What, branch
+from verification.continuation.curves import Curve, curve
+from verification.continuation.recurrence import Chords
+from verification.continuation.tongue import TWO, largest_shape
+from verification.shooting.problem import Kind
+
+KINDS = {What.FOLD: Kind.FOLD, What.FLIP: Kind.FLIP, What.PITCHFORK: Kind.FLIP}
+Tick = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """An event on the branch of a cycle of `period` bounces, and its curve; None when it could not be followed."""
+
+    period: int
+    event: Event
+    curve: Curve | None
+
+
+def survey(
+    alpha: Expr, lam: Expr, longest: int, K: int = 3, tick: Tick = lambda said: None, steps: Steps | None = None
+) -> Iterator[Surveyed]:
+    """The curves of the egg with K points that the cycles at one shape and contraction lead to.
+
+    >>> from sympy import Rational
+    >>> [(one.period, one.event.what.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
+    [(2, 'period doubling')]
+    """
+    table, top = egg(K), largest_shape(K)
+    seen: set[tuple[object, ...]] = set()
+    for cycle in all_cycles(table.at(alpha=alpha), lam, longest).catalogue.cycles:
+        mark = cycle.period, round(cycle.spectrum.trace, 6), round(cycle.spectrum.determinant, 6)
+        if mark in seen:
+            continue
+        seen.add(mark)
+        tick(f"period {cycle.period}")
+        ring, at = Chords(table, (0,) * cycle.period), {"alpha": float(alpha)}
+        try:
+            one = branch(ring, np.array(cycle.theta), "lam", float(lam), (0.0, 1.0), at, steps=Steps(most=250))
+        except ValueError:
+            continue  # at a bifurcation to within rounding: its neighbours lead there too
+        for event in one.events:
+            own = cycle.period, event.what, round(event.value, 7)
+            if event.what in KINDS and own not in seen:
+                seen.add(own)
+                yield Surveyed(cycle.period, event, _followed(event, at["alpha"], top, steps))
+
+
+def _followed(event: Event, alpha: float, top: float, steps: Steps | None) -> Curve | None:
+    box = ((top / 100, top), (0.0, 1.0))
+    steps = steps or Steps(largest=0.3, most=150)
+    try:
+        return curve(event.ring, KINDS[event.what], event.x, TWO, (alpha, event.value), box, steps=steps)
+    except ValueError:
+        return None

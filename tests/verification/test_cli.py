@@ -143,7 +143,10 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--digits", "0"], "accepted: integers from 1 to 10000"),
         (["verify", "--digits", "9" * 5000], "accepted: integers from 1 to 10000"),
         (["verify", "--digits"], "'--digits' requires an argument"),
-        (["verify", "--nope"], "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, -h"),
+        (
+            ["verify", "--nope"],
+            "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, -h",
+        ),
         (["verify", "more"], "unexpected extra argument (more); pinball verify --help shows what is accepted"),
         (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),
         (["verify", "--json", "."], "'.' is a directory; accepted: a file, or - for standard output"),

@@ -24,13 +24,14 @@ from verification.certificates.bifurcation import Checks, Claim, Proof, proved
 from verification.certificates.contraction import Status, exact_balls
 from verification.certificates.special import SpecialClaim, SpecialProof, specially_proved
 from verification.progress import telling
-from verification.shooting.newton import refined
+from verification.shooting.newton import Step, refined
 from verification.shooting.problem import Kind, Problem
 from verification.shooting.small import corner, focus
 
 MOST_DIGITS = 20_000
 BUDGET = 4_000_000  # bounces times digits: some ten minutes
 MPMATH_SHARE = 0.7  # of the time that a proof and its approximation take
+Steps = tuple[Step, ...]
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
 
 
@@ -47,6 +48,7 @@ class Located:
     ball: arb = field(repr=False)
     proof: Proof | SpecialProof | None = field(repr=False, default=None)
     notes: Mapping[str, str] = field(default_factory=dict)
+    steps: Steps = field(repr=False, default=())
 
     @property
     def certified(self) -> bool:
@@ -62,6 +64,7 @@ class Found:
     checks: Checks
     proof: Proof | SpecialProof | None = None
     notes: Mapping[str, str] = field(default_factory=dict)
+    steps: Steps = ()
 
 
 def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
@@ -81,18 +84,23 @@ def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
     found = search(digits, **shape)
     value, radius = decimal(found.ball, digits + 1)
     seconds = time.perf_counter() - started
-    return Located(name, value, radius, digits, found.checks, seconds, found.ball, found.proof, found.notes)
+    rest = found.ball, found.proof, found.notes, found.steps
+    return Located(name, value, radius, digits, found.checks, seconds, *rest)
 
 
 def certify(problem: Problem, start: list[float], digits: int) -> Proof:
     """The proof for the solution near `start`: mpmath to a few digits more, then balls around it."""
+    return _searched(problem, start, digits)[0]
+
+
+def _searched(problem: Problem, start: list[float], digits: int) -> tuple[Proof, Steps]:
     tick = telling(f"{digits} digits")
     solution = refined(problem, start, digits)
     tick(MPMATH_SHARE)
     bits = bits_of(digits, 64 + 8 * problem.period.bit_length())
     with working(bits):
         radius = (arb(10) ** -(digits + 2)).mid()
-    return proved(Claim(problem, tuple(exact_balls(solution.z)), radius, bits, digits))
+    return proved(Claim(problem, tuple(exact_balls(solution.z)), radius, bits, digits)), solution.steps
 
 
 def closed_form(expression: Expr, digits: int) -> arb:
@@ -103,11 +111,12 @@ def closed_form(expression: Expr, digits: int) -> arb:
         return ball
 
 
-def _agreeing(proof: Proof, expression: Expr, digits: int) -> Found:
+def _agreeing(searched: tuple[Proof, Steps], expression: Expr, digits: int) -> Found:
     """A proof from the cycle together with a closed form: both balls must meet."""
+    proof, steps = searched
     ball = closed_form(expression, digits)
     overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
-    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof))
+    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof), steps)
 
 
 def _direction(proof: Proof) -> dict[str, str]:
@@ -117,7 +126,7 @@ def _direction(proof: Proof) -> dict[str, str]:
     return {"kind": f"{'super' if proof.supercritical else 'sub'}critical: {born} cycle of twice the period is born"}
 
 
-def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> SpecialProof:
+def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> tuple[SpecialProof, Steps]:
     """The proof of a small system's solution near `start`."""
     bits = bits_of(digits, 100)
     with working(bits):
@@ -125,33 +134,34 @@ def _special(value: str, start: list[float], digits: int, lam: Expr | None = Non
     tick = telling(f"{digits} digits")
     solution = refined(corner() if lam is None else focus(lam), start, digits + 5)
     tick(MPMATH_SHARE)
-    return specially_proved(SpecialClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam))
+    claim = SpecialClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam)
+    return specially_proved(claim), solution.steps
 
 
 def lambda_star(digits: int) -> Found:
     """The contraction at which the cuspless orbit through both corners exists. Paper: section 5.2."""
-    proof = _special("lam", [0.2545, 0.0712], digits)
-    return Found(proof.value, proof.checks, proof, proof.notes)
+    proof, steps = _special("lam", [0.2545, 0.0712], digits)
+    return Found(proof.value, proof.checks, proof, proof.notes, steps)
 
 
 def phi_star(digits: int) -> Found:
     """Its exit angle at the upper corner, in radians."""
-    proof = _special("phi", [0.2545, 0.0712], digits)
-    return Found(proof.value, proof.checks, proof, proof.notes)
+    proof, steps = _special("phi", [0.2545, 0.0712], digits)
+    return Found(proof.value, proof.checks, proof, proof.notes, steps)
 
 
 def lambda_c(digits: int) -> Found:
     """The period doubling of the cuspless cardioid's horizontal orbit. Paper: section 5.1."""
     exact = thresholds.lambda_c()
-    proof = certify(Problem(tables.cuspless, (1, 0), Kind.FLIP, "lam"), [0, 0, float(N(exact))], digits)
-    return _agreeing(proof, exact, digits)
+    problem = Problem(tables.cuspless, (1, 0), Kind.FLIP, "lam")
+    return _agreeing(_searched(problem, [0, 0, float(N(exact))], digits), exact, digits)
 
 
 def alpha_tilde(digits: int, lam: Expr) -> Found:
     """The shape at which the egg's diameters double their period. Paper: section 6.3."""
     exact = thresholds.alpha_tilde().subs(lam_letter, _unit("lam", lam))
     problem = Problem(tables.egg(3), (0, 0), Kind.FLIP, "alpha", lam)
-    return _agreeing(certify(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
+    return _agreeing(_searched(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
 
 
 def alpha_hat(digits: int, lam: Expr) -> Found:
@@ -161,9 +171,9 @@ def alpha_hat(digits: int, lam: Expr) -> Found:
     if lam in (0, 1):
         why = {0: "the discriminant touches 0 there and does not cross it", 1: "the table is a circle there"}[lam]
         return Found(ball, {"precise": True} | dict.fromkeys(("exists", "unique")), None, {"degenerate": why})
-    proof = _special("alpha", [0.0, 3.14, float(N(exact))], digits, lam)
+    proof, steps = _special("alpha", [0.0, 3.14, float(N(exact))], digits, lam)
     overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
-    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof)
+    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, {}, steps)
 
 
 def saddle_node(digits: int, alpha: Expr) -> Found:
@@ -177,7 +187,7 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
     turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
     problem = Problem(table, (0, 0, 0), Kind.FOLD, "lam")
     start = [turn + float(N(2 * S.Pi / 3)) * k for k in range(3)]
-    return _agreeing(certify(problem, [*start, float(N(exact))], digits), exact, digits)
+    return _agreeing(_searched(problem, [*start, float(N(exact))], digits), exact, digits)
 
 
 def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
@@ -188,8 +198,8 @@ def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
             f"accepted for n = {n}: up to {BUDGET // period} digits"
         )
     problem, start = ladder.critical_cycle(alpha, int(n))
-    proof = certify(problem, start, digits)
-    return Found(proof.value, proof.checks, proof, _direction(proof))
+    proof, steps = _searched(problem, start, digits)
+    return Found(proof.value, proof.checks, proof, _direction(proof), steps)
 
 
 def symmetry_breaking(digits: int, alpha: Expr) -> Found:

@@ -60,6 +60,14 @@ def test_more_digits_agree_with_fewer():
     assert float(few.radius) > 0
 
 
+def test_what_is_located_tells_how_newtons_method_came_there():
+    steps = locate("saddle-node", 200, alpha=ALPHA).steps
+
+    assert [step.digits for step in steps] == sorted(step.digits for step in steps)
+    assert steps[-1].digits > 200
+    assert -2 * steps[-1].correction > 200  # so that the digits it leaves are right
+
+
 def test_the_ladder_approaches_feigenbaums_ratio():
     rungs = ladder(ALPHA)
     values = [next(rungs).lam for _ in range(7)]
@@ -114,6 +122,7 @@ def test_the_command_writes_the_contract_and_a_certificate_that_checks(tmp_path)
 
     assert done.return_value == 0
     assert {"name", "value", "radius", "digits", "certified", "checks", "seconds"} <= set(given)
+    assert {"gmpy2", "newton"} <= set(given)
     assert given["certified"] is True
     assert CliRunner().invoke(check, [str(certificate)], standalone_mode=False).return_value == 0
 

@@ -57,6 +57,7 @@ def command(
             "checks": found.checks,
             "notes": dict(found.notes),
             "gmpy2": GMPY2,
+            "newton": [{"digits": step.digits, "log10_correction": step.correction} for step in found.steps],
             "seconds": found.seconds,
         }
     )
@@ -64,10 +65,9 @@ def command(
     output.console.print(f"{name} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
     for item, value in found.checks.items():
         output.console.print(f"  {item.replace('_', ' '):28} {WORDS[value]}")
-    notes = {
-        **found.notes,
-        "arithmetic": f"mpmath {'on' if GMPY2 else 'without'} gmpy2 for the search, arb for the proof",
-    }
+    notes = {**found.notes, "arithmetic": f"mpmath {'on' if GMPY2 else 'without'} gmpy2 to search, arb to prove"}
+    if found.steps:
+        notes["newton"] = ", ".join(f"1e{step.correction:.0f} ({step.digits} digits)" for step in found.steps)
     for item, text in notes.items():
         output.console.print(f"  {item.replace('_', ' '):28} {text}")
     return DONE if found.certified else FAILED

@@ -1,4 +1,6 @@
-"""The two crises of the egg's chaotic attractor, located by sampling: estimates, and not proofs. Paper: section 6.7.
+"""The two crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
+
+`verification.manifolds` has the same crises as tangencies, to many digits; this is what balls do.
 
 Below a crisis no ball leaves the attractor; above it each bounce has a chance to, which grows from 0
 like a power of the distance. So many balls are started on the attractor, and the contractions at
@@ -16,8 +18,18 @@ from numeric import Exponents, PinballMap
 
 BALLS, PART, TRANSIENT = 4096, 200, 2000
 SEED = 1
+BLOCKS = 6
 Array = NDArray[np.float64]
 Left = Callable[[Exponents], NDArray[np.bool_]]
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """`stay ~ distance**-exponent`; the error is a jackknife over blocks, as the points oscillate about the power."""
+
+    exponent: float
+    error: float
+    points: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -99,3 +111,29 @@ def spread(stays: list[tuple[float, float]], low: float, high: float, budget: in
     """
     seen = [lam for lam, mean in stays if mean * 10 <= budget]
     return round(max((high - low) / 2, min(seen, default=high) - (low + high) / 2), 12)
+
+
+def scaling(kind: str, alpha: str, at: float, distances: Array, budget: int = 10**9) -> Scaling:
+    """The power of the mean stay above a crisis at `at`, from its values at `distances` above."""
+    left, _ = KINDS[kind]
+    stays = [(float(d), stay(left, alpha, at + float(d), budget)) for d in distances]
+    return power(tuple((d, mean) for d, mean in stays if np.isfinite(mean)))
+
+
+def power(points: tuple[tuple[float, float], ...]) -> Scaling:
+    """The least-squares power through points in order, with a jackknife over `BLOCKS` blocks of neighbours.
+
+    >>> power(tuple((x, x**-2) for x in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6))).exponent
+    2.0
+    """
+    if len(points) < BLOCKS:
+        raise ValueError(f"scaling: {len(points)} finite points are too few; accepted: {BLOCKS} or more")
+    x, y = np.log(np.array(points)).T
+    blocks = np.array_split(np.arange(x.size), BLOCKS)
+    slopes = [_slope(np.delete(x, block), np.delete(y, block)) for block in blocks]
+    error = np.sqrt((BLOCKS - 1) * np.mean((np.array(slopes) - np.mean(slopes)) ** 2))
+    return Scaling(round(-_slope(x, y), 12), float(error), points)
+
+
+def _slope(x: Array, y: Array) -> float:
+    return float(np.polyfit(x, y, 1)[0])

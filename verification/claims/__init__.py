@@ -26,6 +26,7 @@ JUDGING = (
     "stability",
     "border",
     "samples",
+    "crises",
     "contraction",
     "cardioid_attractor",
     "exponents",

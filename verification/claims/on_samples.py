@@ -1,7 +1,6 @@
-"""Claims supported by sampling, with its error: the crises, and the sizes of basins. Paper: sections 4.2, 6.4, 6.7."""
+"""Claims supported by sampling, with its error: the sizes of basins, and time averages. Paper: sections 4.2, 6.4."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 from sympy import Rational
@@ -13,7 +12,6 @@ from symbolic.signs import Finding, Outcome
 from symbolic.symbols import alpha
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import digits, judges
-from verification.crises import Crisis, crisis
 
 SHAPE = Rational(2, 25)
 SEED = 1
@@ -22,23 +20,6 @@ SEED = 1
 def sampled(derived: str, evidence: str, agrees: bool) -> Judgement:
     """A claim that sampling supports within the error it states, and leaves open where it does not."""
     return Judgement(Finding(Outcome.UNKNOWN, evidence), derived, evidence=evidence if agrees else "")
-
-
-@cache
-def quick(kind: str) -> Crisis:
-    """A crisis to five digits in a second or two; `pinball locate` spends more and says more."""
-    return crisis(kind, str(SHAPE), tolerance=2e-5, budget=10**7)
-
-
-@judges("egg.merging_crisis", "egg.boundary_crisis", "egg.crisis_below")
-def crises(claim: Claim) -> Judgement:
-    """The contraction from which balls leave the attractor."""
-    kind, printed = ("merging", "0.4435") if "merging" in claim.id else ("boundary", "0.66")
-    found = quick(kind)
-    gap, unit = found.lam - float(printed), 10.0 ** -len(printed.partition(".")[2])
-    value = f"{found.lam:.5f} +- {found.error:.0e}"
-    said = f"sampled over {found.bounces:.0e} bounces: {value}, which differs from {printed} by {gap:+.1e}"
-    return sampled(f"{value}, estimated", said, abs(gap) < unit and (claim.id != "egg.crisis_below" or gap > 0))
 
 
 def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:

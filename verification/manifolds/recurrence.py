@@ -7,7 +7,7 @@ kind of number: floats, arrays, mpmath or balls, or jets of these.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import Any, Protocol, Self
@@ -29,7 +29,9 @@ CLOSE = 1e-13
 class Recurrence(Protocol):
     """A map of the plane, by its rule, over one kind of number."""
 
-    words: Arithmetic
+    @property
+    def words(self) -> Arithmetic:
+        """The kind of number."""
 
     @property
     def label(self) -> str:
@@ -46,10 +48,10 @@ class Recurrence(Protocol):
     def lifted(self) -> Self:
         """The same map over jets of its numbers."""
 
-    def rule(self, previous: Any, here: Any, following: Any, letter: Any) -> Any:
-        """0 along an orbit."""
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        """0 at three neighbours of an orbit."""
 
-    def slopes(self, previous: Any, here: Any, following: Any, letter: Any) -> tuple[Any, Any, Any]:
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
         """The derivatives of the rule by its three points."""
 
     def following(self, previous: Any, here: Any, letter: Any) -> Any:
@@ -83,10 +85,12 @@ class Henon:
     def lifted(self) -> "Henon":
         return self.over(jets(self.words))
 
-    def rule(self, previous: Any, here: Any, following: Any, letter: Any) -> Any:
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        previous, here, following = near
         return self.following(previous, here, letter) - following
 
-    def slopes(self, previous: Any, here: Any, following: Any, letter: Any) -> tuple[Any, Any, Any]:
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+        previous, here, following = near
         return 0 * previous + self._b, -2 * letter * here, 0 * following - 1
 
     def following(self, previous: Any, here: Any, letter: Any) -> Any:
@@ -127,10 +131,12 @@ class Pinball:
     def lifted(self) -> "Pinball":
         return self.over(jets(self.words))
 
-    def rule(self, previous: Any, here: Any, following: Any, letter: Any) -> Any:
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        previous, here, following = near
         return self.angle(here, following)[0] + letter * self.angle(here, previous)[0]
 
-    def slopes(self, previous: Any, here: Any, following: Any, letter: Any) -> tuple[Any, Any, Any]:
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+        previous, here, following = near
         forth, back = self.angle(here, following), self.angle(here, previous)
         return letter * back[2], forth[1] + letter * back[1], forth[2]
 
@@ -177,7 +183,8 @@ def angle_over(table: Table, arrays: bool) -> Callable[..., Any]:
 def landing(table: Table, here: Any, phi: Any, turns: int) -> Any:
     """Newton's method between bounds: the angle falls from pi/2 to -pi/2 on the way round."""
     arrays = bool(np.ndim(here) or np.ndim(phi))
-    angle, pick = angle_over(table, arrays), np.where if arrays else _either
+    angle = angle_over(table, arrays)
+    pick: Callable[[Any, Any, Any], Any] = np.where if arrays else _either
     if not arrays and not abs(phi) < math.pi / 2:
         return math.nan
     low = here + 2 * math.pi * turns
@@ -196,7 +203,7 @@ def landing(table: Table, here: Any, phi: Any, turns: int) -> Any:
     return np.where(np.abs(phi) < math.pi / 2, x, math.nan) if arrays else x
 
 
-def _either(condition: bool, yes: float, no: float) -> float:
+def _either(condition: Any, yes: Any, no: Any) -> Any:
     return yes if condition else no
 
 

@@ -55,7 +55,7 @@ def padded(orbit: Orbit, map: Recurrence, points: Sequence[Any]) -> list[Any]:
 def slopes(orbit: Orbit, map: Recurrence, points: Sequence[Any], letter: Any) -> list[tuple[Any, Any, Any]]:
     """The derivatives of the rule at each point by the neighbour before, itself and the one after."""
     ring = padded(orbit, map, points)
-    return [map.slopes(*ring[i : i + 3], letter) for i in range(len(points))]
+    return [map.slopes(ring[i : i + 3], letter) for i in range(len(points))]
 
 
 def matrix(orbit: Orbit, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) -> list[list[Any]]:
@@ -82,11 +82,11 @@ def saddle(orbit: Orbit, map: Recurrence, letter: Any) -> Saddle:
     before = float("inf")
     for _ in range(STEPS):
         ring = padded(orbit, map, points)
-        rule = [map.rule(*ring[i : i + 3], letter) for i in range(len(points))]
+        rule = [map.rule(ring[i : i + 3], letter) for i in range(len(points))]
         rows = matrix(orbit, slopes(orbit, map, points, letter))
         correction = solved([[*row, r] for row, r in zip(rows, rule, strict=True)])
         points = [x - d for x, d in zip(points, correction, strict=True)]
-        size = max(map_size(d) for d in correction)
+        size = max(largest(d) for d in correction)
         if size == 0 or (not size < before / 2 and before < 1e-10):
             stable, unstable = multipliers(orbit, map, points, letter)
             return Saddle(orbit, map, letter, tuple(points), stable, unstable)
@@ -94,10 +94,6 @@ def saddle(orbit: Orbit, map: Recurrence, letter: Any) -> Saddle:
     raise ValueError(
         f"{map.label}: Newton's method did not find the {orbit.name} at {float(letter)} from {orbit.start}"
     )
-
-
-def map_size(d: Any) -> float:
-    return largest(d)
 
 
 def multipliers(orbit: Orbit, map: Recurrence, points: Sequence[Any], letter: Any) -> tuple[Any, Any]:

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from verification.manifolds.recurrence import Recurrence
 from verification.manifolds.saddle import Saddle, matrix, slopes
 from verification.shooting.jets import Jet
 from verification.shooting.small import solved
@@ -87,8 +86,8 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
     ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
     map = saddle.map.lifted
     triples = [ring[i : i + 3] for i in range(len(series))]
-    rules = [map.rule(*triple, saddle.letter) for triple in triples]
-    slopes_of = [[_coefficients(s, length) for s in map.slopes(*triple, saddle.letter)] for triple in triples]
+    rules = [map.rule(triple, saddle.letter) for triple in triples]
+    slopes_of = [[_coefficients(s, length) for s in map.slopes(triple, saddle.letter)] for triple in triples]
     found: Series = [[*c] for c in series]
     zero = saddle.points[0] * 0
     steps: Series = [[zero] * known for _ in series]
@@ -122,9 +121,10 @@ def around(orbit: Any, step: Sequence[Any], power: Any) -> list[Any]:
 
 
 def reach(series: Series, tail: float) -> float:
-    """How far along the eigenvector the last terms stay below about `tail`."""
+    """How far along the eigenvector the last terms stay below about `tail`, and no term exceeds 1."""
     last = len(series[0]) - 1
-    logs = [(math.log(tail) - log_of(c[k])) / k for c in series for k in (last - 1, last) if c[k] != 0]
+    limits = [math.log(tail) if k > last - 2 else 0.0 for k in range(last + 1)]
+    logs = [(limits[k] - log_of(c[k])) / k for c in series for k in range(1, last + 1) if c[k] != 0]
     return math.exp(min(logs))
 
 
@@ -142,7 +142,7 @@ def residual(made: Local) -> float:
         for c in neighbours(saddle, series, _powers(made.factor, made.order + 1)):
             values.append(horner(c.c, saddle.letter * 0 + share))
         for i in range(len(series)):
-            worst = max(worst, abs(float(saddle.map.rule(*values[i : i + 3], saddle.letter))))
+            worst = max(worst, abs(float(saddle.map.rule(values[i : i + 3], saddle.letter))))
     return worst
 
 

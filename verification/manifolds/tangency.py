@@ -76,21 +76,22 @@ class Gap:
         *_, here, following = self.orbit(z)
         here, following = turned(self.into, self.sign * here, self.sign * following)
         end = self.where(here)
-        return following - self.into.points(end)[1], end
+        apart: Jet = following - self.into.points(end)[1]
+        return apart, end
 
     def orbit(self, z: Any) -> list[Jet]:
         """The bounces from `z` on, with two derivatives by `z`."""
         map = self.map.lifted
         found = list(self.out.points(Jet(z, z * 0 + 1, z * 0)))
         for _ in range(self.bounces):
-            found.append(map.following(*found[-2:], self.letter))
+            found.append(map.following(found[-2], found[-1], self.letter))
         return found
 
     def where(self, here: Jet) -> Jet:
         """The parameter on the stable manifold whose first point is `here`."""
         c = self.into.coefficients[0]
         slope = [k * x for k, x in enumerate(c)][1:]
-        z = Jet(*(here.c[0] * 0 + x for x in (self.end, 0, 0)))
+        z: Jet = Jet(*(here.c[0] * 0 + x for x in (self.end, 0, 0)))
         before = math.inf
         for _ in range(STEPS):
             step = (horner(c, z) - here) / horner(slope, z)
@@ -117,12 +118,12 @@ class Gap:
     def contact(self) -> Contact:
         """The same contact with starts taken from here."""
         z, _, end = self.extremum()
-        ends = {
-            name: replace(getattr(self.old, name), start=tuple(float(x) for x in local.saddle.points))
-            for name, local in (("unstable", self.out), ("stable", self.into))
-        }
-        places = {"z": float(z) * self.scales[0], "end": float(end.c[0]) * self.scales[1]}
-        return replace(self.old, **ends, **places, letter=float(self.letter))
+        unstable, stable = (
+            replace(made.saddle.orbit, start=tuple(float(x) for x in made.saddle.points))
+            for made in (self.out, self.into)
+        )
+        place = float(z) * self.scales[0], float(end.c[0]) * self.scales[1]
+        return Contact(unstable, stable, self.old.bounces, self.old.sign, *place, float(self.letter))
 
 
 def rounds(z: float, factor: float) -> int:
@@ -168,13 +169,13 @@ def secant(contact: Contact, map: Recurrence, order: int, tail: float, letters: 
     fa = Gap(contact, map, a, order, tail).extremum()[1].c[0]
     for _ in range(STEPS):
         gap = Gap(contact, map, b, order, tail)
-        z, found, end = gap.extremum()
+        _, found, _ = gap.extremum()
         fb = found.c[0]
         speed = (fb - fa) / (b - a)
         a, fa, b = b, fb, b - fb / speed
         if abs(b - a) < goal:
             out, into = gap.out.saddle, gap.into.saddle
-            near = tuple(float(x) for x in (out.stable, out.unstable, into.stable, into.unstable))
+            near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
             residual = max(gap.out.residual, gap.into.residual)
             return Touch(contact, b, float(abs(b - a)) + goal, float(2 * found.c[2]), float(speed), near, residual)
     raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last were {float(a)} and {float(b)}")

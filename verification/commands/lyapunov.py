@@ -137,10 +137,13 @@ def show(console: "Console", document: dict[str, Any]) -> None:
             )
         if group.get("trusted") is False:
             console.print(f"{'':>17} too short for its memory: the error bar is rough")
-        for name, words in (("from_multipliers", "from its multipliers"), ("certified", "proved")):
-            if group.get(name):
-                lower = group[name]["nu_minus"]
-                console.print(f"{'':>17} {words}: {group[name]['nu_plus']}, {'-oo' if lower is None else lower}")
+        if group.get("along_orbits"):
+            console.print(
+                f"{'':>17} from its multipliers; along the orbits nu_plus = {group['along_orbits']['nu_plus']:.6g}"
+            )
+        if group.get("certified"):
+            lower = group["certified"]["nu_minus"]
+            console.print(f"{'':>17} proved: {group['certified']['nu_plus']}, {'-oo' if lower is None else lower}")
     rule = document["sum_rule"]
     if rule["difference"] is not None:
         console.print(
@@ -158,4 +161,4 @@ def _measured(document: dict[str, Any], name: str) -> str:
     value, error = document[name], document[f"{name}_stderr"]
     if value is None:
         return "-oo"
-    return f"{value:.6g}" + ("" if error is None else f" +- {error:.1g}")
+    return f"{value:.12g}" if error == 0 else f"{value:.6g}" + ("" if error is None else f" +- {error:.1g}")

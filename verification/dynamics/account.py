@@ -6,7 +6,7 @@ import numpy as np
 
 from numeric import PinballMap
 from verification.dynamics.exponents import CHANGED, Group, Measured, Survey
-from verification.dynamics.kinds import Kind
+from verification.dynamics.kinds import Attractor, Kind
 from verification.dynamics.places import Places
 from verification.dynamics.statistics import Estimate
 from verification.dynamics.sum_rule import checked
@@ -32,9 +32,10 @@ def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
     settled = [group for group in survey.groups if group.attractor and group.attractor.kind is not Kind.STOPPED]
     families = {group.attractor.family if group.attractor else -1 for group in settled}
     one = len(settled) == 1 or (len(families) == 1 and -1 not in families)
-    whole = survey.count.measured(np.concatenate([group.members for group in settled])) if one else None
+    together = np.concatenate([group.members for group in settled]) if one else None
+    whole = None if together is None else survey.count.measured(together)
     return {
-        **numbers(whole),
+        **(of_cycle(settled[0].attractor) if one and is_cycle(settled[0]) else numbers(whole)),
         "orbits": int(survey.count.growth.theta.size),
         "counted": survey.count.bounces,
         "transient": survey.transient,
@@ -56,6 +57,25 @@ def numbers(measured: Measured | None) -> dict[str, Any]:
     return found
 
 
+def is_cycle(group: Group) -> bool:
+    """Does the group end on a cycle, whose multipliers give its exponents without a statistical error?"""
+    return group.attractor is not None and group.attractor.kind is Kind.CYCLE
+
+
+def of_cycle(cycle: Attractor | None) -> dict[str, Any]:
+    """Exponents from multipliers. Along orbits they are less good: a turning vector leaves an error of order `1/n`."""
+    assert cycle is not None
+    finite = bool(np.isfinite(cycle.nu_minus))
+    return {
+        "nu_plus": cycle.nu_plus,
+        "nu_plus_stderr": 0.0,
+        "nu_minus": cycle.nu_minus if finite else None,
+        "nu_minus_stderr": 0.0 if finite else None,
+        "sum": cycle.nu_plus + cycle.nu_minus if finite else None,
+        "sum_stderr": 0.0 if finite else None,
+    }
+
+
 def described(group: Group, survey: Survey) -> dict[str, Any]:
     """One group: its kind and size, its exponents, and how far their error bars can be trusted."""
     attractor, measured = group.attractor, group.measured
@@ -68,12 +88,7 @@ def described(group: Group, survey: Survey) -> dict[str, Any]:
     if attractor is not None and attractor.family >= 0:
         found["family"] = attractor.family
     if attractor is not None and attractor.kind is Kind.CYCLE:
-        found["period"] = attractor.period
-        finite = np.isfinite(attractor.nu_minus)
-        found["from_multipliers"] = {
-            "nu_plus": attractor.nu_plus,
-            "nu_minus": attractor.nu_minus if finite else None,
-        }
+        found |= {"period": attractor.period, **of_cycle(attractor), "along_orbits": numbers(measured)}
     if lost or measured.upper is None:
         return found
     upper, length = measured.upper, survey.count.length

@@ -126,8 +126,9 @@ class Survey:
 
     @property
     def error(self) -> float:
-        """The largest standard error of an exponent in a group that has one."""
-        return worst(tuple(group.measured for group in self.groups))
+        """The largest standard error of an exponent off cycles, whose multipliers give theirs."""
+        sampled = [g for g in self.groups if g.attractor is None or g.attractor.kind is not Kind.CYCLE]
+        return worst(tuple(group.measured for group in sampled))
 
 
 def worst(measured: tuple[Measured, ...]) -> float:
@@ -165,13 +166,15 @@ def surveyed(
     count = Count(growth)
     goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
     ended, target = "bounces", bounces
+    cycles = {i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE}  # known from their multipliers
+    sampled = [members for index, members in _sorted(classified.label) if index not in cycles]
     try:
         while True:
             for counted in count.until(target):
                 say(counted / goal)
             if until is None:
                 break
-            if worst(tuple(count.measured(m) for _, m in _sorted(classified.label))) <= until:
+            if worst(tuple(count.measured(m) for m in sampled)) <= until:
                 ended = "error"
                 break
             if 2 * target > goal:

@@ -92,16 +92,18 @@ def test_the_circle_refutes_the_printed_range_of_mixed_phase_spaces():
 def test_chaos_below_a_printed_limit_leaves_it_open_and_its_absence_supports_it():
     claim = CLAIMS["egg.no_chaos_below"]
 
-    assert no_chaos_below(claim).verdict is Verdict.OPEN
-    assert "alpha = 0.056, lam = 0.745" in no_chaos_below(claim).printed.reason
+    found = no_chaos_below(claim)
+    assert found.verdict is Verdict.OPEN
+    assert "alpha = 0.056, lam = 0.745" in found.printed.reason
     assert no_chaos_below(replace(claim, printed="0.03")).verdict is Verdict.SUPPORTED
 
 
 def test_the_chaotic_interval_is_judged_by_both_ends():
     claim = CLAIMS["egg.chaotic_interval"]
 
-    assert chaotic_interval(claim).verdict is Verdict.OPEN
-    assert "The lower does not agree and the upper agrees" in chaotic_interval(claim).printed.reason
+    found = chaotic_interval(claim)
+    assert found.verdict is Verdict.OPEN
+    assert "The lower does not agree and the upper agrees" in found.printed.reason
     assert chaotic_interval(replace(claim, printed="[0.394, 0.66]")).verdict is Verdict.SUPPORTED
     assert chaotic_interval(replace(claim, printed="[0.394, 0.70]")).verdict is Verdict.OPEN
 

@@ -48,8 +48,11 @@ def basins(
     transient: int = 1000,
     seed: int = 1,
     table: Table | None = None,
+    known: tuple[Attractor, ...] | None = None,
 ) -> Sweep:
     """The sweep over the cells of a window, or of all phase space; with `table`, its symmetries give attractors too.
+
+    Attractors that are `known` already are not looked for.
 
     >>> from verification.commands.scene import Scene
     >>> from verification.sweeps.scenes import text_of
@@ -58,7 +61,7 @@ def basins(
     [0, 1]
     """
     map = map_of(scene, lam)
-    attractors = find(map, starts, seed, table, transient)
+    attractors = find(map, starts, seed, table, transient) if known is None else known
     where = window or whole(map)
     cells = Cells(scene, lam, attractors, transient)
     return Sweep(

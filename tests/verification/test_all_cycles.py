@@ -59,6 +59,15 @@ def test_the_count_on_cells_agrees_with_the_search(found, n):
     assert [zeros.positive, zeros.negative] == own
 
 
+def test_squares_that_symmetry_makes_alike_are_told_apart():
+    """Found by the index law: sums of cosines vanish on every square, and two of them passed for one."""
+    searched = all_cycles(egg(4).at(alpha="1/18"), Rational(7, 10), 4)
+    squares = [c for c in searched.catalogue.cycles if c.period == 4 and np.ptp(c.phi) < 1e-9]
+
+    assert searched.balanced[4] is True
+    assert sorted(c.index(4) for c in squares) == [-1, -1, 1, 1]  # at the flats and at the vertices, each way round
+
+
 def test_at_lam_zero_the_count_is_that_of_the_slap_map():
     searched = all_cycles(TABLE, Rational(0), 4).catalogue
     for n in (2, 4):

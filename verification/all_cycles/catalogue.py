@@ -97,17 +97,10 @@ def _minimal(components: tuple[int, ...], x: Array, phi: Array) -> tuple[tuple[i
 def _mark(components: tuple[int, ...], x: Array, phi: Array) -> Array:
     """Numbers that do not depend on where the cycle is begun, and tell cycles apart."""
     parts, forth = np.array(components), np.roll(x, -1)
-    own = np.cos(x) + 0.3 * parts
-    return np.array(
-        [
-            np.sum(own),
-            np.sum(np.sin(x) + 0.7 * parts),
-            np.sum(np.cos(2 * x + 0.4)),
-            np.sum(np.sin(forth - x)),
-            np.sum(own * np.sin(phi)),
-            np.sum(np.cos(x - 0.3) * np.cos(2 * forth)),
-        ]
-    )
+    of_place = [np.sum(np.cos(m * x + 0.4) + np.sin(0.7 + m * parts)) for m in (1, 2, 3, 4, 5, 7)]  # symmetric cycles
+    of_angle = [np.sum(np.sin(m * phi + 0.3)) for m in (1, 2)]  # cancel all sums but those of their own order
+    of_order = [np.sum(np.sin(forth - x)), np.sum(np.cos(x - 0.3) * np.sin(phi)), np.sum(np.cos(x) * np.cos(2 * forth))]
+    return np.array([*of_place, *of_angle, *of_order])
 
 
 def _winding(table: Table, x: Array) -> int:

@@ -22,9 +22,9 @@ from verification.certificates.admissible import convex
 from verification.continuation.recurrence import Ends
 from verification.continuation.symmetry import symmetries
 
-BALLS = 6000  # starts of a round
+BALLS = 4000  # starts of a round
 NEAR = 1.2  # radians between a bounce and its return, at most, for a seed
-SEEDS = 2500  # of one period and round
+SEEDS = 1200  # of one period and round
 QUIET = 3  # rounds without news before the search rests
 ROUNDS = 40
 Tick = Callable[[str], None]

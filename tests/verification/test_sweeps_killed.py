@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from distributed.comm.core import CommClosedError
 
 from verification.cli import main
 from verification.sweeps import run
@@ -154,6 +155,22 @@ def test_a_task_that_fails_on_a_worker_is_told(cluster):
 
     with pytest.raises(ValueError, match="alpha must lie in"):
         run(sweep, scheduler=cluster.scheduler_address)
+
+
+def test_a_scheduler_that_goes_away_is_told_and_nothing_is_lost(cluster, tmp_path, monkeypatch, capsys):
+    def gone(*_):
+        raise CommClosedError
+
+    store = tmp_path / "store"
+    with monkeypatch.context() as patched:
+        patched.setattr("verification.sweeps.pools._shared_out", gone)
+        assert main(["sweep", *SPACE, "--store", str(store), "--scheduler", cluster.scheduler_address]) == 1
+
+    said = (
+        f"the Dask scheduler at {cluster.scheduler_address} went away; 0 of {PARTS} parts are in {store}, and the same "
+    )
+    assert said in capsys.readouterr().err
+    assert xr.open_zarr(store).nu_min.isnull().all()
 
 
 @pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1:1"])

@@ -3,9 +3,11 @@
 Both hand back results as they come, and hold no more tasks at a time than keeps everyone busy.
 """
 
+import logging
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from importlib import import_module
 from itertools import islice
 from typing import Any
@@ -55,12 +57,26 @@ def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
             f"--scheduler {address}: no Dask scheduler answers there; accepted: the address that "
             "`dask scheduler` prints, such as tcp://127.0.0.1:8786"
         ) from None
+    with _quiet("distributed", "distributed.client", "distributed.core"):
+        try:
+            yield from _shared_out(dask, client, sweep, indices)
+        except (CommClosedError, CancelledError):
+            raise UnfinishedError(f"the Dask scheduler at {address} went away") from None
+        finally:
+            client.close(timeout=ANSWER)
+
+
+@contextmanager
+def _quiet(*names: str) -> Iterator[None]:
+    """What goes wrong is said once, by us, and not in a traceback by the loggers named."""
+    levels = {name: logging.getLogger(name).level for name in names}
     try:
-        yield from _shared_out(dask, client, sweep, indices)
-    except (CommClosedError, CancelledError):
-        raise UnfinishedError(f"the Dask scheduler at {address} went away") from None
+        for name in names:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        yield
     finally:
-        client.close(timeout=ANSWER)
+        for name, level in levels.items():
+            logging.getLogger(name).setLevel(level)
 
 
 def _shared_out(dask: Any, client: Any, sweep: Sweep, indices: Sequence[Index]) -> Results:

@@ -54,9 +54,8 @@ def run(
         except UnfinishedError as stop:
             raise UnfinishedError(f"{stop}; {_kept(store, done, parts)}") from None
         except OSError as error:
-            if error.errno not in FULL:
-                raise
-            raise UnfinishedError(f"{FULL[error.errno]}; {_kept(store, done, parts)}") from None
+            reason = FULL.get(error.errno or 0, str(error))
+            raise UnfinishedError(f"{reason}; {_kept(store, done, parts)}") from None
         finally:
             pool.close()  # which lets the workers go
         return results.dataset()

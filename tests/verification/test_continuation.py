@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.optimize import fsolve
 from sympy import Rational
 
 from symbolic.polygons import saddle_node
@@ -30,7 +31,7 @@ TABLE = egg(3).at(alpha=ALPHA)
 TRIANGLE = pi / 3 * np.array([1.0, 3.0, 5.0])
 FOUR = np.array([0.09106847, -2.81341037, -0.09106847, 2.81341037])  # attracts at lam = 0.2
 LOGISTIC = [3.0, 1 + 6**0.5, 3.5440903595, 3.5644072661, 3.5687594195]  # May 1976; OEIS A086180, A086181, A091517
-HENON = [0.3675, 0.9125, 1.0258554, 1.0511257, 1.0565638]  # Derrida, Gervois, Pomeau 1979; the first two exact, below
+HENON = [0.3675, 0.9125, 1.0258554, 1.0511257, 1.0565638]  # Derrida, Gervois, Pomeau 1979; checked twice below
 
 
 def cascade(one, interval, count):
@@ -97,6 +98,27 @@ def test_henons_second_doubling_has_a_closed_form():
         flip = next(e for e in two.events if e.what is What.FLIP)
 
         assert abs(flip.value - ((1 - b) ** 2 + (1 + b) ** 2 / 4)) < 1e-10
+
+
+def test_henons_later_doublings_agree_with_single_shooting():
+    """The map iterated with its derivative, `tr + det + 1 = 0` at a fixed point of the iterate: no ring, no chain."""
+    one = branch(henon(1), np.array([1.2]), "a", 0.1, (-0.1, 1.1), {"b": 0.3})
+
+    def equations(unknown, n):
+        x, y, a = unknown
+        slope = np.eye(2)
+        for _ in range(n):
+            slope = np.array([[-2 * a * x, 1.0], [0.3, 0.0]]) @ slope
+            x, y = 1 - a * x * x + y, 0.3 * x
+        return [x - unknown[0], y - unknown[1], np.trace(slope) + 1 + np.linalg.det(slope)]
+
+    for event in cascade(one, (-0.1, 1.1), 5)[2:]:
+        n = len(event.x)
+        start = [event.x[0] + 1e-4, 0.3 * event.x[-1], event.value - 1e-5]
+        found, _, success, _ = fsolve(equations, start, args=(n,), xtol=1e-13, full_output=True)
+
+        assert success == 1
+        assert found[2] == pytest.approx(event.value, abs=1e-10)
 
 
 def test_the_window_of_period_three_opens_where_it_is_published():

@@ -7,14 +7,14 @@ the universal constant of Feigenbaum. Their difference is the error that is stat
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Any
 
 import mpmath
 from sympy import Expr
 
 from verification.balls import decimal
-from verification.ladder import ladder
+from verification.ladder import rung
 from verification.locate import certify
 
 DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # Feigenbaum; from the literature
@@ -113,9 +113,10 @@ def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
     ('0.39352047', True)
     """
     rungs = []
-    for rung in islice(ladder(alpha), highest - 2):
-        proof = certify(rung.problem, rung.start, RUNG_DIGITS)
+    for n in range(3, highest + 1):
+        here = rung(alpha, n)
+        proof = certify(here.problem, here.start, RUNG_DIGITS)
         if not proof.certified:
-            raise ValueError(f"ladder: lambda_{rung.n} at alpha = {alpha} is not certified: {proof.checks}")
+            raise ValueError(f"ladder: lambda_{n} at alpha = {alpha} is not certified: {proof.checks}")
         rungs.append(decimal(proof.value, RUNG_DIGITS)[0])
     return Accumulation(tuple(rungs), limit(rungs), ratio(rungs))

@@ -7,7 +7,7 @@ is the flip of the diameter; from the third on the cycles are followed from an a
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
+from functools import cache
 
 from sympy import Expr, N
 
@@ -43,7 +43,8 @@ def ladder(alpha: Expr) -> Iterator[Rung]:
     """The rungs from the third on, in float64.
 
     >>> from sympy import Rational
-    >>> [round(rung.lam, 9) for rung in islice(ladder(Rational(2, 25)), 4)]
+    >>> rungs = ladder(Rational(2, 25))
+    >>> [round(next(rungs).lam, 9) for _ in range(4)]
     [0.371235503, 0.388761023, 0.392501516, 0.393302227]
     """
     table = tables.egg(3).at(alpha=alpha)
@@ -98,10 +99,27 @@ def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
         raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
     if n == 2:
         return _second(alpha)
+    found = rung(alpha, n)
+    return found.problem, found.start
+
+
+def rung(alpha: Expr, n: int) -> Rung:
+    """The rung `lambda_n` in float64; those below it are climbed once."""
+    rungs, more = _climb(alpha)
     tick = telling("rungs in float64")
-    for rung in islice(ladder(alpha), n - 2):
-        tick(2.0 ** (rung.n - n - 1))  # a rung costs twice the one before
-    return rung.problem, rung.start
+    while len(rungs) < n - 2:
+        try:
+            rungs.append(next(more))
+        except (ValueError, StopIteration):
+            _climb.cache_clear()
+            raise
+        tick(2.0 ** (rungs[-1].n - n - 1))  # a rung costs twice the one before
+    return rungs[n - 3]
+
+
+@cache
+def _climb(alpha: Expr) -> tuple[list[Rung], Iterator[Rung]]:
+    return [], ladder(alpha)
 
 
 def _second(alpha: Expr) -> tuple[Problem, list[float]]:

@@ -74,7 +74,7 @@ def main(count, word):
             gaps[0] = np.minimum(gaps[0], 2 * np.pi - gaps[0])
         half = len(map.family.position)
         place = np.max(gaps[:half], axis=0)[going]
-        turned = np.max(gaps[half:], axis=0, initial=0)[going]
+        turned = np.max([*gaps[half:], 0 * gaps[0]], axis=0)[going]
         wrong = int(np.sum(~(place < 1e-3)))
         condition = [each[going] for each in conditions(case)]
         worst = [np.max(e, initial=0) / EPS for e in (place, turned)]

@@ -28,7 +28,7 @@ class Cardioid(Family):
         """The flight equation in `S`, mirrored so that `k >= 0`; then `sin(theta0/2)` so mirrored, `k`, and `-v`."""
         p, q = sigma
         k = plane.exact_cross(ops, (q, p), (exit[1], exit[0]))
-        back = plane.times(plane.times(sigma, plane.squared(sigma)), plane.conjugate(exit))
+        back = plane.times(plane.squared(sigma), (plane.dot(sigma, exit), k))
         one, two = ops.number(1.0), ops.number(2.0)
         p2 = p * p
         twice = two * p2 + one

@@ -10,9 +10,12 @@ from typing import Any
 from numeric import plane
 from numeric.families.cardioid import Cardioid
 from numeric.families.family import NEAR, SLAP, Landing, grazing
+from numeric.families.skim import sharpened
 from numeric.plane import Pair
 
 QUARTER = 0.25
+FLAT_WALL = 0.125  # cosines of the incidence below which a flight is sharpened: on the wall,
+FLAT_ARC = 0.875  # and on the arc past the other join, there with cos(theta/2) added, which is 1/2 at the join
 TINY = 2.0**-30  # landings from the wall are found relatively, down to this distance from a join
 
 
@@ -55,11 +58,22 @@ class Cuspless(Cardioid):
         tangent = ops.select(from_wall, -ops.times_sign(ops.select(skims, root3 - S, S), s), ops.times_sign(S, k))
         back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
         landing = plane.normalised(ops, (base, tangent))
-        # the arc is tangent to the wall: its distance is exactly (2*p**2 - 1/2)**2, its height 4*p**3*q
-        gap = two * (p - ops.number(0.5)) * (p + ops.number(0.5))
-        height = (two * p * p) * (two * p * q) - gap * gap * back[1] / back[0]
+        # on the wall the angular momentum about the origin tells the height: no term is larger than the result needs
+        height = -(two * p * p * k + ops.number(QUARTER) * back[1]) / back[0]
         w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
         sine, cosine = ops.select(to_wall, back[1], w[1]), ops.select(to_wall, back[0], -w[0])
+        small = ops.select(to_wall, ops.number(FLAT_WALL), ops.number(FLAT_ARC) - landing[0])
+        flat = (to_wall | (q * landing[1] < nought)) & (cosine < small)
+        rough = [back[0], height, *landing, sine, cosine]
+
+        def sharp() -> list[Any]:
+            real, high, moved = sharpened(ops, (p, q), (c, s), back[1], landing, -w[0])
+            turned = plane.times(plane.times(moved, plane.squared(moved)), (real, -back[1]))
+            angle = ops.select(to_wall, back[1], turned[1]), ops.select(to_wall, real, -turned[0])
+            return [ops.select(flat, a, b) for a, b in zip([real, high, *moved, *angle], rough, strict=True)]
+
+        real, height, *found, sine, cosine = ops.when(flat, rough, sharp)
+        back, landing = (real, back[1]), (found[0], found[1])
         join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(tangent) - root3 * base))
         code = ops.select(ops.number(NEAR) * base < join, nought, one)
         if law != SLAP:

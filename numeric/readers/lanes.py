@@ -212,6 +212,10 @@ class Lanes:
             return product + z if product.factors is None else product
         return self.call("fma", x, y, z)
 
+    def product(self, x: Lane, y: Lane) -> Lane:
+        """`x*y` rounded by itself, which no sum takes up."""
+        return self.line("fmul", x, y)
+
     def maximum(self, x: Lane, y: Lane) -> Lane:
         """The larger one; `y` where `x` is no number."""
         return self.select(y < x, x, y)

@@ -79,6 +79,10 @@ class Scalars:
         """`x*y + z`."""
         return x * y + z
 
+    def product(self, x: Any, y: Any) -> Any:
+        """`x*y`."""
+        return x * y
+
     def power_of_two(self, x: Any) -> tuple[Any, Any]:
         """No scaling is needed where exponents have no bound."""
         return self.context.mpf(1), self.context.mpf(0)

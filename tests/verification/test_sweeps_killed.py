@@ -25,7 +25,7 @@ from verification.sweeps import run
 from verification.sweeps.parameter_space import parameter_space
 
 ROOT = Path(__file__).parents[2]
-PARTS = 16
+PARTS = 12
 SPACE = ["parameter-space", "--alphas", f"0.07:0.1:{PARTS}", "--lams", "0.3:0.6:3", "--starts", "4", "--bounces", "400"]
 
 

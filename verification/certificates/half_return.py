@@ -24,7 +24,7 @@ from verification.certificates.trail import (
     at_corner,
     beyond,
     corners,
-    following,
+    on_arc,
     parameter,
 )
 
@@ -95,7 +95,7 @@ def _images(component: int, u: arb, v: arb, e: arb) -> list[Image]:
     lam = parameter(star + e.mid(), 2, spread)
     before = Bounce(ARC, parameter(-theta1 + u.mid(), 0, spread))
     here = Bounce(component, parameter(corners()[component] + v.mid(), 1, spread))
-    middle = following(before, here, ARC, float(theta1.mid()), lam, spread)
+    middle = on_arc(before, here, float(theta1.mid()), lam, spread)
     return [
         (_mirrored(middle.at, theta1), beyond(landing, False))
         for landing in at_corner(here, middle, False, lam, spread)

@@ -24,7 +24,7 @@ from verification.certificates.trail import (
     beyond,
     constant,
     corners,
-    following,
+    on_arc,
     parameter,
 )
 from verification.progress import Tick, silent
@@ -49,7 +49,7 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
     first = Bounce(ARC, parameter(arb(theta1.mid()), 0, spread))
     found = []
     for second in at_corner(start, first, False, contraction, spread):
-        third = following(first, second, ARC, -float(enclosed()[0].mid()), contraction, spread)
+        third = on_arc(first, second, -float(enclosed()[0].mid()), contraction, spread)
         for fourth in at_corner(second, third, True, contraction, spread):
             found.append(Course(second.component, beyond(second, False), beyond(fourth, True)))
     return found

@@ -99,6 +99,14 @@ def following(previous: Bounce, here: Bounce, component: int, near: float, lam: 
     return Bounce(component, Quantity(centre, slopes, whole))
 
 
+def on_arc(previous: Bounce, here: Bounce, near: float, lam: Quantity, spread: Spread) -> Bounce:
+    """The bounce after `here` on the arc, proved to lie between its ends: on a convex table it is the landing."""
+    found = following(previous, here, ARC, near, lam, spread)
+    if not abs(found.at.whole) < corners()[ARC]:
+        raise ArithmeticError("a landing on the arc is not enclosed")
+    return found
+
+
 def beyond(bounce: Bounce, upper: bool) -> Quantity:
     """How far beyond the upper corner a bounce lies, or beyond the lower one in the mirror image."""
     sign, at = 1 if upper else -1, bounce.at
@@ -122,9 +130,10 @@ def at_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spread
         except ArithmeticError:
             continue
         places[component] = beyond(found[component], upper).whole
-    if ARC in found and places[ARC] < 0:
+    arc, wall = corners()
+    if ARC in found and -2 * arc < places[ARC] < 0:
         return [found[ARC]]
-    if WALL in found and places[WALL] > 0:
+    if WALL in found and 0 < places[WALL] < -2 * wall:
         return [found[WALL]]
     if len(found) == 2 and places[ARC].contains(0):
         if places[WALL] < 0:

@@ -231,3 +231,18 @@ def test_a_ball_that_stops_has_no_sum():
     stopped = volume(PinballMap("cardioid", lam="0.5"), places(0, [0.0], [0.0]), 5)
 
     assert not np.isfinite(stopped[0])
+
+
+@pytest.mark.parametrize("lam", ["0", "0.4", "0.9", "0.99"])
+def test_beams_in_the_cardioid_widen_at_every_bounce_by_no_less_than_the_proof_says(lam):
+    map = PinballMap("cardioid", lam=lam)
+    start = interior_starts(map, 300, seed=6)
+    orbit = map.orbit(start.theta, start.phi, 200, start.component)
+    radius = 4 * np.cos(orbit.theta[1:] / 2) / 3
+    t = np.hypot(np.diff(orbit.x[1:], axis=0), np.diff(orbit.y[1:], axis=0))
+    leaving, landing = radius[:-1] * np.cos(orbit.phi[1:-1]), radius[1:] * np.cos(orbit.eta[2:])
+    gain = (t - leaving) / landing
+    growth = map.exponents(orbit.theta[1], orbit.phi[1] if lam != "0" else 0 * start.phi, 2000)
+
+    assert np.min(gain) >= 1 + np.tan((1 - float(lam)) * np.pi / 8) ** 2 / 2
+    assert np.min(growth.nu_plus) > np.mean(np.log(gain)) / 2 > 0

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verification.claims import catalogue, on_cardioid_attractor, on_contraction, on_exponents
+from symbolic.signs import Finding, Outcome
+from verification.claims import catalogue, on_contraction, on_defocusing, on_exponents
 from verification.claims.claim import Verdict
 from verification.claims.spectra import Spectrum, spectrum, uneven, visited
 
@@ -30,12 +31,17 @@ def test_chaos_is_not_found_where_the_cascade_has_not_ended():
 def test_an_exponent_with_the_other_sign_is_not_supported(monkeypatch):
     found = spectrum("cardioid", on_contraction.TENTHS)
     upside = Spectrum(found.lams, -found.plus, -found.minus)
-    for module in (on_contraction, on_cardioid_attractor):
-        monkeypatch.setattr(module, "spectrum", lambda *_: upside)
+    monkeypatch.setattr(on_contraction, "spectrum", lambda *_: upside)
 
     assert verdict(on_contraction.sum_negative, "cardioid.lyapunov_sum_negative") is Verdict.OPEN
-    assert verdict(on_cardioid_attractor.signs, "cardioid.lyapunov_signs") is Verdict.OPEN
-    assert verdict(on_cardioid_attractor.chaotic, "cardioid.chaotic_attractor") is Verdict.OPEN
+
+
+def test_a_cone_that_is_not_proved_confirms_nothing(monkeypatch):
+    assert verdict(on_defocusing.signs, "cardioid.lyapunov_signs") is Verdict.CONFIRMED
+    monkeypatch.setattr(on_defocusing, "expands", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+
+    assert verdict(on_defocusing.signs, "cardioid.lyapunov_signs") is Verdict.OPEN
+    assert verdict(on_defocusing.chaotic, "cardioid.chaotic_attractor") is Verdict.OPEN
 
 
 def test_an_expanding_cycle_that_is_not_proved_refutes_nothing(monkeypatch):

@@ -4,18 +4,15 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Rational
 
 from numeric import PinballMap
 from numeric.growth import Growth
 from numeric.sampling import interior_starts
-from symbolic.slap_cardioid import expands_by, forward_once, parametrised
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import by, judges
+from verification.claims.judges import judges
 from verification.claims.on_samples import sampled
-from verification.claims.spectra import BALLS, BOUNCES, CELLS, EARLY, SEED, spectrum, uneven, visited
+from verification.claims.spectra import CELLS, EARLY, SEED, uneven, visited
 
-TENTHS = tuple(k / 10 for k in range(11))
 FIFTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
 LONG = 12_000  # bounces: 20 to a cell, if every cell is visited
 DUE = 15  # visits of one orbit to a cell, below which it may miss it by chance
@@ -26,35 +23,6 @@ Array = NDArray[np.float64]
 def coverage(table: str) -> Array:
     """Visits to cells at every fifth of a contraction, 16 orbits each."""
     return visited(table, FIFTHS, 16, LONG)
-
-
-@judges("cardioid.lyapunov_signs", "cardioid.nonuniformly_hyperbolic")
-def signs(claim: Claim) -> Judgement:
-    """Every sampled orbit has both signs, away from 0."""
-    found = spectrum("cardioid", TENTHS)
-    least, most = float(np.min(found.plus)), float(np.max(found.minus[1:]))
-    said = (
-        f"every one of {found.plus.size} orbits of {BOUNCES} bounces, {BALLS} at each of lam = 0, 0.1, ..., 1, has "
-        f"nu_+ >= {least:.3f} and (lam > 0) nu_- <= {most:.3f}"
-    )
-    means = np.mean(found.plus, axis=1), np.mean(found.minus[1:], axis=1)
-    derived = (
-        f"means over orbits: nu_+ >= {np.min(means[0]):.3f} and nu_- <= {np.max(means[1]):.3f} at every lam sampled"
-    )
-    return sampled(derived, said, least > 0.3 and most < -0.5)
-
-
-@judges("cardioid.chaotic_attractor")
-def chaotic(claim: Claim) -> Judgement:
-    """At `lam = 0` the map expands; above, every sampled orbit has a positive exponent and none is caught."""
-    found = spectrum("cardioid", TENTHS[:-1])
-    least = float(np.min(found.plus))
-    slap = by("(T0^2)' >= 3/2", parametrised(), forward_once(), expands_by(Rational(3, 2)))
-    said = (
-        "at lam = 0 no orbit is attracted by a cycle, since (T0^2)' >= 3/2 is proved; sampled at lam = 0, 0.1, ..., "
-        f"0.9, every one of {found.plus.size} orbits has nu_+ >= {least:.3f}"
-    )
-    return sampled("an attractor with nu_+ > 0 for every lam sampled", said, bool(slap) and least > 0.3)
 
 
 @judges("cardioid.attractor_grows", "cuspless.attractor_fills")

@@ -28,11 +28,14 @@ JUDGING = (
     "samples",
     "crises",
     "contraction",
+    "defocusing",
     "cardioid_attractor",
     "exponents",
     "figures",
     "elastic",
     "parameter_space",
+    "attractors",
+    "basins",
 )
 
 

@@ -25,6 +25,7 @@ from verification.dynamics.symmetry import with_images
 __all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find"]
 SAMPLE = 64  # balls looked at for new cycles
 ROUNDS = 6
+WATCHED = 100_000  # bounces, of all balls together, in which none leaves a chaotic attractor
 MEASURED = 64  # balls whose exponents are averaged
 
 
@@ -83,7 +84,7 @@ class _Sorting:
             self._advance(bounces)
             self._catch()
             leaving = self.going.size < before
-            if not leaving and np.all(self.growth > calm(bounces)):
+            if not leaving and before * bounces >= WATCHED and np.all(self.growth > calm(bounces)):
                 break
         if not leaving:
             self._spread(bounces)

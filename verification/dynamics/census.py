@@ -68,8 +68,8 @@ def row(map: PinballMap, table: Table, starts: int, seed: int) -> Row:
     return Row(float(map.lam.flat[0]), tuple(members), starts - sum(m.share.count for m in members))
 
 
-def branches(map: PinballMap, table: Table, rows: Sequence[Row]) -> Iterator[Branch]:
-    """Every branch of cycles that the rows or the ends of other branches lead to, each once.
+def branches(map: PinballMap, table: Table, rows: Sequence[Row], longest: int = FOLLOWED) -> Iterator[Branch]:
+    """Every branch of cycles up to a period that the rows or the ends of other branches lead to, each once.
 
     >>> from symbolic.tables import cuspless
     >>> map = PinballMap("cuspless", lam=0.05)
@@ -80,13 +80,13 @@ def branches(map: PinballMap, table: Table, rows: Sequence[Row]) -> Iterator[Bra
     known: list[Branch] = []
     for here in rows:
         for member in here.members:
-            cycle = member.kind is Kind.CYCLE and member.period <= FOLLOWED
+            cycle = member.kind is Kind.CYCLE and member.period <= longest
             queue = [(here.lam, member.first.points)] if cycle else []
             while queue:
                 new = _followed(map, table, symmetries, known, *queue.pop())
                 if new is not None:
                     known.append(new)
-                    queue += _successors(map, new)
+                    queue += _successors(map, new, longest)
                     yield new
 
 
@@ -112,7 +112,7 @@ def _on(map: PinballMap, branch: Branch, points: Places, symmetries: Sequence[Sy
     return here is not None and any(alike(map, here.points, moved(s, points)) < 1e-6 for s in symmetries)
 
 
-def _successors(map: PinballMap, branch: Branch) -> list[tuple[float, Places]]:
+def _successors(map: PinballMap, branch: Branch, longest: int) -> list[tuple[float, Places]]:
     """Cycles of at most twice the period that attract just past an end at which the branch hands over."""
     found = []
     for end, way in ((branch.low, -1), (branch.high, 1)):
@@ -124,7 +124,7 @@ def _successors(map: PinballMap, branch: Branch) -> list[tuple[float, Places]]:
         for nudge in (1e-5, -1e-5):
             label, attractors = classify(there, first.component, first.theta + nudge, first.phi, transient=20_000)
             near = [attractors[i] for i in label[label >= 0]]
-            found += [(lam, a.points) for a in near if a.kind is Kind.CYCLE and a.period <= FOLLOWED]
+            found += [(lam, a.points) for a in near if a.kind is Kind.CYCLE and a.period <= longest]
     return found
 
 

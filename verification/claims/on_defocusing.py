@@ -43,8 +43,8 @@ def chaotic(claim: Claim) -> Judgement:
     """No cycle attracts: a chaotic attractor in the paper's sense, one with a positive exponent (section 6.6)."""
     return Judgement(
         by(
-            "every orbit off the cusp stretches at a rate of at least log(1 + tan((1 - lam)*pi/8)^2/2) > 0: every cycle "
-            "is unstable, none attracts, and almost every start has a positive exponent",
+            "every orbit off the cusp stretches at a rate of at least log(1 + tan((1 - lam)*pi/8)^2/2) > 0: every "
+            "cycle is unstable, none attracts, and almost every start has a positive exponent",
             positive_exponent(),
         ),
         f"nu_+ >= {least_exponent()} on every orbit; {measured()}",

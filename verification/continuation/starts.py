@@ -44,6 +44,9 @@ def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None
     names = [component.name for component in table.components]
     if len(theta) < 2:
         raise ValueError(f"--start has {len(theta)} bounce; a cycle has at least 2, such as 0.1,3.0")
+    for value in theta:
+        if not np.isfinite(value):
+            raise ValueError(f"--start: {value} is no boundary parameter; accepted: finite numbers such as 0.1,3.0")
     for name in components or ():
         if name not in names:
             raise ValueError(f"--components: {name!r} is not on this table; accepted: {', '.join(names)}")

@@ -20,7 +20,7 @@ from verification.continuation.branch import What, branch
 from verification.continuation.certified import proof_of
 from verification.continuation.dataset import dataset
 from verification.continuation.linear import spectrum
-from verification.continuation.maps import henon, logistic
+from verification.continuation.maps import cubic, delayed, henon, logistic
 from verification.continuation.recurrence import Chords
 from verification.continuation.switching import switched
 from verification.ladder import ladder
@@ -139,6 +139,29 @@ def test_the_multipliers_of_henons_fixed_point():
     assert sorted(m.real for m in multipliers) == pytest.approx([-1.92373886, 0.15594632], abs=1e-8)
 
 
+def test_a_neimark_sacker_bifurcation_is_named_where_there_is_one():
+    """The delayed logistic map's fixed point: r = 2, multipliers exp(+-i*pi/3). Aronson, Chory, Hall, McGehee 1982."""
+    one = branch(delayed(1), np.array([0.4]), "r", 1.7, (1.2, 2.2))
+    (torus,) = one.events
+
+    assert torus.what is What.TORUS
+    assert abs(torus.value - 2) < 1e-12
+    assert abs(np.angle(one.system.spectrum(torus.point.z).multipliers[0])) == pytest.approx(pi / 3, abs=1e-9)
+
+
+def test_a_branch_point_without_a_fold_is_switched_at():
+    """`x -> r*x - x**3`: at r = 1 the branch `x = 0` meets `x = +-sqrt(r - 1)`."""
+    one = branch(cubic(1), np.array([0.0]), "r", 0.5, (0.2, 1.5))
+    (crossing,) = one.events
+    both = switched(one, crossing, (0.2, 1.5))
+
+    assert crossing.what is What.BRANCHING
+    assert abs(crossing.value - 1) < 1e-12
+    for side in both:
+        assert side.points[-1].z[0] ** 2 == pytest.approx(side.points[-1].z[1] - 1, abs=1e-10)
+    assert both[0].points[-1].z[0] * both[1].points[-1].z[0] < 0
+
+
 def test_the_determinant_is_the_product_of_the_areas_of_the_bounces_not_a_power_of_lam():
     one = branch(Chords(TABLE, (0, 0, 0)), TRIANGLE, "lam", 1.0, (0.3, 1.0), steps=Steps(largest=0.3))
     for point in one.points:
@@ -205,6 +228,7 @@ def run(*words):
         (("--cycle", "square", "--lam", "0.1:0.3"), "no cycle with a name; accepted: diameter, triangle"),
         (("--lam", "0.1:0.3"), "one start is needed"),
         (("--cycle", "triangle", "--lam", "0.4:0.9"), "outside the interval"),
+        (("--start", "1e400,2", "--lam", "0:1"), "inf is no boundary parameter"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(words, said):
@@ -228,3 +252,14 @@ def test_a_branch_that_meets_a_join_says_where_it_stopped_and_keeps_its_points(t
     assert "left the wall" in result.output
     assert len(found["points"]) > 5
     assert found["events"][-1]["event"] == "border collision"
+
+
+def test_curves_of_the_events_come_with_their_special_points(tmp_path):
+    file = tmp_path / "curves.json"
+    words = ("egg", "--alpha", "0.07", "--cycle", "diameter", "--lam", "0:1", "--curves", "--json", str(file))
+    result = run(*words)
+    (curve,) = json.loads(file.read_text())["curves"]
+
+    assert result.return_value == 0
+    assert "1:2 resonance at (0.055385138, 1.000000000)" in result.output  # 1/(9 + sqrt(82))
+    assert [point["what"] for point in curve["special"]] == ["1:2 resonance"]

@@ -26,6 +26,7 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @click.option("--at", metavar="NUMBER", help="The contraction of the start; LOW, or the named cycle's own.")
 @click.option("--points", type=click.IntRange(2, 100_000), default=400, show_default=True, help="At most, each way.")
 @click.option("--switch", type=click.IntRange(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
+@click.option("--curves", is_flag=True, help="Follow the egg's events on, as curves in (alpha, lam).")
 @click.option("--digits", type=click.IntRange(1, 1000), help="Certify the events to so many digits.")
 @click.option("--plot", metavar="FILE", help="Draw the branches, as PNG, PDF or SVG.")
 @json_option
@@ -38,6 +39,7 @@ def command(
     at: str | None,
     points: int,
     switch: int,
+    curves: bool,
     digits: int | None,
     plot: str | None,
     output: Output,
@@ -52,6 +54,8 @@ def command(
     from verification.continuation.starts import named, typed
 
     low, high = interval_of(interval)
+    if curves and scene.table_name != "egg":
+        raise ValueError(f"--curves: {scene.table_name} has no shape to follow them in; accepted: the egg")
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
     table = scene.table()
@@ -77,11 +81,14 @@ def command(
         document = record(one)
         document["events"] = [noted(event, certificates.get(id(event))) for event in one.events]
         documents.append(document)
-    output.write({"table": scene.table_name, "branches": documents})
+    drawn_on = curves_of(found, scene, output) if curves else []
+    output.write({"table": scene.table_name, "branches": documents, "curves": drawn_on})
     if plot:
         drawn(found, plot)
     for document in documents:
         show(output.console, document)
+    for row in drawn_on:
+        show_curve(output.console, row)
     return told(output.console, found)
 
 
@@ -145,6 +152,37 @@ def noted(event: Any, proof: dict[str, Any] | None) -> dict[str, Any]:
         "supercritical": form.supercritical if form else None,
         "certificate": proof,
     }
+
+
+def curves_of(branches: list["Branch"], scene: Scene, output: Output) -> list[dict[str, Any]]:
+    """The curves that the events of the egg draw, each with its points of codimension two."""
+    from verification.continuation.survey import curve_of
+
+    events = [(one.system.recurrence.period, event) for one in branches for event in one.events]
+    alpha, rows = float(exact("--alpha", scene.shape["alpha"])), []
+    with output.progress("Drawing", len(events)) as tick:
+        for period, event in events:
+            found = curve_of(event, alpha, scene.K)
+            tick(event.what.value)
+            if found is not None:
+                special = [
+                    {"what": point.what.value, "alpha": point.letters[0], "lam": point.letters[1]}
+                    for point in found.special
+                ]
+                plane = [[float(x) for x in row] for row in found.plane]
+                rows.append({"event": event.what.value, "period": period, "alpha_lam": plane, "special": special})
+    return rows
+
+
+def show_curve(console: "Console", row: dict[str, Any]) -> None:
+    """Where a curve runs from and to, and its special points."""
+    first, last = row["alpha_lam"][0], row["alpha_lam"][-1]
+    console.print(
+        f"curve of the {row['event']} of period {row['period']}: (alpha, lam) from ({first[0]:.6f}, {first[1]:.6f}) "
+        f"to ({last[0]:.6f}, {last[1]:.6f})"
+    )
+    for point in row["special"]:
+        console.print(f"  {point['what']} at ({point['alpha']:.9f}, {point['lam']:.9f})")
 
 
 def drawn(branches: list["Branch"], path: str) -> None:

@@ -99,6 +99,8 @@ def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[A
         right = np.append(value, row @ z - level)
         if not (np.all(np.isfinite(whole)) and np.all(np.isfinite(right))):
             break
+        if not np.any(right):
+            return z, count  # exact, and perhaps a crossing of branches, where the matrix is singular
         try:
             correction = solved(whole, right)
         except ValueError:
@@ -189,7 +191,11 @@ def zero(system: System, start: Point, end: Point, name: str) -> Point:
     whole = float(row @ (end.z - start.z))
     length = float(brentq(value, 0.0, whole, xtol=1e-13 + 1e-11 * abs(whole), rtol=1e-13))
     z, _ = arc(system, start, length)
-    return Point(z, tangent_at(system, z, start.tangent), start.s + length, system.tests(z))
+    try:
+        tangent = tangent_at(system, z, start.tangent)
+    except ValueError:
+        tangent = start.tangent  # branches cross there and have no common tangent
+    return Point(z, tangent, start.s + length, system.tests(z))
 
 
 def _beyond(here: Array, z: Array, limits: Mapping[int, tuple[float, float]]) -> list[tuple[int, float]]:

@@ -1,7 +1,7 @@
 """Maps whose bifurcations are published: the engine that follows billiards must find them too.
 
 Logistic, `x -> r*x*(1 - x)`: May 1976. Henon, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three
-successive `x`: Henon 1976.
+successive `x`: Henon 1976. Delayed logistic, `x -> r*x*(1 - y)`, `y -> x`: Maynard Smith 1968, for its torus.
 """
 
 from sympy import Symbol
@@ -19,3 +19,13 @@ def logistic(period: int) -> Explicit:
 def henon(period: int) -> Explicit:
     """Cycles of the Henon map; the letters are `a` and `b`."""
     return Explicit("Henon", AFTER - 1 + a * HERE**2 - b * BEFORE, (a, b), period)
+
+
+def delayed(period: int) -> Explicit:
+    """Cycles of the delayed logistic map; the letter is `r`."""
+    return Explicit("delayed logistic", AFTER - r * HERE * (1 - BEFORE), (r,), period)
+
+
+def cubic(period: int) -> Explicit:
+    """Cycles of `x -> r*x - x**3`; the letter is `r`."""
+    return Explicit("cubic", AFTER - r * HERE + HERE**3, (r,), period)

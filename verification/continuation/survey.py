@@ -5,7 +5,7 @@ the way is followed on as a curve in `(alpha, lam)`. Cycles that a symmetry maps
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from sympy import Expr
@@ -41,7 +41,7 @@ def survey(
     >>> [(one.period, one.event.what.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
     [(2, 'period doubling')]
     """
-    table, top = egg(K), largest_shape(K)
+    table = egg(K)
     seen: set[tuple[object, ...]] = set()
     for cycle in all_cycles(table.at(alpha=alpha), lam, longest).catalogue.cycles:
         mark = cycle.period, round(cycle.spectrum.trace, 6), round(cycle.spectrum.determinant, 6)
@@ -58,13 +58,18 @@ def survey(
             own = cycle.period, event.what, round(event.value, 7)
             if event.what in KINDS and own not in seen:
                 seen.add(own)
-                yield Surveyed(cycle.period, event, _followed(event, at["alpha"], top, steps))
+                yield Surveyed(cycle.period, event, curve_of(event, at["alpha"], K, steps))
 
 
-def _followed(event: Event, alpha: float, top: float, steps: Steps | None) -> Curve | None:
+def curve_of(event: Event, alpha: float, K: int = 3, steps: Steps | None = None) -> Curve | None:
+    """The curve in `(alpha, lam)` through an event of the egg at shape `alpha`; None when it has none or is lost."""
+    if event.what not in KINDS or not isinstance(event.ring, Chords):
+        return None
+    top = largest_shape(K)
     box = ((top / 100, top), (0.0, 1.0))
     steps = steps or Steps(largest=0.3, most=150)
+    ring = replace(event.ring, table=egg(K))
     try:
-        return curve(event.ring, KINDS[event.what], event.x, TWO, (alpha, event.value), box, steps=steps)
+        return curve(ring, KINDS[event.what], event.x, TWO, (alpha, event.value), box, steps=steps)
     except ValueError:
         return None

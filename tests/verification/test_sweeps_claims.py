@@ -15,7 +15,14 @@ from verification.certificates.twist import Twist, twist
 from verification.claims import catalogue, on_elastic
 from verification.claims.claim import Verdict
 from verification.claims.on_elastic import elastic_mixed, isosceles, no_full_chaos
-from verification.claims.on_parameter_space import chaotic_interval, isolated_regions, no_chaos_below, periods_at
+from verification.claims.on_parameter_space import (
+    CASCADES,
+    chaotic_interval,
+    isolated_regions,
+    no_chaos_below,
+    periods_at,
+)
+from verification.dynamics.cascade import cascade
 from verification.dynamics.cycles import polished
 from verification.dynamics.places import places
 
@@ -120,4 +127,15 @@ def test_isolated_regions_end_cascades_of_higher_period():
     found = isolated_regions(CLAIMS["egg.isolated_regions"])
 
     assert found.verdict is Verdict.SUPPORTED
-    assert "12, 24, 48, chaos" in found.evidence
+    assert "doublings of period 12 at 0.373122, 24 at 0.373521, 48 at 0.373608, certified" in found.evidence
+
+
+def test_a_cascade_needs_a_cycle_to_start_from():
+    with pytest.raises(ValueError, match="none of 400 balls at alpha = 2/25, lam = 3/10 ends on a cycle of period 7"):
+        cascade(Rational(2, 25), Rational(3, 10), 7, 1e-3)
+
+
+def test_the_ratios_of_a_cascade_are_near_feigenbaum_s():
+    # 4.6692: a second method, since nothing in the climb knows it but the first guess of the next rung
+    for shape, lam, period, step, _ in CASCADES:
+        assert cascade(Rational(shape), Rational(lam), period, step).ratios == pytest.approx([4.6692], rel=0.03)

@@ -17,6 +17,7 @@ from symbolic import flight, tables
 from symbolic.geometry import velocity
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
+from symbolic.validity import closed_and_finite
 
 
 def named(name: str, K: int = 3) -> Blueprint:
@@ -25,7 +26,11 @@ def named(name: str, K: int = 3) -> Blueprint:
 
 
 def drawn(table: Table) -> Blueprint:
-    """The blueprint of a table; shape parameters that have no value yet stay open."""
+    """The blueprint of a table; shape parameters that have no value yet stay open.
+
+    A table may have been written down without a check, so that it is closed is seen to here.
+    """
+    table = closed_and_finite(table)
     names = tuple(shape.symbol.name for shape in table.shapes)
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols) for component in table.components)

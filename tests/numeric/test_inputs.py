@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from sympy import S, cos, pi, sin
 
 from numeric import PinballMap
+from symbolic.symbols import theta
+from symbolic.table import Component, Table
 
 
 @pytest.mark.parametrize(
@@ -88,3 +91,11 @@ def test_integers_and_single_precision_are_numbers():
 def test_no_ball_starts_at_the_cusp():
     with pytest.raises(ValueError, match="is the cusp, where no normal and so no exit is defined"):
         PinballMap("cardioid", lam=0.5).step(np.pi, 0.3)
+
+
+def test_components_that_do_not_close():
+    half, lid = (cos(theta), sin(theta)), (theta, S.Zero)
+    components = Component("half", half, S.Zero, pi), Component("lid", lid, -S.One, S.Half)
+
+    with pytest.raises(ValueError, match="open: the boundary is not closed: lid ends at "):
+        PinballMap(Table("open", components), lam=0.5)

@@ -23,48 +23,46 @@ BALLS, BOUNCES, SEED = 2000, 10**8, 3
 TRANSIENT = 200_000
 
 
-def search(shapes, lams, starts, bounces, transient):
-    """The pairs at which some ball is chaotic: shape, contraction, how many of the balls."""
-    found = run(parameter_space(shapes, lams, starts, bounces, transient, seed=SEED)).chaotic
-    return [(float(shapes[i]), float(lams[j]), int(found.values[i, j])) for i, j in np.argwhere(found.values > 0)]
+def search(shape, lams, starts, bounces, transient):
+    """The contractions at which some ball is chaotic, and how many of the balls."""
+    found = run(parameter_space(np.array([shape]), lams, starts, bounces, transient, seed=SEED)).chaotic.values[0]
+    return {float(lams[j]): int(found[j]) for j in np.nonzero(found)[0]}
 
 
-def follow(shape, lam):
+def follow(shape, lam, transient):
     """The share of random balls that are chaotic, how many of those still are after a long run, and their exponent."""
     map = map_of(egg(3, shape), lam)
-    first = measured(map, interior_starts(map, BALLS, SEED), 4000, TRANSIENT)
+    first = measured(map, interior_starts(map, BALLS, SEED), 4000, transient)
     on = np.nonzero(first.chaotic)[0]
     if on.size == 0:
-        return None
+        return "all of it transient"
     last = measured(map, first.ended(on), max(4000, BOUNCES // on.size), 0)
     nu = last.nu_plus[last.chaotic]
-    error = np.std(nu) / np.sqrt(nu.size) if nu.size else np.nan
-    return on.size / BALLS, int(np.sum(last.chaotic)), on.size, np.mean(nu) if nu.size else np.nan, error
+    said = f"{on.size / BALLS:.2%} of {BALLS} balls, {nu.size} of {on.size} still chaotic after {BOUNCES:.0e} bounces"
+    return said + (f", nu_+ = {np.mean(nu):.5f} +- {np.std(nu) / np.sqrt(nu.size):.0e}" if nu.size else "")
 
 
-def reported(pairs):
-    """One line for each shape, at the contraction where most balls were chaotic."""
-    for shape in sorted({pair[0] for pair in pairs}):
-        here = [pair for pair in pairs if pair[0] == shape]
-        lam = max(here, key=lambda pair: pair[2])[1]
-        found = follow(shape, lam)
-        lams = f"{here[0][1]:g} to {here[-1][1]:g}" if len(here) > 1 else f"{lam:g}"
-        said = "all of it transient"
-        if found is not None:
-            share, still, of, nu, error = found
-            said = f"{share:.2%} of {BALLS} balls, {still} of {of} still chaotic after {BOUNCES:.0e} bounces in all"
-            said += f", nu_+ = {nu:.5f} +- {error:.0e}"
-        sys.stdout.write(f"alpha = {shape:<7g} chaos at {len(here)} lam, {lams}; at {lam:g}: {said}\n")
-        sys.stdout.flush()
+def reported(shape, lams, starts, bounces, transient):
+    """One line for a shape, at the contraction where most balls were chaotic."""
+    found = search(shape, lams, starts, bounces, transient)
+    said = "none"
+    if found:
+        lam = max(found, key=found.get)
+        said = f"at {len(found)} of {lams.size} lam, {min(found):g} to {max(found):g}; at {lam:g} "
+        said += follow(shape, lam, max(transient, 20_000))
+    sys.stdout.write(f"alpha = {shape:<7g} chaos: {said}\n")
+    sys.stdout.flush()
 
 
 def main(arguments):
     quick = "--quick" in arguments
-    step = 0.005 if quick else 0.0005
-    reported(search(SHAPES[::5] if quick else SHAPES, np.round(np.arange(0.3, 0.96, step), 6), 60, 1500, 4000))
-    close = np.round(1 - np.geomspace(0.04, 1e-3, 10 if quick else 80), 6)
+    lams = np.round(np.arange(0.70, 0.72, 5e-4) if quick else np.arange(0.3, 0.96, 5e-4), 6)
+    for shape in SHAPES[-2:-1] if quick else SHAPES[::-1]:
+        reported(float(shape), lams, 60, 1500, 4000)
     sys.stdout.write("close to lam = 1:\n")
-    reported(search(NEAR_ONE[:1] if quick else NEAR_ONE, close, 40, 4000, TRANSIENT))
+    close = np.round(1 - np.geomspace(0.04, 1e-3, 8 if quick else 80), 6)
+    for shape in NEAR_ONE[:1] if quick else NEAR_ONE:
+        reported(float(shape), close, 40, 4000, TRANSIENT)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from verification.continuation.certified import proof_of
 from verification.continuation.dataset import dataset
 from verification.continuation.linear import spectrum
 from verification.continuation.maps import cubic, delayed, henon, logistic
-from verification.continuation.recurrence import Chords
+from verification.continuation.recurrence import Chords, Ends
 from verification.continuation.switching import switched
 from verification.ladder import ladder
 from verification.locate import locate
@@ -176,12 +176,13 @@ def test_the_determinant_is_the_product_of_the_areas_of_the_bounces_not_a_power_
 
 def test_the_three_determinants_are_those_of_the_product_of_matrices():
     rng = np.random.default_rng(5)
-    for n in (2, 3, 5, 8):
-        ring, x = Chords(TABLE, (0,) * n), rng.uniform(0, 0.3, n) + 2.4 * np.arange(n)
+    for n, turn in ((2, 1), (3, 1), (5, 1), (8, 1), (2, -1), (3, -1)):
+        ring, x = Chords(TABLE, (0,) * n, Ends(turn)), rng.uniform(0, 0.3, n) + 2.4 * np.arange(n)
         terms = ring.terms(x, {"lam": 0.4}, 1)
         product = np.eye(2)
         for below, middle, above in zip(*terms.slope, strict=True):
             product = np.array([[-middle / above, -below / above], [1.0, 0.0]]) @ product
+        product = turn * product  # half a symmetric cycle: what comes round is its mirror image
         found = spectrum(terms, ring.ends)
 
         assert found.at_one == pytest.approx(np.linalg.det(product - np.eye(2)), rel=1e-7)

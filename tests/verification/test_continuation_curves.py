@@ -18,7 +18,8 @@ from verification.continuation.curves import Special, curve
 from verification.continuation.expanding import contracting_up_to, double_one, expanding_cycle
 from verification.continuation.maps import henon
 from verification.continuation.normal import coefficients
-from verification.continuation.recurrence import Chords
+from verification.continuation.recurrence import Chords, Ends
+from verification.continuation.systems import Critical
 from verification.continuation.tongue import accumulation, cascade, fold, largest_shape
 from verification.shooting.normal_form import normal_form
 from verification.shooting.problem import Kind, Linearised, Problem, Rows
@@ -114,6 +115,18 @@ def test_a_double_multiplier_one_below_lam_one_is_proved():
     assert found.status.name == "UNIQUE"
     assert found.zero[-1] < 0.97
     assert 0.0687 < found.zero[-2] < 0.0688
+
+
+@pytest.mark.parametrize("kind", [Kind.FOLD, Kind.FLIP])
+@pytest.mark.parametrize("turn", [1, -1])
+def test_the_matrix_of_a_critical_cycle_is_that_of_the_difference_quotients(kind, turn):
+    z = np.array([0.3, 2.9, -0.4, 0.05, 0.3])
+    system = Critical.near(Chords(egg(3), (0, 0, 0), Ends(turn, 0.2)), kind, ("alpha", "lam"), z)
+    _, matrix = system.linear(z)
+    h = 1e-6
+    steps = [(system.linear(z + h * e)[0] - system.linear(z - h * e)[0]) / (2 * h) for e in np.eye(len(z))]
+
+    assert np.max(np.abs(np.array(steps).T - matrix)) < 1e-6 * (1 + np.max(np.abs(matrix)))
 
 
 def test_an_even_egg_has_no_cascade_of_diameters():

@@ -22,7 +22,7 @@ from verification.locate import certify
 from verification.shooting.newton import floats
 from verification.shooting.problem import Kind, Problem
 
-STEP, LEAST = 4e-3, 1e-10
+STEP, LEAST = 1.2e-2, 1e-9
 FAR = 0.03  # that a bounce may move in one step
 MEET = 0.02  # of the two halves, or of an image, near the end of a branch
 
@@ -165,7 +165,7 @@ def _broken(map: PinballMap, table: Table, group: Sequence[Symmetry], cycle: Cyc
     if half is not None:
         problem = Problem(table, tuple(int(i) for i in half.component), Kind.FLIP, "lam", mirror=True)
         try:
-            if abs(floats(problem, [*half.theta, lam])[-1] - lam) < 1e-6:
+            if abs(floats(problem, [*half.theta, lam])[-1] - lam) < 1e-5:
                 return Event.PITCHFORK, Kind.FLIP
         except (ValueError, ZeroDivisionError):
             pass

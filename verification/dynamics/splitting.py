@@ -30,7 +30,8 @@ def angles(map: PinballMap, balls: Places, bounces: int, transient: int = 1000) 
     contracted = _carried(
         [np.asarray(np.linalg.inv(slope), dtype=float) for slope in reversed(slopes)], np.array([0.8, -0.6])
     )[::-1]
-    sine = np.abs(np.cross(expanded[ALIGNED : ALIGNED + bounces], contracted[ALIGNED : ALIGNED + bounces]))
+    e, f = expanded[ALIGNED : ALIGNED + bounces], contracted[ALIGNED : ALIGNED + bounces]
+    sine = np.abs(e[..., 0] * f[..., 1] - e[..., 1] * f[..., 0])
     return np.asarray(np.arcsin(np.minimum(sine, 1.0))).ravel()
 
 

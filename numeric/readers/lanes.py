@@ -248,9 +248,8 @@ class Lanes:
         """`(2**-e, e)` with `2**e <= x < 2**(e + 1)`, for positive normal `x`."""
         field = self._bits("and", self._integer(x), f"splat (i64 {0x7FF << 52})")
         inverse = self._double(self._bits("sub", f"splat (i64 {0x7FE << 52})", field))
-        shifted = self._bits("lshr", field, "splat (i64 52)")
-        magic = self._double(self._bits("or", shifted, f"splat (i64 {0x433 << 52})"))
-        return inverse, magic - self.number(2.0**52 + 1023)
+        magic = self._bits("or", self._bits("lshr", field, "splat (i64 52)"), f"splat (i64 {0x433 << 52})")
+        return inverse, self._double(magic) - self.number(2.0**52 + 1023)
 
     def sin(self, x: Lane) -> Lane:
         """The sine, of angles up to 2**30."""

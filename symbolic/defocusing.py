@@ -20,6 +20,13 @@ The gain is at least `1 + tan(delta/2)**2/2` for `C >= 0` and `3/2` for `C < 0`.
 *So* `nu_plus >= log(1 + tan((1 - lam)*pi/8)**2/2) > 0` on every orbit that has exponents and misses the cusp, for every
 `lam < 1`. The width is measured in units of `D`, which is small only near the cusp, and a ball near the cusp is
 away from it one bounce later. The vector `(ds, dphi) = (1, 0)` lies in the cone, so one need not be found.
+
+*And* no compact set off the cusp attracts an open set of starts, for any `lam < 1`. A curve along the cone runs
+monotonically in `s`, so its length in the measure `|K|*ds = |q|/D` is at most `3*pi`, the whole boundary's. That length
+grows by the gain at each bounce at which no point of the curve hits the cusp; so some point of it does, soon, and
+its neighbours on one side land arbitrarily near the cusp. Curves along the cone lie in every open set, and what is
+left of one after any number of bounces is curves again: the starts that come as near as wanted, as late as wanted,
+are dense.
 """
 
 from functools import cache
@@ -27,7 +34,7 @@ from functools import cache
 from sympy import Expr, Matrix, Rational, S, Symbol, cos, expand_trig, log, pi, simplify, sin, symbols, tan
 
 from symbolic.collision import derivative_matrix
-from symbolic.geometry import curvature
+from symbolic.geometry import curvature, velocity
 from symbolic.signs import Finding, Outcome
 from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
 from symbolic.tables import cardioid
@@ -107,6 +114,16 @@ def radius_defect() -> Expr:
     return simplify(curvature(BOUNDARY).subs(theta, 2 * half) ** 2 * (4 * cos(half) / 3) ** 2 - 1)
 
 
+def turning_defect() -> Expr:
+    """`|K|*ds` is `3/2*d(theta)`, so the whole boundary measures `3*pi`: zero.
+
+    >>> turning_defect()
+    0
+    """
+    speed = velocity(BOUNDARY)
+    return simplify(curvature(BOUNDARY) ** 2 * speed.dot(speed) - Rational(9, 4))
+
+
 def excess() -> Expr:
     """`t*(t - D0 - d1)/sin(delta)**2` in `x = c0/c1` and `C`, for `c1 = 1`.
 
@@ -155,7 +172,7 @@ def expands() -> Finding:
     steps = {
         "a beam's width and curvature after a bounce": beam_defects(),
         "the cone goes into itself": cone_defects(),
-        "the chord of a cardioid": [*chord_defects(), radius_defect()],
+        "the chord and the curvature of a cardioid": [*chord_defects(), radius_defect(), turning_defect()],
         "t - D0 - d1 and the gain as sums of squares": square_defects(),
     }
     failed = [name for name, defects in steps.items() if not all(vanishes(defect) for defect in defects)]

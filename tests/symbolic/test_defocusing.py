@@ -18,6 +18,7 @@ from symbolic.defocusing import (
     least_exponent,
     radius_defect,
     square_defects,
+    turning_defect,
     x,
 )
 from symbolic.symbols import lam
@@ -25,7 +26,13 @@ from symbolic.zero import vanishes
 
 
 def test_every_step_of_the_proof_is_an_identity():
-    for defects in (beam_defects(), cone_defects(), chord_defects(), [radius_defect()], square_defects()):
+    for defects in (
+        beam_defects(),
+        cone_defects(),
+        chord_defects(),
+        [radius_defect(), turning_defect()],
+        square_defects(),
+    ):
         assert all(vanishes(defect) for defect in defects)
     assert expands()
 

@@ -246,3 +246,19 @@ def test_beams_in_the_cardioid_widen_at_every_bounce_by_no_less_than_the_proof_s
 
     assert np.min(gain) >= 1 + np.tan((1 - float(lam)) * np.pi / 8) ** 2 / 2
     assert np.min(growth.nu_plus) > np.mean(np.log(gain)) / 2 > 0
+
+
+@pytest.mark.parametrize("lam", ["0.2", "0.7"])
+def test_a_short_curve_in_the_cardioid_is_torn_at_the_cusp_before_it_measures_3_pi(lam):
+    """Its length in `|K|*ds = 3/2*d(theta)` grows while neighbours land side by side."""
+    map, points = PinballMap("cardioid", lam=lam), 20_000
+    orbit = map.orbit(np.linspace(0.7, 0.7 + 1e-3, points), 0.2, 60)
+    steps = 1.5 * np.abs(np.diff(orbit.theta, axis=1))
+    torn = int(np.argmax(np.any(steps > 0.3, axis=1)))
+    lengths = steps[:torn].sum(axis=1)
+    nearest = np.min(np.hypot(orbit.x[torn], orbit.y[torn]))
+
+    assert 2 < torn < 40
+    assert np.all(np.diff(lengths) > 0)
+    assert lengths[-1] < 3 * np.pi
+    assert nearest < 0.05

@@ -42,6 +42,7 @@ def test_a_cone_that_is_not_proved_confirms_nothing(monkeypatch):
 
     assert verdict(on_defocusing.signs, "cardioid.lyapunov_signs") is Verdict.OPEN
     assert verdict(on_defocusing.chaotic, "cardioid.chaotic_attractor") is Verdict.OPEN
+    assert verdict(on_defocusing.near_cusp, "cardioid.attractor_near_cusp") is Verdict.OPEN
 
 
 def test_an_expanding_cycle_that_is_not_proved_refutes_nothing(monkeypatch):

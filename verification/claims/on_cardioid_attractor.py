@@ -65,22 +65,17 @@ def approaches(contraction: str) -> Array:
     return np.asarray(np.minimum.accumulate(np.hypot(orbit.x, orbit.y), axis=0))
 
 
-@judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
-def near_cusp(claim: Claim) -> Judgement:
-    """The nearest approach to the cusp against the number of bounces, and what is proved at `lam = 0`.
+def nearing() -> str:
+    """How the smallest distance to the cusp falls with the number of bounces, in words.
 
-    There a landing at the distance `d` has come from `s` of the order `d**(3/2)`, so `d` falls like `n**(-2/3)`.
+    At `lam = 0` a landing at the distance `d` has come from `s` of the order `d**(3/2)`, so `d` falls like `n**(-2/3)`.
     """
     told, powers = [], []
     for contraction in ("0", "3/10", "8/10"):
         first, last = np.median(approaches(contraction)[[64, 4096]], axis=1)
-        powers.append(float(np.log(last / first) / np.log(64)))
+        powers.append(f"{np.log(last / first) / np.log(64):.2f}")
         told.append(f"{first:.1e} after 64 bounces and {last:.1e} after 4096 at lam = {contraction}")
-    listed = ", ".join(f"{x:.2f}" for x in powers)
-    said = (
-        f"the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to the "
-        f"powers {listed} (-2/3 follows at lam = 0, -1 for the elastic measure); at lam = 0 it is proved that every "
-        "interval comes arbitrarily near: (T0^2)' >= 3/2 lets it grow until it holds s = 0, the only jump, whose image "
-        "is the cusp"
+    return (
+        f"sampled, the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to the "
+        f"powers {', '.join(powers)} (-2/3 follows at lam = 0, -1 for the elastic measure)"
     )
-    return sampled("distances to the cusp have no positive bound on the attractor", said, max(powers) < -0.6)

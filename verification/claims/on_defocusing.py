@@ -6,6 +6,7 @@ from symbolic.defocusing import expands, least_exponent
 from symbolic.signs import Finding
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, judges
+from verification.claims.on_cardioid_attractor import nearing
 from verification.claims.on_contraction import TENTHS, at_most_zero
 from verification.claims.spectra import spectrum
 
@@ -48,4 +49,19 @@ def chaotic(claim: Claim) -> Judgement:
             positive_exponent(),
         ),
         f"nu_+ >= {least_exponent()} on every orbit; {measured()}",
+    )
+
+
+@judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
+def near_cusp(claim: Claim) -> Judgement:
+    """A curve that no point leaves into the cusp would grow beyond the length of the boundary."""
+    return Judgement(
+        by(
+            "a curve along the cone is monotone in s, so it measures at most 3*pi in |K|*ds; it grows at each bounce by a "
+            "factor bounded away from 1 until one of its points hits the cusp, whose neighbours land arbitrarily near "
+            "it. So the starts that come as near to the cusp as wanted, as late as wanted, are dense (lam < 1), and "
+            "no compact set off the cusp attracts an open set",
+            positive_exponent(),
+        ),
+        f"generic orbits come arbitrarily near the cusp again and again; {nearing()}",
     )

@@ -76,6 +76,6 @@ def nearing() -> str:
         powers.append(f"{np.log(last / first) / np.log(64):.2f}")
         told.append(f"{first:.1e} after 64 bounces and {last:.1e} after 4096 at lam = {contraction}")
     return (
-        f"sampled, the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to the "
-        f"powers {', '.join(powers)} (-2/3 follows at lam = 0, -1 for the elastic measure)"
+        f"sampled, the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to "
+        f"the powers {', '.join(powers)} (-2/3 follows at lam = 0, -1 for the elastic measure)"
     )

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from sympy import Rational
 
 from numeric import PinballMap
-from symbolic.tables import cuspless, egg, ellipse
+from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.all_cycles.cells import fixed_points
 from verification.all_cycles.exclusion import no_others
 from verification.all_cycles.search import all_cycles
@@ -118,3 +118,12 @@ def test_a_count_on_cells_is_refused_for_a_table_with_joins():
 
     assert isinstance(result.exception, ValueError)
     assert "not convex and smooth" in str(result.exception)
+
+
+def test_families_of_cycles_are_said_to_be_there_and_not_listed():
+    """Every diameter of the circle is a cycle, with the multiplier 1."""
+    searched = all_cycles(circle, Rational(1, 2), 2)
+
+    assert searched.catalogue.cycles == []
+    assert searched.catalogue.degenerate > 100
+    assert searched.balanced == {2: None}

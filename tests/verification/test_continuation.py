@@ -239,6 +239,13 @@ def test_bad_input_is_refused_in_one_sentence(words, said):
     assert said in str(result.exception)
 
 
+def test_a_start_in_a_family_of_cycles_is_refused_as_one():
+    result = run("circle", "--cycle", "diameter", "--lam", "0:1")
+
+    assert isinstance(result.exception, ValueError)
+    assert "one of a family or at a bifurcation" in str(result.exception)
+
+
 def test_a_branch_that_meets_a_join_says_where_it_stopped_and_keeps_its_points(tmp_path):
     file = tmp_path / "branch.json"
     start = "-0.337,0.2,0.337,-0.2"

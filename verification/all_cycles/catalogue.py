@@ -12,6 +12,7 @@ from verification.continuation.linear import Spectrum, spectrum
 from verification.continuation.recurrence import Chords
 
 SAME = 1e-7
+FAMILY = 1e-7  # of det(M - 1): a cycle so near the multiplier 1 is one of a family, or bifurcates
 
 
 @dataclass(frozen=True)
@@ -40,12 +41,13 @@ class Found:
 
 @dataclass
 class Catalogue:
-    """The cycles found so far at one contraction."""
+    """The cycles found so far at one contraction; `degenerate` counts those with the multiplier 1, not filed."""
 
     table: Table
     lam: float
     cycles: list[Found] = field(default_factory=list)
     marks: dict[int, list[Array]] = field(default_factory=dict)
+    degenerate: int = 0
 
     def add(self, components: tuple[int, ...], x: Array, phi: Array) -> bool:
         """Files a cycle; False when it was there already, or only repeats a shorter one that was."""
@@ -54,9 +56,12 @@ class Catalogue:
         mark = _mark(components, x, phi)
         if any(np.max(np.abs(mark - known)) < SAME * n for known in self.marks.get(n, [])):
             return False
-        self.marks.setdefault(n, []).append(mark)
         ring = Chords(self.table, components)
         found = spectrum(ring.terms(x, {"lam": self.lam}, 1), ring.ends)
+        if abs(found.at_one) < FAMILY:
+            self.degenerate += 1
+            return False
+        self.marks.setdefault(n, []).append(mark)
         theta = np.mod(x + pi, 2 * pi) - pi if len(self.table.components) == 1 else x
         self.cycles.append(
             Found(components, tuple(map(float, theta)), tuple(map(float, phi)), found, _winding(self.table, x))

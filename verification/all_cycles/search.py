@@ -69,7 +69,8 @@ def all_cycles(table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick 
         rounds += 1
         tick(f"{len(catalogue.cycles)} cycles")
     catalogue.cycles.sort(key=lambda cycle: (cycle.period, cycle.winding, cycle.theta))
-    balanced = {n: (not any(catalogue.index_sums(n).values())) if whole else None for n in quiet}
+    law = whole and not catalogue.degenerate
+    balanced = {n: (not any(catalogue.index_sums(n).values())) if law else None for n in quiet}
     return Searched(catalogue, longest, rounds, balanced)
 
 

@@ -43,6 +43,7 @@ def command(
         "table": scene.table_name,
         "lam": str(lam),
         "rounds": found.rounds,
+        "degenerate": catalogue.degenerate,
         "periods": [
             {"period": n, "cycles": catalogue.count(n), "index_sums_vanish": found.balanced[n]}
             for n in range(2, period + 1)
@@ -124,6 +125,11 @@ def show(console: "Console", catalogue: "Catalogue", document: dict[str, Any]) -
         console.print(f"{cycle.period:<8}{cycle.winding:<9}{pair:<41}{stable:<8}{cycle.theta[0]:.9f}")
     if len(catalogue.cycles) > MOST:
         console.print(f"... and {len(catalogue.cycles) - MOST} more; --json FILE has them all")
+    if catalogue.degenerate:
+        console.print(
+            f"{catalogue.degenerate} times a cycle with the multiplier 1 was met, of a family or at a bifurcation; "
+            "such are not listed, and the index law does not count them"
+        )
     for row in document["periods"]:
         laws = {True: "index sums vanish", False: "index sums do NOT vanish", None: "no index law here"}
         console.print(f"period {row['period']:<3} {row['cycles']:>5} cycles, {laws[row['index_sums_vanish']]}")

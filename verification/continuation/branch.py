@@ -127,6 +127,9 @@ def branch(
         if np.max(np.abs(z - given)) > NEARBY:
             raise LostError(f"{ring.label}: the nearest cycle is {np.max(np.abs(z - given)):.2g} away")
     except LostError:
+        if np.max(np.abs(system.linear(given)[0])) < 1e-6:
+            why = "is a cycle with the multiplier 1, one of a family or at a bifurcation: no single branch leaves it"
+            raise ValueError(f"{ring.label}: the start at {letter} = {value} {why}") from None
         raise ValueError(f"{ring.label}: the start is no cycle at {letter} = {value}, nor is one near it") from None
     why = system.obstacle(z)
     if why:

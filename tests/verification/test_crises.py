@@ -2,9 +2,17 @@
 
 import math
 
+import numpy as np
 import pytest
+from flint import arb
 
-from verification.crises import KINDS, crisis, spread, stay
+from numeric import PinballMap
+from verification.claims import judge
+from verification.claims.claim import Claim, Verdict
+from verification.claims.on_crises import distance, sides
+from verification.crises import KINDS, crisis, power, scaling, spread, stay
+from verification.locate import egg_crisis
+from verification.manifolds.known import SHAPE, contact
 
 
 @pytest.mark.parametrize(("kind", "below", "above"), [("merging", 0.443, 0.4445), ("boundary", 0.655, 0.666)])
@@ -30,3 +38,75 @@ def test_the_error_reaches_up_to_where_ten_balls_left():
 def test_a_shape_without_the_crisis_is_one_sentence():
     with pytest.raises(ValueError, match=r"known at 0\.08"):
         crisis("boundary", "0.03", budget=10**6)
+
+
+def test_the_mean_stay_falls_like_a_power_of_the_distance():
+    """Merging: the saddle's multipliers say 0.85 in the limit; over 61 distances the fit is 0.92 +- 0.11."""
+    found = scaling("merging", "0.08", contact("merging", SHAPE).letter, np.geomspace(1e-4, 3e-3, 12), 10**6)
+
+    assert 0.3 < found.exponent < 1.6
+    assert found.error > 0
+    assert len(found.points) == 12
+
+
+def test_a_power_needs_enough_points():
+    with pytest.raises(ValueError, match="accepted: 6 or more"):
+        power(((0.1, 1.0), (0.2, 2.0)))
+
+
+def asymmetry(lam, balls=24):
+    """The least, over balls, of how far the time average of an odd function is from 0."""
+    rng = np.random.default_rng(2)
+    start = rng.uniform(-0.05, 0.05, (2, balls))
+    map = PinballMap("egg", lam=lam, alpha="0.08")
+    ball = map.exponents(start[0], start[1], 200, 4000)
+    chaotic = ball.nu_plus > 0
+    orbit = map.orbit(ball.theta[chaotic], ball.phi[chaotic], 4000)
+    return float(np.min(np.abs(np.mean(np.sin(3 * orbit.theta[::2]), axis=0))))
+
+
+def test_balls_see_the_symmetry_restored_where_the_tangency_is():
+    """Sampled, no manifold: below, every orbit keeps to one mirror image; above, it visits both."""
+    at = contact("symmetry-restoring", SHAPE).letter
+
+    assert asymmetry(at - 2e-4) > 0.05
+    assert asymmetry(at + 2e-4) < 0.03
+
+
+def bands_apart(lam):
+    """How far the mean exit angles four bounces apart are from each other, the most over balls."""
+    rng = np.random.default_rng(0)
+    start = rng.uniform(-0.05, 0.05, (2, 24))
+    map = PinballMap("egg", lam=lam, alpha="0.08")
+    ball = map.exponents(start[0], start[1], 200, 4000)
+    phi = map.orbit(ball.theta[ball.nu_plus > 0], ball.phi[ball.nu_plus > 0], 8000).phi
+    means = np.array([phi[k::8].mean(axis=0) for k in range(8)])
+    return np.max(np.abs(means[:4] - means[4:]), axis=0)
+
+
+def test_balls_see_eight_bands_become_four_where_the_tangency_is():
+    at = contact("band-merging", SHAPE).letter
+
+    assert np.min(bands_apart(at - 3e-4)) > 0.008
+    assert np.median(bands_apart(at + 3e-4)) < 0.004
+
+
+def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_side_goes_there():
+    assert distance(0.64) > 5 * distance(0.66) > 0
+    assert sides(0.66) == (1.0, 0.0)
+
+
+def test_a_located_crisis_names_its_mechanism_and_what_is_not_proved():
+    found = egg_crisis("boundary", 8, SHAPE)
+
+    assert found.checks == {"shadowing_fold": True, "two_methods_agree": True, "tangency": None, "is_the_crisis": None}
+    assert "triangle" in found.notes["mechanism"]
+    assert found.ball.overlaps(arb("0.66214427335822441948"))  # the tangency to twenty digits
+
+
+@pytest.mark.parametrize(("printed", "verdict"), [("0.66", Verdict.SUPPORTED)])
+def test_the_boundary_crisis_is_judged_by_tangency_and_by_balls(printed, verdict):
+    result = judge(Claim("egg.boundary_crisis", "6.7", "", "numerical", printed))
+
+    assert result.verdict is verdict
+    assert "homoclinic tangency" in result.method

@@ -122,7 +122,7 @@ def test_the_tangencies_of_the_henon_map_are_the_published_ones(name):
     assert abs(found.speed) > 1e-3
 
 
-@pytest.mark.parametrize(("kind", "digits"), [("merging", 11), ("boundary", 15)])
+@pytest.mark.parametrize(("kind", "digits"), [("merging", 11), ("boundary", 15), ("symmetry-restoring", 9)])
 def test_two_methods_and_more_digits_agree_on_a_crisis(kind, digits):
     few, many = crisis(kind, SHAPE, 6), crisis(kind, SHAPE, digits)
 

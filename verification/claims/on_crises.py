@@ -46,9 +46,9 @@ def values(claim: Claim) -> Judgement:
     value = f"{mpmath.nstr(found.letter, 12)} +- {mpmath.nstr(found.error, 1)}"
     together = found.agrees and abs(balls.lam - float(found.letter)) <= balls.error + 2e-5
     said = (
-        f"homoclinic tangency of the {found.touch.contact.unstable.name} at {value}; the manifolds and a cycle of "
-        f"period {found.period} agree to {found.apart:.0e}; balls first leave at {balls.lam:.5f} +- {balls.error:.0e}; "
-        f"{printed} differs by {gap:+.1e}"
+        f"homoclinic tangency of the {found.touch.contact.unstable.name} at {value}; the manifolds and the fold of a "
+        f"cycle of {found.period} bounces agree to {found.apart:.0e}; balls first leave at {balls.lam:.5f} +- "
+        f"{balls.error:.0e}; {printed} differs by {gap:+.1e}"
     )
     near = abs(gap) < unit and (claim.id != "egg.crisis_below" or gap > 0)
     return sampled(f"{value}, estimated", said, together and near)

@@ -31,7 +31,8 @@ def command(
     """Where does it happen, to N certified digits? Exit status 1 when something is not proved.
 
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
-    merging-crisis and boundary-crisis, which are estimated by sampling and not certified.
+    merging-crisis, boundary-crisis, band-merging and symmetry-restoring: tangencies of manifolds, located by two
+    methods and not certified.
     """
     from symbolic.formula import number
     from verification.locate import GMPY2, locate

@@ -1,5 +1,10 @@
 """The crises of the three-pointed egg as tangencies: which saddle, and starts at `alpha = 0.08`.
 
+Two crises join what period doubling and symmetry breaking had split, each when the unstable manifold of
+the cycle that had split touches its own stable one: eight chaotic bands near one end of a diameter
+become four at the cycle of period 4, and the two mirror images become one attractor at the symmetric cycle
+of period 4 from which they had come.
+
 Boundary crisis: the saddle is the triangle of the vertices, born at the fold of period 3. Its stable
 manifold bounds the basin of the attracting triangle; its unstable manifold runs to the chaotic
 attractor, whose outermost fold it is, and touches the stable one. Merging crisis: the saddle is a cycle
@@ -22,9 +27,13 @@ STEP = Rational(1, 500)  # of the shape, in continuation
 LEAST = Rational(1, 10_000)
 TRIANGLE = Orbit("triangle of the vertices", (-0.165533,), 1, (1, 3))
 MIRRORED = Orbit("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), -1, (7, 3))
+SYMMETRIC = Orbit("symmetric cycle of period 4", (-0.645971, 2.02441), -1, (2, 3))
+FOUR = Orbit("cycle of period 4", (-0.022673, 2.875498, 6.392393, 9.889393), 1, (6, 3))
 CONTACTS = {
     "merging": Contact(MIRRORED, MIRRORED, 14, 1, -0.00396287, -0.00053713, 0.44343525),
     "boundary": Contact(TRIANGLE, TRIANGLE, 5, 1, 0.03431592, -0.02607124, 0.66214427),
+    "band-merging": Contact(FOUR, FOUR, 20, 1, -0.01239661, 0.00116269, 0.39768737),
+    "symmetry-restoring": Contact(SYMMETRIC, SYMMETRIC, 12, 1, -0.03158573, -0.00186500, 0.41026825),
 }
 
 

@@ -13,7 +13,7 @@ import mpmath
 from sympy import Expr
 
 from verification.manifolds.known import contact, table
-from verification.manifolds.shadows import shadow
+from verification.manifolds.shadows import Shadow, shadow
 from verification.manifolds.tangency import Touch, tangency
 from verification.shooting.newton import refined
 
@@ -31,7 +31,12 @@ class Crisis:
     error: Any
     touch: Touch
     apart: float
-    period: int
+    cycle: Shadow
+
+    @property
+    def period(self) -> int:
+        """Bounces of the cycle before it repeats, or repeats as its mirror image."""
+        return self.cycle.problem.period
 
     @property
     def agrees(self) -> bool:
@@ -79,12 +84,12 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     found = []
     for more in (0, SPARE):
         cycle = shadow(where, map, float(touch.letter), rounds + more)
-        found.append((refined(cycle.problem, cycle.start, digits + 5).z[-1], cycle.problem.period))
+        found.append(refined(cycle.problem, cycle.start, digits + 5).z[-1])
     context = mpmath.MPContext()
     context.dps = digits + 10
-    (short, _), (letter, period) = found
+    short, letter = found
     error = abs(context.mpf(letter) - context.mpf(short)) + context.mpf(10) ** -(digits + 2)
-    return Crisis(kind, context.mpf(letter), error, touch, float(abs(context.mpf(touch.letter) - letter)), period)
+    return Crisis(kind, context.mpf(letter), error, touch, float(abs(context.mpf(touch.letter) - letter)), cycle)
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

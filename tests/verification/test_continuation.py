@@ -15,6 +15,7 @@ from symbolic.symbols import alpha as letter
 from symbolic.tables import cuspless, egg
 from symbolic.thresholds import lambda_c
 from verification.commands.follow import command as follow
+from verification.continuation import linear
 from verification.continuation.arc import End, Steps
 from verification.continuation.branch import What, branch
 from verification.continuation.certified import proof_of
@@ -204,6 +205,20 @@ def test_the_cycle_born_at_the_cuspless_doubling_ends_on_the_corner_orbit():
     assert abs(collision.value - float(locate("lambda-star", 15).value)) < 1e-12
     assert sorted(b.system.recurrence.components for b in beyond) == [(0, 0, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0)]
     assert all(b.values.min() > collision.value for b in beyond)  # all four exist on one side only
+
+
+def test_long_cycles_are_followed_with_sparse_matrices_to_the_same_points(monkeypatch):
+    ring = Chords(TABLE, (0,) * 12)
+    start, steps = np.tile(TRIANGLE, 4), Steps(largest=0.1, most=8)  # the triangle run through four times
+    full = branch(ring, start, "lam", 0.99, (0.9, 1.0), steps=steps)
+    monkeypatch.setattr(linear, "DENSE", 4)
+    thin = branch(ring, start, "lam", 0.99, (0.9, 1.0), steps=steps)
+
+    assert len(thin.points) == len(full.points)
+    for a, b in zip(thin.points, full.points, strict=True):
+        assert np.max(np.abs(a.z - b.z)) < 1e-10
+        assert a.tests["one"] == pytest.approx(b.tests["one"], rel=1e-9)
+        assert a.tests["minus_one"] == pytest.approx(b.tests["minus_one"], rel=1e-9)
 
 
 def test_a_dataset_labels_points_and_events_by_the_letter():

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.optimize import brentq
 
-from verification.continuation.linear import solved
+from verification.continuation.linear import above, solved
 from verification.continuation.recurrence import Array
 
 NEWTON = 9  # steps before a corrector gives up
@@ -95,9 +95,9 @@ def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[A
     z, before = guess.copy(), np.inf
     for count in range(1, NEWTON + 1):
         value, matrix = system.linear(z)
-        whole = np.vstack([matrix, row])
+        whole = above(matrix, row)
         right = np.append(value, row @ z - level)
-        if not (np.all(np.isfinite(whole)) and np.all(np.isfinite(right))):
+        if not (np.all(np.isfinite(getattr(whole, "data", whole))) and np.all(np.isfinite(right))):
             break
         if not np.any(right):
             return z, count  # exact, and perhaps a crossing of branches, where the matrix is singular
@@ -118,7 +118,7 @@ def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[A
 def tangent_at(system: System, z: Array, along: Array) -> Array:
     """The unit tangent at `z` that points the way of `along`."""
     _, matrix = system.linear(z)
-    found = solved(np.vstack([matrix, along * system.weights]), np.append(np.zeros(len(z) - 1), 1.0))
+    found = solved(above(matrix, along * system.weights), np.append(np.zeros(len(z) - 1), 1.0))
     length = float(np.sqrt(found @ (system.weights * found)))
     if not np.isfinite(length) or length == 0:
         raise LostError(f"{system.label}: the curve has no tangent there")

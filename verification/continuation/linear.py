@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from verification.continuation.recurrence import Array, Ends, Terms
@@ -22,14 +22,14 @@ def solved(matrix: Any, right: Array) -> Array:
     try:
         if matrix.shape[0] <= DENSE:
             return np.linalg.solve(matrix, right)
-        found: Array = splu(csc_matrix(matrix)).solve(right)
+        found: Array = splu(sparse.csc_matrix(matrix)).solve(right)
     except (np.linalg.LinAlgError, RuntimeError):
         raise ValueError("a singular matrix") from None
     return found
 
 
-def ring_matrix(terms: Terms, ends: Ends, sign: int = 1) -> Array:
-    """The linearised rules on vectors that come back multiplied by `sign`.
+def ring_matrix(terms: Terms, ends: Ends, sign: int = 1) -> Any:
+    """The linearised rules on vectors that come back multiplied by `sign`; sparse when it is large.
 
     >>> one = np.ones(3)
     >>> t = Terms(one, (one, 2 * one, 3 * one), {}, {}, {})
@@ -38,14 +38,35 @@ def ring_matrix(terms: Terms, ends: Ends, sign: int = 1) -> Array:
     """
     lower, diagonal, upper = terms.slope
     n = len(diagonal)
-    made = np.zeros((n, n))
     at = np.arange(n)
-    made[at, at] += diagonal
     back, forth = np.ones(n), np.ones(n)
     back[0] = forth[-1] = sign * ends.turn
-    np.add.at(made, (at, at - 1), lower * back)
-    np.add.at(made, (at, (at + 1) % n), upper * forth)
+    rows, columns = np.tile(at, 3), np.concatenate([at, (at - 1) % n, (at + 1) % n])
+    values = np.concatenate([diagonal, lower * back, upper * forth])
+    if n > DENSE:
+        return sparse.csc_matrix((values, (rows, columns)), shape=(n, n))
+    made = np.zeros((n, n))
+    np.add.at(made, (rows, columns), values)
     return made
+
+
+def beside(matrix: Any, column: Array) -> Any:
+    """A matrix with one column more."""
+    if sparse.issparse(matrix):
+        return sparse.hstack([matrix, column[:, None]], format="csc")
+    return np.hstack([matrix, column[:, None]])
+
+
+def above(matrix: Any, row: Array) -> Any:
+    """A matrix with one row more."""
+    if sparse.issparse(matrix):
+        return sparse.vstack([matrix, row[None, :]], format="csc")
+    return np.vstack([matrix, row])
+
+
+def dense(matrix: Any) -> Array:
+    """A matrix as an array."""
+    return np.asarray(matrix.toarray() if sparse.issparse(matrix) else matrix, dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -91,13 +112,13 @@ def spectrum(terms: Terms, ends: Ends) -> Spectrum:
     return Spectrum(at[0], at[1], float(np.prod(lower / upper)))
 
 
-def _determinant(matrix: Array) -> tuple[float, float]:
+def _determinant(matrix: Any) -> tuple[float, float]:
     """Sign and logarithm of a determinant."""
     if matrix.shape[0] <= DENSE:
         sign, log = np.linalg.slogdet(matrix)
         return float(sign), float(log)
     try:
-        factors = splu(csc_matrix(matrix))
+        factors = splu(sparse.csc_matrix(matrix))
     except RuntimeError:
         return 0.0, -np.inf
     diagonal = factors.U.diagonal()
@@ -115,10 +136,10 @@ def _parity(permutation: Array) -> int:
     return -1 if odd % 2 else 1
 
 
-def null_vectors(matrix: Array) -> tuple[Array, Array]:
+def null_vectors(matrix: Any) -> tuple[Array, Array]:
     """Right and left vectors of the smallest singular value, of root mean square 1."""
-    left, _, right = np.linalg.svd(matrix)
-    scale = np.sqrt(len(matrix))
+    left, _, right = np.linalg.svd(dense(matrix))
+    scale = np.sqrt(len(left))
     return right[-1] * scale, left[:, -1] * scale
 
 

@@ -12,7 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from verification.continuation.linear import Spectrum, along, null_vectors, ring_matrix, solved, spectrum
+from verification.continuation.linear import (
+    Spectrum,
+    along,
+    beside,
+    dense,
+    null_vectors,
+    ring_matrix,
+    solved,
+    spectrum,
+)
 from verification.continuation.normal import bend_of
 from verification.continuation.recurrence import Array, Letters, Recurrence, Terms
 from verification.shooting.problem import Kind
@@ -51,7 +60,7 @@ class Cycles:
         """The rules, and their derivatives by the bounces and the letter."""
         terms = self.terms(z)
         matrix = ring_matrix(terms, self.recurrence.ends)
-        return terms.value, np.hstack([matrix, terms.by[self.letter][:, None]])
+        return terms.value, beside(matrix, terms.by[self.letter])
 
     def spectrum(self, z: Array) -> Spectrum:
         """The multipliers, as three numbers."""
@@ -121,7 +130,7 @@ class Critical:
         """`v`, `w` and `g`."""
         n = self.recurrence.period
         whole = np.zeros((n + 1, n + 1))
-        whole[:n, :n] = self._matrix(terms)
+        whole[:n, :n] = dense(self._matrix(terms))
         whole[n, :n], whole[:n, n] = self.borders
         unit = np.append(np.zeros(n), 1.0)
         right, left = solved(whole, unit), solved(whole.T, unit)
@@ -134,7 +143,7 @@ class Critical:
         by_bounce, by_letter = along(terms, self.recurrence.ends, v, w, int(self.kind))
         n = self.recurrence.period
         matrix = np.zeros((n + 1, n + 2))
-        matrix[:n, :n] = ring_matrix(terms, self.recurrence.ends)
+        matrix[:n, :n] = dense(ring_matrix(terms, self.recurrence.ends))
         for j, name in enumerate(self.two):
             matrix[:n, n + j] = terms.by[name]
             matrix[n, n + j] = -by_letter[name]
@@ -158,5 +167,5 @@ class Critical:
         """Borders that fit the surroundings of `z`."""
         return self.bordered_at(z, self.borders)
 
-    def _matrix(self, terms: Terms) -> Array:
+    def _matrix(self, terms: Terms) -> Any:
         return ring_matrix(terms, self.recurrence.ends, int(self.kind))

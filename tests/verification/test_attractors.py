@@ -176,3 +176,10 @@ def test_the_command_tells_programs_what_it_tells_people(capsys):
 def test_the_circle_is_neutral_for_the_command_too(capsys):
     assert main(["attractor", "circle", "--lam", "0.5", "--orbits", "20", "--seed", "1"]) == 0
     assert "neutral, period 2" in capsys.readouterr().out
+
+
+def test_just_above_a_merging_every_image_is_merged():
+    """At 0.381 orbits change sides so seldom that one pair is not seen to; its images are, and join it."""
+    found = [a for a in find(an_egg("0.381"), 1500, 1, EGG) if a.kind is Kind.CHAOTIC]
+
+    assert [a.symmetry for a in found] == ["D1"] * 3

@@ -17,12 +17,12 @@ from numeric.sampling import interior_starts
 from symbolic.symmetry import group
 from symbolic.table import Table
 from verification.dynamics.clouds import gathered
-from verification.dynamics.kinds import Attractor, Kind, Share
+from verification.dynamics.kinds import Attractor, Kind, Share, wilson
 from verification.dynamics.places import Array, Places, places
 from verification.dynamics.recognition import UNSETTLED, Labels, at_clouds, at_cycles, recognised, same
 from verification.dynamics.symmetry import with_images
 
-__all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find"]
+__all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find", "wilson"]
 SAMPLE = 64  # balls looked at for new cycles
 ROUNDS = 6
 WATCHED = 100_000  # bounces, of all balls together, in which none leaves a chaotic attractor
@@ -212,15 +212,3 @@ def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
     root = np.sqrt(max(np.sum(good), 1))
     errors = float(np.std(plus) / root), float(np.std(minus) / root) if np.all(np.isfinite(minus)) else 0.0
     return replace(attractor, nu_plus=float(np.mean(plus)), nu_minus=float(np.mean(minus)), errors=errors)
-
-
-def wilson(count: int, of: int, z: float = 1.96) -> Share:
-    """The share with Wilson's interval, which never leaves 0 to 1 and is not empty at either.
-
-    >>> share = wilson(0, 100)
-    >>> share.low, round(share.high, 4)
-    (0.0, 0.037)
-    """
-    p, w = count / of, z * z / of
-    middle, half = (p + w / 2) / (1 + w), z * np.sqrt(p * (1 - p) / of + w / (4 * of)) / (1 + w)
-    return Share(count, of, float(middle - half) if count else 0.0, float(middle + half) if count < of else 1.0)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from math import sqrt
 
 from numeric import Status
 from verification.dynamics.places import Places
@@ -50,3 +51,15 @@ class Attractor:
     share: Share | None = None
     family: int = -1
     symmetry: str = ""
+
+
+def wilson(count: int, of: int, z: float = 1.96) -> Share:
+    """The share with Wilson's interval, which never leaves 0 to 1 and is not empty at either.
+
+    >>> share = wilson(0, 100)
+    >>> share.low, round(share.high, 4)
+    (0.0, 0.037)
+    """
+    p, w = count / of, z * z / of
+    middle, half = (p + w / 2) / (1 + w), z * sqrt(p * (1 - p) / of + w / (4 * of)) / (1 + w)
+    return Share(count, of, float(middle - half) if count else 0.0, float(middle + half) if count < of else 1.0)

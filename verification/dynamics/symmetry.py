@@ -7,9 +7,11 @@ import numpy as np
 
 from numeric import PinballMap
 from symbolic.symmetry import Symmetry
-from verification.dynamics.kinds import Attractor, Kind
-from verification.dynamics.places import Places
+from verification.dynamics.kinds import Attractor, Kind, wilson
+from verification.dynamics.places import Places, together
 from verification.dynamics.recognition import at_clouds, same
+
+PART = 0.1  # of an image's points
 
 
 def moved(symmetry: Symmetry, balls: Places) -> Places:
@@ -31,7 +33,7 @@ def moved(symmetry: Symmetry, balls: Places) -> Places:
 
 def with_images(map: PinballMap, attractors: Sequence[Attractor], group: Sequence[Symmetry]) -> list[Attractor]:
     """The attractors with their families and stabilisers; images that were missing come last."""
-    found = [replace(a, family=-1) for a in attractors]
+    found = [replace(a, family=-1) for a in united(map, attractors, group)]
     at = families = 0
     while at < len(found):
         if found[at].family < 0:
@@ -39,6 +41,33 @@ def with_images(map: PinballMap, attractors: Sequence[Attractor], group: Sequenc
             families += 1
         at += 1
     return found
+
+
+def united(map: PinballMap, attractors: Sequence[Attractor], group: Sequence[Symmetry]) -> list[Attractor]:
+    """The attractors, with chaotic ones made one when an image of a third lies on both.
+
+    Just above a crisis that merges mirror images orbits change sides so seldom that one pair is seen to be one
+    set and its image is not.
+    """
+    spread = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
+    leader = {i: i for i in spread}
+    for i in spread:
+        for symmetry in group:
+            label = at_clouds(map, moved(symmetry, attractors[i].points), attractors)
+            counts = np.bincount(label[label >= 0], minlength=len(attractors))
+            shared = [j for j in spread if counts[j] > PART * label.size]
+            least = min((leader[j] for j in shared), default=i)
+            merged = {leader[j] for j in shared}
+            leader = {j: least if old in merged else old for j, old in leader.items()}
+    return [_one(attractors, i, leader) for i in range(len(attractors)) if leader.get(i, i) == i]
+
+
+def _one(attractors: Sequence[Attractor], at: int, leader: dict[int, int]) -> Attractor:
+    """An attractor together with those that it leads."""
+    parts = [attractors[j] for j, first in leader.items() if first == at] or [attractors[at]]
+    shares = [a.share for a in parts if a.share]
+    share = wilson(sum(x.count for x in shares), shares[0].of) if shares else None
+    return replace(parts[0], points=together(*(a.points for a in parts)), share=share)
 
 
 def _join(map: PinballMap, found: list[Attractor], at: int, family: int, group: Sequence[Symmetry]) -> None:

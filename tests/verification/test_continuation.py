@@ -91,6 +91,19 @@ def test_the_cascades_of_published_maps_are_found(ring, start, letter, value, in
     assert abs(found[0].value - (3 if letter == "r" else 3 * (1 - 0.3) ** 2 / 4)) < 1e-12
 
 
+def test_no_pitchfork_is_lost_where_the_whole_ring_is_singular():
+    """There the corrector of the whole ring failed and the event was left out; half of the cycle is regular."""
+    one = branch(Chords(egg(5).at(alpha="53/2000"), (0, 0)), np.array([0.0, pi]), "lam", 0.0, (0.0, 1.0))
+    (four,) = switched(one, one.events[0], (0.0, 1.0))
+    (pitchfork,) = four.events
+    proof = proof_of(pitchfork, 20)
+
+    assert pitchfork.what is What.PITCHFORK
+    assert pitchfork.located
+    assert proof.certified
+    assert abs(float(proof.value.mid()) - pitchfork.value) < 1e-12
+
+
 def test_henons_second_doubling_has_a_closed_form():
     """On the 2-cycle `x1 + x2 = (1-b)/a` and `a**2*x1*x2 = (1-b)**2 - a`; `tr M = 4*a**2*x1*x2 + 2*b = -1 - b**2`."""
     for b in (0.0, 0.2, 0.3):

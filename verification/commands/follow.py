@@ -147,6 +147,7 @@ def noted(event: Any, proof: dict[str, Any] | None) -> dict[str, Any]:
     return {
         "event": event.what.value,
         "lam": event.value,
+        "located": event.located,
         "theta": [float(x) for x in event.point.z[:-1]],
         "branch_coefficient": form.branch if form else None,
         "supercritical": form.supercritical if form else None,

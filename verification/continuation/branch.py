@@ -12,7 +12,7 @@ Each event is a zero of a test function between two points, located on the curve
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import pairwise
 
@@ -48,7 +48,8 @@ class What(Enum):
 class Event:
     """What happens, where, and the coefficients of its normal form where there is one.
 
-    `ring` and `x` are the cycle, or the part of it that flips where a symmetry breaks.
+    `ring` and `x` are the cycle, or the part of it that flips where a symmetry breaks. When it is not `located` its
+    place is interpolated between two points.
     """
 
     what: What
@@ -56,6 +57,7 @@ class Event:
     ring: Recurrence
     x: Array = field(repr=False)
     form: Coefficients | None = None
+    located: bool = True
 
     @property
     def value(self) -> float:
@@ -182,14 +184,21 @@ def between(system: Cycles, a: Point, b: Point) -> list[Event]:
     for name in ("one", "minus_one", "volume"):
         before, after = a.tests[name], b.tests[name]
         if before * after < 0 and min(abs(before), abs(after)) > NOISE:
-            try:
-                point = arc.zero(system, a, b, name)
-            except ValueError:
-                continue  # the corrector was lost between the two: no value to state
             turns = a.tangent[-1] * b.tangent[-1] < 0
             broken = _broken(system, a, b) if name == "one" and not turns else None
-            found.append(broken or _named(system, name, point, turns))
+            found.append(broken or _located(system, a, b, name, turns))
     return sorted(found, key=lambda event: event.point.s)
+
+
+def _located(system: Cycles, a: Point, b: Point, name: str, turns: bool) -> Event:
+    """The event at the zero of a test function; where branches cross the corrector may be lost, and it is estimated."""
+    try:
+        return _named(system, name, arc.zero(system, a, b, name), turns)
+    except ValueError:
+        share = a.tests[name] / (a.tests[name] - b.tests[name])
+        z = a.z + share * (b.z - a.z)
+        point = Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z))
+        return replace(_named(system, name, point, turns), located=False, form=None)
 
 
 def _broken(system: Cycles, a: Point, b: Point) -> Event | None:

@@ -7,6 +7,8 @@ ball computed from it would not contain the true value. Integer powers become pr
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
+from types import CodeType
 from typing import Any
 
 from sympy import Expr, S, Symbol, cse, numbered_symbols
@@ -65,6 +67,18 @@ def kernel(
     return Kernel(name, tuple(str(a) for a in arguments), tuple(values), tuple(sorted(words)), text)
 
 
+@cache
+def constant(value: Expr) -> Kernel:
+    """An exact number as a function of no arguments, made once however often it is asked for.
+
+    >>> from fractions import Fraction
+    >>> from sympy import Rational
+    >>> load(constant(Rational(1, 3)), {"q": Fraction})()
+    (Fraction(1, 3),)
+    """
+    return kernel("constant", [], {"value": value})
+
+
 def load(kernel: Kernel, arithmetic: Mapping[str, Any]) -> Callable[..., Any]:
     """The function of a kernel over one kind of number: `arithmetic` gives each word its meaning.
 
@@ -79,9 +93,15 @@ def load(kernel: Kernel, arithmetic: Mapping[str, Any]) -> Callable[..., Any]:
     if missing:
         raise ValueError(f"{kernel.name}: this arithmetic has no {', '.join(missing)}; it has {', '.join(arithmetic)}")
     scope: dict[str, Any] = {"__builtins__": {}} | {word: arithmetic[word] for word in kernel.words}
-    exec(compile(kernel.text, f"<kernel {kernel.name}>", "exec"), scope)  # noqa: S102
+    exec(compiled(kernel.text, kernel.name), scope)  # noqa: S102
     function: Callable[..., Any] = scope[kernel.name]
     return function
+
+
+@cache
+def compiled(text: str, name: str) -> CodeType:
+    """The bytecode of a kernel's text, made once: it takes longer than most kernels run."""
+    return compile(text, f"<kernel {name}>", "exec")
 
 
 def module_text(kernels: Iterable[Kernel], source: str) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 from sympy import Expr, simplify
 
 from symbolic.chords import chord_kernel
-from symbolic.codegen import kernel, load
+from symbolic.codegen import constant, load
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
 from verification.arithmetic import Arithmetic
@@ -120,7 +120,7 @@ class Rows:
         lam = self.problem.lam
         if lam is None:
             return z[-1]
-        return load(kernel("lam", [], {"lam": lam}), self.arithmetic)()[0] if isinstance(lam, Expr) else lam
+        return load(constant(lam), self.arithmetic)()[0] if isinstance(lam, Expr) else lam
 
     def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
         """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""

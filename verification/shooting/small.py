@@ -10,7 +10,7 @@ from typing import Any
 from sympy import Expr, pi
 
 from symbolic.chords import chord_kernel
-from symbolic.codegen import kernel, load
+from symbolic.codegen import constant, load
 from symbolic.tables import cuspless, egg
 from verification.arithmetic import Arithmetic
 from verification.shooting.chain import Vector
@@ -91,7 +91,7 @@ def corner() -> Small:
 
 def corner_parameter(arithmetic: Arithmetic) -> Any:
     """`2*pi/3`, the parameter of the upper corner on the arc."""
-    return load(kernel("corner", [], {"corner": 2 * pi / 3}), arithmetic)()[0]
+    return load(constant(2 * pi / 3), arithmetic)()[0]
 
 
 def corner_angle(arithmetic: Arithmetic, theta1: Any) -> Any:
@@ -107,7 +107,7 @@ def focus(lam: Expr, K: int = 3) -> Small:
 
     def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
         first, second, alpha = z
-        contraction = load(kernel("lam", [], {"lam": lam}), arithmetic)()[0]
+        contraction = load(constant(lam), arithmetic)()[0]
         angle = load(chord_kernel(egg(K), 0, 0, 1), arithmetic)
         forth, back = angle(first, second, alpha), angle(second, first, alpha)
         rules = [(1 + contraction) * f[0] for f in (forth, back)]

@@ -6,7 +6,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test browser lint docs bench clean
+.PHONY: verify test browser lint docs dist bench clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -31,6 +31,14 @@ lint: $(VENV)/test.stamp
 docs: $(VENV)/docs.stamp
 	$(BIN)/sphinx-build -q -W -b html docs docs/_build
 
+# The wheel, installed by itself in an empty environment, and not the checkout, must answer.
+dist: $(VENV)/dist.stamp
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist .
+	$(PYTHON) -m venv --clear dist/try
+	dist/try/bin/python -m pip install --quiet dist/*.whl
+	cd dist/try && bin/pinball locate lambda-c --digits 20 && bin/pinball verify --only 'circle.*' --report report
+
 bench: $(VENV)/bench.stamp
 	$(BIN)/pinball bench
 
@@ -43,6 +51,7 @@ $(VENV)/main.stamp: extras := [plot,sweep]
 $(VENV)/test.stamp: extras := [test]
 $(VENV)/bench.stamp: extras := [bench]
 $(VENV)/docs.stamp: extras := [docs,plot,sweep]
+$(VENV)/dist.stamp: extras := [dist]
 $(VENV)/browser.stamp: extras := [browser]
 
 $(VENV)/%.stamp: pyproject.toml $(VENV)/made.stamp

@@ -40,14 +40,14 @@ def summary(results: Sequence["Result"]) -> str:
 
 
 def made_with() -> dict[str, str]:
-    """The versions that a result depends on, and the type of machine."""
+    """The versions that a result depends on, the type of machine, and the seed of everything that is drawn at random."""
     found = {"python": platform.python_version()}
     for package in ("sympy", "mpmath", "gmpy2", "python-flint", "numpy"):
         try:
             found[package] = version(package)
         except PackageNotFoundError:
             found[package] = "not installed"
-    return found | {"machine": platform.machine() or "unknown"}
+    return found | {"machine": platform.machine() or "unknown", "seed": "1"}
 
 
 def by_section(results: Iterable["Result"]) -> list[tuple[str, list["Result"]]]:

@@ -11,6 +11,7 @@ from numeric import PinballMap
 from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.all_cycles.cells import fixed_points
 from verification.all_cycles.exclusion import no_others
+from verification.all_cycles.newton import Corrector
 from verification.all_cycles.search import all_cycles
 from verification.certificates.slap import periodic_points
 from verification.commands.cycles import command as cycles
@@ -118,6 +119,20 @@ def test_a_count_on_cells_is_refused_for_a_table_with_joins():
 
     assert isinstance(result.exception, ValueError)
     assert "not convex and smooth" in str(result.exception)
+
+
+def test_deflation_leads_away_from_known_cycles():
+    """Seeds around the minor axis lead to it; with it known, whatever is reached is something else."""
+    corrector, rng = Corrector(ellipse.at(a="3/2"), 0.5), np.random.default_rng(3)
+    minor = np.array([[np.pi / 2, -np.pi / 2], [-np.pi / 2, np.pi / 2]])
+    seeds = minor[0] + rng.uniform(-0.4, 0.4, (200, 2))
+    plain = corrector.closed((0, 0), seeds)
+    deflated = corrector.closed((0, 0), seeds, minor)
+
+    assert np.max(np.abs(np.cos(plain))) < 1e-9
+    assert len(plain) == 200
+    assert len(deflated) > 0
+    assert np.max(np.abs(np.sin(deflated))) < 1e-9  # the major axis, the only other one
 
 
 def test_families_of_cycles_are_said_to_be_there_and_not_listed():

@@ -72,6 +72,11 @@ class Catalogue:
         """The cycles whose bounces are fixed points of `T**n`."""
         return (cycle for cycle in self.cycles if n % cycle.period == 0)
 
+    def rows(self, n: int) -> Array:
+        """The cycles that close after `n` bounces, a row of parameters for each bounce they can be begun with."""
+        rows = [np.roll(np.tile(c.theta, n // c.period), -k) for c in self.of(n) for k in range(c.period)]
+        return np.array(rows).reshape(len(rows), n)
+
     def count(self, n: int) -> int:
         """The number of cycles of minimal period `n`."""
         return sum(1 for cycle in self.cycles if cycle.period == n)

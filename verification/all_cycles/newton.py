@@ -33,8 +33,11 @@ class Corrector:
             self.loaded[here, there] = load(chord_kernel(self.table, here, there, 1), ARRAYS)
         return self.loaded[here, there]
 
-    def closed(self, components: tuple[int, ...], seeds: Array) -> Array:
+    def closed(self, components: tuple[int, ...], seeds: Array, known: Array | None = None) -> Array:
         """The cycles that Newton's method reaches from the rows of `seeds`; rows that do not settle are dropped.
+
+        With `known` rows the equations are deflated: multiplied by `1 + 1/distance**2` for each of them, so that
+        those cycles are zeros no more and a seed next to one is driven on to another (Farrell, Birkisson and Funke).
 
         >>> from symbolic.tables import ellipse
         >>> axes = Corrector(ellipse.at(a=2), 0.5).closed((0, 0), np.array([[1.4, -1.6], [0.1, 3.0]]))
@@ -49,6 +52,8 @@ class Corrector:
                 if not np.any(active):
                     break
                 step = self._correction(components, x[active])
+                if known is not None and len(known):
+                    step = step * deflation(x[active], step, known)[:, None]
                 size = np.max(np.abs(step), axis=1)
                 reach = np.minimum(1.0, REACH / np.maximum(size, 1e-300))
                 x[active] -= reach[:, None] * step
@@ -91,3 +96,19 @@ class Corrector:
         n = len(components)
         columns = [self.angle(components[i], components[(i + 1) % n])(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
         return np.stack(columns, axis=1)
+
+
+def deflation(x: Array, step: Array, known: Array) -> Array:
+    """What each Newton step is multiplied by when the known zeros are divided out, on a closed boundary.
+
+    Half way to a zero that is known, Newton's own step would get there; the deflated one turns back.
+
+    >>> bool(deflation(np.array([[0.1, 0.1]]), np.array([[0.1, 0.1]]), np.zeros((1, 2)))[0] < 0)
+    True
+    """
+    slope = np.zeros(len(x))
+    for row in known:
+        gap = x - row
+        squared = np.sum(4 * np.sin(gap / 2) ** 2, axis=1)
+        slope -= np.sum(2 * np.sin(gap) * step, axis=1) / (squared * (squared + 1) + 1e-300)
+    return np.asarray(1 / (1 + slope), dtype=np.float64)

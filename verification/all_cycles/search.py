@@ -2,7 +2,8 @@
 
 Starts are spread over the phase space; segments of their orbits that come back near where they began
 are the seeds, those next to the start (where unstable cycles still show) as much as those on attractors.
-Rounds go on until several in a row bring nothing new and, on a convex table, the index sums vanish.
+A round without news is followed by one with the known cycles deflated. Rounds go on until several in a row bring
+nothing new and, on a convex table, the index sums vanish.
 A search of this kind finds cycles, it does not prove that it found all: see `exclusion` for what is proved.
 """
 
@@ -25,6 +26,7 @@ from verification.continuation.symmetry import symmetries
 BALLS = 4000  # starts of a round
 NEAR = 1.2  # radians between a bounce and its return, at most, for a seed
 SEEDS = 1200  # of one period and round
+DEFLATED = 200  # known rows beyond which deflation costs more than further rounds
 QUIET = 3  # rounds without news before the search rests
 ROUNDS = 40
 Tick = Callable[[str], None]
@@ -64,7 +66,7 @@ def all_cycles(table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick 
         for n in quiet:
             if quiet[n] >= QUIET and not (whole and any(catalogue.index_sums(n).values())):
                 continue
-            news = _harvest(map, corrector, catalogue, rng, (parts, theta, phi), n)
+            news = _harvest(map, corrector, catalogue, rng, (parts, theta, phi), n, deflated=quiet[n] > 0)
             quiet[n] = 0 if news else quiet[n] + 1
         rounds += 1
         tick(f"{len(catalogue.cycles)} cycles")
@@ -92,8 +94,9 @@ def _harvest(
     rng: np.random.Generator,
     orbits: Orbits,
     n: int,
+    deflated: bool,
 ) -> int:
-    """The number of new cycles that segments of `n` bounces lead to."""
+    """The number of new cycles that segments of `n` bounces lead to; `deflated`, away from those already known."""
     parts, theta, phi = orbits
     starts = theta.shape[0] - n
     gap = np.abs(np.sin((theta[n:] - theta[:starts]) / 2)) * 2
@@ -105,9 +108,12 @@ def _harvest(
     rows = begin[:, None] + np.arange(n)
     seeds, visited = theta[rows, ball[:, None]], parts[rows, ball[:, None]]
     before = len(catalogue.cycles)
+    known = catalogue.rows(n) if deflated and len(catalogue.table.components) == 1 else None
+    if known is not None and len(known) > DEFLATED:
+        known = None
     for itinerary in sorted({tuple(int(c) for c in row) for row in visited}):
         own = np.all(visited == np.array(itinerary), axis=1)
-        closed = corrector.closed(itinerary, seeds[own])
+        closed = corrector.closed(itinerary, seeds[own], known)
         for x, out in _admitted(map, itinerary, closed, corrector):
             _file(catalogue, itinerary, x, out)
     return len(catalogue.cycles) - before

@@ -136,7 +136,7 @@ def test_the_four_files_are_written_and_nothing_else(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "report.json", "report.md", "report.tex"]
     written = json.loads((tmp_path / "report.json").read_text())
     assert written["schema"] == 1
-    assert set(written["made_with"]) == {"python", "sympy", "mpmath", "python-flint", "numpy", "machine", "seed"}
+    assert {"python", "sympy", "mpmath", "python-flint", "numpy", "machine", "seed"} <= set(written["made_with"])
 
 
 def test_a_write_that_fails_leaves_the_old_text(tmp_path, monkeypatch):

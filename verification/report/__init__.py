@@ -40,7 +40,7 @@ def summary(results: Sequence["Result"]) -> str:
 
 
 def made_with() -> dict[str, str]:
-    """The versions that a result depends on, the type of machine, and the seed of everything that is drawn at random."""
+    """The versions that a result depends on, the type of machine, and the seed of all that is drawn at random."""
     found = {"python": platform.python_version()}
     for package in ("sympy", "mpmath", "gmpy2", "python-flint", "numpy"):
         try:

@@ -213,7 +213,7 @@ def symmetry_breaking(digits: int, alpha: Expr) -> Found:
 
 def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch. Not proved. Paper: section 6.7."""
-    from verification.manifolds.located import crisis, decimals  # NumPy, which no other name needs
+    from verification.manifolds.located import crisis, decimals, proof  # NumPy, which no other name needs
 
     found = crisis(kind, alpha, digits)
     stable, unstable = found.touch.multipliers[:2]
@@ -232,7 +232,11 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     with working(bits_of(digits, 100)):
         ball = arb(value, error)
     checks: Checks = {"shadowing_fold": proved_fold or None, "two_methods_agree": found.agrees or None}
-    checks |= {"tangency": None, "is_the_crisis": None}
+    tangency = proof(found, alpha, digits + 2)
+    held = True if tangency is not None and ball.contains(tangency.letter) else None
+    checks |= {"tangency": held, "quadratic": held, "transversal": held, "is_the_crisis": None}
+    if held:
+        notes["proved"] = f"the two manifolds touch, within {error} of the value; that the attractor ends there is not"
     return Found(ball, checks, None, notes)
 
 

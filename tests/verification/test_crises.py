@@ -99,7 +99,10 @@ def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_si
 def test_a_located_crisis_names_its_mechanism_and_what_is_not_proved():
     found = egg_crisis("boundary", 8, SHAPE)
 
-    assert found.checks == {"shadowing_fold": True, "two_methods_agree": True, "tangency": None, "is_the_crisis": None}
+    assert found.checks.pop("is_the_crisis") is None
+    assert found.checks == dict.fromkeys(
+        ("shadowing_fold", "two_methods_agree", "tangency", "quadratic", "transversal"), True
+    )
     assert "triangle" in found.notes["mechanism"]
     assert found.ball.overlaps(arb("0.66214427335822441948"))  # the tangency to twenty digits
 

@@ -12,7 +12,9 @@ from typing import Any
 import mpmath
 from sympy import Expr
 
+from verification.manifolds.enclosed import TooWideError
 from verification.manifolds.known import contact, table
+from verification.manifolds.proof import LEAST_DIGITS, Proof, tangency_proved
 from verification.manifolds.shadows import Shadow, shadow
 from verification.manifolds.tangency import Touch, tangency
 from verification.shooting.newton import refined
@@ -41,7 +43,7 @@ class Crisis:
     @property
     def agrees(self) -> bool:
         """Do the two methods agree within their errors?"""
-        return self.apart <= 10 * self.touch.error
+        return self.apart <= 10 * self.touch.error + float(self.error)
 
     @property
     def exponent(self) -> float:
@@ -90,6 +92,22 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     short, letter = found
     error = abs(context.mpf(letter) - context.mpf(short)) + context.mpf(10) ** -(digits + 2)
     return Crisis(kind, context.mpf(letter), error, touch, float(abs(context.mpf(touch.letter) - letter)), cycle)
+
+
+def proof(found: Crisis, alpha: Expr, digits: int) -> Proof | None:
+    """The proof in balls that there is a tangency within `10**-digits` or less of the value; None where there is none.
+
+    It proves the contact of the manifolds, and not that the attractor ends there.
+    """
+    digits, map = max(LEAST_DIGITS, digits), table(alpha)
+    rounds = math.ceil((digits + 10) * math.log(10) / math.log(abs(found.touch.multipliers[1])))
+    cycle = shadow(found.touch.contact, map, float(found.touch.letter), rounds)
+    try:
+        value = refined(cycle.problem, cycle.start, digits + 8).z[-1]
+        made = tangency_proved(found.touch.contact, map, str(value), digits)
+    except TooWideError:
+        return None
+    return made if all(made.checks.values()) else None
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

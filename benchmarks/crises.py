@@ -1,0 +1,81 @@
+"""What a crisis costs: `python benchmarks/crises.py [--scaling]`, from the repository's root.
+
+Each crisis by sampling, by its manifolds and by the cycles that shadow it: seconds, the error against the
+value with 60 digits, and the time in units of the sampling's. `--scaling` adds the mean stay above the two
+crises of the paper at many distances, with the fitted power, some minutes.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import mpmath
+import numpy as np
+from rich.console import Console
+from rich.table import Table as Shown
+
+from verification import crises
+from verification.manifolds.known import CONTACTS, SHAPE, contact, table
+from verification.manifolds.located import crisis
+from verification.manifolds.shadows import shadow
+from verification.manifolds.tangency import tangency
+from verification.shooting.newton import refined
+
+DISTANCES = {"merging": np.geomspace(3e-3, 3e-7, 61), "boundary": np.geomspace(4e-3, 8e-5, 38)}
+
+
+def timed(work: Callable[[], Any]) -> tuple[float, Any]:
+    """Processor seconds, and the result."""
+    start = time.process_time()
+    result = work()
+    return time.process_time() - start, result
+
+
+def by_cycle(kind: str, digits: int) -> Any:
+    """The fold of a cycle long enough for `digits` digits."""
+    where, map = contact(kind, SHAPE), table(SHAPE)
+    unstable = abs(tangency(where, map, 8).multipliers[1])
+    cycle = shadow(where, map, where.letter, int((digits + 2) * np.log(10) / np.log(unstable)) + 1)
+    return refined(cycle.problem, cycle.start, digits).z[-1]
+
+
+def values() -> Shown:
+    """The table of methods."""
+    shown = Shown("crisis", "method", "seconds", "error", "of the sampling's time")
+    for kind in CONTACTS:
+        true = crisis(kind, SHAPE, 60).letter
+        rows: list[tuple[str, float, Any]] = []
+        if kind in crises.KINDS:
+            rows.append(("sampling", *timed(lambda k=kind: crises.crisis(k, "0.08", 2e-6, 10**7).lam)))
+        rows.append(("manifolds, float64", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 10).letter)))
+        rows.append(
+            ("manifolds, 20 digits", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 20).letter))
+        )
+        for digits in (20, 50, 200):
+            rows.append((f"cycle, {digits} digits", *timed(lambda k=kind, d=digits: by_cycle(k, d))))
+        base = rows[0][1]
+        for name, seconds, value in rows:
+            error = mpmath.nstr(abs(mpmath.mpf(1) * (true.context.mpf(value) - true)), 2)
+            shown.add_row(kind, name, f"{seconds:.2f}", error, f"{seconds / base:.2f}" if kind in crises.KINDS else "")
+    return shown
+
+
+def scalings() -> Shown:
+    """The fitted powers beside those of the multipliers."""
+    shown = Shown("crisis", "distances", "fitted exponent", "in the limit", "after 1, 2, ... passes of the saddle")
+    for kind, distances in DISTANCES.items():
+        found = crises.scaling(kind, "0.08", contact(kind, SHAPE).letter, distances, 2 * 10**9)
+        at = crisis(kind, SHAPE, 8)
+        q = abs(np.log(abs(at.touch.multipliers[0]))) / np.log(abs(at.touch.multipliers[1]))
+        partial = ", ".join(f"{0.5 * sum(q**-j for j in range(k)):.2f}" for k in range(1, 8))
+        fitted = f"{found.exponent:.2f} +- {found.error:.2f}"
+        shown.add_row(kind, f"{distances[-1]:.0e} to {distances[0]:.0e}", fitted, f"{at.exponent:.3f}", partial)
+    return shown
+
+
+if __name__ == "__main__":
+    console = Console()
+    console.print(values())
+    if "--scaling" in sys.argv:
+        console.print(scalings())

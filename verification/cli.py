@@ -28,6 +28,7 @@ COMMANDS = {
     "figure": "One of the paper's figures, or the data behind it.",
     "explore": "A live table on a page of this machine.",
     "bench": "Error against run time, for every arithmetic and every kernel.",
+    "work": "Error against run time for a whole question, as a diagram.",
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 LONGEST = 600  # characters of a sentence; a reader sees the end of it

@@ -1,0 +1,316 @@
+"""The ways that readers of the paper would write first: brentq, numpy.roots, lambdify, differences, single shooting.
+
+Plain SciPy and NumPy in float64, no tricks, one function for each way; `map` is a compiled map with `step` and `orbit`,
+so that what is compared is the way and not the step. They are the baselines of `pinball work`, and agree with it as
+far as float64 lets them.
+"""
+
+import math
+
+import mpmath
+import numpy as np
+from scipy.integrate import cumulative_trapezoid, quad
+from scipy.optimize import brentq, minimize_scalar
+from sympy import lambdify
+
+# ---- one bounce
+
+
+def egg_by_brentq(component, theta, phi, lam, alpha, xtol):
+    """One bounce on the egg: `brentq` for the length of the flight, inside and outside told by the radius."""
+
+    def tangent(at):
+        r, d = 1 + alpha * math.cos(3 * at), -3 * alpha * math.sin(3 * at)
+        return math.atan2(d * math.sin(at) + r * math.cos(at), d * math.cos(at) - r * math.sin(at))
+
+    r = 1 + alpha * math.cos(3 * theta)
+    x, y = r * math.cos(theta), r * math.sin(theta)
+    direction = tangent(theta) + math.pi / 2 - phi
+    vx, vy = math.cos(direction), math.sin(direction)
+
+    def outside(t):
+        px, py = x + t * vx, y + t * vy
+        return math.hypot(px, py) - 1 - alpha * math.cos(3 * math.atan2(py, px))
+
+    t = brentq(outside, 1e-3, 3.0, xtol=xtol, rtol=4 * np.finfo(float).eps)
+    at = math.atan2(y + t * vy, x + t * vx)
+    eta = math.remainder(tangent(at) - direction - math.pi / 2, 2 * math.pi)
+    return 0, at, -lam * eta
+
+
+# ---- its derivative
+
+
+def moved(step, speed, ball, ds, dphi):
+    """Arc length (to first order about the landing) and exit angle after a step from a neighbour."""
+    zero = np.zeros(1, dtype=int)
+    theta = ball[0] + ds / float(speed(zero, np.array([ball[0]]))[0])
+    landed = step(theta, ball[1] + dphi)
+    return float(landed.theta), float(landed.phi)
+
+
+def differences(step, speed, ball, one, other):
+    """The matrix from the differences of neighbours, each given as a factor of `(ds, dphi)`."""
+    columns = []
+    here = step(*ball)
+    rate = float(speed(np.zeros(1, dtype=int), np.array([float(here.theta)]))[0])
+    for ds, dphi in ((1, 0), (0, 1)):
+        a, b = (moved(step, speed, ball, h * ds, h * dphi) for h in (one, other))
+        columns.append([math.remainder(a[0] - b[0], 2 * math.pi) * rate / (one - other), (a[1] - b[1]) / (one - other)])
+    (ss, ps), (sp, pp) = columns
+    return ss, sp, ps, pp
+
+
+def forward(step, speed, ball, h):
+    """Forward differences."""
+    return differences(step, speed, ball, h, 0.0)
+
+
+def central(step, speed, ball, h):
+    """Central differences."""
+    return differences(step, speed, ball, h, -h)
+
+
+class Lambdified:
+    """`sympy.lambdify` of the chord's angle and of the matrix; `brentq` for the landing."""
+
+    def __init__(self, ends, angle, entries):
+        self.angle = lambdify(ends, angle, "math", cse=True)
+        self.entries = lambdify(ends, entries, "math", cse=True)
+
+    def __call__(self, theta, phi):
+        near = 1e-3
+        landing = brentq(lambda at: self.angle(theta, at) - phi, theta + near, theta + 2 * math.pi - near, xtol=4e-15)
+        return self.entries(theta, landing)
+
+
+# ---- cycles
+
+
+def iterated(map, theta, phi, bounces):
+    """The end of an orbit."""
+    orbit = map.orbit(theta, phi, bounces)
+    return float(orbit.theta[-1]), float(orbit.phi[-1])
+
+
+def shooting(map, start, period, xtol, h=1e-7, most=25):
+    """Single shooting: Newton's method on `T^n(x) - x` with its Jacobian by forward differences."""
+    x = np.array(start, dtype=float)
+
+    def gap(at):
+        theta, phi = iterated(map, *at, period)
+        return np.array([math.remainder(theta - at[0], 2 * math.pi), phi - at[1]])
+
+    for _ in range(most):
+        value = gap(x)
+        slope = np.stack([(gap(x + e) - value) / h for e in h * np.eye(2)], -1)
+        move = np.linalg.solve(slope, value)
+        x = x - move
+        if not np.all(np.isfinite(x)) or abs(x[1]) >= math.pi / 2:
+            break
+        if np.max(np.abs(move)) < xtol:
+            return x
+    raise ValueError(f"single shooting did not come to rest within {xtol:g}")
+
+
+# ---- bifurcations
+
+
+def largest_multiplier(map, x, period, h=1e-6):
+    """The multiplier of largest modulus, from central differences of the iterated map."""
+    columns = []
+    for e in h * np.eye(2):
+        a, b = iterated(map, *(x + e), period), iterated(map, *(x - e), period)
+        columns.append([math.remainder(a[0] - b[0], 2 * math.pi) / (2 * h), (a[1] - b[1]) / (2 * h)])
+    values = np.linalg.eigvals(np.array(columns).T)
+    return values[np.argmax(np.abs(values))]
+
+
+def flip(map_at, start, period, low, high, xtol):
+    """Where the multiplier of a followed cycle is -1: `brentq` over the contraction, shooting within."""
+
+    def over(lam):
+        map = map_at(lam)
+        x = shooting(map, start, period, 1e-9)
+        return (1 + largest_multiplier(map, x, period)).real
+
+    return brentq(over, low, high, xtol=xtol)
+
+
+def period_of(map, start, bounces, longest, same=1e-6):
+    """The period of the cycle that a ball has settled on after so many bounces."""
+    theta, phi = iterated(map, *start, bounces)
+    orbit = map.orbit(theta, phi, longest)
+    for period in range(1, longest + 1):
+        if math.hypot(math.remainder(float(orbit.theta[period]) - theta, 2 * math.pi), orbit.phi[period] - phi) < same:
+            return period
+    return longest + 1
+
+
+def doubling_seen(map_at, start, period, low, high, bounces):
+    """Where a settled ball's period first exceeds `period`: bisection, as one reads it off a diagram."""
+    while high - low > 1e-12:
+        middle = (low + high) / 2
+        if period_of(map_at(middle), start, bounces, 2 * period) > period:
+            high = middle
+        else:
+            low = middle
+    return (low + high) / 2
+
+
+def fold_seen(map_at, start, period, low, high, xtol):
+    """Where shooting no longer finds the cycle, walking from above: bisection on success."""
+    x = np.array(start, dtype=float)
+    while high - low > xtol:
+        middle = (low + high) / 2
+        try:
+            found = shooting(map_at(middle), x, period, 1e-9)
+        except (ValueError, np.linalg.LinAlgError):
+            low = middle
+            continue
+        if abs(math.remainder(found[0] - x[0], 2 * math.pi)) > 0.3:
+            low = middle
+        else:
+            high, x = middle, found
+    return (low + high) / 2
+
+
+def corner_by_brentq(xtol):
+    """`lambda*`: for each contraction the ball from the corner is followed for two bounces on the cardioid's arc."""
+    join = 2 * math.pi / 3
+
+    def point(at):
+        r = 1 + math.cos(at)
+        return r * math.cos(at), r * math.sin(at)
+
+    def angle(here, there):
+        (x0, y0), (x1, y1) = point(here), point(there)
+        direction = math.atan2(y1 - y0, x1 - x0)
+        return math.remainder(1.5 * here + math.pi - direction, 2 * math.pi)
+
+    def landing(lam):
+        return brentq(lambda at: angle(join, at) + lam * angle(join, -at), 0.01, 1.0, xtol=xtol)
+
+    def missed(lam):
+        at = landing(lam)
+        return angle(at, -join) + lam * angle(at, join)
+
+    return brentq(missed, 0.02, 0.2, xtol=xtol)
+
+
+def corner_by_findroot(digits):
+    """The same two equations by `mpmath.findroot`, whose Jacobian is made of differences."""
+    context = mpmath.MPContext()
+    context.dps = digits + 5
+    join = 2 * context.pi / 3
+
+    def angle(here, there):
+        (x0, y0), (x1, y1) = (
+            ((1 + context.cos(a)) * context.cos(a), (1 + context.cos(a)) * context.sin(a)) for a in (here, there)
+        )
+        direction = context.atan2(y1 - y0, x1 - x0)
+        turned = 3 * here / 2 + context.pi - direction
+        return turned - 2 * context.pi * context.nint(turned / (2 * context.pi))
+
+    def equations(at, lam):
+        return angle(join, at) + lam * angle(join, -at), angle(at, -join) + lam * angle(at, join)
+
+    return context.findroot(
+        equations, (context.mpf("0.254"), context.mpf("0.071")), tol=context.mpf(10) ** (-2 * digits)
+    )[1]
+
+
+# ---- exponents
+
+
+def two_balls(step, ball, bounces, apart=1e-8):
+    """The largest exponent from a neighbour that is brought back to its distance after each bounce (Benettin)."""
+    theta, phi = ball
+    near_theta, near_phi, total = theta + apart, phi, 0.0
+    for _ in range(bounces):
+        a, b = step(theta, phi), step(near_theta, near_phi)
+        theta, phi = float(a.theta), float(a.phi)
+        along, across = math.remainder(float(b.theta) - theta, 2 * math.pi), float(b.phi) - phi
+        size = math.hypot(along, across)
+        total += math.log(size / apart)
+        near_theta, near_phi = theta + along * apart / size, phi + across * apart / size
+    return total / bounces
+
+
+def by_qr(step, derivative, ball, bounces):
+    """Both exponents from QR decompositions of the derivative matrices, one bounce at a time."""
+    theta, phi = ball
+    Q, sums = np.eye(2), np.zeros(2)
+    for _ in range(bounces):
+        Q, R = np.linalg.qr(derivative(theta, phi) @ Q)
+        sums += np.log(np.abs(np.diag(R)))
+        landed = step(theta, phi)
+        theta, phi = float(landed.theta), float(landed.phi)
+    return float(np.max(sums)) / bounces
+
+
+# ---- arc length
+
+
+def length_by_quad(speed, theta, epsabs):
+    """`scipy.integrate.quad` over the speed."""
+    return quad(speed, 0.0, theta, epsabs=epsabs, epsrel=epsabs, limit=200)[0]
+
+
+def length_by_sums(speed, theta, points):
+    """Cumulated trapezia on a grid over the whole boundary, and interpolation."""
+    grid = np.linspace(-math.pi, math.pi, points)
+    sums = cumulative_trapezoid(speed(grid), grid, initial=0.0)
+    return float(np.interp(theta, grid, sums) - np.interp(0.0, grid, sums))
+
+
+def parameter_by_brentq(speed, s, xtol):
+    """The parameter at arc length `s`: `brentq` over `quad`."""
+    return brentq(lambda at: quad(speed, 0.0, at, epsabs=1e-13, epsrel=1e-13)[0] - s, -math.pi, math.pi, xtol=xtol)
+
+
+def parameter_by_sums(speed, s, points):
+    """The same by interpolation in cumulated trapezia."""
+    grid = np.linspace(-math.pi, math.pi, points)
+    sums = cumulative_trapezoid(speed(grid), grid, initial=0.0)
+    return float(np.interp(s + np.interp(0.0, grid, sums), sums, grid))
+
+
+# ---- the slap map's expansion
+
+# the polynomial in q whose zero it is where the expansion is least, from SymPy's factor_list
+CRITICAL = [12049358475, -289530323390, 2722654500489, -13247710165844, 38562628213529, -72389889488070]
+CRITICAL += [89881598564499, -70682474396912, 25774186427262, 12535834806180, -25042286267894, 18421908768648]
+CRITICAL += [-8219806607806, 2241994345444, -190449013290, -193813670640, 162744480487, -83841956070]
+CRITICAL += [30522599485, -7514085460, 1146892725, -89067550, 1867975]
+
+
+def expansion_on_grid(slap, points):
+    """The least `|(T_0^2)'|` over a grid of launching points."""
+    with np.errstate(all="ignore"):
+        theta = np.linspace(1e-3, 2.2, points)
+        there = slap(theta)
+        return float(np.min(np.abs(there.slope * slap(there.theta[1]).slope)))
+
+
+def expansion_by_search(slap, xtol):
+    """The same by `scipy.optimize.minimize_scalar` on the bracket that a plot shows."""
+
+    def expansion(theta):
+        there = slap(np.array([theta]))
+        return abs(float((there.slope * slap(there.theta[1]).slope)[0]))
+
+    return float(minimize_scalar(expansion, bracket=BRACKET, method="brent", options={"xtol": xtol}).fun)
+
+
+BRACKET = (1.4, 1.53, 1.65)
+
+
+def critical_by_roots():
+    """The zero of that polynomial next to `NEAR`, by `numpy.roots`."""
+    roots = np.roots(CRITICAL)
+    real = roots[np.abs(roots.imag) < 1e-3].real
+    return float(real[np.argmin(np.abs(real - NEAR))])
+
+
+NEAR = -0.4174

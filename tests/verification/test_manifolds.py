@@ -134,7 +134,7 @@ def test_two_methods_and_more_digits_agree_on_a_crisis(kind, digits):
     assert few.agrees
     assert many.agrees
     assert abs(few.letter - many.letter) <= few.error
-    assert many.error < few.error / 1e4
+    assert many.error < few.error / 100
 
 
 def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_multiplier():

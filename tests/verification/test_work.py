@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from decimal import Decimal
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -11,14 +12,17 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
+from numeric import PinballMap
 from verification.baselines import module
 from verification.cli import main
+from verification.exact_map import ExactMap
 from verification.work.catalogue import QUESTIONS, question
 from verification.work.choice import Entry, cheapest, crossovers, entries, table
 from verification.work.compare import moved
 from verification.work.elsewhere import available, sampled
 from verification.work.figure import drawn, height, image
 from verification.work.measure import measured
+from verification.work.orbit_choice import digits_lost, for_orbit
 from verification.work.question import Claimed, Method, Question, distance
 from verification.work.row import Row, front, timed
 from verification.work.sought import WITHOUT
@@ -187,6 +191,39 @@ def test_what_is_picked_is_the_quickest_that_promises_enough(known, digits):
     else:
         assert choice.digits == max(e.digits for e in known)
         assert "table ends" in choice.why
+
+
+def test_an_orbit_keeps_float64_while_its_digits_last():
+    cardioid = PinballMap("cardioid", lam="0.5")
+    start = (0, 0.7, 0.3)
+    names = [for_orbit(cardioid, start, bounces, 8).arithmetic for bounces in (1, 10, 30, 100)]
+
+    assert names[0] == "float64"
+    assert names[-1] == "arb"
+    assert names == sorted(names, key=["float64", "arb"].index)
+    assert for_orbit(cardioid, start, 1, 8, proof=True).arithmetic == "arb"
+    assert digits_lost(cardioid, start, 100) > 100 * 0.4 / np.log(10)  # its exponent is about 0.6
+    assert digits_lost(PinballMap("circle", lam="0.5"), start, 100) < 1  # nothing grows but by what the angle adds
+
+
+def test_a_rounding_error_counts_from_where_it_is_made():
+    early = PinballMap("egg", lam="0.5", alpha="0.08")
+    lost = [digits_lost(early, (0, 0.7, 0.3), bounces) for bounces in range(1, 40)]
+
+    assert all(a <= b for a, b in pairwise(lost))
+
+
+def test_the_digits_of_float64_that_are_left_are_right():
+    cardioid, start = PinballMap("cardioid", lam="0.5"), (0, 0.7, 0.3)
+    exact = ExactMap(cardioid, 30, Fraction(1, 2))
+    truth = exact.orbit(exact.ball(*start), 20)
+    found = cardioid.orbit(start[1], start[2], 20)
+    off = [
+        abs(float(ball.theta - exact.context.mpf(float(theta)))) for ball, theta in zip(truth, found.theta, strict=True)
+    ]
+
+    assert max(off) > 1e-13  # digits are lost
+    assert all(error < 10 ** (digits_lost(cardioid, start, n) - 14) for n, error in enumerate(off) if n)
 
 
 def test_a_slower_machine_is_no_change_and_a_slower_method_is():

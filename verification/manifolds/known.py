@@ -21,6 +21,7 @@ from verification.arithmetic import FLOAT64
 from verification.manifolds.recurrence import Pinball
 from verification.manifolds.saddle import Orbit
 from verification.manifolds.tangency import Contact, Gap, tangency
+from verification.progress import telling
 
 SHAPE = Rational(2, 25)
 STEP = Rational(1, 500)  # of the shape, in continuation
@@ -48,6 +49,7 @@ def contact(kind: str, alpha: Expr) -> Contact:
         raise ValueError(f"crisis: {kind!r} is not known; accepted: {', '.join(CONTACTS)}")
     before = here = CONTACTS[kind]
     shape, step, last = SHAPE, STEP, STEP
+    tick = telling(f"following the tangency to alpha = {alpha}")
     while shape != alpha:
         move = max(-step, min(step, alpha - shape))
         try:
@@ -61,6 +63,7 @@ def contact(kind: str, alpha: Expr) -> Contact:
                 ) from why
             continue
         shape, last, before, here = shape + move, move, here, following
+        tick(float(move / (alpha - SHAPE)))
     return here
 
 

@@ -9,7 +9,7 @@ from sympy import Expr
 from numeric import PinballMap
 from verification.arithmetic import FLOAT64
 from verification.manifolds.grow import branch
-from verification.manifolds.known import contact, table
+from verification.manifolds.known import CONTACTS, contact, table
 from verification.manifolds.saddle import saddle
 from verification.manifolds.series import local
 from verification.manifolds.tangency import Gap
@@ -18,13 +18,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BALLS, BOUNCES, TRANSIENT, SEED = 300, 400, 2000, 1
-LENGTHS = {"boundary": (26.0, 9.0), "merging": (16.0, 12.0)}  # of each unstable and each stable branch
-ZOOM = {"boundary": (0.16, 0.09), "merging": (0.12, 0.009)}  # half the width and height of the second panel
+LENGTHS = dict.fromkeys(CONTACTS, (16.0, 12.0)) | {"boundary": (26.0, 9.0)}  # of each unstable and each stable branch
+ZOOM = dict.fromkeys(CONTACTS, (0.12, 0.009)) | {
+    "boundary": (0.16, 0.09)
+}  # half the width and height of the second panel
 COLOURS = {"unstable": "#c1272d", "stable": "#1f4e99", "attractor": "0.55"}
 
 
 def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> "Figure":
-    """The `merging` or `boundary` crisis of the egg, modulo its rotations, in `theta` and `phi`.
+    """A crisis of the egg, one of `CONTACTS`, modulo its rotations, in `theta` and `phi`.
 
     `below` moves the contraction below the tangency; `share` shortens the curves, for a quick look.
     """

@@ -6,7 +6,8 @@
 (2.14159265359, 0.25)
 """
 
-from numeric.pinball import Exponents, Orbit, PinballMap
+from numeric.pinball import PinballMap
+from numeric.results import Exponents, Orbit
 from numeric.status import Status
 
 __all__ = ["Exponents", "Orbit", "PinballMap", "Status"]

@@ -3,7 +3,7 @@
 from copy import copy
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,59 +17,12 @@ from numeric.families.family import NEAR, PINBALL, SLAP, law_of
 from numeric.growth import Growth
 from numeric.inputs import angles, components, contraction, counted, real, shape_value
 from numeric.question import Question, starting
-from numeric.status import Status
+from numeric.results import Exponents, Orbit, Slap
 
 if TYPE_CHECKING:
     from numeric.arclength import ArcLength
 
 Array = NDArray[np.float64]
-STATUSES = np.array(list(Status), dtype=object)
-
-
-class Orbit(NamedTuple):
-    """Bounces along the first axis, balls along the others; `eta[0]` is nan, since nothing landed there.
-
-    A ball that stopped repeats its last good state; `status` says from which bounce on, and why.
-    """
-
-    component: NDArray[np.int64]
-    theta: Array
-    phi: Array
-    eta: Array
-    x: Array
-    y: Array
-    code: NDArray[np.int64]
-
-    @property
-    def status(self) -> Any:
-        """The outcome at each bounce: a `Status`, or an array of them."""
-        return STATUSES[self.code]
-
-
-class Exponents(NamedTuple):
-    """Finite-time Lyapunov exponents per bounce, in the coordinates `(s, phi)`, and how far each ball came."""
-
-    nu_plus: Array
-    nu_minus: Array
-    bounces: NDArray[np.int64]
-    component: NDArray[np.int64]
-    theta: Array
-    phi: Array
-    code: NDArray[np.int64]
-
-    @property
-    def status(self) -> Any:
-        """The outcome of each ball: a `Status`, or an array of them."""
-        return STATUSES[self.code]
-
-
-class Slap(NamedTuple):
-    """Iterates of the slap map along the first axis, and its slope at the start."""
-
-    component: NDArray[np.int64]
-    theta: Array
-    slope: Array
-    code: NDArray[np.int64]
 
 
 class PinballMap:

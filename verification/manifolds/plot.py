@@ -7,7 +7,7 @@ import numpy as np
 from sympy import Expr
 
 from numeric import PinballMap
-from verification.arithmetic import FLOAT64
+from verification.arithmetic import ARRAYS, FLOAT64
 from verification.manifolds.grow import branch
 from verification.manifolds.known import CONTACTS, contact, table
 from verification.manifolds.saddle import saddle
@@ -22,6 +22,7 @@ LENGTHS = dict.fromkeys(CONTACTS, (16.0, 12.0)) | {"boundary": (26.0, 9.0)}  # o
 ZOOM = dict.fromkeys(CONTACTS, (0.12, 0.009)) | {
     "boundary": (0.16, 0.09)
 }  # half the width and height of the second panel
+JOINED = 0.02
 COLOURS = {"unstable": "#c1272d", "stable": "#1f4e99", "attractor": "0.55"}
 
 
@@ -36,7 +37,7 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
     map, lam = table(alpha).over(FLOAT64), where.letter - below
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     whole, close = figure.subplots(1, 2)
-    found = saddle(where.unstable, map, lam)
+    found, arrays = saddle(where.unstable, map, lam), map.over(ARRAYS)
     cloud = attractor(kind, alpha, lam)
     target = _touching_point(where, map)
     for axes, size in ((whole, 0.3), (close, 1.5)):
@@ -44,8 +45,12 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
         for unstable, word, length in zip((False, True), ("stable", "unstable"), LENGTHS[kind][::-1], strict=True):
             for side in (1, -1):
                 grown = branch(local(found, unstable), side, share * length, spacing=0.01)
-                for sign in (1, -1):
-                    _curve(axes, sign * grown.x, sign * grown.y, COLOURS[word], 0.5 + size / 3)
+                here, following = grown.here, grown.following
+                for _ in found.points:  # the curve through one bounce, and its images through the others
+                    theta, phi = arrays.plane(here, following)
+                    for sign in (1, -1):
+                        _curve(axes, sign * theta, sign * phi, COLOURS[word], 0.5 + size / 3)
+                    here, following = following, arrays.following(here, following, lam)
         ring = found.around()
         for sign in (1, -1):
             theta, phi = zip(*(map.plane(a, b) for a, b in pairwise(ring[1:])), strict=True)
@@ -82,15 +87,16 @@ def _touching_point(where: Any, map: Any) -> tuple[float, float]:
     """The bounce of the tangency orbit that is farthest from the saddle, in the cell of the first panel."""
     gap = Gap(where, map, where.letter, 28, 1e-16)
     flight = [jet.c[0] for jet in gap.orbit(gap.extremum()[0])]
-    bent = max(range(len(flight) - 1), key=lambda i: abs(gap.orbit(gap.start)[i].c[1]))
+    moves = [abs(jet.c[1]) for jet in gap.orbit(gap.start)[:-1]]
+    bent = int(np.argmax(moves)) if len(where.unstable.start) != 2 else len(moves) - 1
     theta, phi = map.plane(flight[bent], flight[bent + 1])
     return float(_modulo(theta)), float(phi)
 
 
 def _curve(axes: Any, x: Any, y: Any, colour: str, width: float) -> None:
-    """A line that is broken where it leaves the cell."""
+    """A line that is broken where it leaves the cell, and where its points are too far apart to be joined."""
     cell = _modulo(x)
-    broken = np.abs(np.diff(cell)) > np.pi / 3
+    broken = np.hypot(np.diff(cell), np.diff(y)) > JOINED
     at = np.nonzero(broken)[0] + 1
     axes.plot(np.insert(cell, at, np.nan), np.insert(y, at, np.nan), color=colour, lw=width, zorder=2)
 

@@ -56,6 +56,27 @@ class Located:
         """True when the whole checklist is proved."""
         return all(value is True for value in self.checks.values())
 
+    def to_dict(self) -> dict[str, Any]:
+        """The keys of `pinball locate --json`."""
+        return {
+            "name": self.name,
+            "value": self.value,
+            "radius": self.radius,
+            "digits": self.digits,
+            "certified": self.certified,
+            "checks": dict(self.checks),
+            "notes": dict(self.notes),
+            "gmpy2": GMPY2,
+            "newton": [{"digits": step.digits, "log10_correction": step.correction} for step in self.steps],
+            "seconds": self.seconds,
+        }
+
+    def _repr_html_(self) -> str:
+        answers = {True: "proved", False: "refuted", None: "unknown"}
+        rows = "".join(f"<tr><td>{item}</td><td>{answers[value]}</td></tr>" for item, value in self.checks.items())
+        said = "certified" if self.certified else "not certified"
+        return f"<p>{self.name} = {self.value} &plusmn; {self.radius}, {said}</p><table>{rows}</table>"
+
 
 @dataclass(frozen=True)
 class Found:

@@ -48,20 +48,7 @@ def command(
         step(name)
     if certificate is not None:
         _write(certificate, found)
-    output.write(
-        {
-            "name": found.name,
-            "value": found.value,
-            "radius": found.radius,
-            "digits": found.digits,
-            "certified": found.certified,
-            "checks": found.checks,
-            "notes": dict(found.notes),
-            "gmpy2": GMPY2,
-            "newton": [{"digits": step.digits, "log10_correction": step.correction} for step in found.steps],
-            "seconds": found.seconds,
-        }
-    )
+    output.write(found.to_dict())
     said = "certified" if found.certified else "not certified"
     output.console.print(f"{name} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
     for item, value in found.checks.items():

@@ -3,7 +3,7 @@
 It writes docs/work_precision.md, docs/work_precision.json, docs/figures/work-*.svg, and the table from which
 `verification.work.choice` picks an arithmetic. `--question NAME` measures one and leaves the others as they were;
 `--write` measures nothing and writes page and figures from the JSON. `--compare` writes nothing: it measures and says
-what moved against the committed JSON, by the ratios of times to a baseline of the same run and question.
+what moved against the committed JSON, by the ratios of times within each run.
 """
 
 import argparse

@@ -226,18 +226,21 @@ def test_the_digits_of_float64_that_are_left_are_right():
     assert all(error < 10 ** (digits_lost(cardioid, start, n) - 14) for n, error in enumerate(off) if n)
 
 
-def test_a_slower_machine_is_no_change_and_a_slower_method_is():
-    rows = [
-        timed("q", name, [t, t], error=Decimal("1e-9"), arithmetic="float64") for name, t in (("a", 1.0), ("b", 3.0))
-    ]
-    slow = [replace(r, seconds=7 * r.seconds, quartiles=(7 * r.seconds,) * 2) for r in rows]
-    worse = [slow[0], replace(slow[1], seconds=42.0, quartiles=(42.0, 42.0))]
-    wrong = [slow[0], replace(slow[1], error=Decimal("1e-6"))]
+def test_a_slower_machine_is_no_change_and_a_slower_method_or_question_is():
+    def run(name, *seconds):
+        return [timed(name, letter, [t, t], error=Decimal("1e-9")) for letter, t in zip("abc", seconds, strict=False)]
+
+    rows = run("q", 1.0, 3.0, 5.0) + run("r", 1.0, 1.0, 1.0) + run("s", 2.0, 2.0, 2.0)
+    slow = run("q", 7.0, 21.0, 35.0) + run("r", 7.0, 7.0, 7.0) + run("s", 14.0, 14.0, 14.0)
+    worse = run("q", 7.0, 42.0, 35.0) + slow[3:]
+    whole = run("q", 14.0, 42.0, 70.0) + slow[3:]
+    wrong = [replace(slow[0], error=Decimal("1e-6")), *slow[1:]]
 
     assert moved(rows, slow) == []
-    assert [[*said.split(":")[0:1], "2 times slower" in said] for said in moved(rows, worse)] == [["q", True]]
-    assert "off by 1e-6" in moved(rows, wrong)[0]
-    assert "is gone" in moved(rows, slow[:1])[0]
+    assert moved(rows, worse) == ["q: b  is 2 times slower: 42 s"]
+    assert moved(rows, whole) == ["q: as a whole it is 2 times slower"]
+    assert moved(rows, wrong) == ["q: a  is off by 1e-6, it was 1e-9"]
+    assert moved(rows, slow[:2] + slow[3:]) == ["q: c  is gone"]
 
 
 def test_without_gmpy2_mpmath_finds_the_same_digits_in_another_process():

@@ -1,50 +1,63 @@
-"""What moved between two runs: ratios of times to a baseline within each run, so that machines and load cancel."""
+"""What moved between two runs, by ratios of times within each run, so that machines and their load cancel.
+
+How much longer a run took is the median over the rows of a question, and over the questions; what is told is what
+differs from that. Lower quartiles are compared, which other work on a machine disturbs least.
+"""
 
 from collections.abc import Sequence
+from statistics import median
 
 from verification.diagram import duration
 from verification.work.row import Row
-from verification.work.text import baseline, short
+from verification.work.text import short
 
 MOVED = 1.5  # the factor from which on a change is told
 WORSE = 10  # times the error is told as well
+Rows = dict[tuple[str, str], Row]
 
 
 def moved(before: Sequence[Row], after: Sequence[Row]) -> list[str]:
-    """A sentence for each row whose ratio to its question's baseline changed by more than a factor 1.5.
+    """A sentence for each row, or question as a whole, whose time changed by more than a factor 1.5 beside the others.
 
     Changes within the quartiles of both runs are not told; errors that grew tenfold, and answers lost, are.
     """
+    pairs = {name: (_of(before, name), _of(after, name)) for name in dict.fromkeys(row.question for row in after)}
+    units = {name: _unit(old, new) for name, (old, new) in pairs.items()}
+    whole = median(units.values()) if units else 1.0
     said = []
-    for name in dict.fromkeys(row.question for row in after):
-        old = {_key(row): row for row in before if row.question == name}
-        new = {_key(row): row for row in after if row.question == name}
-        shared = [key for key in new if key in old]
+    for name, (old, new) in pairs.items():
         said += [f"{name}: {' '.join(key)} is gone" for key in old if key not in new]
         said += [f"{name}: {' '.join(key)} is new" for key in new if key not in old]
-        base = baseline([new[key] for key in shared if old[key].error is not None])
-        if base is None:
-            continue
-        unit = base.seconds / old[_key(base)].seconds
-        for key in shared:
-            said += [f"{name}: {' '.join(key)} {change}" for change in changes(old[key], new[key], unit)]
-    return said
+        said += [f"{name}: as a whole it is {way}" for way in _ways(units[name] / whole)]
+        for key in new.keys() & old.keys():
+            said += [f"{name}: {' '.join(key)} {change}" for change in changes(old[key], new[key], units[name])]
+    return sorted(said)
 
 
 def changes(old: Row, new: Row, unit: float) -> list[str]:
-    """What changed in a row, when everything else took `unit` times as long."""
+    """What changed in a row, when everything took `unit` times as long."""
     if old.error is not None and new.error is None:
         return [f"has no answer any more: {new.failure}"]
     told = []
     if old.error and new.error and new.error > WORSE * old.error:
         told.append(f"is off by {short(new.error)}, it was {short(old.error)}")
-    factor = new.seconds / old.seconds / unit
     apart = new.quartiles[0] > old.quartiles[1] * unit or new.quartiles[1] < old.quartiles[0] * unit
-    if (factor > MOVED or factor < 1 / MOVED) and apart:
-        way = "slower" if factor > 1 else "quicker"
-        told.append(f"is {max(factor, 1 / factor):.2g} times {way}: {duration(new.seconds)}")
+    if apart and old.quartiles[0]:
+        told += [f"is {way}: {duration(new.seconds)}" for way in _ways(new.quartiles[0] / old.quartiles[0] / unit)]
     return told
 
 
-def _key(row: Row) -> tuple[str, str]:
-    return row.method, row.setting
+def _ways(factor: float) -> list[str]:
+    if 1 / MOVED <= factor <= MOVED:
+        return []
+    return [f"{max(factor, 1 / factor):.2g} times {'slower' if factor > 1 else 'quicker'}"]
+
+
+def _of(rows: Sequence[Row], name: str) -> Rows:
+    return {(row.method, row.setting): row for row in rows if row.question == name}
+
+
+def _unit(old: Rows, new: Rows) -> float:
+    """How many times as long the rows took that both have, in the median."""
+    ratios = [new[key].quartiles[0] / old[key].quartiles[0] for key in new if key in old and old[key].quartiles[0]]
+    return median(ratios) if ratios else 1.0

@@ -129,7 +129,7 @@ class EnclosedMap:
                 yield Ball(int(step.component), arb(float(step.theta)), None, (None, None), None, None)
         exact = self.exact
         guess = exact.bounce(exact.ball(ball.component, exact.middle(ball.theta), exact.middle(ball.phi)))
-        yield Ball(guess.component, _as_ball(guess.theta), None, (None, None), None, None, code=guess.code)
+        yield Ball(guess.component, as_ball(guess.theta), None, (None, None), None, None, code=guess.code)
 
     def _landed(self, ball: Ball, guess: Ball) -> Ball | None:
         """The enclosed landing near a guess, or None when Newton's step does not close."""
@@ -177,7 +177,7 @@ def number(value: Any, bits: int = 0) -> arb:
     return enclose(value, digits=int(bits / 3.3219) + 2).real
 
 
-def _as_ball(x: Any) -> arb:
+def as_ball(x: Any) -> arb:
     """An mpmath number, exactly."""
     sign, man, exp, _ = x._mpf_
     return arb((-int(man) if sign else int(man), int(exp)))

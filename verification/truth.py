@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 def exact_ball(map: PinballMap, exact: ExactMap, fields: list[Any]) -> Ball:
     """The exact ball whose rounded state these kernel fields are."""
     mp, name = exact.context, map.family.name
-    f = [mp.mpf(float(x)) for x in fields]
+    f = [_number(mp, x) for x in fields]
     if map.law == "slap":
         component, theta = _place(exact, name, f)
         return exact.ball(component, theta, 0)
@@ -49,6 +49,12 @@ def errors(map: PinballMap, exact: ExactMap, before: list[Array], after: list[Ar
         else:
             direction[i] = mp.hypot(g[-2] - truth.v[0], g[-1] - truth.v[1]) / EPS
     return position, direction
+
+
+def _number(mp: Any, x: Any) -> Any:
+    """A float of 64 or 80 bits, exactly."""
+    high = float(x)
+    return mp.mpf(high) + mp.mpf(float(x - high))
 
 
 def _place(exact: ExactMap, name: str, f: list[Any]) -> tuple[int, Any]:

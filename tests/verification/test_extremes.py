@@ -1,0 +1,122 @@
+"""Stiff and extreme cases: every verdict is as recorded, and the measure calls unstable what is."""
+
+import json
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sympy import N, Rational, sqrt
+
+from numeric import PinballMap, Status
+from symbolic.cycles import trace_and_determinant
+from symbolic.named_cycles import egg_diameter, minor_axis
+from symbolic.symbols import a, alpha, lam
+from verification.extremes import near, page, products
+from verification.extremes.cases import CASES
+from verification.extremes.catalogue import rows
+from verification.extremes.flights import Asked, Truth, findings
+from verification.extremes.kernels import KERNELS, LONGDOUBLE, TEXTBOOK
+from verification.extremes.stability import SMALL, Measured, Stability
+
+RECORD = Path(page.__file__).parent / "recorded.json"
+WIDE = np.finfo(np.longdouble).nmant >= 63
+
+
+@pytest.fixture(scope="module")
+def found():
+    """Every case, once."""
+    return list(rows())
+
+
+def test_every_verdict_and_every_outcome_is_as_recorded(found):
+    kept = {(one["case"], one["kernel"]): (one["verdict"], one["stopped_by"]) for one in json.loads(RECORD.read_text())}
+    now = {(one["case"], one["kernel"]): (one["verdict"], one["stopped_by"]) for one in page.record(found)}
+    beyond = {one.name for one in chain(near.LONGER, products.LONGER)}
+    missing = {key for key in kept if key not in now and key[0] not in beyond and (WIDE or key[1] != LONGDOUBLE.name)}
+
+    assert {key: value for key, value in now.items() if kept.get(key) != value} == {}
+    assert missing == set()
+
+
+def test_the_kernels_that_users_call_are_stable_or_name_why_they_stopped(found):
+    own = [one for *_, several in found for one in several if one.kernel in ("llvm", "numpy", "engine")]
+
+    assert len(own) > 100
+    assert all(one.measured.backward <= SMALL if one.measured else one.status in Status.__members__ for one in own)
+
+
+def test_whatever_is_not_stable_says_what_to_use_in_its_place(found):
+    odd = [one for *_, several in found for one in several if one.stability is not Stability.STABLE]
+
+    assert odd
+    assert [one for one in odd if not one.instead] == []
+
+
+def test_the_page_shows_every_case(found):
+    text = (RECORD.parent.parent.parent / "docs" / "extremes.md").read_text()
+
+    assert [case for _, case, several in found if case not in text and several[0].case not in text] == []
+
+
+def test_the_textbook_discriminant_is_called_unstable_where_it_is_and_nowhere_else():
+    grazing = next(case for case in CASES if case.name.startswith("ellipse: exits grazing"))
+    usual = next(case for case in CASES if case.name == "a = sqrt(2), exactly")
+    verdicts = {case.name: {one.kernel: one.stability for one in findings(case)} for case in (grazing, usual)}
+
+    assert verdicts[grazing.name][TEXTBOOK.name] is Stability.UNSTABLE
+    assert verdicts[grazing.name]["llvm"] is Stability.STABLE
+    assert verdicts[usual.name][TEXTBOOK.name] is Stability.STABLE
+
+
+def test_an_answer_is_as_wrong_as_it_is_made():
+    case = next(case for case in CASES if case.name == "a = 1e4")
+    truth = Truth(case)
+    asked = Asked(truth, truth.starts(case)[0])
+    fields, _ = KERNELS[0].bounce(truth.map, asked.state)
+    ux, uy, vx, vy = fields
+    turn = 1e-6
+    off = [ux - turn * uy, uy + turn * ux, vx, vy]
+
+    assert asked.measured(fields, 2.0**-52).backward < 2
+    assert asked.measured(off, 2.0**-52).forward == pytest.approx(turn * 2**52, rel=1e-4)
+    assert asked.measured(off, 2.0**-52).stability is Stability.UNSTABLE
+
+
+def test_the_condition_number_next_to_a_fold_is_one_over_the_multipliers_distance():
+    tight, tighter = (near.findings(near.CYCLES[i])[0].measured.condition for i in (0, 1))
+
+    assert tighter / tight == pytest.approx(float(near.COARSE_GAP / near.FINE_GAP), rel=1e-4)
+
+
+def test_the_multipliers_are_within_1e_12_of_plus_and_minus_one():
+    flipped, _ = near.nearly_flipped(near.FLIP_GAP, twice=False)
+    for cycle, at, sign in (
+        (minor_axis(), {a: 1 + near.FINE_GAP}, 1),
+        (egg_diameter(), {alpha: dict(flipped.table.fixed)["alpha"]}, -1),
+    ):
+        trace, det = (N(value.subs(at | {lam: Rational(1, 3)}), 50) for value in trace_and_determinant(cycle))
+        mu = (trace + sign * sqrt(trace**2 - 4 * det)) / 2
+
+        assert 0 < abs(mu - sign) < 1e-12
+
+
+def test_no_forward_error_exceeds_condition_times_backward(found):
+    flights = [one.measured for *_, several in found[: len(CASES)] for one in several if one.measured]
+
+    assert all(m.forward <= m.condition * m.backward * 1.001 for m in flights if np.isfinite(m.forward))
+
+
+def test_sensitive_is_stable_with_few_digits_left():
+    assert Measured(1e9, 1.0, 1e9).stability is Stability.SENSITIVE
+    assert Measured(1e9, 1e2, 1e9).stability is Stability.UNSTABLE
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_ball_aimed_at_a_join_is_told_so_by_the_map(side):
+    map = PinballMap("cuspless", lam="19/20")
+    x, y = map.states.point(np.array([0]), np.array([0.5]))
+    aim = map.states.angle_to_normal(np.array([0]), np.array([0.5]), -0.25 - x, side * 3**0.5 / 4 - y)
+
+    assert map.step(0.5, float(aim[0])).status is Status.JOIN
+    assert PinballMap("cardioid", lam=1).step(1.0, 0.5).status is Status.CUSP

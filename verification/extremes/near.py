@@ -1,0 +1,163 @@
+"""Cycles next to a bifurcation and very long ones: Newton's method on the chord system where it is nearly singular.
+
+The backward error is the residual of the collision rule, an angle at each bounce (root mean squares, as of the
+errors); the condition number is the norm of the inverse of the system's matrix. Where a multiplier is `1 + d` it is of
+the size of `1/d`. The truth is the solution with 100 digits.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import mpmath
+import numpy as np
+from sympy import Expr, N, Rational, acos, pi
+
+from symbolic import polygons, tables
+from symbolic.symbols import alpha as alpha_letter
+from symbolic.symbols import lam as lam_letter
+from symbolic.thresholds import alpha_tilde
+from verification.arithmetic import bits_of, multiprecision
+from verification.extremes.kernels import DOUBLE
+from verification.extremes.stability import WRONG, Finding, Measured
+from verification.ladder import rung
+from verification.shooting.follow import doubled
+from verification.shooting.newton import floats, refined
+from verification.shooting.problem import Kind, Problem
+
+DIGITS = 100
+WHOLE = 16  # unknowns up to which the inverse's norm is taken from all of its columns, else from a few vectors
+TRIED, SEED = 6, 5
+CAP = "Problem(..., Kind.FOLD, 'lam'), whose matrix stays regular where the cycle's does not"
+MORE = "refined(..., digits=50): the condition number costs as many digits as it has"
+ONCE = "the cycle's own period, whose condition number is 2.9 (the line above)"
+Sought = tuple[Problem, list[float]]
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A system of the chord method with a start for Newton's method."""
+
+    name: str
+    group: str
+    sought: Callable[[], Sought]
+    instead: str = ""
+
+
+def nearly_round(gap: Expr) -> Sought:
+    """The short axis of the ellipse `a = 1 + gap`: in the circle every diameter is a cycle, and a multiplier is 1."""
+    return Problem(tables.ellipse.at(a=1 + gap), (0, 0), lam=Rational(1, 3)), [1.5707963, -1.5707964]
+
+
+def nearly_flipped(gap: Expr, twice: bool) -> Sought:
+    """The egg's diameter next to where its multiplier is -1, as period 2, or run twice as period 4."""
+    shape = alpha_tilde().subs(lam_letter, Rational(1, 3)) + gap
+    table = tables.egg(3).at(alpha=Rational(float(N(shape, 30))))
+    times = 2 if twice else 1
+    return Problem(table, (0, 0) * times, lam=Rational(1, 3)), [1e-7, 3.1415926] * times
+
+
+def folded(ulps: int | None) -> Sought:
+    """The egg's triangle, `ulps` doubles above the contraction where it is born, or (None) that contraction itself."""
+    shape = Rational(2, 25)
+    table = tables.egg(3).at(alpha=shape)
+    exact = float(N(polygons.saddle_node().subs(alpha_letter, shape), 30))
+    turn = -float(N(acos(-shape))) / 3
+    start = [turn + float(N(2 * pi / 3)) * k for k in range(3)]
+    if ulps is None:
+        return Problem(table, (0, 0, 0), Kind.FOLD, "lam"), [*start, exact]
+    lam = exact + ulps * float(np.spacing(exact))
+    aside = np.sqrt(ulps * float(np.spacing(exact)))
+    return Problem(table, (0, 0, 0), lam=Rational(lam)), [x + aside for x in start]
+
+
+def laddered(power: int) -> Sought:
+    """A cycle of period `2**power` of the egg, a third of the way from its birth to its own doubling."""
+    below = rung(Rational(2, 25), power)
+    gap = (rung(Rational(2, 25), power + 1).lam - below.lam) / 3
+    theta, lam = doubled(below.problem, below.start, gap)
+    return Problem(below.problem.table, (0,) * 2**power, lam=Rational(lam)), theta
+
+
+UNSETTLED = "did not settle"
+FLOAT64, SIXTEEN = "Newton, float64", "Newton, mpmath, 16 digits"
+
+
+def findings(cycle: Cycle) -> list[Finding]:
+    """Both arithmetics on a cycle: the forward error, the residual, and the condition number."""
+    problem, start = cycle.sought()
+    truth = solution(problem, start)
+    context = mpmath.MPContext()
+    context.dps = DIGITS + 20
+    wide = multiprecision(context)
+    condition = norm_of_inverse(problem, wide, truth, context)
+    made = []
+    for kernel, solve in ((FLOAT64, floats), (SIXTEEN, settled)):
+        try:
+            z = [context.mpf(x) for x in solve(problem, start)]
+        except ValueError:  # that Newton's method did not settle
+            made.append(Finding(cycle.name, kernel, None, UNSETTLED, cycle.instead))
+            continue
+        each = context.sqrt(len(z))
+        residual = context.norm(context.matrix(problem.value(wide, z))) / each
+        forward = context.norm(context.matrix([one - two for one, two in zip(z, truth, strict=True)])) / each
+        found = Measured(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
+        made.append(Finding(cycle.name, kernel, found if found.forward < 1 / DOUBLE else WRONG, "", cycle.instead))
+    return made
+
+
+def solution(problem: Problem, start: list[float]) -> list[Any]:
+    """The truth: by doubling the digits, or where the float64 start does not settle with all digits at once."""
+    try:
+        return refined(problem, start, DIGITS).z
+    except ValueError:
+        return settled(problem, start, bits_of(DIGITS + 20))
+
+
+def settled(problem: Problem, start: list[float], bits: int = 53) -> list[Any]:
+    """Newton's method in mpmath, by default with the bits of a float64, until the corrections shrink no more."""
+    context = mpmath.MPContext()
+    context.prec = bits
+    arithmetic, z, last = multiprecision(context), [context.mpf(x) for x in start], context.inf
+    for _ in range(60):
+        try:
+            correction = problem.newton(arithmetic, z)
+        except ZeroDivisionError:
+            return z
+        size = max(abs(x) for x in correction)
+        if size < 1e-6 and size >= last / 2:
+            return z
+        z, last = [x - d for x, d in zip(z, correction, strict=True)], size
+    return z
+
+
+def norm_of_inverse(problem: Problem, arithmetic: Any, z: list[Any], context: Any) -> Any:
+    """The norm of the inverse of the system's matrix: of all columns, or the largest growth of some random vectors."""
+    size = len(z)
+    if size <= WHOLE:
+        columns = [problem.solved(arithmetic, z, [context.mpf(i == j) for i in range(size)]) for j in range(size)]
+        return context.mnorm(context.matrix(columns), "f")
+    signs = np.random.default_rng(SEED).choice([-1, 1], (TRIED, size))
+    return max(context.norm(context.matrix(problem.solved(arithmetic, z, [context.mpf(int(x)) for x in row])))
+               for row in signs) / context.sqrt(size)  # fmt: skip
+
+
+ONE, MINUS, LONG = "Multipliers next to +1", "Multipliers next to -1", "Long cycles"
+COARSE_GAP, FINE_GAP = Rational(1, 10**6), Rational(1, 2 * 10**13)
+FLIP_GAP = Rational(1, 10**14)
+CYCLES = (
+    Cycle("short axis, a = 1 + 1e-6: 1.6e-5 from +1", ONE, lambda: nearly_round(COARSE_GAP)),
+    Cycle("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP), MORE),
+    Cycle("triangle, 1e6 ulp above its fold", ONE, lambda: folded(10**6)),
+    Cycle("triangle, 4 ulp above its fold", ONE, lambda: folded(4), CAP),
+    Cycle("the fold itself, lam unknown", ONE, lambda: folded(None)),
+    Cycle(
+        "egg's diameter, alpha 1e-14 from its flip: 8e-13 from -1", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=False)
+    ),
+    Cycle("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True), ONCE),
+    Cycle("period 2^4 of the egg's ladder", LONG, lambda: laddered(4)),
+)
+LONGER = (
+    Cycle("period 2^8 of the egg's ladder", LONG, lambda: laddered(8)),
+    Cycle("period 2^12 of the egg's ladder", LONG, lambda: laddered(12)),
+)

@@ -1,0 +1,69 @@
+"""What is measured of an answer, and the verdict on whoever gave it.
+
+With data `x`, truth `f(x)` and answer `y`, the *forward error* is `|y - f(x)|`. The *backward error* is the smallest
+`(dx, dy)` with `y + dy = f(x + dx)`, to first order: what the data and the result would have to be off by for the
+answer to be right (Higham, Accuracy and Stability of Numerical Algorithms, section 1.5, calls this the mixed error).
+The *condition number* is the largest factor between the two. Errors are absolute, in units of rounding of one.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+from math import inf, isfinite
+
+SMALL = 16  # units: a dozen roundings, each of them explained by the data
+LOST = 1e8  # half of the digits of a float64
+
+
+class Stability(Enum):
+    """The verdict; the value says what it means for whoever asks."""
+
+    STABLE = "as right as rounded data allow"
+    SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
+    STOPPED = "no number: the kernel stops the ball and names the outcome"
+    UNSTABLE = "wrong by more than rounded data explain; use what is named in its place"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Forward and backward error in units of rounding, and the condition number between them."""
+
+    forward: float
+    backward: float
+    condition: float
+
+    @property
+    def ratio(self) -> float:
+        """`error / (cond * eps)`; at most 1 means that one rounding of the data would have done as much."""
+        return self.forward / self.condition if isfinite(self.condition) else 0.0
+
+    @property
+    def stability(self) -> Stability:
+        """The verdict.
+
+        >>> Measured(forward=4e3, backward=2, condition=1e4).stability.name
+        'STABLE'
+        >>> Measured(forward=4e3, backward=2e3, condition=2).stability.name
+        'UNSTABLE'
+        """
+        if not self.backward <= SMALL:
+            return Stability.UNSTABLE
+        return Stability.SENSITIVE if self.condition > LOST else Stability.STABLE
+
+
+WRONG = Measured(inf, inf, 1.0)  # another component, or no number at all
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One kernel on one case: the worst answer of all starts, what stopped, and what to do instead."""
+
+    case: str
+    kernel: str
+    measured: Measured | None
+    status: str = ""
+    instead: str = ""
+
+    @property
+    def stability(self) -> Stability:
+        """The verdict on the worst start; a kernel that gave no number at all has stopped."""
+        return Stability.STOPPED if self.measured is None else self.measured.stability

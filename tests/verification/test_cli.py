@@ -145,7 +145,7 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--digits"], "'--digits' requires an argument"),
         (
             ["verify", "--nope"],
-            "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, -h",
+            "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, --work, -h",
         ),
         (["verify", "more"], "unexpected extra argument (more); pinball verify --help shows what is accepted"),
         (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),

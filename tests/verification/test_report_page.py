@@ -2,10 +2,12 @@
 
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
 from verification import claims
+from verification.report.diagrams import diagrams
 from verification.report.mathml import formula, mathml, prose, remark
 from verification.report.page import FOLD, Picture, page
 from verification.report.tables import escaped, tables
@@ -144,3 +146,21 @@ def test_latex_tables_are_balanced_and_plain():
 
 def test_every_character_that_latex_acts_on_is_escaped():
     assert escaped(r"\a{b}$&#_%~^") == (r"\textbackslash{}a\{b\}\$\&\#\_\%\textasciitilde{}\textasciicircum{}")
+
+
+def test_measured_diagrams_end_the_page():
+    found = diagrams(Path(__file__).parents[2] / "docs" / "work_precision.json")
+
+    assert len(found) >= 10
+    html = page(RESULTS, {}, found[:1])
+    assert html.index("Error against run time</h2>") > html.rindex("<article")
+    assert found[0].caption in html
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"questions": 3, "rows": [], "machine": {}}'])
+def test_a_file_of_something_else_is_refused_in_one_sentence(text, tmp_path):
+    path = tmp_path / "other.json"
+    path.write_text(text)
+
+    with pytest.raises(ValueError, match="accepted: what `pinball work"):
+        diagrams(path)

@@ -27,20 +27,23 @@ if TYPE_CHECKING:
 @click.option("--digits", type=click.IntRange(1, 10_000), default=15, show_default=True, help="Digits of the values.")
 @click.option("--report", "folder", metavar="DIR", default="report", show_default=True, help="Where the report goes.")
 @click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the paper's figures in the report.")
+@click.option("--work", metavar="FILE", help="Show the diagrams of what `pinball work --json FILE` measured.")
 @json_option
-def command(only: str, digits: int, folder: str, figures: bool, output: Output) -> int:
+def command(only: str, digits: int, folder: str, figures: bool, work: str | None, output: Output) -> int:
     """Is each claim of the paper true? Exit status 1 when one is open."""
     from verification import claims
+    from verification.report.diagrams import diagrams
 
     wanted = matching(only, [claim.id for claim in claims.catalogue()])
     directory = prepared(folder)
+    measured = diagrams(Path(work)) if work is not None else []
     results = []
     with output.progress("Judging", len(wanted)) as step:
         for result in claims.verify(only, digits):
             results.append(result)
             step(result.id)
     pictures = drawn({result.section for result in results}, output) if figures else []
-    write_report(directory, results, pictures)
+    write_report(directory, results, [*pictures, *measured])
     output.write(report.document(results))
     show(output.console, results)
     output.console.print(f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex).")

@@ -12,22 +12,10 @@ import sys
 
 import numpy as np
 
-from numeric.readers.arrays import Arrays
+from verification.extremes.kernels import Wide
 from verification.labelled import bounced, cases, conditions
 
 EPS = 2.0**-52
-
-
-class Wide(Arrays):
-    """80-bit arrays: 64 bits of mantissa."""
-
-    splitter = np.longdouble(2.0**32 + 1)
-
-    def constant(self, p, q=1):
-        return np.longdouble(p) / np.longdouble(q)
-
-    def number(self, x):
-        return np.longdouble(x)
 
 
 def say(text):

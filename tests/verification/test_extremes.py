@@ -56,6 +56,7 @@ def test_whatever_is_not_stable_says_what_to_use_in_its_place(found):
 def test_the_page_shows_every_case(found):
     text = (RECORD.parent.parent.parent / "docs" / "extremes.md").read_text()
 
+    assert text.startswith(page.WORDS)
     assert [case for _, case, several in found if case not in text and several[0].case not in text] == []
 
 

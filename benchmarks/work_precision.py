@@ -116,7 +116,11 @@ def page(document):
 
 def section(about, rows):
     """One question: its figure, its sentences, its front."""
-    truth = "" if about["certified"] else " No proof of it is known: the truth is a long run with its error bar."
+    truth = (
+        ""
+        if about["certified"]
+        else " No proof of it is known: the truth is a long run, and four of its standard errors count as error."
+    )
     return (
         f"## {about['title']}\n\n`{about['name']}`: {about['answers']}; error {about['unit']}.{truth}\n\n"
         f"![Error against seconds: {about['title']}](figures/work-{about['name']}.svg)\n\n{paragraph(rows)}\n\n"

@@ -188,6 +188,7 @@ def test_what_is_picked_is_the_quickest_that_promises_enough(known, digits):
 
     if enough:
         assert choice.seconds == min(e.seconds for e in enough)
+        assert f"{choice.method} is quicker and ends" not in choice.why
     else:
         assert choice.digits == max(e.digits for e in known)
         assert "table ends" in choice.why

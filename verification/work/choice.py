@@ -100,8 +100,8 @@ def cheapest(question: str, digits: int, proof: bool = False, measured: Iterable
     if others:
         why += f"; next is {others[0].method}, {others[0].seconds / best.seconds:.3g} times as long"
     quick = min(usable, key=lambda e: e.seconds)
-    if quick.digits < digits and quick is not best:
-        reach = max(e.digits for e in usable if e.method == quick.method)
+    reach = max(e.digits for e in usable if e.method == quick.method)
+    if reach < min(digits, most):
         why += f"; {quick.method} is quicker and ends at {reach} digits"
     if digits > most:
         why += f"; the table ends at {most} digits"

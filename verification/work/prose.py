@@ -13,7 +13,14 @@ PLENTY = 100  # digits at which a proof is compared with none
 
 def paragraph(rows: Sequence[Row]) -> str:
     """The sentences, each with its numbers."""
-    told = [quickest(rows), picked(rows), bars(rows), proofs(rows), integers(rows), *usual(rows)]
+    told = [
+        quickest(rows) if not _with_bars(rows) else "",
+        picked(rows),
+        bars(rows),
+        proofs(rows),
+        integers(rows),
+        *usual(rows),
+    ]
     return "\n".join(f"- {sentence}" for sentence in told if sentence)
 
 

@@ -41,10 +41,15 @@ DIGITS = (16, 50, 100, 300, 1000, 3000, 10_000)
 
 
 def timed(work: Callable[[], Any]) -> tuple[float, Any]:
-    """Seconds, and the result."""
+    """Seconds, and the result; the least of three for what takes less than a second."""
     start = time.perf_counter()
     result = work()
-    return time.perf_counter() - start, result
+    least = time.perf_counter() - start
+    for _ in range(2 if least < 1 else 0):
+        start = time.perf_counter()
+        work()
+        least = min(least, time.perf_counter() - start)
+    return least, result
 
 
 def in_balls(system: System, start: list[float], digits: int) -> list[arb]:
@@ -88,7 +93,7 @@ def digits_table(console: Console, most: int) -> None:
     """Digits against seconds."""
     shown = Shown("value", "digits", "mpmath", "balls", "certificate", title="seconds")
     for name, (system, start) in systems().items():
-        refined(system, start, 16)  # generates and loads the kernels
+        certificate(system, refined(system, start, 16).z, 16)  # generates and loads the kernels
         for digits in (d for d in DIGITS if d <= most):
             shooting, solution = timed(lambda s=system, x=start, d=digits: refined(s, x, d))
             in_arb, _ = timed(lambda s=system, x=start, d=digits: in_balls(s, x, d))

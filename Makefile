@@ -41,6 +41,7 @@ dist: $(VENV)/dist.stamp
 
 bench: $(VENV)/bench.stamp
 	$(BIN)/pinball bench
+	$(BIN)/python benchmarks/work_precision.py --compare
 
 clean:
 	rm -rf $(VENV) report dist docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

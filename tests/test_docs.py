@@ -35,7 +35,7 @@ def test_python_on_a_page_gives_what_the_page_shows(page, tmp_path, monkeypatch)
 @pytest.mark.parametrize(("page", "block"), COMMANDS)
 def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    for line in block.splitlines():
+    for line in (line for line in block.splitlines() if line.startswith("$ ")):  # the others are what was printed
         prompt, command, *arguments = shlex.split(line)
 
         assert (prompt, command) == ("$", "pinball")

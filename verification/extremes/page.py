@@ -144,6 +144,6 @@ here are an invariant, and `--collisions 1e9` makes them as long.
 
 The step on 80-bit floats is called unstable by its own unit, 2^-63. It was written for doubles: its sines and
 arctangents are polynomials for 53 bits, and its Newton's method ends once a correction is below 2^-27. Which of the
-two is to blame was not isolated. In units of 2^-52 its worst errors are 3.4 (flat points of the egg) and 2.6 (exits of the egg that graze), at backward errors of 0.6: good
-for finding wrong zeros, not for judging the last bit of a double.
+two is to blame was not isolated. In units of 2^-52 its worst errors are 3.4 (flat points of the egg) and 2.6 (exits of
+the egg that graze), at backward errors of 0.6: good for finding wrong zeros, not for judging the last bit of a double.
 """

@@ -10,7 +10,7 @@ from verification.figures.sheet import BLACK, OUTLINE, cloud, sheet
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BALLS, FLIGHTS = 60, 3  # orbits in phase space, and of those drawn in the table
+BALLS, FLIGHTS = 300, 3  # orbits in phase space, and of those drawn in the table
 
 
 def portrait(map: PinballMap, fine: float = 1.0) -> Panels:

@@ -31,6 +31,8 @@ COMMANDS = {
     "work": "Error against run time for a whole question, as a diagram.",
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
+EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore"}
+EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
 LONGEST = 600  # characters of a sentence; a reader sees the end of it
 
 
@@ -79,6 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _told(sentence(error), BAD_INPUT)
     except ValueError as error:
         return _told(str(error), BAD_INPUT)
+    except ModuleNotFoundError as error:
+        return _told(missing(error), BAD_INPUT)
     except Exception as error:
         return _told(f"an unexpected {type(error).__name__}: {error}; PINBALL_DEBUG=1 shows where", FAILED)
     return status
@@ -94,6 +98,17 @@ def run(arguments: Sequence[str]) -> int:
             return int(pinball.invoke(context) or DONE)
     except click.exceptions.Exit as done:
         return done.exit_code
+
+
+def missing(error: ModuleNotFoundError) -> str:
+    """Which package is not there, and the command that brings it.
+
+    >>> missing(ModuleNotFoundError(name="zarr.storage"))
+    "zarr is missing; install it with: pip install 'pinball-billiards[sweep]'"
+    """
+    package = (error.name or str(error)).partition(".")[0]
+    extra = f"[{EXTRAS[package]}]" if package in EXTRAS else ""
+    return f"{package} is missing; install it with: pip install 'pinball-billiards{extra}'"
 
 
 def sentence(error: click.ClickException) -> str:

@@ -266,6 +266,16 @@ def pinball(*arguments: str, **kwargs) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60, **kwargs)
 
 
+@pytest.mark.parametrize("package", ["xarray", "zarr"])
+def test_a_missing_extra_is_one_sentence_with_the_command_that_brings_it(package, capsys, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, package, None)
+    store = str(tmp_path / "store.zarr")
+    sweep = ["sweep", "parameter-space", "--alphas", "0:0.1:2", "--lams", "0:1:2", "--starts", "2", "--bounces", "8"]
+
+    said = refusal(capsys, *sweep, "--transient", "0", "--store", store)
+    assert said == f"{package} is missing; install it with: pip install 'pinball-billiards[sweep]'"
+
+
 def test_help_loads_no_mathematics():
     loaded = (
         "import sys; from verification.cli import main; main(['--help']); print(sorted(sys.modules), file=sys.stderr)"
@@ -300,7 +310,9 @@ def test_every_command_has_help_with_an_example():
         done = pinball(name, "--help")
 
         assert done.returncode == 0
-        assert f"Example: pinball {name}" in done.stdout
+        example = " ".join(done.stdout.split()).partition("Example: ")[2]
+        assert example.startswith("pinball ")
+        assert f"pinball {name}" in example
 
 
 def test_a_reader_that_goes_away_is_no_error():

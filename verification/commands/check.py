@@ -9,7 +9,7 @@ from verification.cli import DONE, FAILED
 from verification.commands.output import Output, json_option
 
 
-@click.command(epilog="Example: pinball check lambda_3.json")
+@click.command(epilog="Example: pinball locate lambda-c --certificate lambda_c.json && pinball check lambda_c.json")
 @click.argument("file")
 @json_option
 def command(file: str, output: Output) -> int:

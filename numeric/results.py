@@ -87,20 +87,20 @@ class Slap(NamedTuple):
 
 
 def labelled(fields: Any, axes: tuple[str, ...]) -> Any:
-    """Named arrays as an xarray Dataset; one that has fewer axes has the last ones."""
+    """Named arrays as an xarray Dataset, balls in a row; an array with fewer axes than the others has the last one."""
     try:
         import xarray
     except ImportError:
         raise ValueError(
             "to_xarray: xarray is missing; install it with: pip install 'pinball-billiards[sweep]'"
         ) from None
+    arrays = {name: np.asarray(values) for name, values in fields._asdict().items()}
+    whole = max(values.ndim for values in arrays.values())
     found = {}
-    for name, values in fields._asdict().items():
-        flat = np.asarray(values)
-        flat = flat.reshape(flat.shape[0], -1) if len(axes) == 2 and flat.ndim > 1 else flat
-        if len(axes) == 2 and flat.ndim == 1 and name != "slope":
-            flat = flat[:, None]  # one ball
-        dims = axes[len(axes) - max(flat.ndim, 1) :]
+    for name, values in arrays.items():
+        all_axes = len(axes) > 1 and values.ndim == whole
         about = {"long_name": MEANINGS.get(name, name), "units": UNITS.get(name, "")}
-        found[name] = (dims, np.atleast_1d(flat), {key: text for key, text in about.items() if text})
+        labels = {key: text for key, text in about.items() if text}
+        flat = values.reshape(values.shape[0], -1) if all_axes else values.reshape(-1)
+        found[name] = (axes if all_axes else axes[-1:], flat, labels)
     return xarray.Dataset(found)

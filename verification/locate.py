@@ -34,6 +34,7 @@ MPMATH_SHARE = 0.7  # of the time that a proof and its approximation take
 Steps = tuple[Step, ...]
 FOLD_DIGITS = 50  # at most, of the proof beside a crisis
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
+WORDS = {True: "proved", False: "refuted", None: "unknown"}  # the three answers of a checklist
 
 
 @dataclass(frozen=True)
@@ -72,8 +73,7 @@ class Located:
         }
 
     def _repr_html_(self) -> str:
-        answers = {True: "proved", False: "refuted", None: "unknown"}
-        rows = "".join(f"<tr><td>{item}</td><td>{answers[value]}</td></tr>" for item, value in self.checks.items())
+        rows = "".join(f"<tr><td>{item}</td><td>{WORDS[value]}</td></tr>" for item, value in self.checks.items())
         said = "certified" if self.certified else "not certified"
         return f"<p>{self.name} = {self.value} &plusmn; {self.radius}, {said}</p><table>{rows}</table>"
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verification.commands.scene import Scene, table_options
-from verification.commands.sweeping import How, carried_out, span, sweep_options
+from verification.commands.sweeping import How, carried_out, lams_option, over, seed_option, sweep_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,25 +19,21 @@ MANY = 64  # distinct points; more are not counted
     epilog="Example: pinball bifurcation egg --alpha 0.08 --lams 0.35:0.45:101 --orbits 20 --json diagram.json"
 )
 @table_options
-@click.option("--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, both ends included.")
+@lams_option
 @click.option("--orbits", type=click.IntRange(1, 100_000), default=20, show_default=True, help="Random balls for each.")
 @click.option("--points", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Bounces kept of each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=4000, show_default=True, help="Bounces before.")
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="For the exponents.")
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+@seed_option
 @sweep_options
 def command(
     scene: Scene, lams: str, orbits: int, points: int, transient: int, bounces: int, seed: int, how: How
 ) -> int:
     """Where random balls are after a long time, for each contraction; starts as in the paper's appendix."""
-    import numpy as np
-
     from verification.sweeps.bifurcation import bifurcation
-    from verification.sweeps.scenes import map_of, text_of
 
-    values = np.array(span("--lams", lams))
-    map_of(text_of(scene), values[0])  # a bad shape is refused before anything runs
-    sweep = bifurcation(text_of(scene), values, orbits, points, bounces, transient, seed)
+    text, values = over(scene, lams)
+    sweep = bifurcation(text, values, orbits, points, bounces, transient, seed)
     return carried_out(sweep, how, lines)
 
 

@@ -19,7 +19,7 @@ def command(file: str, output: Output) -> int:
     """
     from verification.balls import decimal
     from verification.certificates.files import checked, read
-    from verification.commands.locate import WORDS
+    from verification.locate import WORDS
 
     started = time.perf_counter()
     given = read(Path(file))

@@ -1,7 +1,6 @@
 """`pinball explore`: a table to play with, on a local page."""
 
 import socket
-from importlib.util import find_spec
 
 import click
 
@@ -20,8 +19,6 @@ def command(port: int, show: bool, output: Output) -> int:
 
     The page is served on 127.0.0.1 only, until Ctrl-C. It needs pip install 'pinball-billiards[explore]'.
     """
-    if find_spec("panel") is None:
-        raise ValueError("explore needs Panel; install it with: pip install 'pinball-billiards[explore]'")
     from verification.explore.app import serve
 
     port = _free(port)

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from verification.locate import Located
 
 LETTERS = ("lam", "alpha", "n")
-WORDS = {True: "proved", False: "refuted", None: "unknown"}
 
 
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
@@ -35,7 +34,7 @@ def command(
     methods and not certified.
     """
     from symbolic.formula import number
-    from verification.locate import GMPY2, SAMPLED, locate
+    from verification.locate import GMPY2, SAMPLED, WORDS, locate
 
     given = {letter: text for letter, text in zip(LETTERS, (lam, alpha, n), strict=True) if text is not None}
     shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}

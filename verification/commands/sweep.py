@@ -8,7 +8,7 @@ import click
 from verification.commands.basins import command as basins
 from verification.commands.bifurcation import command as bifurcation
 from verification.commands.scene import Scene, table_options
-from verification.commands.sweeping import How, carried_out, span, sweep_options
+from verification.commands.sweeping import How, carried_out, lams_option, over, seed_option, span, sweep_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,12 +46,12 @@ def command() -> None:
 @click.option(
     "--alphas", metavar="LOW:HIGH:N", required=True, help="Shapes of the egg, equally spaced, with both ends."
 )
-@click.option("--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, with both ends.")
+@lams_option
 @click.option("--K", "K", type=click.IntRange(2, 100), default=3, show_default=True, help="Points of the egg.")
 @click.option("--starts", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Random balls a pair.")
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+@seed_option
 @sweep_options
 def parameter_space(
     alphas: str, lams: str, K: int, starts: int, bounces: int, transient: int, seed: int, how: How
@@ -82,24 +82,20 @@ def picture(found: "xr.Dataset") -> list[str]:
     "exponents", epilog="Example: pinball sweep exponents cuspless --lams 0:1:51 --orbits 100 --json exponents.json"
 )
 @table_options
-@click.option("--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, with both ends.")
+@lams_option
 @click.option("--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random balls for each.")
 @click.option("--groups", type=click.IntRange(1, 64), default=6, show_default=True, help="Attractors kept for each.")
 @click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+@seed_option
 @sweep_options
 def exponents(
     scene: Scene, lams: str, orbits: int, groups: int, bounces: int, transient: int, seed: int, how: How
 ) -> int:
     """Both Lyapunov exponents against the contraction, with standard errors, for each attractor."""
-    import numpy as np
-
     from verification.sweeps import exponents as kind
-    from verification.sweeps.scenes import map_of, text_of
 
-    values, text = np.array(span("--lams", lams)), text_of(scene)
-    map_of(text, values[0])  # a bad shape is refused before anything runs
+    text, values = over(scene, lams)
     return carried_out(kind.exponents(text, values, orbits, groups, bounces, transient, seed), how, table_of_groups)
 
 

@@ -12,10 +12,12 @@ import click
 
 from verification.cli import DONE, FAILED
 from verification.commands.output import Output, json_option
-from verification.commands.scene import exact
+from verification.commands.scene import Scene, exact
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
+    from numpy.typing import NDArray
 
     from verification.sweeps import Cost, Sweep
 
@@ -43,6 +45,12 @@ OPTIONS = (
     click.option("--dry-run", is_flag=True, help="Say what it costs, and do nothing."),
     json_option,
 )
+
+
+lams_option = click.option(
+    "--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, both ends included."
+)
+seed_option = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
 
 
 def sweep_options(command: Command) -> Command:
@@ -75,6 +83,17 @@ def span(label: str, text: str, low: Fraction = Fraction(0), high: Fraction = Fr
         raise ValueError(f"{label} {text!r} does not lie in order in [{low}, {high}]; accepted: numbers that do")
     steps = int(parts[2]) - 1
     return [float(first + (last - first) * Fraction(i, max(steps, 1))) for i in range(steps + 1)]
+
+
+def over(scene: Scene, lams: str) -> "tuple[str, NDArray[np.float64]]":
+    """The scene as a sweep labels it, and its contractions; a bad shape is refused before anything runs."""
+    import numpy as np
+
+    from verification.sweeps.scenes import map_of, text_of
+
+    text, values = text_of(scene), np.array(span("--lams", lams))
+    map_of(text, values[0])
+    return text, values
 
 
 def _rational(label: str, text: str) -> Fraction:

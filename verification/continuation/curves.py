@@ -20,7 +20,6 @@ import numpy as np
 
 from verification.continuation import arc
 from verification.continuation.arc import End, LostError, Path, Point, Steps
-from verification.continuation.branch import Event, What
 from verification.continuation.recurrence import Array, Letters, Recurrence
 from verification.continuation.systems import Critical
 from verification.shooting.problem import Kind
@@ -145,13 +144,3 @@ def degenerate(system: Critical, path: Path) -> list[Degenerate]:
         if path.end is End.INTERVAL and abs(last.tests[name]) < 1e-7:
             found.append(Degenerate(MEANING[system.kind, name], last))
     return found
-
-
-def from_event(
-    event: Event, two: tuple[str, str], ring: Recurrence, letters: Letters, box: Box, steps: Steps | None = None
-) -> Curve:
-    """The curve through an event of a branch; `ring` is its ring with both letters free, `letters` where it is."""
-    kind = Kind.FOLD if event.what is What.FOLD else Kind.FLIP
-    near = (float(letters[two[0]]), float(letters[two[1]]))
-    fixed = {name: value for name, value in letters.items() if name not in two}
-    return curve(ring, kind, event.x, two, near, box, fixed, steps)

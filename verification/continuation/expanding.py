@@ -21,6 +21,7 @@ from symbolic.symbols import alpha as letter
 from symbolic.tables import egg
 from verification.arithmetic import Arithmetic, balls, working
 from verification.certificates.contraction import Enclosure, contraction, exact_balls
+from verification.certificates.everywhere import trace_and_determinant
 from verification.locate import certify
 from verification.shooting.chain import Chain, Elimination, Vector
 from verification.shooting.newton import refined
@@ -55,9 +56,7 @@ def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
     proof = certify(problem, list(HEXAGON), 20)
     with working(BITS):
         chain = Linearised(Rows(problem, balls(BITS)), proof.enclosure.zero).plain
-        determinant = arb(1)
-        for lower, upper in zip(chain.lower, chain.upper, strict=True):
-            determinant = determinant * lower / upper
+        _, determinant = trace_and_determinant(chain)
     return Expanding(proof.certified, determinant)
 
 
@@ -73,11 +72,9 @@ def resonance(period: int) -> Small:
         into = [angle(theta[i], theta[i - 1], alpha) for i in range(period)]
         lower, upper = [lam * b[2] for b in into], [f[2] for f in out]
         diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
-        determinant: Any = lower[0] / upper[0]
-        for below, above in zip(lower[1:], upper[1:], strict=True):
-            determinant = determinant * below / above
-        rest = Elimination(Chain(lower, diagonal, upper)).rest
-        return [*(f[0] + lam * b[0] for f, b in zip(out, into, strict=True)), rest, determinant - 1]
+        chain = Chain(lower, diagonal, upper)
+        _, determinant = trace_and_determinant(chain)
+        return [*(f[0] + lam * b[0] for f, b in zip(out, into, strict=True)), Elimination(chain).rest, determinant - 1]
 
     return Small(f"egg, period {period}, the double multiplier 1", equations)
 

@@ -18,10 +18,10 @@ from verification.explore.picture import (
     ball_in_phase,
     cycle_near,
     filling,
-    outline,
     phase,
     tip,
 )
+from verification.figures.phase import outline
 
 INK, BALL, CYCLE = "#30343a", "#c2410c", "#1d4ed8"
 PORTIONS = 25  # of phase space before it rests: what a browser draws without effort

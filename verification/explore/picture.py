@@ -4,15 +4,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric import Orbit, PinballMap
 from numeric.sampling import boundary, interior_starts
 from verification.dynamics.cycles import Cycle, polished, shortest
 from verification.dynamics.places import places
+from verification.figures.panel import Curve
+from verification.figures.phase import arc_length
 
-Array = NDArray[np.float64]
-POINTS = 400  # of the outline
 LONGEST = 64  # period of a cycle that is looked for
 STEEPEST = 0.999 * np.pi / 2
 
@@ -24,13 +23,6 @@ class Ball:
     component: int
     theta: float
     phi: float
-
-
-def outline(map: PinballMap) -> tuple[Array, Array]:
-    """The boundary, once around."""
-    s = np.linspace(0, map.arclength.perimeter, POINTS) - map.arclength.perimeter / 2
-    x, y = map.states.point(*boundary(map, s))
-    return x, y
 
 
 def ball_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> Ball:
@@ -61,15 +53,10 @@ def tip(map: PinballMap, ball: Ball, length: float) -> tuple[float, float]:
     return float(x[0] + length * vx[0]), float(y[0] + length * vy[0])
 
 
-def phase(map: PinballMap, orbit: Orbit) -> tuple[Array, Array]:
+def phase(map: PinballMap, orbit: Orbit) -> Curve:
     """`s` from `-L/2` to `L/2` and `sin(phi)` of every bounce that was made."""
-    made = orbit.code.ravel() == 0
-    component, theta, phi = (field.ravel()[made] for field in (orbit.component, orbit.theta, orbit.phi))
-    s = np.empty_like(theta)
-    for part in np.unique(component):
-        s[component == part] = map.arclength.s(theta[component == part], int(part))
-    whole = map.arclength.perimeter
-    return np.mod(s + whole / 2, whole) - whole / 2, np.sin(phi)
+    made = orbit.code == 0
+    return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
 
 
 def ball_in_phase(map: PinballMap, s: float, sin_phi: float) -> Ball:
@@ -79,7 +66,7 @@ def ball_in_phase(map: PinballMap, s: float, sin_phi: float) -> Ball:
     return Ball(int(component[0]), float(theta[0]), phi)
 
 
-def filling(map: PinballMap, balls: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[tuple[Array, Array]]:
+def filling(map: PinballMap, balls: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
     """Phase space in portions, for ever: random balls, each portion a few bounces further."""
     starts = interior_starts(map, balls, seed)
     component, theta, phi = starts.component, starts.theta, starts.phi

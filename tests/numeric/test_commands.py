@@ -65,6 +65,42 @@ def test_a_formula_makes_a_table(capsys):
     assert document["bounces"][1]["component"] == "polar"
 
 
+def test_auto_takes_float64_as_long_as_the_orbit_leaves_enough_of_it_and_says_why(capsys):
+    question = ("orbit", "cardioid", "--lam", "0.9", "--start", "0.5,-1/5", "--arithmetic", "auto", "--digits", "10")
+    (_, short, _), (status, long, told) = (run(capsys, *question, "--bounces", n) for n in ("3", "100"))
+    _, asked, _ = run(capsys, *question[:-3], "arb", "--digits", "10", "--bounces", "100")
+
+    assert (short["arithmetic"], long["arithmetic"], status) == ("float64", "arb", 0)
+    assert long["bounces"] == asked["bounces"]
+    assert long["why"] in told
+    assert "digits lost in 100 bounces: " in long["why"]
+
+
+def test_a_tolerance_is_a_number_of_digits(capsys):
+    question = ("orbit", *EGG, "--start", "0.5,-1/5", "--bounces", "3", "--arithmetic", "auto")
+    (_, by_error, _), (_, by_digits, _) = (
+        run(capsys, *question, *more) for more in (("--tolerance", "1e-40"), ("--digits", "40"))
+    )
+
+    assert by_error == by_digits
+    assert by_error["arithmetic"] == "arb"
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (("--tolerance", "0"), "tolerance = 0"),
+        (("--tolerance", "nan"), "tolerance = nan"),
+        (("--tolerance", "1e-9", "--digits", "9"), "give one of them"),
+    ],
+)
+def test_a_tolerance_that_says_nothing_is_refused(capsys, options, named):
+    status, document, told = run(capsys, "orbit", *EGG, "--start", "0,0", "--bounces", "3", *options)
+
+    assert (status, document) == (2, None)
+    assert named in told
+
+
 WAISTED = ("--polar", "1 + cos(2*theta)/2", "--lam", "9/10")  # the line that touches both sides of a waist
 
 

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 MOST = 40  # bounces shown to people
+WAYS = ("float64", "mpmath", "arb", "auto")
+FEW, MANY = 12, 50  # digits, where nothing is said: for auto, and for mpmath and arb
 PROVED = "arb, each landing proved to be the first hit"
 KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
 
@@ -22,16 +24,26 @@ KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
 @click.option("--start", required=True, metavar="THETA,PHI", help="Boundary parameter and exit angle, in radians.")
 @click.option("--component", metavar="NAME", help="The component of the start; the first one if left out.")
 @click.option("--bounces", type=click.IntRange(1, 10_000_000), required=True, help="How many.")
-@click.option("--arithmetic", type=click.Choice(["float64", "mpmath", "arb"]), default="float64", show_default=True)
-@click.option("--digits", type=click.IntRange(1, 10_000), default=50, show_default=True, help="For mpmath and arb.")
+@click.option("--arithmetic", type=click.Choice(WAYS), default="float64", show_default=True)
+@click.option("--digits", type=click.IntRange(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
+@click.option("--tolerance", metavar="T", help="In place of --digits: so many that the error is below it.")
 @json_option
 def command(
-    scene: Scene, start: str, component: str | None, bounces: int, arithmetic: str, digits: int, output: Output
+    scene: Scene,
+    start: str,
+    component: str | None,
+    bounces: int,
+    arithmetic: str,
+    digits: int | None,
+    tolerance: str | None,
+    output: Output,
 ) -> int:
     """Where does this ball go? Exit status 1 when it stops at a join, a cusp or a tangency.
 
     In arb the last digit shown is off by one at most, and every landing is proved to be the first hit; an orbit
     that goes on where that cannot be proved ends as `unproved`. The other outcomes are found, and not proved.
+    `auto` takes what is cheapest for the digits asked of the last bounce, and says why: float64 as long as the orbit
+    leaves it enough of its own, then arb.
     """
     map = pinball_map(scene)
     names = [part.name for part in map.blueprint.parts]
@@ -39,6 +51,16 @@ def command(
         raise ValueError(f"--component = {component} is not on this table; accepted: {', '.join(names)}")
     index = names.index(component) if component else 0
     theta, phi = start_of(start)
+    digits = wanted(digits, tolerance)
+    picked: dict[str, str] = {}
+    if arithmetic == "auto":
+        from verification.work.orbit_choice import for_orbit
+
+        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
+        choice = for_orbit(map, (index, float(theta), float(phi)), bounces, digits or FEW)
+        arithmetic, digits = choice.arithmetic, digits or FEW
+        picked = {"arithmetic": arithmetic, "why": choice.why}
+    digits = digits or MANY
     if arithmetic == "float64":
         entries = in_float64(map, index, float(theta), float(phi), bounces)
     else:
@@ -48,11 +70,24 @@ def command(
         follow = in_multiprecision if arithmetic == "mpmath" else in_balls
         with output.progress("Bouncing", bounces) as step:
             entries = follow(map, exact("--lam", scene.lam), (index, theta, phi), bounces, digits, step)
-    output.write({"bounces": entries})
+    output.write({"bounces": entries} | picked)
     show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
+    if picked:
+        output.console.print(f"{arithmetic}: {picked['why']}")
     if entries[-1]["status"] == "unproved":
         output.console.print("no proof that the next flight meets nothing before it lands; it is not given")
     return DONE if all(entry["status"] == "regular" for entry in entries) else FAILED
+
+
+def wanted(digits: int | None, tolerance: str | None) -> int | None:
+    """The digits asked for, in either way; None where nothing was said."""
+    if tolerance is None:
+        return digits
+    if digits is not None:
+        raise ValueError(f"--tolerance = {tolerance} and --digits = {digits} ask for the same thing; give one of them")
+    from verification.work.orbit_choice import digits_for
+
+    return digits_for(tolerance)
 
 
 def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ an orbit loses; float64 keeps the rest of what one bounce promises.
 
 import math
 from dataclasses import replace
-from decimal import Decimal
+from decimal import Decimal, InvalidOperation
 
 import numpy as np
 
@@ -14,10 +14,11 @@ from numeric import PinballMap
 from numeric.growth import Growth
 from verification.work.choice import Choice, cheapest, table
 
-WAYS = ("compiled kernel", "mpmath, every zero", "arb, certified")  # what `pinball orbit` follows a ball with
+WAYS = ("compiled kernel", "arb, certified")  # that say how many digits an orbit has left: mpmath's does not
 LIKE = {"cardioid": "step-cardioid", "cuspless": "step-cardioid"}  # the measured bounce that a table's is most like
 OTHERS = "step-egg"
 LOOKS = 1000  # at an orbit
+MOST_DIGITS = 10_000
 HOPELESS = 400.0  # digits: an orbit that loses more is not followed to say how many
 
 
@@ -38,10 +39,10 @@ def for_orbit(
     if math.isinf(lost):
         enough = [entry for entry in known if entry.arithmetic != "float64"]
         choice = cheapest(name, digits, proof, enough)
-        return _saying(choice, f"the orbit loses every digit of float64 in {bounces} bounces")
+        return _saying(choice, f"in float64 the ball stops or loses every digit within {bounces} bounces")
     rounded = math.ceil(lost)
     near = [e for e in known if e.arithmetic != "float64" or e.digits >= digits + rounded]
-    return _saying(cheapest(name, digits, proof, near), f"the orbit loses {rounded} digits in {bounces} bounces")
+    return _saying(cheapest(name, digits, proof, near), f"digits lost in {bounces} bounces: {rounded}")
 
 
 def digits_lost(map: PinballMap, start: tuple[int, float, float], bounces: int) -> float:
@@ -60,15 +61,18 @@ def digits_lost(map: PinballMap, start: tuple[int, float, float], bounces: int) 
     return math.inf if lost > HOPELESS else lost
 
 
-def digits_for(tolerance: Decimal | float) -> int:
+def digits_for(tolerance: Decimal | float | str) -> int:
     """The decimal digits that keep an error below a tolerance.
 
     >>> digits_for(1e-12), digits_for(Decimal("3e-1000"))
     (12, 1000)
     """
-    given = Decimal(str(tolerance))
-    if not 0 < given < 1:
-        raise ValueError(f"tolerance = {tolerance} is out of range; accepted: numbers between 0 and 1")
+    try:
+        given = Decimal(str(tolerance))
+    except InvalidOperation:
+        given = Decimal("NaN")
+    if not (given.is_finite() and Decimal(10) ** -MOST_DIGITS <= given < 1):
+        raise ValueError(f"tolerance = {tolerance} is out of range; accepted: numbers from 1e-{MOST_DIGITS} to below 1")
     return max(1, -given.adjusted())
 
 

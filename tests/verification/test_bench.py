@@ -46,6 +46,36 @@ def test_the_hard_cases_of_the_table_are_within_the_bounds(document):
     assert all(case["position"] <= 4 and case["direction"] <= 8 for case in cases)
 
 
+QUICK = ("bench", "--scene", "circle", "--digits", "20", "--runs", "1", "--no-baselines", "--no-accuracy", "--json")
+
+
+def test_bench_says_what_moved_since_another_run(tmp_path, capsys):
+    before, after = tmp_path / "before.json", tmp_path / "after.json"
+    assert main([*QUICK, str(before)]) == 0
+    told = json.loads(before.read_text())
+    for row in told["rows"]:
+        row["error"] = float(row["error"]) / (1e6 if row["kernel"] == "numpy" else 1)
+        row["seconds_per_bounce"] *= 1e6 if row["kernel"] == "llvm, exponents" else 1
+    told["rows"][-1]["kernel"] = "by hand"
+    before.write_text(json.dumps(told))
+
+    assert main([*QUICK, str(after), "--compare", str(before)]) == 1
+    moved = json.loads(after.read_text())["moved"]
+    shown = capsys.readouterr().out
+    assert {"circle: arb by hand  is gone", "circle: arb 20 digits  is new"} <= set(moved)
+    assert any(line.startswith("circle: float64 numpy  is off by") for line in moved)
+    assert any(line.startswith("circle: float64 llvm, exponents  is") and "quicker" in line for line in moved)
+    assert all(line in " ".join(shown.split()) for line in (" ".join(line.split()) for line in moved))
+
+
+def test_a_file_that_is_no_run_is_refused(tmp_path, capsys):
+    (tmp_path / "no.json").write_text('{"rows": [{"scene": "circle"}]}')
+
+    assert main(["bench", "--compare", str(tmp_path / "no.json")]) == 2
+    assert main(["bench", "--compare", str(tmp_path / "none.json")]) == 2
+    assert capsys.readouterr().err.count("accepted: a file of pinball bench --json") == 2
+
+
 @pytest.mark.parametrize("name", ["ellipse", "egg"])
 def test_errors_of_many_digits_are_measured(name):
     """A number below 10 rounded to `n` digits is off by `10**-n/2` to `5 * 10**-n` where rounding is all there is."""

@@ -1,11 +1,12 @@
 """`pinball bench`: error against run time, for every arithmetic and every kernel."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from verification.cli import DONE
+from verification.cli import DONE, FAILED
 from verification.commands.output import Output, json_option
 
 if TYPE_CHECKING:
@@ -24,19 +25,29 @@ CASES = f"{'case':<40}{'balls':>6}{'position':>10}{'direction':>11}{'/condition'
 @click.option("--runs", type=click.IntRange(1, 1000), default=5, show_default=True, help="The best of how many.")
 @click.option("--baselines/--no-baselines", default=True, show_default=True, help="The benchmark folder's own ways.")
 @click.option("--accuracy/--no-accuracy", default=True, show_default=True, help="The errors of labelled hard cases.")
+@click.option("--compare", metavar="FILE", help="Say what moved since a run of which FILE is the --json.")
 @json_option
 def command(
-    scenes: tuple[str, ...], digits: tuple[int, ...], runs: int, baselines: bool, accuracy: bool, output: Output
+    scenes: tuple[str, ...],
+    digits: tuple[int, ...],
+    runs: int,
+    baselines: bool,
+    accuracy: bool,
+    compare: str | None,
+    output: Output,
 ) -> int:
     """Error against run time: each way to bounce, timed for one bounce at lam = 0.95.
 
     Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30
     digits more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the
-    Pareto front: no other way is both faster and more exact.
+    Pareto front: no other way is both faster and more exact. With --compare the exit status is 1 when a time, beside
+    the others of its run, changed by more than a factor 1.5, or an error grew tenfold.
     """
     from verification import bench, labelled
     from verification.baselines import baseline_rows
+    from verification.work.compare import earlier, moved, of_bench
 
+    before = earlier(Path(compare)) if compare else []
     unknown = [name for name in scenes if name not in labelled.SCENES]
     if unknown:
         raise ValueError(f"--scene = {unknown[0]} is no table; accepted: {', '.join(labelled.SCENES)}")
@@ -53,8 +64,11 @@ def command(
             step(f"{name}, hard cases")
             cases += labelled.accuracy(name) if accuracy else []
     facts = bench.machine_facts()
-    document = {"machine": facts, "rows": [row.as_data() for row in rows]}
-    output.write(document | {"accuracy": [case._asdict() | {"error_unit": "2**-52"} for case in cases]})
+    measured = [row.as_data() for row in rows]
+    changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []
+    document = {"machine": facts, "rows": measured}
+    document |= {"accuracy": [case._asdict() | {"error_unit": "2**-52"} for case in cases]}
+    output.write(document | ({"moved": changes} if compare else {}))
     for name in chosen:
         show(output.console, name, [row for row in rows if row.scene == name])
     if cases:
@@ -62,7 +76,9 @@ def command(
     output.console.print(
         "\none core unless said otherwise; " + ", ".join(f"{key} {value}" for key, value in facts.items())
     )
-    return DONE
+    if compare:
+        output.console.print(f"\nsince {compare}: " + ("; ".join(changes) or "nothing moved by more than a factor 1.5"))
+    return FAILED if changes else DONE
 
 
 def show(console: "Console", name: str, rows: "list[Row]") -> None:

@@ -4,11 +4,15 @@ How much longer a run took is the median over the rows of a question, and over t
 differs from that. Lower quartiles are compared, which other work on a machine disturbs least.
 """
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from pathlib import Path
 from statistics import median
+from typing import Any
 
 from verification.diagram import duration
-from verification.work.row import Row
+from verification.work.row import Row, timed
 from verification.work.text import short
 
 MOVED = 1.5  # the factor from which on a change is told
@@ -61,3 +65,24 @@ def _unit(old: Rows, new: Rows) -> float:
     """How many times as long the rows took that both have, in the median."""
     ratios = [new[key].quartiles[0] / old[key].quartiles[0] for key in new if key in old and old[key].quartiles[0]]
     return median(ratios) if ratios else 1.0
+
+
+def of_bench(rows: Iterable[Mapping[str, Any]]) -> list[Row]:
+    """The rows of a document of `pinball bench`: a question for each table, a method for each way to bounce."""
+    return [
+        timed(
+            row["scene"],
+            f"{row['arithmetic']} {row['kernel']}",
+            [row["seconds_per_bounce"]],
+            error=None if row["error"] is None else Decimal(str(row["error"])),
+        )
+        for row in rows
+    ]
+
+
+def earlier(path: Path) -> list[Row]:
+    """The rows of a document that `pinball bench --json` wrote before."""
+    try:
+        return of_bench(json.loads(path.read_text(encoding="utf-8"))["rows"])
+    except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as why:
+        raise ValueError(f"--compare = {path} cannot be read ({why}); accepted: a file of pinball bench --json") from why

@@ -61,7 +61,7 @@ is the peak of the resident set above that of a process that only imports NumPy,
 NumPy's import to the answer, the shortest of three runs on a busy machine.
 
 `python benchmarks/first_result.py page` writes this page; `tests/verification/test_leave_out_page.py` holds
-operations, state and modules to their line. The split by kind of instruction is in [numerics.md](numerics.md).
+operations, state and modules to their line. The split by kind of instruction is in [kernels.md](kernels.md).
 """
 COLD = """
 ## Before and after the cache

@@ -40,7 +40,7 @@ includes the whole proof, such as that each landing is the first hit and the per
 {footer}
 
 Read ratios, not seconds: the load of the machine before this was measured is the last number above. What a kernel
-takes for a bounce of each table is in [the map in float64](numerics.md).
+takes for a bounce of each table is in [the dossier](numerics.md).
 """
 
 

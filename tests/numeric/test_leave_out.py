@@ -13,7 +13,7 @@ from numeric.kernel import alive, kernel_text, operations
 from numeric.question import Question, fields
 from verification.bench import SCENES, operation_table
 
-PAGE = Path(__file__).parent.parent.parent / "docs" / "numerics.md"
+PAGE = Path(__file__).parent.parent.parent / "docs" / "kernels.md"
 HEAVY = ("sympy", "mpmath", "flint", "matplotlib", "scipy", "numba", "hypothesis", "click", "rich")
 
 

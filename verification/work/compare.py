@@ -85,4 +85,6 @@ def earlier(path: Path) -> list[Row]:
     try:
         return of_bench(json.loads(path.read_text(encoding="utf-8"))["rows"])
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as why:
-        raise ValueError(f"--compare = {path} cannot be read ({why}); accepted: a file of pinball bench --json") from why
+        raise ValueError(
+            f"--compare = {path} cannot be read ({why}); accepted: a file of pinball bench --json"
+        ) from why

@@ -1,0 +1,226 @@
+"""The numerical dossier, `docs/numerics.md`, made from the measurements that lie in the repository.
+
+    python benchmarks/dossier.py
+
+writes the page from `docs/bench.json` (`pinball bench --json`), `docs/work_precision.json`, `docs/leave_out.md`,
+`docs/mutation.json`, `verification/extremes/recorded.json` and `tests/symbolic/corpus.json`; each is written by the
+command that the page names. The words are in `dossier.md` beside this file. Nothing is measured here, and a test
+holds the page to its sources.
+"""
+
+import json
+import re
+import sys
+from collections import Counter
+from pathlib import Path
+
+from verification.diagram import duration
+from verification.extremes.stability import Stability
+from verification.labelled import SCENES
+from verification.work.choice import crossovers, entries
+from verification.work.prose import times
+from verification.work.row import Row, front
+from verification.work.text import footer, short
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"
+KERNEL = "float64 llvm"
+RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one ball at a time": "numba"}
+PLAIN = "float64 the paper's way, in Python"
+BOUNDS = 4, 8  # units of 2**-52: of the place and of the direction
+MANY = 100  # digits
+
+
+def load(name):
+    """One of the files in the repository."""
+    return json.loads((ROOT / name).read_text(encoding="utf-8"))
+
+
+def table(head, lines):
+    """A table in Markdown."""
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines])
+
+
+def bounce(bench):
+    """A line for each table: errors, times, and the ratios to what one would use instead."""
+    lines = []
+    for scene, shape in SCENES.items():
+        own = {
+            f"{r['arithmetic']} {r['kernel']}": r["seconds_per_bounce"] for r in bench["rows"] if r["scene"] == scene
+        }
+        cases = [case for case in bench["accuracy"] if case["scene"] == scene]
+        usual = next(case for case in cases if case["case"] == "random")
+        hard = max(cases, key=lambda case: max(case["position"] / BOUNDS[0], case["direction"] / BOUNDS[1]))
+        rivals = [times(own[name] / own[KERNEL]) if name in own else "" for name in (*RIVALS, PLAIN)]
+        label = ", ".join([scene, *(f"{k} = {v}" for k, v in shape.items())])
+        more = f"{own[f'{KERNEL}, exponents'] / own[KERNEL] - 1:+.0%}"
+        lines.append([label, pair(usual), f"{pair(hard)}: {hard['case']}", duration(own[KERNEL]), more, *rivals])
+    head = ["table", "random", "hardest case", "time", "exponents", *(f"{name}, times" for name in RIVALS.values())]
+    return table([*head, "plain Python, times"], lines)
+
+
+def pair(case):
+    """Errors of place and direction."""
+    return f"{case['position']:.2g}, {case['direction']:.2g}"
+
+
+def threads(bench):
+    """What a second thread gives."""
+    own = {(row["scene"], row["kernel"]): row["seconds_per_bounce"] for row in bench["rows"]}
+    gains = [own[scene, "llvm"] / own[scene, "llvm, 2 threads"] for scene in SCENES]
+    return f"Two threads are {min(gains):.2f} to {max(gains):.2f} times as fast as one."
+
+
+def questions(document, rows):
+    """A line for each question."""
+    lines = []
+    for name, about in document["questions"].items():
+        own = [row for row in rows if row.question == name]
+        lines.append([f"{about['title']} (`{name}`)", *(cell(own) for cell in (doubles, proved, usual_way))])
+    return table(
+        ["question", "float64: error, time", f"{MANY} digits, proved", "the usual way: error, times slower"], lines
+    )
+
+
+def doubles(rows):
+    """The finest answer in float64, and the quickest way that comes within a digit of it."""
+    own = [row for row in rows if row.arithmetic == "float64" and not row.textbook and row.error is not None]
+    if not own:
+        return ""
+    finest = min(row.magnitude for row in own)
+    quick = min((row for row in own if row.magnitude < finest + 1), key=lambda row: row.seconds)
+    return f"{short(quick.error)}, {duration(quick.seconds)}"
+
+
+def proved(rows):
+    """The time that many digits and their proof take."""
+    own = [row.seconds for row in rows if row.proved and row.digits == MANY and row.error is not None]
+    return duration(min(own)) if own else ""
+
+
+def usual_way(rows):
+    """The best of the usual ways beside the quickest of ours that is no worse."""
+    found = [row for row in rows if row.textbook and row.error is not None]
+    if not found:
+        return ""
+    best = min(found, key=lambda row: (row.error, row.seconds))
+    rivals = [row for row in front([r for r in rows if not r.textbook]) if row.error <= best.error]
+    slower = f"{times(best.seconds / rivals[0].seconds)}" if rivals else "nothing of ours is as good"
+    return f"{best.method}: {short(best.error)}, {slower}"
+
+
+def broken(rows):
+    """How often a usual way did not keep what its tolerance promised."""
+    asked = [row for row in rows if row.textbook and row.promise is not None]
+    worst = [row for row in asked if row.kept is False]
+    ours = [row for row in rows if not row.textbook and row.kept is False]
+    count = sum(row.promise is not None and not row.textbook for row in rows)
+    named = "".join(f"; {one}" for one in sorted({f"{row.question}, {row.method}" for row in ours}))
+    return (
+        f"Of the {len(asked)} settings of usual ways that make a promise (a tolerance), {len(worst)} do not keep it; "
+        f"of the {count} of this package {len(ours)}{named}."
+    )
+
+
+def choice(document, rows):
+    """Which arithmetic is cheapest, by digits, for each question whose ladder is digits."""
+    lines = []
+    for name in document["questions"]:
+        known = entries([row for row in rows if row.question == name])
+        if not any(entry.digits > 16 for entry in known):
+            continue
+        plain, sure = crossovers(name, measured=known), crossovers(name, measured=[e for e in known if e.proved])
+        lines.append([f"`{name}`", "; ".join(step(*one) for one in plain), "; ".join(step(*one) for one in sure[-1:])])
+    return table(["question", "cheapest", "with a proof"], lines)
+
+
+def step(digits, picked):
+    """From how many digits on, and what."""
+    return f"from {digits} {picked.method}" if digits > 1 else picked.method
+
+
+def verdicts(record):
+    """Cases by method and verdict."""
+    lines = []
+    for kernel in dict.fromkeys(one["kernel"] for one in record):
+        own = Counter(one["verdict"] for one in record if one["kernel"] == kernel)
+        backward = [float(one["backward"]) for one in record if one["kernel"] == kernel and "backward" in one]
+        lines.append([kernel, *(str(own[v.name] or "") for v in Stability), f"{max(backward, default=0):.2g}"])
+    return table(["method", *(v.name.lower() for v in Stability), "largest backward error"], lines)
+
+
+def exceptions(record):
+    """What is unstable, sensitive or stopped, together where the way out is the same."""
+    kept = {}
+    for one in record:
+        if one["verdict"] != Stability.STABLE.name:
+            kept.setdefault((one["verdict"].lower(), one["instead"]), []).append(one)
+    lines = []
+    for (verdict, instead), several in kept.items():
+        names = list(dict.fromkeys(one["case"] for one in several))
+        case = names[0] + (f", and {len(names) - 1} more" if len(names) > 1 else "")
+        lines.append([verdict, "; ".join(dict.fromkeys(one["kernel"] for one in several)), case, instead])
+    return table(["verdict", "methods", "cases", "instead"], lines)
+
+
+def scenes(text):
+    """The line with the fewest operations and the one with the most, of each table."""
+    cells = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| ")
+    ]
+    lines = []
+    for scene in SCENES:
+        own = [row for row in cells if row[0] == scene and len(row) == 9]
+        least, most = min(own, key=lambda row: int(row[3])), max(own, key=lambda row: int(row[3]))
+        named = [f"{row[3]}: {row[1]}, {row[2]}" for row in (least, most)]
+        state = " to ".join(sorted({row[5] for row in own}, key=int)[:: max(1, len({row[5] for row in own}) - 1)])
+        lines.append([scene, *named, state, f"{least[7]} to {most[7]}", f"{least[8]} to {most[8]}"])
+    return table(["table", "least operations", "most", "doubles of state", "MB", "ms to the answer"], lines)
+
+
+def mutation(document):
+    """The share of mutants that the tests kill."""
+    modules = document["modules"]
+    parts = []
+    for package in ("symbolic", "numeric"):
+        own = [m for name, m in modules.items() if name.startswith(package)]
+        if own:
+            killed, made = sum(m["killed"] for m in own), sum(m["mutants"] for m in own)
+            parts.append(f"`{package}/` {killed:,} of {made:,} ({killed / made:.1%}, {len(own)} modules)")
+    return "; ".join(parts)
+
+
+def fuzz(text, corpus):
+    """What the fuzzer did."""
+    runs = re.search(r"([\d,]+) executions take[^:]*: ([^.]*)\.", text)
+    return f"{runs[1]} executions, {runs[2]}. The {len(corpus)} texts that reached new code are regression tests"
+
+
+def page():
+    """The text of the page."""
+    bench, work = load("docs/bench.json"), load("docs/work_precision.json")
+    record, rows = load("verification/extremes/recorded.json"), [Row.from_dict(row) for row in work["rows"]]
+    loose = [f"`{name}`" for name, about in work["questions"].items() if not about["certified"]]
+    return TEXT.read_text().format(
+        machine=footer(bench["machine"]),
+        bounce=bounce(bench),
+        bounds=f"{BOUNDS[0]} and {BOUNDS[1]}",
+        threads=threads(bench),
+        uncertified=f" (of {', '.join(loose)} a long run)" if loose else "",
+        many=MANY,
+        questions=questions(work, rows),
+        usual=broken(rows),
+        choice=choice(work, rows),
+        cases=len(record),
+        fixtures=len({one["case"] for one in record}),
+        verdicts=verdicts(record),
+        exceptions=exceptions(record),
+        scenes=scenes((ROOT / "docs" / "leave_out.md").read_text().split("## Before")[0]),
+        mutation=mutation(load("docs/mutation.json")),
+        fuzz=fuzz((ROOT / "benchmarks" / "fuzz.py").read_text(), load("tests/symbolic/corpus.json")),
+    )
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page())
+    sys.stdout.write(f"{PAGE.name}: {len(page().split())} words\n")

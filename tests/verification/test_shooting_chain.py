@@ -128,3 +128,18 @@ def test_a_problem_that_is_not_square_is_refused():
         Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), mirror=True)
     with pytest.raises(ValueError, match="1 row is no chain"):
         Chain([1], [1], [1])
+
+
+@given(chains(), st.data())
+def test_a_transposed_chain_is_solved_exactly_with_and_without_a_border(chain, data):
+    n = len(chain.diagonal)
+    column, row = (data.draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(2))
+    corner = data.draw(fractions)
+    right = data.draw(st.lists(fractions, min_size=n + 1, max_size=n + 1))
+    plain = dense(chain)
+    whole = plain.row_join(rationals(column)).col_join(rationals([*row, corner]).T)
+    one = eliminated(chain)
+    assume(whole.det() != 0 and plain.det() != 0)
+
+    assert whole.T * rationals(one.transposed(column, row, [corner], right)) == rationals(right)
+    assert plain.T * rationals(one.transposed([], [], [], right[:n])) == rationals(right[:n])

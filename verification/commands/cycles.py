@@ -1,5 +1,6 @@
 """`pinball cycles`: which cycles are there, up to a period?"""
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.all_cycles.catalogue import Catalogue, Found
+    from verification.shooting.newton import Solution
 
 MOST = 60  # cycles shown to people
 
@@ -32,11 +34,14 @@ def command(
     Exit status 1 when a count does not come out even or a proof stays open; the cycles found are kept.
     """
     from verification.all_cycles.search import ROUNDS, all_cycles
+    from verification.shooting.newton import given
+    from verification.shooting.problem import Problem
 
     table, lam = scene.table(), scene.contraction()
     with output.progress("Searching", ROUNDS) as tick:
         found = all_cycles(table, lam, period, seed, tick)
     catalogue = found.catalogue
+    solutions = [given(Problem(table, cycle.components, lam=lam), cycle.theta) for cycle in catalogue.cycles]
     counts = counted(catalogue, count, output) if count else []
     completed = completeness(catalogue, lam, prove, budget, output) if prove else []
     document = {
@@ -48,12 +53,15 @@ def command(
             {"period": n, "cycles": catalogue.count(n), "index_sums_vanish": found.balanced[n]}
             for n in range(2, period + 1)
         ],
-        "cycles": [entry(cycle) for cycle in catalogue.cycles],
+        "cycles": [entry(cycle) | worth(solution) for cycle, solution in zip(catalogue.cycles, solutions, strict=True)],
         "second_count": counts,
         "completeness": completed,
     }
     output.write(document)
     show(output.console, catalogue, document)
+    if solutions:
+        worst = max(solutions, key=lambda solution: solution.condition)
+        output.console.print(f"the worst conditioned cycle has period {len(worst.z)}: {worst.words}")
     even = all(value is not False for value in found.balanced.values()) and all(
         row["agrees"] is not False for row in counts
     )
@@ -74,6 +82,12 @@ def entry(cycle: "Found") -> dict[str, Any]:
         "stable": spectrum.stable,
         "index": cycle.index(cycle.period),
     }
+
+
+def worth(solution: "Solution") -> dict[str, Any]:
+    """What the digits of a cycle are worth, for JSON."""
+    condition = solution.condition if isfinite(solution.condition) else None
+    return {"condition": condition, "digits_sure": solution.digits_sure, "conditioning": solution.conditioning.name}
 
 
 def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[str, Any]]:

@@ -7,9 +7,9 @@ the cycle's derivative attracts, so in a dissipative map rounding errors (and th
 out along the chain instead of multiplying. A pivot that may be 0 ends in `nan` balls: nothing proved.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 Vector = list[Any]
 
@@ -60,6 +60,7 @@ class Elimination:
         column: Vector = [0] * (n - 1)
         column[0] = s * chain.lower[0]
         column[-1] = column[-1] + chain.upper[n - 2]
+        self.column = column
         self.row: Vector = [0] * (n - 1)
         self.row[0] = s * chain.upper[n - 1]
         self.row[-1] = self.row[-1] + chain.lower[n - 1]
@@ -100,20 +101,45 @@ class Elimination:
         >>> [int(x) for x in one.bordered([1, 0, 0], [1, 1, 1], [0], [5, 6, 6, 3])]
         [1, 1, 1, -1]
         """
-        n = len(self.chain.diagonal)
-        plain = self.inner(r[: n - 1])
-        gap = r[n - 1] - dot(self.row, plain)
+        sides = _Sides(self.inner, self.row, self.right)
+        return self._bordered(sides, column, row, corner, r)
+
+    def transposed(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
+        """As `bordered`, of the transposed system: of the same `column`, `row` and `corner`, from the same factors.
+
+        >>> from fractions import Fraction
+        >>> one = Elimination(Chain(*[[Fraction(n)] * 3 for n in (1, 4, 2)]))
+        >>> [int(x) for x in one.transposed([], [], [], [8, 4, 9])]  # rows 4 1 2, 2 4 1, 1 2 4
+        [1, 0, 2]
+        """
+        sides = _Sides(self._transposed, self.column, self.left)
+        return self._bordered(sides, row, column, corner, r)
+
+    def _bordered(
+        self, sides: "_Sides", column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]
+    ) -> Vector:
+        n, (inner, far, kernel) = len(self.chain.diagonal), sides
+        plain = inner(r[: n - 1])
+        gap = r[n - 1] - dot(far, plain)
         if not column:
             last = gap / self.rest
-            return [p + last * v for p, v in zip(plain, self.right, strict=False)] + [last]
-        with_new = self.inner(column[: n - 1])
-        a, b = self.rest, column[n - 1] - dot(self.row, with_new)
-        c, d = dot(row, self.right), corner[0] - dot(row, with_new)
+            return [p + last * v for p, v in zip(plain, kernel, strict=False)] + [last]
+        with_new = inner(column[: n - 1])
+        a, b = self.rest, column[n - 1] - dot(far, with_new)
+        c, d = dot(row, kernel), corner[0] - dot(row, with_new)
         other = r[n] - dot(row, plain)
         determinant = a * d - b * c
         last, new = (gap * d - b * other) / determinant, (a * other - gap * c) / determinant
-        found = [p - new * m + last * v for p, m, v in zip(plain, with_new, self.right, strict=False)]
+        found = [p - new * m + last * v for p, m, v in zip(plain, with_new, kernel, strict=False)]
         return [*found, last, new]
+
+
+class _Sides(NamedTuple):
+    """What stands for a matrix or its transpose: rows but the last solved, the last row, and the kernel's vector."""
+
+    inner: Callable[[Sequence[Any]], Vector]
+    far: Vector
+    kernel: Vector
 
 
 def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:

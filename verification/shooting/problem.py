@@ -9,6 +9,7 @@ negated (flip). All of it holds for any kind of number that the kernels can be l
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cache, cached_property
+from math import remainder, tau
 from typing import Any
 
 from sympy import Expr, simplify
@@ -19,6 +20,7 @@ from symbolic.symbols import theta
 from symbolic.table import Component, Table
 from verification.arithmetic import Arithmetic
 from verification.shooting.chain import Chain, Elimination, Vector, dot
+from verification.shooting.condition import Solve
 
 
 class Kind(IntEnum):
@@ -76,6 +78,26 @@ class Problem:
         """`F'(z)^-1 F(z)`, Newton's correction."""
         here = Linearised(Rows(self, arithmetic), z)
         return here.solve(here.value)
+
+    def inverses(self, arithmetic: Arithmetic, z: Vector) -> tuple[Solve, Solve]:
+        """`F'(z)^-1` and its transpose, from one factorisation."""
+        here = Linearised(Rows(self, arithmetic), z)
+        return here.solve, here.solve_transposed
+
+    def shorter(self, z: Vector, within: float) -> int:
+        """The bounces after which the cycle repeats itself, up to `within` radians; 0 for never.
+
+        >>> from sympy import S
+        >>> from symbolic.tables import ellipse
+        >>> Problem(ellipse.at(a=2), (0,) * 4, lam=S(1) / 3).shorter([1.5, -1.5, 1.5, -1.5], 1e-9)
+        2
+        """
+        n, parts = self.period, self.components
+        for m in (m for m in range(2, n) if n % m == 0 and not self.mirror):
+            apart = (abs(remainder(float(z[i] - z[(i + m) % n]), tau)) for i in range(n))
+            if parts == parts[m:] + parts[:m] and all(gap <= within for gap in apart):
+                return m
+        return 0
 
     @property
     def period(self) -> int:
@@ -168,6 +190,12 @@ class Linearised:
         if self.problem.kind is Kind.CYCLE:
             return self.cycle.solve(r)
         return self.cycle.bordered(self.by_letter[0], self.row, [self.corner], r)
+
+    def solve_transposed(self, r: Vector) -> Vector:
+        """The transposed matrix, inverted on `r`."""
+        if self.problem.kind is Kind.CYCLE:
+            return self.cycle.transposed([], [], [], r)
+        return self.cycle.transposed(self.by_letter[0], self.row, [self.corner], r)
 
     def _by_letter(self) -> tuple[Vector, Vector, Vector, Vector]:
         """The derivatives by the free letter of the rule and of the three diagonals."""

@@ -1,5 +1,6 @@
 """The figures by name: what the paper prints below each, what computes it, and what draws it."""
 
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from verification.figures.panel import Panels
 
 DRAFT, FULL = 1.0, 8.0  # resolutions
+WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
 ENDINGS = {".png": {"Software": None}, ".pdf": {"CreationDate": None, "Producer": None}, ".svg": {"Date": None}}
 
 
@@ -56,12 +58,23 @@ class Picture:
 
     @property
     def sentence(self) -> str:
-        """The first sentence of the caption.
+        """The first sentence of the caption, for a terminal.
 
         >>> pictures()["egg-slap"].sentence[:28]
         'Iterates up to the fourth of'
         """
-        return self.caption.partition(". ")[0].removesuffix(".") + "."
+        return plain(self.caption.partition(". ")[0].removesuffix(".") + ".")
+
+
+def plain(text: str) -> str:
+    """LaTeX as one would type it.
+
+    >>> plain(r"$s_0 \\defeq -\\sqrt{3}/4$ and $\\mu_{\\pm}$ at $\\lambda = 0.3$")
+    's_0 := -sqrt(3)/4 and mu_+- at lambda = 0.3'
+    """
+    text = re.sub(r"\\sqrt\{(\w+)\}", r"sqrt(\1)", text)
+    text = re.sub(r"\\([a-z]+)", lambda found: WORDS.get(found[1], found[1]), text)
+    return re.sub(r"[${}]", "", text)
 
 
 @cache

@@ -16,6 +16,7 @@ from rich.console import Console
 from rich.table import Table as Shown
 
 from verification import crises
+from verification.manifolds import passages
 from verification.manifolds.known import CONTACTS, SHAPE, contact, table
 from verification.manifolds.located import crisis
 from verification.manifolds.shadows import shadow
@@ -62,15 +63,22 @@ def values() -> Shown:
 
 
 def scalings() -> Shown:
-    """The fitted powers beside those of the multipliers."""
-    shown = Shown("crisis", "distances", "fitted exponent", "in the limit", "after 1, 2, ... passes of the saddle")
+    """The fitted powers beside those of the multipliers, at the same distances and in the limit."""
+    shown = Shown(
+        "crisis", "distances", "fitted exponent", "by passages of the saddle", "left of ln(stay)", "in the limit"
+    )
     for kind, distances in DISTANCES.items():
         found = crises.scaling(kind, "0.08", contact(kind, SHAPE).letter, distances, 2 * 10**9)
         at = crisis(kind, SHAPE, 8)
-        q = abs(np.log(abs(at.touch.multipliers[0]))) / np.log(abs(at.touch.multipliers[1]))
-        partial = ", ".join(f"{0.5 * sum(q**-j for j in range(k)):.2f}" for k in range(1, 8))
+        stable, unstable = at.touch.multipliers[:2]
+        one, left = passages.unit(found.points, stable, unstable)
+        expected = passages.exponent(np.array([d for d, _ in found.points]), one, stable, unstable)
+        x, y = np.log(np.array(found.points)).T
+        straight = float(np.std(y - np.polyval(np.polyfit(x, y, 1), x)))
         fitted = f"{found.exponent:.2f} +- {found.error:.2f}"
-        shown.add_row(kind, f"{distances[-1]:.0e} to {distances[0]:.0e}", fitted, f"{at.exponent:.3f}", partial)
+        span = f"{distances[-1]:.0e} to {distances[0]:.0e}"
+        about = f"{left:.2f}, of a power {straight:.2f}"
+        shown.add_row(kind, span, fitted, f"{expected:.2f} (unit {one:.2g})", about, f"{at.exponent:.3f}")
     return shown
 
 

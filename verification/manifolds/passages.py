@@ -19,7 +19,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-PERIODS, TRIED = 3, 1500  # how far units are sought above the largest distance, in factors `1/stable`
+TRIED = 1500
 Array = NDArray[np.float64]
 
 
@@ -44,10 +44,10 @@ def exponent(distances: Array, unit: float, stable: float, unstable: float) -> f
 def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) -> tuple[float, float]:
     """The distance that counts as one, by least squares, and the root mean square of what is left of `ln(stay)`.
 
-    The steps lie at `unit*stable**n`; units are sought from the largest distance up.
+    The steps lie at `unit*stable**n`; units are sought from the largest distance up to 1, all that a contraction has.
     """
     distances, logs = np.array(points)[:, 0], np.log(np.array(points)[:, 1])
-    tried = distances.max() * np.geomspace(1, abs(stable) ** -PERIODS, TRIED)
+    tried = np.geomspace(distances.max(), 1, TRIED)
     left = []
     for one in tried:
         off = logs - np.array([log_stay(float(d) / one, stable, unstable) for d in distances])

@@ -23,7 +23,7 @@ from verification.manifolds.shadows import shadow
 from verification.manifolds.tangency import tangency
 from verification.shooting.newton import refined
 
-DISTANCES = {"merging": np.geomspace(3e-3, 3e-7, 61), "boundary": np.geomspace(4e-3, 8e-5, 38)}
+DISTANCES = {"merging": np.geomspace(3e-3, 3e-7, 61), "boundary": np.geomspace(4e-3, 9e-5, 40)}
 
 
 def timed(work: Callable[[], Any]) -> tuple[float, Any]:

@@ -6,7 +6,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test browser lint docs dist bench clean
+.PHONY: verify test browser lint docs dist bench mutation clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -45,6 +45,12 @@ bench: $(VENV)/bench.stamp
 	-$(BIN)/python benchmarks/work_precision.py --compare
 	-$(BIN)/python benchmarks/extremes.py --check
 
+# An hour or two: stops and resumes; see docs/mutation.md.
+mutation: $(VENV)/test.stamp $(VENV)/mutation.stamp
+	test -f report/mutation/cover.json || $(BIN)/python benchmarks/mutation.py cover
+	$(BIN)/python benchmarks/mutation.py run --only 'symbolic/*'
+	$(BIN)/python benchmarks/mutation.py page
+
 clean:
 	rm -rf $(VENV) report dist docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -53,6 +59,7 @@ clean:
 $(VENV)/main.stamp: extras := [plot,sweep]
 $(VENV)/test.stamp: extras := [test]
 $(VENV)/bench.stamp: extras := [bench]
+$(VENV)/mutation.stamp: extras := [mutation]
 $(VENV)/docs.stamp: extras := [docs,plot,sweep]
 $(VENV)/dist.stamp: extras := [dist]
 $(VENV)/browser.stamp: extras := [browser]

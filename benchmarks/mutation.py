@@ -1,0 +1,189 @@
+"""Mutation testing: does a test notice when a line is wrong?
+
+    python benchmarks/mutation.py cover                     once: which test runs which line (tests/symbolic, symbolic)
+    python benchmarks/mutation.py cover tests/symbolic/test_zero.py symbolic/zero.py        again, for what has changed
+    python benchmarks/mutation.py run --only 'symbolic/*.py'                resumes; the smallest modules come first
+    python benchmarks/mutation.py run --only symbolic/zero.py --again survived --budget 100
+    python benchmarks/mutation.py list --only symbolic/zero.py              survivors as they stand
+    python benchmarks/mutation.py page                      docs/mutation.json and docs/mutation.md
+
+`run` asks the tests that execute the mutated statement, quickest first, until their own seconds (as `cover` measured
+them, under a tracer) add up to the budget; where a statement runs at import, all tests that touch its module. The
+module's own tests come before all others. What survived is asked again, with a larger budget, by `--again survived`; a
+mutant keeps its verdict when lines move. `--sample 0.2 --seed 1` takes a random part. A survivor needs a test, or a
+reason in docs/mutation.toml: `page` puts both together, and keeps the figures of modules that this machine has not run.
+State is kept in report/mutation/; nothing in the tree is written but the page.
+"""
+
+import argparse
+import json
+import random
+import sys
+import time
+from collections import Counter, defaultdict
+from fnmatch import fnmatch
+from os import waitpid
+
+from mutation_mutants import ROOT, STOREYS, Mutant, mutants
+from mutation_page import write_page
+from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, warm
+
+STATE = ROOT / "report" / "mutation"
+COVER, RESULTS = STATE / "cover.json", STATE / "results.jsonl"
+
+
+def say(text: str) -> None:
+    """One line, at once."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def modules(pattern: str) -> list[str]:
+    """The files that match, smallest first."""
+    files = [file for storey in STOREYS for file in (ROOT / storey).rglob("*.py")]
+    named = {str(file.relative_to(ROOT)): file.stat().st_size for file in files}
+    return sorted((path for path in named if fnmatch(path, pattern)), key=lambda path: named[path])
+
+
+def results() -> dict[str, dict]:
+    """The last verdict on each mutant that was ever asked."""
+    lines = RESULTS.read_text().splitlines() if RESULTS.is_file() else []
+    return {entry["key"]: entry for entry in map(json.loads, lines)}
+
+
+class Plan:
+    """Which tests to ask about a mutant."""
+
+    def __init__(self):
+        if not COVER.is_file():
+            raise SystemExit("no coverage yet: python benchmarks/mutation.py cover")
+        found = json.loads(COVER.read_text())
+        self.seconds = {node: entry["seconds"] for node, entry in found.items()}
+        self.lines = defaultdict(lambda: defaultdict(set))
+        for node, entry in found.items():
+            for path, lines in entry["lines"].items():
+                for line in lines:
+                    self.lines[path][line].add(node)
+
+    def tests(self, mutant: Mutant, budget: float) -> dict[str, float]:
+        """Node ids with their seconds: those that run the statement, quickest first, as far as the budget goes."""
+        first, last = mutant.statement
+        here = self.lines[mutant.path]
+        running = set().union(*(here[line] for line in range(first, last + 1)))
+        rest = set()
+        if "" in running or not running:
+            rest = set().union(*here.values()) | mirrors(mutant.path, self.seconds)
+        chosen, total = {}, 0.0
+        for group in (running, rest - running):
+            for node in sorted(group - {""}, key=self.seconds.__getitem__):
+                total += self.seconds[node]
+                if chosen and total > budget:
+                    return chosen
+                chosen[node] = self.seconds[node]
+        return chosen
+
+
+def covering(paths: list[str]) -> None:
+    """Runs the tests named, in a process of their own, and merges what they cover."""
+    STATE.mkdir(parents=True, exist_ok=True)
+
+    def work() -> None:
+        known = json.loads(COVER.read_text()) if COVER.is_file() else {}
+        new = cover(paths)
+        files = {file_of(node) for node in new} - {""}
+        old = {node: entry for node, entry in known.items() if file_of(node) not in files}
+        COVER.write_text(json.dumps(old | new))
+        say(f"{len(new) - 1} tests, {sum(entry['seconds'] for entry in new.values()):.0f} s")
+
+    waitpid(in_fork(work), 0)
+
+
+def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[Mutant]:
+    """The mutants of a module that are still to be asked."""
+    found = mutants(path)
+    if args.sample < 1:
+        found = [mutant for mutant in found if random.Random(f"{args.seed} {mutant.key}").random() < args.sample]
+    again = (args.again,) if args.again != "all" else ("survived", "uncovered", "timeout", "killed")
+    return [mutant for mutant in found if mutant.key not in known or known[mutant.key]["status"] in again]
+
+
+def run_module(path: str, chosen: list[Mutant], plan: Plan, budget: float) -> None:
+    """In a server of its own: imports what does not depend on the module, then asks about each mutant."""
+    for name in independent(name_of(path)):
+        __import__(name)
+    for number, mutant in enumerate(chosen, 1):
+        tests = plan.tests(mutant, budget)
+        status, test, seconds = ask(path, mutant.text, tests) if tests else ("uncovered", "", 0.0)
+        known = {"key": mutant.key, "operator": mutant.operator, "status": status, "test": test, "seconds": seconds}
+        append(RESULTS, known | {"tests": len(tests), "budget": budget})
+        say(f"{time.strftime('%H:%M:%S')} {path}:{mutant.line} {number}/{len(chosen)} {status} {seconds:.1f} s {test}")
+
+
+def running(args: argparse.Namespace) -> None:
+    """Module by module, a fork server for each; at most as many at once as there are workers."""
+    plan, known = Plan(), results()
+    warm()
+    busy = []
+    for path in modules(args.only):
+        chosen = wanted(path, known, args)
+        if not chosen:
+            continue
+        if len(busy) >= args.workers:
+            waitpid(busy.pop(0), 0)
+        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, args.budget)))
+    for child in busy:
+        waitpid(child, 0)
+
+
+def tables(args: argparse.Namespace) -> dict[str, dict]:
+    """For each module that was run: how many mutants there are, how many were asked, the verdicts, the survivors."""
+    known, found = results(), {}
+    for path in modules(args.only):
+        every = mutants(path)
+        asked = [(mutant, known[mutant.key]) for mutant in every if mutant.key in known]
+        if not asked:
+            continue
+        count = Counter(entry["status"] for _, entry in asked)
+        alive = [
+            {"line": mutant.line, "operator": mutant.operator, "change": mutant.key.partition(": ")[2]}
+            for mutant, entry in asked
+            if entry["status"] in ("survived", "uncovered")
+        ]
+        found[path] = {"mutants": len(every), "asked": len(asked), **count, "alive": alive}
+    return found
+
+
+def listing(args: argparse.Namespace) -> None:
+    """The table and the survivors, as text."""
+    for path, entry in tables(args).items():
+        killed = entry.get("killed", 0) + entry.get("timeout", 0)
+        say(f"{path}: {entry['mutants']} mutants, {entry['asked']} asked, {killed} killed")
+        for alive in entry["alive"]:
+            before, after = alive["change"].split(" -> ", 1)
+            say(f"  {path}:{alive['line']} {alive['operator']}\n    - {before}\n    + {after}")
+
+
+def main() -> None:
+    """Reads the command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("verb", choices=["cover", "run", "list", "page"])
+    parser.add_argument("paths", nargs="*", help="for cover: what pytest is given")
+    parser.add_argument("--only", default="*", metavar="GLOB", help="modules, as symbolic/*.py")
+    parser.add_argument("--sample", type=float, default=1.0, metavar="SHARE", help="a random share of the mutants")
+    parser.add_argument("--seed", default="1", help="of the sample")
+    parser.add_argument("--workers", type=int, default=1, help="modules at once")
+    parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
+    parser.add_argument("--again", default="", choices=["", "survived", "uncovered", "timeout", "all"])
+    args = parser.parse_args()
+    if args.verb == "cover":
+        covering(args.paths or ["tests/symbolic", "symbolic"])
+    elif args.verb == "run":
+        running(args)
+    elif args.verb == "list":
+        listing(args)
+    else:
+        write_page(tables(args))
+
+
+if __name__ == "__main__":
+    main()

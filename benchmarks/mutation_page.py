@@ -1,0 +1,119 @@
+"""The page on mutation testing, from docs/mutation.json (what was measured) and docs/mutation.toml (why some survive).
+
+An entry of the TOML file is a `[[reason]]` with the `module`, a sentence `why`, and the mutants it speaks of: `changes`
+are texts "line before -> line after" as `list` and the JSON file have them, `lines` are lines before, all of whose
+survivors it explains.
+"""
+
+import json
+import tomllib
+from importlib.metadata import version
+from math import sqrt
+
+from mutation_mutants import LEFT_OUT, ROOT
+
+FIGURES, REASONS, PAGE = (ROOT / "docs" / f"mutation.{end}" for end in ("json", "toml", "md"))
+OPEN = "Neither killed nor explained yet"
+HEAD = """\
+# Mutation testing
+
+A mutant is the package with one small mistake: a `+` for a `-`, a `<` for a `<=`, a 3 for a 2. The tests kill it when
+one of them fails. This page counts the mutants that they do not kill, and says of each why. It is written by
+`python benchmarks/mutation.py page`; `make mutation` measures what has not been measured.
+
+Mutants are made with the operators of cosmic-ray {version}. A coverage run says which tests execute which statement. A
+fork for each mutant, in which no module that depends on it has been imported before, asks these tests: the module's own
+first, the quickest first. No memo and no file of an earlier run is left, so nothing hides a mutant. A test has three
+times its own seconds and five more; one that is stopped by then has failed (`timeout`), as has a module that cannot be
+imported.
+
+{summary}
+
+## By module
+
+| module | mutants | killed | of these by timeout | survived | share killed | explained |
+|---|---|---|---|---|---|---|
+"""
+
+
+def wilson(hits: int, count: int) -> tuple[float, float]:
+    """Wilson's 95 % interval for a share."""
+    z, share = 1.96, hits / count
+    middle, half = share + z * z / (2 * count), z * sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    return (middle - half) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
+
+
+def percent(share: float) -> str:
+    """A share with one digit, cut and not rounded up."""
+    return f"{int(share * 1000 + 1e-9) / 10:.1f} %"
+
+
+def killed(entry: dict) -> int:
+    """How many mutants of a module some test noticed."""
+    return entry.get("killed", 0) + entry.get("timeout", 0)
+
+
+def reasons(path: str, alive: list[dict]) -> dict[str, list[dict]]:
+    """The survivors of a module under the reasons given for them."""
+    given = [entry for entry in tomllib.loads(REASONS.read_text()).get("reason", []) if entry["module"] == path]
+    found: dict[str, list[dict]] = {}
+    for mutant in alive:
+        before = mutant["change"].split(" -> ", 1)[0]
+        why = [r["why"] for r in given if mutant["change"] in r.get("changes", []) or before in r.get("lines", [])]
+        found.setdefault(why[0].strip() if why else OPEN, []).append(mutant)
+    return found
+
+
+def summary(name: str, figures: dict[str, dict]) -> str:
+    """One sentence on a storey."""
+    asked, total = (sum(entry[key] for entry in figures.values()) for key in ("asked", "mutants"))
+    hits = sum(map(killed, figures.values()))
+    alive = sum(len(entry["alive"]) for entry in figures.values())
+    opened = sum(len(reasons(path, entry["alive"]).get(OPEN, [])) for path, entry in figures.items())
+    text = f"`{name}`: {hits} of {asked} mutants killed, {percent(hits / asked)}; {alive} survive, "
+    text += f"of which {alive - opened} are explained below" if opened else "each explained below"
+    if asked < total:
+        low, high = wilson(hits, asked)
+        text += (
+            f". A random part of {total} mutants was asked; 95 % interval (Wilson) {percent(low)} to {percent(high)}"
+        )
+    return text + "."
+
+
+def row(path: str, entry: dict) -> str:
+    """The line of a module in the table."""
+    asked, opened = entry["asked"], len(reasons(path, entry["alive"]).get(OPEN, []))
+    part = f"{asked}" if asked == entry["mutants"] else f"{asked} of {entry['mutants']}"
+    cells = [f"`{path}`", part, killed(entry), entry.get("timeout", 0), len(entry["alive"])]
+    cells += [percent(killed(entry) / asked), len(entry["alive"]) - opened]
+    return "| " + " | ".join(map(str, cells)) + " |\n"
+
+
+def survivors(path: str, entry: dict) -> str:
+    """A module's survivors, reason by reason."""
+    text = f"\n### `{path}`\n"
+    for why, mutants in reasons(path, entry["alive"]).items():
+        text += f"\n{why}:\n\n" if why == OPEN else f"\n{why}\n\n"
+        for mutant in mutants:
+            before, after = mutant["change"].split(" -> ", 1)
+            text += f"    {mutant['line']:>3} - {before}\n        + {after}\n"
+    return text
+
+
+def page(figures: dict[str, dict]) -> str:
+    """The whole page."""
+    storeys = sorted({path.partition("/")[0] for path in figures}, reverse=True)
+    parts = {name: {path: entry for path, entry in figures.items() if path.startswith(name + "/")} for name in storeys}
+    text = HEAD.format(version=version("cosmic-ray"), summary="\n\n".join(summary(*part) for part in parts.items()))
+    text += "".join(row(path, entry) for path, entry in sorted(figures.items()))
+    text += "\n## What is left out\n\n" + "".join(f"- {what}: {why}.\n" for what, why in LEFT_OUT.items())
+    text += "\n## Survivors\n\nLine, before (-) and after (+).\n"
+    return text + "".join(survivors(path, entry) for path, entry in sorted(figures.items()) if entry["alive"])
+
+
+def write_page(new: dict[str, dict]) -> None:
+    """Merges new figures into those that are kept, and writes the page."""
+    figures = (json.loads(FIGURES.read_text()) if FIGURES.is_file() else {}) | new
+    figures = {path: entry for path, entry in sorted(figures.items()) if (ROOT / path).is_file() and entry["mutants"]}
+    FIGURES.write_text(json.dumps(figures, indent=1) + "\n")
+    PAGE.write_text(page(figures))

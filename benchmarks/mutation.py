@@ -88,8 +88,8 @@ def covering(paths: list[str]) -> None:
     STATE.mkdir(parents=True, exist_ok=True)
 
     def work() -> None:
-        known = json.loads(COVER.read_text()) if COVER.is_file() else {}
         new = cover(paths)
+        known = json.loads(COVER.read_text()) if COVER.is_file() else {}  # read late: another run may have written
         files = {file_of(node) for node in new} - {""}
         old = {node: entry for node, entry in known.items() if file_of(node) not in files}
         COVER.write_text(json.dumps(old | new))

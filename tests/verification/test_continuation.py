@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.optimize import fsolve
-from sympy import Rational
+from sympy import Rational, sqrt, tan
+from sympy import pi as exact_pi
 
 from symbolic.polygons import saddle_node
 from symbolic.symbols import alpha as letter
+from symbolic.symbols import lam as lam_letter
 from symbolic.tables import cuspless, egg
-from symbolic.thresholds import lambda_c
+from symbolic.thresholds import alpha_tilde, lambda_c
 from verification.commands.follow import command as follow
 from verification.continuation import linear
 from verification.continuation.arc import End, Steps
@@ -258,6 +260,10 @@ def run(*words):
         (("--lam", "0.1:0.3"), "one start is needed"),
         (("--cycle", "triangle", "--lam", "0.4:0.9"), "outside the interval"),
         (("--start", "1e400,2", "--lam", "0:1"), "inf is no boundary parameter"),
+        (("--cycle", "triangle", "--lam", "0.5", "--shape", "0.05:0.2"), "--shape: egg: alpha = 1/5 makes the table"),
+        (("--cycle", "triangle", "--lam", "0.4:0.5", "--shape", "0.05:0.1"), "one number between 0 and 1"),
+        (("--cycle", "triangle", "--lam", "0.2", "--shape", "0.05:0.1"), "does not reach lam = 0.2"),
+        (("--cycle", "triangle", "--lam", "0.5", "--shape", "0.09:0.1"), "alpha = 0.08 lies outside the interval"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(words, said):
@@ -265,6 +271,35 @@ def test_bad_input_is_refused_in_one_sentence(words, said):
 
     assert isinstance(result.exception, ValueError)
     assert said in str(result.exception)
+
+
+def test_the_shape_is_followed_to_the_fold_and_the_doubling_of_the_closed_forms(tmp_path):
+    """At `lam = 1/2` the triangles fold where `tan(pi/18) = 3*alpha/sqrt(1 - alpha**2)`."""
+    file = tmp_path / "shape.json"
+    found = {}
+    for cycle, alpha in (("triangle", "0.08"), ("diameter", "0.05")):
+        words = ("egg", "--alpha", alpha, "--cycle", cycle, "--lam", "1/2", "--shape", "0.04:0.1", "--digits", "20")
+        run(*words, "--json", str(file))
+        (one,) = json.loads(file.read_text())["branches"]
+        (found[cycle],) = one["events"]
+        assert one["letter"] == "alpha"
+    slope = tan(exact_pi / 18)
+    expected = {"triangle": slope / sqrt(9 + slope**2), "diameter": alpha_tilde().subs(lam_letter, Rational(1, 2))}
+
+    assert {name: event["event"] for name, event in found.items()} == {
+        "triangle": "fold",
+        "diameter": "period doubling",
+    }
+    for name, event in found.items():
+        proof = event["certificate"]
+        assert proof["certified"]
+        assert abs(Rational(proof["value"]) - expected[name].evalf(40)) < Rational("1e-20")
+
+
+def test_a_table_without_a_shape_has_none_to_follow():
+    result = run("circle", "--cycle", "diameter", "--lam", "0.5", "--shape", "0:1")
+
+    assert "--shape: circle has none; accepted: the ellipse and the egg" in str(result.exception)
 
 
 def test_a_start_in_a_family_of_cycles_is_refused_as_one():

@@ -1,4 +1,4 @@
-"""`pinball follow`: what becomes of this cycle as lambda changes?"""
+"""`pinball follow`: what becomes of this cycle as lambda, or the table's shape, changes?"""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,10 @@ from verification.commands.output import Output, json_option
 from verification.commands.scene import Scene, exact, table_options
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from rich.console import Console
+    from sympy import Expr
 
     from verification.continuation.branch import Branch
 
@@ -20,6 +23,9 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @click.command(epilog="Example: pinball follow egg --alpha 0.08 --cycle triangle --lam 0.37:1 --digits 20")
 @table_options
 @click.option("--lam", "interval", required=True, metavar="LOW:HIGH", help="The contractions, between 0 and 1.")
+@click.option(
+    "--shape", metavar="LOW:HIGH", help="Vary the table's shape in place of lambda; --lam is then one number."
+)
 @click.option("--cycle", metavar="NAME", help="A cycle of the paper: diameter, triangle, horizontal, ...")
 @click.option("--start", metavar="THETA,...", help="Or the bounces of one, roughly.")
 @click.option("--components", metavar="NAME,...", help="Where the bounces of --start lie, on a table of several parts.")
@@ -33,6 +39,7 @@ ROWS = 12  # points of a branch shown to people, and all its events
 def command(
     scene: Scene,
     interval: str,
+    shape: str | None,
     cycle: str | None,
     start: str | None,
     components: str | None,
@@ -46,40 +53,49 @@ def command(
 ) -> int:
     """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
 
-    Exit status 1 when a branch stops inside the interval; what was found is kept.
+    With --shape the letter is the ellipse's --a or the egg's --alpha, whose number is the start's. Exit status 1 when
+    a branch stops inside the interval; what was found is kept.
     """
     from verification.continuation.arc import Steps
     from verification.continuation.branch import branch
     from verification.continuation.dataset import record
-    from verification.continuation.starts import named, typed
+    from verification.continuation.starts import at_contraction, freed, named, typed
 
-    low, high = interval_of(interval)
-    if curves and scene.table_name != "egg":
-        raise ValueError(f"--curves: {scene.table_name} has no shape to follow them in; accepted: the egg")
+    if curves and (scene.table_name != "egg" or shape):
+        given = "--shape" if shape else scene.table_name
+        raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
+    letter = varied(scene) if shape else "lam"
+    low, high = interval_of(f"--{'shape' if shape else 'lam'}", shape or interval)
+    lam = contraction(interval) if shape else None
     table = scene.table()
     if cycle is not None:
         ring, x, own = named(cycle, table)
     else:
         names = components.split(",") if components else None
         (ring, x), own = typed(table, [float(exact("--start", t)) for t in str(start).split(",")], names), None
-    value = float(exact("--at", at)) if at is not None else low if own is None else own
+    first = low if lam is None else float(lam)
+    value, fixed = float(exact("--at", at)) if at is not None else first if own is None else own, {}
+    if lam is not None:
+        x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
+        ring = freed(ring, scene.K, letter, [exact("--shape", part) for part in str(shape).split(":")])
+        value = float(exact(f"--{letter}", scene.shape[letter]))
     steps = Steps(most=points)
     with output.progress("Following", points) as tick:
-        found = [branch(ring, x, "lam", value, (low, high), steps=steps, tick=lambda p: tick(f"lam = {p.z[-1]:.4f}"))]
+        found = [branch(ring, x, letter, value, (low, high), fixed, steps, lambda p: tick(f"{letter} = {p.z[-1]:.4f}"))]
         found += turned_off(found[0], (low, high), steps, switch)
     certificates = {}
     if digits:
         events = [event for one in found for event in one.events]
         with output.progress("Certifying", len(events)) as tick:
             for event in events:
-                certificates[id(event)] = certificate(event, digits)
+                certificates[id(event)] = certificate(event, digits, letter, lam)
                 tick(event.what.value)
     documents = []
     for one in found:
         document = record(one)
-        document["events"] = [noted(event, certificates.get(id(event))) for event in one.events]
+        document["events"] = [noted(event, letter, certificates.get(id(event))) for event in one.events]
         documents.append(document)
     drawn_on = curves_of(found, scene, output) if curves else []
     output.write({"table": scene.table_name, "branches": documents, "curves": drawn_on})
@@ -92,19 +108,37 @@ def command(
     return told(output.console, found)
 
 
-def interval_of(text: str) -> tuple[float, float]:
+def interval_of(option: str, text: str) -> tuple[float, float]:
     """`LOW:HIGH` as two numbers.
 
-    >>> interval_of("0.25:1/2")
+    >>> interval_of("--lam", "0.25:1/2")
     (0.25, 0.5)
     """
     parts = text.split(":")
     if len(parts) != 2:
-        raise ValueError(f"--lam {text!r} is no interval; accepted: LOW:HIGH such as 0.37:1")
-    low, high = (float(exact("--lam", part)) for part in parts)
-    if not 0 <= low < high <= 1:
+        raise ValueError(f"{option} {text!r} is no interval; accepted: LOW:HIGH such as 0.37:1")
+    low, high = (float(exact(option, part)) for part in parts)
+    if option == "--lam" and not 0 <= low < high <= 1:
         raise ValueError(f"--lam {text} is no interval of contractions; accepted: LOW:HIGH with 0 <= LOW < HIGH <= 1")
+    if not low < high:
+        raise ValueError(f"{option} {text} is no interval; accepted: LOW:HIGH with LOW < HIGH")
     return low, high
+
+
+def varied(scene: Scene) -> str:
+    """The letter of the table's shape."""
+    if not scene.shape:
+        raise ValueError(f"--shape: {scene.table_name} has none; accepted: the ellipse and the egg")
+    (letter,) = scene.shape
+    return letter
+
+
+def contraction(text: str) -> "Fraction | Expr":
+    """The one contraction at which the shape varies."""
+    lam = exact("--lam", text) if ":" not in text else -1
+    if not 0 <= lam <= 1:
+        raise ValueError(f"--lam {text} with --shape is no contraction; accepted: one number between 0 and 1")
+    return lam
 
 
 def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth: int) -> list["Branch"]:
@@ -126,13 +160,13 @@ def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth
     return found
 
 
-def certificate(event: Any, digits: int) -> dict[str, Any] | None:
+def certificate(event: Any, digits: int, letter: str, lam: Any) -> dict[str, Any] | None:
     """Value, radius and checklist of an event, or None where there is no certificate."""
     from verification.balls import decimal
     from verification.continuation.certified import proof_of
 
     try:
-        proof = proof_of(event, digits)
+        proof = proof_of(event, digits, letter, lam)
     except ValueError:
         return None
     if proof is None:
@@ -141,12 +175,12 @@ def certificate(event: Any, digits: int) -> dict[str, Any] | None:
     return {"value": value, "radius": radius, "certified": proof.certified, "checks": proof.checks}
 
 
-def noted(event: Any, proof: dict[str, Any] | None) -> dict[str, Any]:
+def noted(event: Any, letter: str, proof: dict[str, Any] | None) -> dict[str, Any]:
     """An event for JSON."""
     form = event.form
     return {
         "event": event.what.value,
-        "lam": event.value,
+        letter: event.value,
         "located": event.located,
         "theta": [float(x) for x in event.point.z[:-1]],
         "branch_coefficient": form.branch if form else None,
@@ -200,24 +234,24 @@ def drawn(branches: list["Branch"], path: str) -> None:
 
 def show(console: "Console", document: dict[str, Any]) -> None:
     """Some points of a branch, and its events."""
-    points = document["points"]
+    points, letter = document["points"], document["letter"]
     stride = max(1, len(points) // ROWS)
     console.print(f"{document['cycle']}: {len(points)} points")
-    console.print("  lam             multipliers                            stable  event")
+    console.print(f"  {letter:<14}  multipliers                            stable  event")
     for i, point in enumerate(points):
         if i % stride and not point["event"] and i != len(points) - 1:
             continue
         shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
-        console.print(f"  {point['lam']:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
+        console.print(f"  {point[letter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
     for event in document["events"]:
         proof = event["certificate"]
         said = (
             f"{proof['value']} +- {proof['radius']} ({'' if proof['certified'] else 'not '}certified)"
             if proof
-            else (f"{event['lam']:.12g}")
+            else (f"{event[letter]:.12g}")
         )
         side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
-        console.print(f"  {event['event']} at lam = {said}{side}")
+        console.print(f"  {event['event']} at {letter} = {said}{side}")
 
 
 def said_stable(point: dict[str, Any]) -> str:
@@ -233,6 +267,8 @@ def told(console: "Console", branches: list["Branch"]) -> int:
     for one in branches:
         for point, (end, why) in zip((one.points[0], one.points[-1]), one.ends, strict=True):
             if end in (End.OBSTACLE, End.LOST, End.ENOUGH):
-                console.print(f"{one.system.label}: the branch stopped at lam = {point.z[-1]:.9g}: {why}")
+                console.print(
+                    f"{one.system.label}: the branch stopped at {one.system.letter} = {point.z[-1]:.9g}: {why}"
+                )
                 status = DONE if end is End.ENOUGH and status == DONE else FAILED
     return status

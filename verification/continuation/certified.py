@@ -4,9 +4,11 @@ A fold and a period doubling are proved on the whole cycle, a pitchfork on the h
 so that the mirror is `theta -> -theta`. Other events have no certificate here.
 """
 
+from fractions import Fraction
 from math import pi
 
 import numpy as np
+from sympy import Expr, sympify
 
 from verification.certificates.bifurcation import Proof
 from verification.continuation.branch import Event, What
@@ -18,8 +20,10 @@ from verification.shooting.problem import Kind, Problem
 KINDS = {What.FOLD: Kind.FOLD, What.FLIP: Kind.FLIP, What.PITCHFORK: Kind.FLIP}
 
 
-def proof_of(event: Event, digits: int) -> Proof | None:
-    """The proof that the event happens at the enclosed `lam`; None where there is no certificate for its kind.
+def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fraction | None = None) -> Proof | None:
+    """The proof that the event happens at the enclosed `letter`; None where there is no certificate for its kind.
+
+    Where the letter is a shape, `lam` is the contraction.
 
     >>> from symbolic.tables import egg
     >>> from verification.continuation.branch import branch
@@ -30,7 +34,7 @@ def proof_of(event: Event, digits: int) -> Proof | None:
     True
     """
     ring = event.ring
-    if not isinstance(ring, Chords) or ring.table.shapes or event.what not in KINDS:
+    if not isinstance(ring, Chords) or event.what not in KINDS:
         return None
     x, mirror = event.x, False
     if event.what is What.PITCHFORK:
@@ -38,7 +42,8 @@ def proof_of(event: Event, digits: int) -> Proof | None:
         if centred is None:
             return None
         x, mirror = centred, True
-    problem = Problem(ring.table, ring.components, KINDS[event.what], "lam", mirror=mirror)
+    contraction = None if lam is None else sympify(lam)
+    problem = Problem(ring.table, ring.components, KINDS[event.what], letter, contraction, mirror)
     return certify(problem, [*(float(v) for v in x), event.value], digits)
 
 

@@ -1,13 +1,15 @@
 """Where a branch starts: a cycle of the paper by its name, or bounces that somebody typed."""
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 
 import numpy as np
-from sympy import N
+from sympy import Expr, N, sympify
 
-from symbolic import named_cycles
+from symbolic import named_cycles, tables
 from symbolic.cycles import Cycle
 from symbolic.table import Table
+from verification.continuation.branch import branch
 from verification.continuation.recurrence import Array, Chords
 
 # name: the cycle, the table it belongs to, and the contraction at which it is given (None: all of them)
@@ -54,3 +56,25 @@ def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None
         raise ValueError(f"--components names {len(components)} bounces and --start has {len(theta)}; give one each")
     indices = tuple(names.index(name) for name in components) if components else (0,) * len(theta)
     return Chords(table, indices), np.array(theta, dtype=float)
+
+
+def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
+    """The cycle near `x` at the contraction `given`, followed to `lam`; the one that its branch meets there first."""
+    if given == lam:
+        return x
+    found = branch(ring, x, "lam", given, (min(given, lam), max(given, lam)))
+    there = [point for point in (found.points[0], found.points[-1]) if point.z[-1] == lam]
+    if not there:
+        raise ValueError(f"{ring.label}: the cycle at lam = {given} does not reach lam = {lam}; give another --start")
+    return min(there, key=lambda point: abs(point.s)).z[:-1]
+
+
+def freed(ring: Chords, K: int, letter: str, interval: Sequence[Expr | Fraction]) -> Chords:
+    """The same ring on the table with its shape left free; refused when an end of the interval is no shape."""
+    table = tables.named(ring.table.name, K)
+    for value in interval:
+        try:
+            table.at(**{letter: sympify(value)})
+        except ValueError as why:
+            raise ValueError(f"--shape: {why}") from None
+    return Chords(table, ring.components, ring.ends)

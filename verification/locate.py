@@ -253,10 +253,12 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     with working(bits_of(digits, 100)):
         ball = arb(value, error)
     checks: Checks = {"shadowing_fold": proved_fold or None, "two_methods_agree": found.agrees or None}
-    tangency = proof(found, alpha, digits + 2)
-    held = True if tangency is not None and ball.contains(tangency.letter) else None
-    checks |= {"tangency": held, "quadratic": held, "transversal": held, "is_the_crisis": None}
-    if held:
+    made = proof(found, alpha, digits + 2)
+    inside = bool(ball.contains(made.letter))
+    checks |= {"tangency": True if made.touches and inside else None}
+    checks |= {item: made.checks[item] if inside else None for item in ("quadratic", "transversal")}
+    checks |= {"is_the_crisis": None}
+    if made.holds and inside:
         notes["proved"] = f"the two manifolds touch, within {error} of the value; that the attractor ends there is not"
     return Found(ball, checks, None, notes)
 

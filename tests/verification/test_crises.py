@@ -96,15 +96,22 @@ def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_si
     assert sides(0.66) == (1.0, 0.0)
 
 
-def test_a_located_crisis_names_its_mechanism_and_what_is_not_proved():
-    found = egg_crisis("boundary", 8, SHAPE)
+@pytest.mark.parametrize(
+    ("kind", "saddle", "letter"),
+    [
+        ("boundary", "triangle", "0.66214427335822441948"),
+        ("merging", "cycle of period 8", "0.44343524608185121825"),
+    ],
+)
+def test_a_located_crisis_names_its_mechanism_and_what_is_not_proved(kind, saddle, letter):
+    found = egg_crisis(kind, 8, SHAPE)
 
     assert found.checks.pop("is_the_crisis") is None
     assert found.checks == dict.fromkeys(
         ("shadowing_fold", "two_methods_agree", "tangency", "quadratic", "transversal"), True
     )
-    assert "triangle" in found.notes["mechanism"]
-    assert found.ball.overlaps(arb("0.66214427335822441948"))  # the tangency to twenty digits
+    assert saddle in found.notes["mechanism"]
+    assert found.ball.overlaps(arb(letter))  # the tangency to twenty digits
 
 
 @pytest.mark.parametrize(("printed", "verdict"), [("0.66", Verdict.SUPPORTED)])

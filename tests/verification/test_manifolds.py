@@ -3,28 +3,23 @@
 import math
 from itertools import pairwise
 
-import mpmath
 import numpy as np
 import pytest
-from flint import acb, arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational
 
 from symbolic import tables
-from verification.arithmetic import ARRAYS, FLOAT64, working
-from verification.manifolds.enclosed import TooWideError, complex_balls, enclosed, enclosed_saddle
+from verification.arithmetic import ARRAYS, FLOAT64
 from verification.manifolds.grow import branch, far
 from verification.manifolds.known import MIRRORED, SHAPE, TRIANGLE, contact, table
 from verification.manifolds.located import crisis, heteroclinic_exponent, homoclinic_exponent
 from verification.manifolds.plot import portrait
-from verification.manifolds.proof import tangency_proved
 from verification.manifolds.recurrence import Henon, Pinball
 from verification.manifolds.saddle import Orbit, saddle
 from verification.manifolds.series import local
 from verification.manifolds.shadows import shadow
 from verification.manifolds.tangency import Contact, Gap, tangency
-from verification.shooting.jets import Jet
 
 INNER, OUTER = Orbit("inner fixed point", (0.63,)), Orbit("outer fixed point", (-1.13,))
 EGG = table(SHAPE)
@@ -180,42 +175,6 @@ def test_a_branch_that_falls_into_a_sink_ends():
 def test_the_exponents_are_those_of_grebogi_ott_and_yorke():
     assert homoclinic_exponent(0.01, 3) == pytest.approx(math.log(0.01) / math.log((0.01 * 3) ** 2))
     assert heteroclinic_exponent(0.01, 3) == pytest.approx(0.5 + math.log(3) / -math.log(0.01))
-
-
-TOUCH = "0.66214427335822441948253454774573952525792743018824589995565551117913807418346"  # from cycles, not manifolds
-
-
-@pytest.mark.parametrize(("shift", "held"), [(0, True), (3, None)])
-def test_a_proof_holds_where_the_tangency_is_and_nowhere_else(shift, held):
-    value = mpmath.MPContext()
-    value.dps = 80
-    where = contact("boundary", SHAPE)
-    found = tangency_proved(where, EGG, str(value.mpf(TOUCH) + shift * value.mpf(10) ** -46), 46)
-
-    assert found.checks["quadratic"] is True
-    assert found.checks["gap_changes_sign"] is held
-
-
-@settings(max_examples=12, deadline=None)
-@given(st.floats(-0.45, 0.45), st.booleans())
-def test_an_enclosed_manifold_contains_what_many_more_orders_give(z, unstable):
-    with working(200):
-        map = EGG.over(complex_balls(200))
-        at = enclosed_saddle(TRIANGLE, map, acb(arb(2) / 3), -0.1655)
-        few, many = (enclosed(at, unstable, order, 0.01) for order in (12, 40))
-        curve = Jet(acb(z), acb(1), acb(0))
-
-        assert few.error > 1e6 * many.error
-        for coarse, fine in zip(few.at(curve).c, many.at(curve).c, strict=True):
-            assert coarse.contains(fine.mid())
-
-
-def test_what_no_ball_encloses_is_not_proved():
-    map = EGG.over(complex_balls(100))
-    with working(100), pytest.raises(TooWideError):
-        enclosed_saddle(TRIANGLE, map, acb(arb("0.66", "0.2")), -0.1655)
-    with pytest.raises(TooWideError, match="one bounce"):
-        tangency_proved(contact("merging", SHAPE), EGG, "0.4434", 30)
 
 
 def test_bad_requests_are_one_sentence():

@@ -1,30 +1,33 @@
-"""Local manifolds in complex balls, with a bound for all that a truncated series leaves out.
+"""Saddles and their local manifolds in complex balls, for every letter in a ball at once.
 
-Let `m` be the multiplier that expands outwards, `P` the series and `P_N` its terms to order `N`. The
-rule at `P_N(z), P_N(z/m), P_N(z/m**2)` is an analytic function `r(z)` without terms up to order `N`, so
-on the unit disc it is at most `R**-(N+1)` times its bound on a disc of radius `R` (Schwarz). The true
-manifold is `P_N + h`, where `h` is the fixed point of a map that contracts by at most
-`k = |b|*m**-(N+1) + |c|*m**-(2*N+2)`, `b` and `c` the slopes of the map or its inverse: shifting `z` to
-`z/m` makes functions without low orders small. Hence `|h| <= sup|r|/slope/(1 - k)` there.
+A saddle of `p` bounces is the zero of its `p` rules, enclosed by an interval Newton step; the product of
+its bounces' derivatives gives the multipliers. With them in balls `doubled` encloses the coefficients of the
+series one after the other, since each order is a linear system whose right side has only lower orders.
+What the series leave out is bounded in `remainder`.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import acb, arb, ctx, fmpq
+from flint import acb, acb_mat, arb, ctx, fmpq
 
 from verification.arithmetic import FUNCTIONS, Arithmetic
-from verification.manifolds.recurrence import Pinball, Recurrence
-from verification.manifolds.saddle import Orbit, Saddle, padded, slopes
-from verification.manifolds.series import doubled, horner
+from verification.manifolds.recurrence import Recurrence
+from verification.manifolds.saddle import Orbit, Saddle, matrix, padded, slopes
+from verification.manifolds.series import direction, doubled, horner, neighbours
 from verification.shooting.jets import Jet
 
-OUTER = 12  # radius `R` of the disc on which the rule is bounded, in units of the working disc
+NEWTON = 12
+Rows = list[list[Any]]
 
 
 class TooWideError(ValueError):
-    """A step of the proof whose balls are too wide."""
+    """A step of the proof whose balls are too wide; `item` is the check that stays unknown."""
+
+    def __init__(self, item: str, message: str) -> None:
+        super().__init__(message)
+        self.item = item
 
 
 def complex_balls(bits: int) -> Arithmetic:
@@ -56,105 +59,102 @@ def around_zero(radius: arb) -> acb:
     return acb(half, half)
 
 
-def size(x: acb) -> arb:
+def size(x: Any) -> arb:
     """An upper bound of the absolute value."""
     return arb(abs(x).abs_upper())
 
 
-@dataclass(frozen=True)
-class Enclosed:
-    """`P_N` with enclosed coefficients on the unit disc, and `error`, which bounds the rest there."""
+def enclosed_saddle(orbit: Orbit, map: Recurrence, letter: acb) -> Saddle:
+    """The one cycle near the start, for every letter in a ball, with real multipliers on both sides of the circle."""
 
-    saddle: Saddle
-    factor: acb
-    coefficients: tuple[acb, ...]
-    error: arb
+    def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
+        ring = padded(orbit, map, x)
+        values = [map.rule(ring[i : i + 3], letter) for i in range(len(x))]
+        return values, matrix(orbit, slopes(orbit, map, x, letter))
 
-    def at(self, z: Jet) -> Jet:
-        """The manifold along a curve of parameters in the disc of radius 1/2, where Cauchy bounds derivatives."""
-        if not abs(z.c[0]) < 0.5:
-            raise TooWideError("the parameter leaves the disc of radius 1/2")
-        first, second = around_zero(2 * self.error), around_zero(4 * self.error)
-        rest = Jet(around_zero(self.error), first * z.c[1], second * z.c[1] * z.c[1] + first * z.c[2])
-        return horner(self.coefficients, z) + rest  # type: ignore[no-any-return]
-
-    def points(self, z: Jet) -> tuple[Jet, Jet]:
-        """Two neighbours of the orbit through `z`."""
-        orbit = self.saddle.orbit
-        return self.at(z), orbit.sign * self.at(self.factor * z) + orbit.shifted(self.saddle.map)
-
-
-def enclosed_saddle(orbit: Orbit, map: Pinball, letter: acb, start: float) -> Saddle:
-    """A saddle of one bounce, for every letter in a ball, by an interval Newton step."""
-
-    def rule(x: acb) -> tuple[acb, acb]:
-        near = padded(orbit, map, [x])
-        return map.rule(near, letter), sum_of(orbit, slopes(orbit, map, [x], letter)[0])
-
-    middle = acb(start)
-    for _ in range(12):
-        value, slope = rule(middle)
-        middle = (middle - value / slope).mid()
-    value, slope = rule(middle)
-    box = middle + around_zero(4 * size(value / slope) + arb(2) ** (-ctx.prec + 8))
-    found = middle - value / rule(box)[1]
-    if not box.contains(found):
-        raise TooWideError(f"the {orbit.name} is not enclosed")
+    found = only_zero(rule, [acb(x) for x in orbit.start])
     stable, unstable = multipliers_of(orbit, map, found, letter)
-    return Saddle(orbit, map, letter, (found,), stable, unstable)
+    if not (abs(stable) < 1 and abs(unstable) > 1):
+        raise TooWideError("saddle", f"the multipliers of the {orbit.name} are not separated")
+    return Saddle(orbit, map, letter, tuple(found), stable, unstable)
 
 
-def sum_of(orbit: Orbit, row: tuple[acb, acb, acb]) -> acb:
-    """The derivative of the rule when all three points move as the symmetry says."""
-    return orbit.sign * row[0] + row[1] + orbit.sign * row[2]
+def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Sequence[acb]) -> list[acb]:
+    """The zero that an interval Newton step proves to be near `start`, and alone in a box."""
+
+    def step(values: list[acb], rows: Rows) -> list[acb]:
+        try:
+            found = acb_mat(rows).solve(acb_mat([[v] for v in values]))
+        except ZeroDivisionError as why:
+            raise TooWideError("saddle", "the linearised rules may be singular") from why
+        return [found[i, 0] for i in range(len(values))]
+
+    middle = list(start)
+    for _ in range(NEWTON):
+        middle = [(x - d).mid() for x, d in zip(middle, step(*rule(middle)), strict=True)]
+    values, rows = rule(middle)
+    least = arb(2) ** (-ctx.prec + 8)
+    box = [x + around_zero(4 * size(d) + least) for x, d in zip(middle, step(values, rows), strict=True)]
+    found = [x - d for x, d in zip(middle, step(values, rule(box)[1]), strict=True)]
+    if not all(b.contains(x) for b, x in zip(box, found, strict=True)):
+        raise TooWideError("saddle", "an interval Newton step did not contract; the balls are too wide")
+    return found
 
 
-def multipliers_of(orbit: Orbit, map: Pinball, x: acb, letter: acb) -> tuple[acb, acb]:
-    """The roots of `after*m**2 + here*m + before`, the one inside the unit circle first."""
-    before, here, after = slopes(orbit, map, [x], letter)[0]
-    trace, determinant = -orbit.sign * here / after, before / after
+def multipliers_of(orbit: Orbit, map: Recurrence, points: Sequence[acb], letter: acb) -> tuple[acb, acb]:
+    """The roots of the characteristic polynomial of one round, the one inside the unit circle first."""
+    first, second, determinant = (acb(1), acb(0)), (acb(0), acb(1)), acb(1)
+    for before, here, after in slopes(orbit, map, points, letter):
+        first, second = ((b, -(here * b + before * a) / after) for a, b in (first, second))
+        determinant = determinant * before / after
+    trace = orbit.sign * (first[0] + second[1])
     root = (trace * trace - 4 * determinant).sqrt()
+    if not root.real > 0:
+        raise TooWideError("saddle", f"the multipliers of the {orbit.name} may be complex")
     larger = (trace + root) / 2 if trace.real > 0 else (trace - root) / 2
     return determinant / larger, larger
 
 
-def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float) -> Enclosed:
-    """The manifold of a saddle of one bounce, where `z = 1` is `unit` along the eigenvector."""
+@dataclass(frozen=True)
+class Enclosed:
+    """The terms of the series to some order, where `z = 1` is `unit` along the eigenvector with entry `chief` 1."""
+
+    saddle: Saddle
+    unstable: bool
+    factor: acb
+    coefficients: tuple[tuple[acb, ...], ...]
+
+    @property
+    def order(self) -> int:
+        """The highest power of `z`."""
+        return len(self.coefficients[0]) - 1
+
+    def over(self, i: int, radius: arb) -> acb:
+        """The polynomial of bounce `i`, any integer, over the disc of this radius: its terms in absolute value."""
+        orbit, (rounds, place) = self.saddle.orbit, divmod(i, len(self.coefficients))
+        x, *rest = self.coefficients[place]
+        shift, reach = orbit.shifted(self.saddle.map), radius * size(self.factor**rounds)
+        for _ in range(abs(rounds)):
+            x = orbit.sign * x + shift if rounds > 0 else orbit.sign * (x - shift)
+        return x + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
+
+    def ring(self) -> list[Jet]:
+        """The polynomials of the bounces, with one more on either side."""
+        powers = [self.factor**k for k in range(self.order + 1)]
+        return neighbours(self.saddle, [list(c) for c in self.coefficients], powers)
+
+    def pair(self) -> tuple[Jet, Jet]:
+        """Two neighbours that need no parameter outside the disc: bounces -1 and 0 going out, 0 and 1 coming in."""
+        ring = self.ring()
+        return (ring[0], ring[1]) if self.unstable else (ring[1], ring[2])
+
+
+def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float, chief: int) -> Enclosed:
+    """The series to `order` with enclosed coefficients; entry `chief` of the eigenvector is 1."""
     factor = saddle.unstable if unstable else saddle.stable
-    outwards = factor if unstable else 1 / factor
-    series = [[saddle.points[0], acb(1)]]
+    found = direction(saddle, slopes(saddle.orbit, saddle.map, saddle.points, saddle.letter), factor)
+    series = [[x, v / found[chief]] for x, v in zip(saddle.points, found, strict=True)]
     while len(series[0]) <= order:
         series = doubled(saddle, factor, series, min(2 * len(series[0]), order + 1))
-    scaled = tuple(c * acb(unit) ** k for k, c in enumerate(series[0]))
-    made = Enclosed(saddle, factor, scaled, arb(0))
-    wide, narrow = (rule_over(made, outwards, unstable, radius) for radius in (OUTER, 1))
-    outer, slope = wide[0], narrow[1]
-    small = size(outer) * arb(OUTER) ** -(order + 1)
-    first, second = (size(s) / arb(abs(slope).abs_lower()) for s in narrow[2:])
-    shrink = arb(abs(1 / outwards).abs_upper()) ** (order + 1)
-    contraction = first * shrink + second * shrink * shrink
-    if not (contraction < 0.5 and abs(slope) > 0):
-        raise TooWideError("the remainder of the series is not bounded")
-    error = 2 * small / arb(abs(slope).abs_lower())
-    if not (error < 1e-9 and first + second < 100):  # then the fixed point stays in the tube that `narrow` allows for
-        raise TooWideError(f"the remainder of the series is only known to be below {error}")
-    return Enclosed(saddle, factor, scaled, error)
-
-
-def rule_over(made: Enclosed, outwards: acb, unstable: bool, radius: int) -> tuple[acb, acb, acb, acb]:
-    """The rule over a disc of parameters, and its slopes by the outermost point, the next and the one after."""
-    saddle, map = made.saddle, made.saddle.map
-    tube = around_zero(arb("1e-6"))
-    disc = around_zero(arb(radius))
-    points = [horner(made.coefficients, disc / outwards**k) + tube for k in range(3)]  # outermost first
-    near = neighbours(saddle.orbit, map, points[::-1] if unstable else points)
-    rows = map.slopes(near, saddle.letter)
-    ordered: Sequence[Any] = rows[::-1] if unstable else rows
-    return map.rule(near, saddle.letter), ordered[0], ordered[1], ordered[2]
-
-
-def neighbours(orbit: Orbit, map: Recurrence, points: Sequence[acb]) -> list[acb]:
-    """Three successive points of the series, in the order of the orbit, as bounces around the middle one."""
-    shift = orbit.shifted(map)
-    before, here, after = points
-    return [orbit.sign * (before - shift), here, orbit.sign * after + shift]
+    scaled = tuple(tuple(c * acb(unit) ** k for k, c in enumerate(row)) for row in series)
+    return Enclosed(saddle, unstable, factor, scaled)

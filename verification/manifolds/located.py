@@ -12,9 +12,8 @@ from typing import Any
 import mpmath
 from sympy import Expr
 
-from verification.manifolds.enclosed import TooWideError
 from verification.manifolds.known import contact, table
-from verification.manifolds.proof import LEAST_DIGITS, Proof, tangency_proved
+from verification.manifolds.proof import LEAST_DIGITS, Proof, sharpened, tangency_proved
 from verification.manifolds.shadows import Shadow, shadow
 from verification.manifolds.tangency import Touch, tangency
 from verification.shooting.newton import refined
@@ -94,20 +93,17 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     return Crisis(kind, context.mpf(letter), error, touch, float(abs(context.mpf(touch.letter) - letter)), cycle)
 
 
-def proof(found: Crisis, alpha: Expr, digits: int) -> Proof | None:
-    """The proof in balls that there is a tangency within `10**-digits` or less of the value; None where there is none.
+def proof(found: Crisis, alpha: Expr, digits: int) -> Proof:
+    """The proof in balls of a tangency near the value, within `10**-digits` or less.
 
     It proves the contact of the manifolds, and not that the attractor ends there.
     """
-    digits, map = max(LEAST_DIGITS, digits), table(alpha)
-    rounds = math.ceil((digits + 10) * math.log(10) / math.log(abs(found.touch.multipliers[1])))
-    cycle = shadow(found.touch.contact, map, float(found.touch.letter), rounds)
+    digits, map, touch = max(LEAST_DIGITS, digits), table(alpha), found.touch
     try:
-        value = refined(cycle.problem, cycle.start, digits + 8).z[-1]
-        made = tangency_proved(found.touch.contact, map, str(value), digits)
-    except TooWideError:
-        return None
-    return made if all(made.checks.values()) else None
+        value = sharpened(touch.contact, map, str(touch.letter), digits)
+    except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
+        value = str(touch.letter)
+    return tangency_proved(touch.contact, map, value, digits)
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

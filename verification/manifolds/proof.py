@@ -1,188 +1,133 @@
-"""A proof in balls that a saddle's manifolds touch, quadratically and with non-zero speed, within an interval.
+"""A proof in balls that a saddle's manifolds touch at one letter of an interval, quadratically and with non-zero speed.
 
-The gap of `tangency` is a function `g(z, lam)`, here enclosed with its first two derivatives by `z` on
-`Z x L`, `Z` and `L` intervals. Over all of it `g_zz` is not 0, and `g_z` has opposite signs at the ends of `Z`:
-so for each `lam` in `L` there is one critical `z` in `Z`. Its value `e(lam)` has opposite signs at the ends
-of `L`, so at some `lam` it is 0: the curves meet there with one tangent and different curvatures. The slope
-`e' = g_lam` is kept from 0 by values on a complex disc around `L` (Cauchy): there is one such `lam`, and `e` passes 0.
+An interval Newton step for the system of `touching` proves that it has one zero in a box: the manifolds touch at
+one letter of it. Let `A` be the derivative of the orbit's equations there, `v` the vector that it takes to 0, and
+`u` the vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for
+all unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the letter. At the tangency `g_z = 0`,
+
+    g_zz = u.(A'v)v,    g_letter = u.(the equations' derivative by the letter).
+
+The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the letter varies.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
-from flint import acb, arb
+from flint import arb, arb_mat
 
-from verification.arithmetic import bits_of, working
-from verification.manifolds.enclosed import (
-    Enclosed,
-    TooWideError,
-    around_zero,
-    complex_balls,
-    enclosed,
-    enclosed_saddle,
-    size,
-)
-from verification.manifolds.recurrence import Pinball, landing
+from verification.arithmetic import working
+from verification.certificates.admissible import convex
+from verification.certificates.contraction import Status, compared, slope_bits
+from verification.manifolds.enclosed import TooWideError
+from verification.manifolds.pair import Precision
+from verification.manifolds.recurrence import Pinball, Recurrence
 from verification.manifolds.tangency import Contact
-from verification.shooting.jets import Jet
+from verification.manifolds.touching import Linear, Point, Touching, Vector
+from verification.shooting.chain import dot
 
-UNIT = 0.01  # of the local series, along the eigenvectors
+LEAST_DIGITS = 24
 NEWTON = 12
-DISC, STEP = "1e-24", "1e-40"  # radius of the complex disc of letters, and of the difference quotient in it
-LEAST_DIGITS = 75  # along an orbit of ten bounces balls grow by 1e13, and twice that has to be small beside `STEP`
+SMALL = 1e-5  # beside the box, where Newton's method ends
+ITEMS = ("saddle", "remainder", "exists", "unique", "admissible", "quadratic", "transversal")  # in this order
 Checks = Mapping[str, bool | None]
 
 
 @dataclass(frozen=True)
 class Proof:
-    """A tangency in `letter`, when every check is True."""
+    """A tangency in `letter`, when every check is True; `bend` and `speed` are `g_zz` and `g_letter`."""
 
     letter: arb
     checks: Checks
-    bend: arb = field(repr=False)
-    speed: arb = field(repr=False)
+    bend: arb | None = field(default=None, repr=False)
+    speed: arb | None = field(default=None, repr=False)
+
+    @property
+    def holds(self) -> bool:
+        """Is every check proved?"""
+        return all(value is True for value in self.checks.values())
+
+    @property
+    def touches(self) -> bool:
+        """Is it proved that the manifolds touch at one letter, in whatever manner?"""
+        return all(self.checks[item] is True for item in ITEMS[:5])
 
 
-class BallGap:
-    """The gap between the manifolds of a saddle of one bounce, enclosed for every letter in a ball."""
+def tangency_proved(contact: Contact, map: Recurrence, value: str, digits: int = LEAST_DIGITS) -> Proof:
+    """The proof that the manifolds touch at one letter within `10**-digits` of `value`, which has more digits.
 
-    def __init__(self, contact: Contact, map: Pinball, letter: acb, order: int) -> None:
-        if len(contact.unstable.start) != 1 or contact.unstable != contact.stable or contact.unstable.sign != 1:
-            raise TooWideError(
-                "the proof is for homoclinic tangencies of a saddle of one bounce that turns with the table"
-            )
-        self.map, self.letter = map, letter
-        saddle = enclosed_saddle(contact.unstable, map, letter, contact.unstable.start[0])
-        self.out, self.into = (enclosed(saddle, unstable, order, UNIT) for unstable in (True, False))
-        unstable, stable = (float(m.real.mid()) for m in (saddle.unstable, saddle.stable))
-        self.start, self.end, self.bounces = contact.z / UNIT, contact.end / UNIT, contact.bounces
-        while abs(self.start * unstable) > 0.4:
-            self.start, self.bounces = self.start / unstable, self.bounces + 1
-        while abs(self.end) > 0.4:
-            self.end, self.bounces = self.end * stable, self.bounces + 1
-
-    def at(self, z: acb) -> Jet:
-        """The gap and its first two Taylor coefficients by `z`, for every `z` in a ball."""
-        before, here = self.out.points(Jet(z, acb(1), acb(0)))
-        for _ in range(self.bounces):
-            before, here = here, self.following(before, here)
-        unit = 2 * self.map.words["pi"] / self.map.turn
-        first, second = self.into.points(Jet(acb(self.end), acb(0), acb(0)))
-        before = before - round(float(((before.c[0] - first.c[0]) / unit).real.mid())) * unit
-        here = here - round(float(((here.c[0] - second.c[0]) / unit).real.mid())) * unit
-        apart: Jet = here - self.into.points(self.where(before))[1]
-        return apart
-
-    def following(self, before: Jet, here: Jet) -> Jet:
-        """Where the ball lands: an interval Newton step for the value, and the derivatives from the equation."""
-        map = self.map.lifted
-        phi = -self.letter * map.angle(here, before)[0]
-        middle = acb(landing(map.table, _float(here.c[0]), _float(phi.c[0]), 0))
-        angle = self.map.angle
-
-        def residual(x: acb) -> acb:
-            return acb(angle(here.c[0], x)[0] - phi.c[0])
-
-        for _ in range(NEWTON):
-            middle = (middle - residual(middle) / angle(here.c[0], middle)[2]).mid()
-        value = contracted(middle, residual(middle), lambda x: angle(here.c[0], x)[2])
-
-        def equation(x: Jet) -> tuple[Jet, Any]:
-            found = map.angle(here, x)
-            return found[0] - phi, found[2]
-
-        return carried(value, equation)
-
-    def where(self, here: Jet) -> Jet:
-        """The parameter on the stable manifold whose first point is `here`."""
-        into = self.into
-
-        def parts(z: acb) -> tuple[acb, acb]:
-            found = into.at(Jet(z, acb(1), acb(0)))
-            return found.c[0] - here.c[0], found.c[1]
-
-        middle = acb(self.end)
-        for _ in range(NEWTON):
-            value, slope = parts(middle)
-            middle = (middle - value / slope).mid()
-        value = contracted(middle, parts(middle)[0], lambda z: parts(z)[1])
-        return carried(value, lambda z: (into.at(z) - here, _slope(into, z)))
-
-
-def contracted(middle: acb, residual: acb, slope: Any) -> acb:
-    """The zero that an interval Newton step proves to be there, and alone, near `middle`."""
-    box = middle + around_zero(2 * size(residual / slope(middle)) + arb(2) ** -400)
-    found = middle - residual / slope(box)
-    if not box.contains(found):
-        raise TooWideError("an interval Newton step did not contract; the balls are too wide")
-    return acb(found)
-
-
-def carried(value: acb, equation: Any) -> Jet:
-    """The jet with this value that solves an equation: each step makes one more coefficient right."""
-    x = Jet(value, acb(0), acb(0))
-    for _ in range(2):
-        residual, slope = equation(x)
-        step = Jet(acb(0), *residual.c[1:]) / slope  # the residual's value is 0 on the solution
-        x = Jet(value, x.c[1] - step.c[1], x.c[2] - step.c[2])
-    return x
-
-
-def _slope(local: Enclosed, z: Jet) -> Any:
-    """The derivative of the manifold at the middle of a jet, which is what a Newton step on its coefficients needs."""
-    return local.at(Jet(z.c[0], acb(1), acb(0))).c[1]
-
-
-def _float(x: acb) -> float:
-    return float(x.real.mid())
-
-
-def tangency_proved(contact: Contact, map: Pinball, value: str, digits: int = LEAST_DIGITS) -> Proof:
-    """The proof that the manifolds touch at a letter within `10**-digits` of `value`, which has as many digits."""
-    bits, order = bits_of(2 * digits, 200), digits + 15
-    with working(bits):
-        balls = map.over(complex_balls(bits))
-        letter, width = arb(value).mid(), arb(10) ** -digits
-
-        def gap(at: acb) -> BallGap:
-            return BallGap(contact, balls, at, order)
-
-        point, whole = gap(acb(letter)), gap(acb(arb(letter, width.upper())))
-        z = acb(point.start)
-        for _ in range(NEWTON):
-            found = point.at(z)
-            z = (z - found.c[1] / (2 * found.c[2])).mid()
-        spread, bend = whole.at(z).c[1], point.at(z).c[2]
-        reach = (2 * size(spread) / arb(abs(bend).abs_lower())).mid()
-        box = acb(arb(z.real.mid(), reach))
-        over = whole.at(box).c[2].real
-        ends = [whole.at((z + s * reach).mid()).c[1].real for s in (-1, 1)]
-        values = []
-        for s in (-1, 1):
-            side = gap((letter + s * width).mid() * acb(1))
-            values.append((side.at(z).c[0] + side.at(box).c[1] * (box - z)).real)
-        speed = _speed(gap, letter, box)
-        checks = {
-            "quadratic": True if over > 0 or over < 0 else None,
-            "one_critical_point": _opposite(*ends),
-            "gap_changes_sign": _opposite(*values),
-            "transversal": True if speed > 0 or speed < 0 else None,
-        }
-        return Proof(arb(letter, width.upper()), checks, 2 * over, speed)
-
-
-def _opposite(a: arb, b: arb) -> bool | None:
-    return True if (a > 0 and b < 0) or (a < 0 and b > 0) else None
-
-
-def _speed(gap: Callable[[acb], BallGap], letter: arb, box: acb) -> arb:
-    """The derivative of the gap by the letter, near `letter` and over a box of parameters.
-
-    A difference quotient, and what Cauchy's bound of the second derivative on a disc allows around it.
+    >>> from verification.manifolds.known import SHAPE, contact, table
+    >>> triangle = contact("boundary", SHAPE)
+    >>> tangency_proved(triangle, table(SHAPE), "0.66214427335822441948253455", 20).holds
+    True
     """
-    step, radius = arb(STEP), arb(DISC)
-    disc = gap(acb(letter) + around_zero(radius)).at(box).c[0]
-    low, high = (gap(acb((letter + s * step).mid())).at(box).c[0] for s in (-1, 1))
-    second = 2 * size(disc - disc.mid()) / (radius - step) ** 2
-    return arb((high - low).real / (2 * step) + arb(0, (second * 2 * step).abs_upper()))
+    precision = Precision(digits)
+    with working(precision.bits):
+        letter = arb(value).mid()
+        try:
+            return _proved(Touching(contact, map, letter, precision), map, precision)
+        except (ValueError, ArithmeticError) as why:
+            known = ITEMS.index(why.item if isinstance(why, TooWideError) else "saddle")
+            checks = {item: True if k < known else None for k, item in enumerate(ITEMS)}
+            return Proof(arb(letter, precision.step), checks)
+
+
+def _proved(system: Touching, map: Recurrence, precision: Precision) -> Proof:
+    """The rest of the checklist, with both manifolds enclosed."""
+    near = settled(system, precision).unknowns[:-1]
+    centre, wide = Point.of([*near, system.letter]), arb(10) ** -(precision.digits // 2)
+    box = Point.of([*(arb(x, wide) for x in near), arb(system.letter, precision.step)])
+    at = system.linear(centre)
+    with working(slope_bits(len(box.unknowns))):
+        over = system.linear(box)
+        step = over.step([*at.values, *at.along], "precond")
+    image = [x - d for x, d in zip(centre.unknowns, step, strict=True)]
+    status = compared(image, box.unknowns)
+    found = {Status.UNIQUE: True, Status.EMPTY: False, Status.UNKNOWN: None}[status]
+    checks = {"saddle": True, "remainder": True, "exists": found, "unique": found, "admissible": admissible(map)}
+    if not found:
+        return Proof(box.letter, checks | {"quadratic": None, "transversal": None})
+    bend, speed = generic(system.linear(Point.of(image)), Point.of(image).along)
+    return Proof(image[-1], checks | {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}, bend, speed)
+
+
+def admissible(map: Recurrence) -> bool | None:
+    """True where each chord between two bounces meets the boundary nowhere on its way: in a convex table."""
+    return convex(map.table) if isinstance(map, Pinball) else True
+
+
+def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
+    """`g_zz` and `g_letter` of the text above."""
+    rows = arb_mat([row[1:] for row in linear.rows[:-1]])
+    solved = rows.transpose().solve(arb_mat([[-x] for x in linear.rows[-1][1:]]), algorithm="precond")
+    left = [*(solved[i, 0] for i in range(solved.nrows())), arb(1)]
+    bend = dot(left, [dot(row, along) for row in linear.bent])
+    return bend, dot(left, linear.by_letter)
+
+
+def _nonzero(x: arb) -> bool | None:
+    return True if x > 0 or x < 0 else None
+
+
+def settled(system: Touching, precision: Precision) -> Point:
+    """The zero by Newton's method, with the manifolds taken as affine in the letter; not proved."""
+    at = system.start
+    for _ in range(NEWTON):
+        linear = system.linear(at)
+        step = linear.step([*linear.values, *linear.along], "approx")
+        at = Point.of([(x - d).mid() for x, d in zip(at.unknowns, step, strict=True)])
+        if all(abs(d) < precision.step * SMALL for d in step):
+            return at
+    raise TooWideError("exists", "Newton's method finds no contact near the start")
+
+
+def sharpened(contact: Contact, map: Recurrence, value: str, digits: int) -> str:
+    """The letter of a contact to a few digits more than `digits`, from a value near it; not proved."""
+    precision, before = Precision(digits), arb(1)
+    with working(precision.bits):
+        letter = arb(value).mid()
+        while True:
+            found = settled(Touching(contact, map, letter, precision), precision).letter
+            moved = abs(found - letter)
+            if moved < precision.step * SMALL or not moved < before / 2:
+                return str(found.str(digits + 10, radius=False))
+            letter, before = found, moved

@@ -1,0 +1,291 @@
+"""Proofs of tangencies: remainders bound what more orders add, derivatives are the system's, false input is refused."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+from flint import acb, arb, arb_mat
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sympy import Rational
+
+from symbolic.tables import cardioid
+from verification.arithmetic import FLOAT64, multiprecision, working
+from verification.manifolds.enclosed import TooWideError, complex_balls, enclosed, enclosed_saddle
+from verification.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, contact, table
+from verification.manifolds.pair import Precision, pair, scale
+from verification.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
+from verification.manifolds.recurrence import Henon, Pinball
+from verification.manifolds.remainder import remainder, vanishing
+from verification.manifolds.saddle import Orbit, saddle
+from verification.manifolds.series import horner, local
+from verification.manifolds.tangency import Contact, Gap, tangency
+from verification.manifolds.touching import Point, Touching
+
+EGG = table(SHAPE)
+# Folds of cycles that shadow the tangencies, which use no manifold: docs/crises.md.
+BY_CYCLES = {
+    "merging": "0.443435246081851218248509",
+    "boundary": "0.662144273358224419482535",
+    "symmetry-restoring": "0.410268249231453618995790",
+    "band-merging": "0.397687368992791390776823",
+}
+OUTER = 1000
+
+
+@cache
+def proof(kind, shift):
+    """The proof within 1e-20 of the value of the cycles, moved by `shift` intervals."""
+    context = mpmath.MPContext()
+    context.dps = 40
+    value = context.mpf(BY_CYCLES[kind]) + shift * context.mpf(10) ** -20
+    return tangency_proved(contact(kind, SHAPE), EGG, str(value), 20)
+
+
+@pytest.mark.parametrize("kind", BY_CYCLES)
+def test_each_tangency_is_proved_where_the_cycles_say(kind):
+    found = proof(kind, 0)
+
+    assert found.holds
+    assert tuple(found.checks) == ITEMS
+    with working(100):
+        assert abs(found.letter - arb(BY_CYCLES[kind])) < 1e-23
+
+
+@pytest.mark.parametrize("shift", [-3, 3])
+@pytest.mark.parametrize("kind", ["merging", "boundary"])
+def test_no_tangency_is_proved_beside_it(kind, shift):
+    found = proof(kind, shift)
+
+    assert found.checks["remainder"] is True
+    assert found.checks["exists"] is False
+    assert not found.touches
+
+
+@pytest.mark.parametrize("kind", ["symmetry-restoring", "boundary"])
+def test_bend_and_speed_are_those_of_the_gap_in_float64(kind):
+    """Their ratio, at one scale of `z`, depends neither on the rounds near the saddle nor on the gap's unit."""
+    touch = tangency(CONTACTS[kind], EGG, 10)
+    gap = Gap(CONTACTS[kind], EGG.over(FLOAT64), float(touch.letter), 28, 1e-16)
+    precision = Precision(20)
+    with working(precision.bits):
+        z = settled(Touching(CONTACTS[kind], EGG, arb(BY_CYCLES[kind]).mid(), precision), precision).orbit[0]
+    share = gap.scales[0] / (gap.contact().z / float(z))
+    found = proof(kind, 0)
+
+    assert float(found.bend / found.speed) * share**2 == pytest.approx(touch.bend / touch.speed, rel=1e-4)
+
+
+def test_sharpened_values_do_not_depend_on_where_they_start():
+    few, many = (sharpened(CONTACTS["boundary"], EGG, start, 20) for start in ("0.66214427", "0.662144273358224"))
+
+    assert few[:24] == many[:24] == BY_CYCLES["boundary"][:24]
+
+
+@pytest.mark.parametrize("kind", CONTACTS)
+def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
+    """The symmetry at the end of the orbit takes the cycle into itself, so the tangency is homoclinic as it stands."""
+    precision = Precision(20)
+    with working(precision.bits):
+        system = Touching(CONTACTS[kind], EGG, arb(BY_CYCLES[kind]).mid(), precision)
+    orbit = CONTACTS[kind].unstable
+    points = list(orbit.start)
+    while len(points) < 6 * len(orbit.start):
+        points.append(orbit.sign * points[-len(orbit.start)] + 2 * math.pi * orbit.shift[0] / orbit.shift[1])
+    image = system.sign * (points[0] + system.turns[0] * 2 * math.pi / 3)
+
+    assert min(abs(math.remainder(image - x, 2 * math.pi)) for x in points) < 1e-4
+
+
+def at(orbit, letter, width=0.0):
+    """The saddle in balls, for letters around one."""
+    return enclosed_saddle(orbit, EGG.over(complex_balls(300)), acb(arb(letter, width), arb(0, width)))
+
+
+CASES = [(TRIANGLE, 2 / 3), (SYMMETRIC, 0.41), (MIRRORED, 0.4434)]
+
+
+@cache
+def few_and_many(case, unstable):
+    """The series to two orders, and the bound for what the shorter one leaves out."""
+    orbit, letter = CASES[case]
+    with working(300):
+        unit = scale(orbit, EGG, letter, unstable, OUTER)
+        few, many = (enclosed(at(orbit, letter), unstable, order, unit.unit, unit.chief) for order in (5, 20))
+        return few, many, remainder(few, OUTER), remainder(many, OUTER)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-1, 1), st.sampled_from(range(len(CASES))), st.booleans())
+def test_a_remainder_bounds_what_many_more_orders_add(z, case, unstable):
+    few, many, error, least = few_and_many(case, unstable)
+    with working(300):
+        assert error > 1e20 * least
+        for short, long in zip(few.coefficients, many.coefficients, strict=True):
+            assert abs(horner(short, acb(z)) - horner(long, acb(z))) <= error + least
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+@pytest.mark.parametrize("unstable", [True, False])
+def test_each_order_more_makes_the_remainder_smaller_by_the_radius_of_the_outer_disc(case, unstable):
+    few, many, error, least = few_and_many(case, unstable)
+    with working(300):
+        assert error < 100 * arb(OUTER) ** -(few.order + 1)
+        assert least < 100 * arb(OUTER) ** -(many.order + 1)
+
+
+@pytest.mark.parametrize("order", [0, 1, 2, 5])
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_a_falsified_coefficient_is_refused(case, order):
+    few = few_and_many(case, True)[0]
+    with working(300):
+        first, *others = few.coefficients
+        wrong = (*first[:order], first[order] * (1 + arb(10) ** -60), *first[order + 1 :])
+        false = replace(few, coefficients=(wrong, *others))
+
+        assert vanishing(few)
+        with pytest.raises(TooWideError, match="no coefficients of a manifold"):
+            remainder(false, OUTER)
+
+
+def test_a_disc_on_which_the_rule_is_not_finite_bounds_nothing():
+    few = few_and_many(2, True)[0]
+    with working(300), pytest.raises(TooWideError, match="not bounded"):
+        remainder(few, 100 * OUTER)
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+@pytest.mark.parametrize("unstable", [True, False])
+def test_derivatives_of_a_pair_are_those_of_series_in_mpmath(case, unstable):
+    """Places on the manifold, and difference quotients by `z` and by the letter, from the series of `local`."""
+    orbit, letter = CASES[case]
+    unit, precision = scale(orbit, EGG, letter, unstable, OUTER), Precision(20)
+    with working(precision.bits):
+        found = pair(orbit, EGG, arb(letter), unit, precision).at(1, (arb(3) / 10).mid(), arb(0))
+    context = mpmath.MPContext()
+    context.dps = 60
+    map, h, z, lam = EGG.over(multiprecision(context)), context.mpf(10) ** -15, context.mpf(3) / 10, context.mpf(letter)
+    series = [local(saddle(orbit, map, lam + k * h), unstable, 8, 1e-40) for k in (-1, 0, 1)]
+
+    def place(z, k):
+        return series[1 + k].points(z * context.mpf(unit.unit) / series[1 + k].unit)[0 if unstable else 1]
+
+    with working(precision.bits):
+        assert abs(found.place - arb(str(place(z, 0)))) < 1e-30
+    assert float(found.first) == pytest.approx(float((place(z + h, 0) - place(z - h, 0)) / (2 * h)), rel=1e-12)
+    twice = (place(z + h, 0) - 2 * place(z, 0) + place(z - h, 0)) / h**2
+    assert float(found.second) == pytest.approx(float(twice), rel=1e-8)
+    assert float(found.by_letter) == pytest.approx(float((place(z, 1) - place(z, -1)) / (2 * h)), rel=1e-8)
+    mixed = [(place(z + h, k) - place(z - h, k)) / (2 * h) for k in (-1, 1)]
+    assert float(found.mixed) == pytest.approx(float((mixed[1] - mixed[0]) / (2 * h)), rel=1e-6)
+
+
+@cache
+def system():
+    """The merging crisis' system near its zero, and the zero."""
+    precision = Precision(20)
+    with working(precision.bits):
+        made = Touching(CONTACTS["merging"], EGG, arb(BY_CYCLES["merging"]).mid(), precision)
+        return made, settled(made, precision)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_matrix_of_the_system_holds_its_difference_quotients(seed):
+    """Along random directions, by central differences; the manifolds are affine in the letter up to the step."""
+    made, zero = system()
+    with working(Precision(20).bits):
+        step, here = (arb(10) ** -21).mid(), [*zero.unknowns[:-1], made.letter]
+        random = np.random.default_rng(seed).uniform(-1, 1, len(here))
+        beside = []
+        for move in (step, -step):
+            linear = made.linear(Point.of([x + move * arb(float(r)) for x, r in zip(here, random, strict=True)]))
+            beside.append([x.mid() for x in (*linear.values, *linear.along)])
+        product = made.linear(Point.of(here)).matrix() * arb_mat([[arb(float(r))] for r in random])
+        for i, (high, low) in enumerate(zip(*beside, strict=True)):
+            assert abs((high - low) / (2 * step) - product[i, 0]) <= 1e-6
+
+
+def test_the_vector_along_a_tangency_is_the_tangent_of_the_orbits_on_the_manifold():
+    made, zero = system()
+    with working(Precision(20).bits):
+        step = (arb(10) ** -20).mid()
+        moved = Point([x + step * v for x, v in zip(zero.orbit, zero.along, strict=True)], zero.along, zero.letter)
+        apart = [x.mid() for x in made.linear(moved).values]
+
+    assert max(abs(float(x)) for x in apart) < 1e-33  # of second order in the step; of first order it would be 1e-20
+
+
+INNER, FAR = Orbit("inner fixed point", (0.63,)), Orbit("outer fixed point", (-1.13,))
+# Arai and Mischaikow, SIAM J. Appl. Dyn. Syst. 5 (2006) 280-292, proved the first two intervals in another way.
+# Grebogi, Ott and Yorke, Phys. Rev. A 36 (1987) 5365-5380: the boundary crisis, a heteroclinic tangency.
+HENON = {
+    "inner, homoclinic": (
+        Contact(INNER, INNER, 4, 1, -0.635006, -1.319803, 1.3924),
+        Rational(3, 10),
+        (1.392419807915, 1.392419807931),
+    ),
+    "outer, homoclinic": (
+        Contact(
+            Orbit("outer fixed point", (-1.5,)), Orbit("outer fixed point", (-1.5,)), 1, 1, 7.206345, 0.23941, 1.3145
+        ),
+        Rational(-3, 10),
+        (1.314527109319, 1.314527109334),
+    ),
+    "crisis": (Contact(INNER, FAR, 1, 1, -0.627005, 2.211054, 1.4269), Rational(3, 10), (1.42692, 1.42693)),
+}
+
+
+@pytest.mark.parametrize("name", HENON)
+def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(name):
+    where, b, (low, high) = HENON[name]
+    map = Henon(b)
+    value = sharpened(where, map, str(tangency(where, map, 10).letter), 20)
+    found = tangency_proved(where, map, value, 20)
+
+    assert found.holds
+    assert low <= found.letter <= high
+
+
+def test_a_saddle_of_the_henon_map_has_the_multipliers_of_the_textbook():
+    """By hand: `x = (b - 1 + sqrt((1 - b)**2 + 4*a))/(2*a)`, and `m**2 + 2*a*x*m - b = 0`."""
+    with working(200):
+        a, b = arb("1.4"), arb(3) / 10
+        x = (b - 1 + ((1 - b) ** 2 + 4 * a).sqrt()) / (2 * a)
+        root = ((a * x) ** 2 + b).sqrt()
+        found = enclosed_saddle(INNER, Henon(Rational(3, 10)).over(complex_balls(200)), acb(a))
+
+        assert found.points[0].overlaps(acb(x))
+        assert found.unstable.overlaps(acb(-a * x - root))
+        assert found.stable.overlaps(acb(-a * x + root))
+
+
+def test_what_no_ball_encloses_is_not_proved():
+    with working(100):
+        with pytest.raises(TooWideError, match=r"may be singular|contract"):
+            at(TRIANGLE, 0.66, 0.2)
+        with pytest.raises(TooWideError, match="complex"):
+            enclosed_saddle(Orbit("flat points", (-0.905,), 1, (1, 3)), EGG.over(complex_balls(100)), acb(0.66))
+
+
+@pytest.mark.parametrize(
+    ("changed", "value", "known"),
+    [
+        ({}, "0.66", 2),  # no tangency near this letter
+        ({"bounces": 7, "z": 0.02}, BY_CYCLES["boundary"], 2),  # the orbit does not come near the saddle
+        ({"unstable": Orbit("flat points", (-0.905,), 1, (1, 3))}, BY_CYCLES["boundary"], 0),  # no saddle
+    ],
+)
+def test_where_a_proof_fails_its_checks_say_how_far_it_came(changed, value, known):
+    found = tangency_proved(replace(CONTACTS["boundary"], **changed), EGG, value, 20)
+
+    assert dict(found.checks) == dict.fromkeys(ITEMS[:known], True) | dict.fromkeys(ITEMS[known:])
+    assert not found.touches
+
+
+def test_chords_are_admissible_in_convex_tables_only():
+    assert admissible(EGG) is True
+    assert admissible(Pinball(cardioid)) is None
+    assert admissible(Henon(Rational(3, 10))) is True

@@ -1,0 +1,163 @@
+"""A tangency as one zero of one system: an orbit from the unstable to the stable manifold, and a vector along it.
+
+Unknown are the parameter `z` where the orbit leaves the unstable manifold, its bounces `y[0] ... y[n+1]`, and the
+parameter `w` where it arrives on the stable one:
+
+    y[0] = P[-1](z),  y[1] = P[0](z),  rule(y[k-1], y[k], y[k+1]) = 0,  sign*y[n] = Q[0](w),  sign*y[n+1] = Q[1](w)
+
+up to turns of the table. At one letter the zeros are the points where the manifolds meet. The linearised equations,
+along a vector with `1` at `z`, carry the tangent of the one manifold to the other, and vanish exactly where the two
+touch. Both together, with the letter as the last unknown, are the system: as many equations as unknowns. Like the
+chord system of a cycle it has one equation for each bounce; no orbit is followed, and no ball grows along the way.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from flint import arb, arb_mat
+
+from verification.arithmetic import FLOAT64, balls
+from verification.manifolds.enclosed import TooWideError
+from verification.manifolds.pair import Near, Pair, Precision, pair, scale
+from verification.manifolds.recurrence import Recurrence
+from verification.manifolds.series import horner
+from verification.manifolds.tangency import Contact, rounds
+from verification.shooting.jets import Jet
+
+LARGEST = 0.4  # parameters at the start, where the remainder's derivatives are bounded up to 1/2
+Vector = list[arb]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A place in the space of unknowns: `orbit` is `z, y[0], ..., y[n+1], w`, and `along` the vector."""
+
+    orbit: Vector
+    along: Vector
+    letter: arb
+
+    @property
+    def unknowns(self) -> Vector:
+        """All that is sought, in one row."""
+        return [*self.orbit, *self.along[1:], self.letter]
+
+    @staticmethod
+    def of(unknowns: Vector) -> "Point":
+        """The point with these unknowns."""
+        m = len(unknowns) // 2
+        return Point(unknowns[:m], [arb(1), *unknowns[m:-1]], unknowns[-1])
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The equations and their derivatives at a point, or over a box.
+
+    `values` are those of the orbit's equations, `along` those of the vector's. `rows` are the derivatives of the
+    former by the orbit, and so of the latter by the vector; `bent` those of the latter by the orbit.
+    """
+
+    values: Vector
+    along: Vector
+    rows: list[Vector]
+    bent: list[Vector]
+    by_letter: Vector
+    bent_by_letter: Vector
+
+    def matrix(self) -> arb_mat:
+        """The derivative of the whole system, by the unknowns in their order."""
+        zero = [arb(0)] * (len(self.values) - 1)
+        upper = [[*row, *zero, g] for row, g in zip(self.rows, self.by_letter, strict=True)]
+        lower = zip(self.bent, self.rows, self.bent_by_letter, strict=True)
+        return arb_mat(upper + [[*bent, *row[1:], h] for bent, row, h in lower])
+
+    def step(self, values: Vector, algorithm: Literal["approx", "precond"]) -> Vector:
+        """What Newton's method takes off the unknowns where the system has these values."""
+        try:
+            found = self.matrix().solve(arb_mat([[x] for x in values]), algorithm=algorithm)
+        except ZeroDivisionError as why:
+            raise TooWideError("exists", "the linearised system may be singular") from why
+        return [found[i, 0] for i in range(len(values))]
+
+
+class Touching:
+    """The system of a contact near one letter, with both manifolds enclosed."""
+
+    def __init__(self, contact: Contact, map: Recurrence, letter: arb, precision: Precision) -> None:
+        self.map, self.letter = map.over(balls(precision.bits)), letter
+        self.pairs: list[Pair] = []
+        for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
+            unit = scale(orbit, map, float(letter), unstable, precision.outer)
+            self.pairs.append(pair(orbit, map, letter, unit, precision))
+        out, into = (made.scale for made in self.pairs)
+        z, w = contact.z / out.unit, contact.end / into.unit
+        early, late = rounds(z / LARGEST, out.factor), rounds(w / LARGEST, 1 / into.factor)
+        self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
+        self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
+        self.turns, self.start = self._flown(map.over(FLOAT64), z / out.factor**early, w * into.factor**late)
+
+    def _flown(self, map: Recurrence, z: float, w: float) -> tuple[list[int], Point]:
+        """An orbit in float64 with its vector, and the turns of the table at its end."""
+        flight, ends = ([self._rough(k, i, x) for i in (0, 1)] for k, x in ((0, z), (1, w)))
+        for _ in range(self.bounces):
+            flight.append(map.lifted.following(flight[-2], flight[-1], float(self.letter)))
+        unit = 2 * math.pi / map.turn if map.turn else math.inf
+        apart = [self.sign * x.c[0] - end.c[0] for x, end in zip(flight[-2:], ends, strict=True)]
+        turns = [round(d / unit) for d in apart]
+        if map.turn and (turns[1] - turns[0]) % map.turn:
+            raise TooWideError("exists", "the orbit does not end near an image of the saddle")
+        along = [1.0, *(x.c[1] for x in flight), self.sign * flight[-2].c[1] / ends[0].c[1]]
+        orbit = [z, *(x.c[0] for x in flight), w]
+        return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.letter)
+
+    def _rough(self, which: int, i: int, z: float) -> Jet:
+        found: Jet = horner([float(c) for c in self.pairs[which].places[i]], Jet(z, 1.0))
+        return found
+
+    def linear(self, at: Point) -> Linear:
+        """The equations at a point whose letter is the middle one, or over a box around it."""
+        out, into = ([made.at(i, z, at.letter - self.letter) for i in (0, 1)] for made, z in self._ends(at))
+        m = len(at.orbit)
+        made = Linear([], [], [], [], [], [])
+        for i, near in enumerate(out):
+            _ended(made, at, 1 + i, 0, 1, arb(0), near)
+        for k in range(1, self.bounces + 1):
+            self._bounced(made, at, k)
+        unit = 2 * self.map.words["pi"] / self.map.turn if self.map.turn else arb(0)
+        for i, near in enumerate(into):
+            _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns[i] * unit, near)
+        return made
+
+    def _ends(self, at: Point) -> list[tuple[Pair, arb]]:
+        return [(self.pairs[0], at.orbit[0]), (self.pairs[1], at.orbit[-1])]
+
+    def _bounced(self, made: Linear, at: Point, k: int) -> None:
+        """The rule at `y[k]`; it is affine in the letter."""
+        near = [Jet(at.orbit[j], at.along[j]) for j in range(k, k + 3)]
+        map = self.map.lifted
+        plain = map.rule(near, arb(0))
+        moving = map.rule(near, arb(1)) - plain
+        value = plain + at.letter * moving
+        slopes = map.slopes(near, at.letter)
+        m = len(at.orbit)
+        rows = ([arb(0)] * k + [s.c[order] for s in slopes] + [arb(0)] * (m - k - 3) for order in (0, 1))
+        _add(made, value.c, list(rows), moving.c)
+
+
+def _ended(made: Linear, at: Point, here: int, end: int, sign: int, shift: arb, near: Near) -> None:
+    """The equation `sign*orbit[here] - shift = near(orbit[end])`."""
+    row, bent, share = [arb(0)] * len(at.orbit), [arb(0)] * len(at.orbit), at.along[end]
+    row[here], row[end], bent[end] = arb(sign), -near.first, -near.second * share
+    values = sign * at.orbit[here] - shift - near.place, sign * at.along[here] - near.first * share
+    _add(made, values, [row, bent], (-near.by_letter, -near.mixed * share))
+
+
+def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_letter: Sequence[arb]) -> None:
+    """One more equation, of the orbit and along the vector."""
+    for column, x in zip((made.values, made.along), values, strict=True):
+        column.append(x)
+    for matrix, row in zip((made.rows, made.bent), rows, strict=True):
+        matrix.append(row)
+    for column, x in zip((made.by_letter, made.bent_by_letter), by_letter, strict=True):
+        column.append(x)

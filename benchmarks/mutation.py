@@ -3,12 +3,13 @@
     python benchmarks/mutation.py cover                     once: which test runs which line (tests/symbolic, symbolic)
     python benchmarks/mutation.py cover tests/symbolic/test_zero.py symbolic/zero.py        again, for what has changed
     python benchmarks/mutation.py run --only 'symbolic/*.py'                resumes; the smallest modules come first
-    python benchmarks/mutation.py run --only symbolic/zero.py --again survived --budget 100
+    python benchmarks/mutation.py run --only 'symbolic/*.py' --near         a quick sieve: the module's own tests alone
+    python benchmarks/mutation.py run --only symbolic/zero.py --again survived --budget 100       what passed the sieve
     python benchmarks/mutation.py list --only symbolic/zero.py              survivors as they stand
     python benchmarks/mutation.py page                      docs/mutation.json and docs/mutation.md
 
 `run` asks the tests that execute the mutated statement, quickest first, until their own seconds (as `cover` measured
-them, under a tracer) add up to the budget; where a statement runs at import, all tests that touch its module. The
+them, under a tracer) add up to the budget; where a statement runs at import, all whose file imports its module. The
 module's own tests come before all others. What survived is asked again, with a larger budget, by `--again survived`; a
 mutant keeps its verdict when lines move. `--sample 0.2 --seed 1` takes a random part. A survivor needs a test, or a
 reason in docs/mutation.toml: `page` puts both together, and keeps the figures of modules that this machine has not run.
@@ -26,7 +27,7 @@ from os import waitpid
 
 from mutation_mutants import ROOT, STOREYS, Mutant, mutants
 from mutation_page import write_page
-from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, warm
+from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, reached, warm
 
 STATE = ROOT / "report" / "mutation"
 COVER, RESULTS = STATE / "cover.json", STATE / "results.jsonl"
@@ -65,16 +66,22 @@ class Plan:
                 for line in lines:
                     self.lines[path][line].add(node)
 
-    def tests(self, mutant: Mutant, budget: float) -> dict[str, float]:
-        """Node ids with their seconds: those that run the statement, quickest first, as far as the budget goes."""
+    def tests(self, mutant: Mutant, budget: float, near: bool) -> dict[str, float]:
+        """Node ids with their seconds: those that run the statement, quickest first, as far as the budget goes.
+
+        `near` takes the module's own tests alone, where it has some.
+        """
         first, last = mutant.statement
         here = self.lines[mutant.path]
         running = set().union(*(here[line] for line in range(first, last + 1)))
         rest = set()
         if "" in running or not running:
-            rest = set().union(*here.values()) | mirrors(mutant.path, self.seconds)
+            files = {file_of(node) for node in self.seconds if node}
+            users = {file for file in files if name_of(mutant.path) in reached(name_of(file))}
+            rest = {node for node in self.seconds if file_of(node) in users}
+        own = mirrors(mutant.path, running | rest) if near else set()
         chosen, total = {}, 0.0
-        for group in (running, rest - running):
+        for group in (own,) if own else (running, rest - running):
             for node in sorted(group - {""}, key=self.seconds.__getitem__):
                 total += self.seconds[node]
                 if chosen and total > budget:
@@ -107,12 +114,12 @@ def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[
     return [mutant for mutant in found if mutant.key not in known or known[mutant.key]["status"] in again]
 
 
-def run_module(path: str, chosen: list[Mutant], plan: Plan, budget: float) -> None:
+def run_module(path: str, chosen: list[Mutant], plan: Plan, budget: float, near: bool) -> None:
     """In a server of its own: imports what does not depend on the module, then asks about each mutant."""
     for name in independent(name_of(path)):
         __import__(name)
     for number, mutant in enumerate(chosen, 1):
-        tests = plan.tests(mutant, budget)
+        tests = plan.tests(mutant, budget, near)
         status, test, seconds = ask(path, mutant.text, tests) if tests else ("uncovered", "", 0.0)
         known = {"key": mutant.key, "operator": mutant.operator, "status": status, "test": test, "seconds": seconds}
         append(RESULTS, known | {"tests": len(tests), "budget": budget})
@@ -130,7 +137,7 @@ def running(args: argparse.Namespace) -> None:
             continue
         if len(busy) >= args.workers:
             waitpid(busy.pop(0), 0)
-        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, args.budget)))
+        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, args.budget, args.near)))
     for child in busy:
         waitpid(child, 0)
 
@@ -145,7 +152,7 @@ def tables(args: argparse.Namespace) -> dict[str, dict]:
             continue
         count = Counter(entry["status"] for _, entry in asked)
         alive = [
-            {"line": mutant.line, "operator": mutant.operator, "change": mutant.key.partition(": ")[2]}
+            {"line": mutant.line, "operator": mutant.operator, "before": mutant.old, "after": mutant.new}
             for mutant, entry in asked
             if entry["status"] in ("survived", "uncovered")
         ]
@@ -159,8 +166,7 @@ def listing(args: argparse.Namespace) -> None:
         killed = entry.get("killed", 0) + entry.get("timeout", 0)
         say(f"{path}: {entry['mutants']} mutants, {entry['asked']} asked, {killed} killed")
         for alive in entry["alive"]:
-            before, after = alive["change"].split(" -> ", 1)
-            say(f"  {path}:{alive['line']} {alive['operator']}\n    - {before}\n    + {after}")
+            say(f"  {path}:{alive['line']} {alive['operator']}\n    - {alive['before']}\n    + {alive['after']}")
 
 
 def main() -> None:
@@ -173,6 +179,7 @@ def main() -> None:
     parser.add_argument("--seed", default="1", help="of the sample")
     parser.add_argument("--workers", type=int, default=1, help="modules at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
+    parser.add_argument("--near", action="store_true", help="a first sieve: the module's own tests alone")
     parser.add_argument("--again", default="", choices=["", "survived", "uncovered", "timeout", "all"])
     args = parser.parse_args()
     if args.verb == "cover":

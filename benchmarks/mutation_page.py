@@ -58,8 +58,8 @@ def reasons(path: str, alive: list[dict]) -> dict[str, list[dict]]:
     given = [entry for entry in tomllib.loads(REASONS.read_text()).get("reason", []) if entry["module"] == path]
     found: dict[str, list[dict]] = {}
     for mutant in alive:
-        before = mutant["change"].split(" -> ", 1)[0]
-        why = [r["why"] for r in given if mutant["change"] in r.get("changes", []) or before in r.get("lines", [])]
+        before, change = mutant["before"], f"{mutant['before']} -> {mutant['after']}"
+        why = [r["why"] for r in given if change in r.get("changes", []) or before in r.get("lines", [])]
         found.setdefault(why[0].strip() if why else OPEN, []).append(mutant)
     return found
 
@@ -95,8 +95,7 @@ def survivors(path: str, entry: dict) -> str:
     for why, mutants in reasons(path, entry["alive"]).items():
         text += f"\n{why}:\n\n" if why == OPEN else f"\n{why}\n\n"
         for mutant in mutants:
-            before, after = mutant["change"].split(" -> ", 1)
-            text += f"    {mutant['line']:>3} - {before}\n        + {after}\n"
+            text += f"    {mutant['line']:>3} - {mutant['before']}\n        + {mutant['after']}\n"
     return text
 
 

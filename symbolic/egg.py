@@ -42,16 +42,12 @@ def curvature_slope_polynomial(K: int = 3) -> Expr:
     return expand(2 * Q * N.diff(COSINE) - 3 * Q.diff(COSINE) * N)
 
 
-def slap_critical_points(shape: Expr) -> int:
-    """How many `theta` have `T0' = 0` in the egg with `alpha = shape`: six for each root in `-1 < C < 1`.
+def slap_critical_cosines(shape: Expr) -> list[Expr]:
+    """The values in `-1 < C < 1` at which the slap map of the egg with `alpha = shape` has `T0' = 0`.
 
     `t*K0 + 1 = 0` says that the centre of curvature `e` lies on the boundary, `|e|**4 = |e|**3 +
     alpha*Re(e**3)`. With `e = exp(i*theta)*(u + i*w*sin(3*theta))/N` that is a polynomial in `C`, whose
     roots Sturm counts; squared, it needs `|e|**4 - alpha*Re(e**3) > 0` at a root.
-
-    >>> from sympy import Rational
-    >>> slap_critical_points(Rational(2, 25)), slap_critical_points(Rational(1, 20))
-    (6, 0)
     """
     C = COSINE
     N, Q = (polynomial.subs(alpha, shape) for polynomial in (turning_polynomial(), squared_speed_polynomial()))
@@ -60,4 +56,14 @@ def slap_critical_points(shape: Expr) -> int:
     cube = C * (u**3 - 3 * u * w**2 * sine) - sine * (3 * u**2 * w - w**3 * sine)
     side = expand(modulus**2 - shape * N * cube)
     roots = Poly(expand(side**2 - modulus**3 * N**2), C).sqf_part().real_roots()
-    return 6 * sum(1 for root in roots if -1 < root < 1 and side.subs(C, root.eval_rational(n=30)) > 0)
+    return [root for root in roots if -1 < root < 1 and side.subs(C, root.eval_rational(n=30)) > 0]
+
+
+def slap_critical_points(shape: Expr) -> int:
+    """How many `theta` have `T0' = 0` in the egg with `alpha = shape`: six for each such cosine.
+
+    >>> from sympy import Rational
+    >>> slap_critical_points(Rational(2, 25)), slap_critical_points(Rational(1, 20))
+    (6, 0)
+    """
+    return 6 * len(slap_critical_cosines(shape))

@@ -51,6 +51,15 @@ def mirrors(path: str, nodes: Iterable[str]) -> set[str]:
     return {node for node in nodes if file_of(node) == path or node.startswith(own)}
 
 
+def forget_kernels() -> None:
+    """Kernels in memory and on disk, which an earlier test may have compiled: who uses one runs what writes it."""
+    machine, folder = sys.modules.get("numeric.machine"), os.environ.get("PINBALL_CACHE")
+    if machine is not None and folder:
+        machine._loaded.clear()
+        for kept in Path(folder).glob("kernel-*"):
+            kept.unlink()
+
+
 class Cover:
     """A pytest plugin: the lines of the project that each test executes, and its seconds; memos are emptied before."""
 
@@ -65,6 +74,7 @@ class Cover:
                 for value in list(vars(module).values()):
                     with suppress(Exception):
                         value.cache_clear()
+        forget_kernels()
         self.coverage.switch_context(item.nodeid)
         start = time.perf_counter()
         try:

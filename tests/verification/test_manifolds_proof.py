@@ -1,4 +1,4 @@
-"""Proofs of tangencies: remainders bound what more orders add, derivatives are the system's, false input is refused."""
+"""Proofs of tangencies: they hold where cycles and published proofs say, and nowhere else; derivatives are right."""
 
 import math
 from dataclasses import replace
@@ -7,21 +7,16 @@ from functools import cache
 import mpmath
 import numpy as np
 import pytest
-from flint import acb, arb, arb_mat
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from flint import arb, arb_mat
 from sympy import Rational
 
 from symbolic.tables import cardioid
 from verification.arithmetic import FLOAT64, multiprecision, working
-from verification.manifolds.enclosed import TooWideError, complex_balls, enclosed, enclosed_saddle
-from verification.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, contact, table
-from verification.manifolds.pair import Precision, pair, scale
+from verification.manifolds.known import CONTACTS, SHAPE, contact, table
+from verification.manifolds.pair import Precision
 from verification.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
 from verification.manifolds.recurrence import Henon, Pinball
-from verification.manifolds.remainder import remainder, vanishing
 from verification.manifolds.saddle import Orbit, saddle
-from verification.manifolds.series import horner, local
 from verification.manifolds.tangency import Contact, Gap, tangency
 from verification.manifolds.touching import Point, Touching
 
@@ -33,7 +28,6 @@ BY_CYCLES = {
     "symmetry-restoring": "0.410268249231453618995790",
     "band-merging": "0.397687368992791390776823",
 }
-OUTER = 1000
 
 
 @cache
@@ -53,6 +47,20 @@ def test_each_tangency_is_proved_where_the_cycles_say(kind):
     assert tuple(found.checks) == ITEMS
     with working(100):
         assert abs(found.letter - arb(BY_CYCLES[kind])) < 1e-23
+
+
+@pytest.mark.parametrize("kind", BY_CYCLES)
+def test_each_saddle_is_dissipative_with_the_multipliers_of_mpmath(kind):
+    """The product of the multipliers is below 1 in balls: the hypothesis of Newhouse and Robinson."""
+    stable, unstable = proof(kind, 0).multipliers
+    context = mpmath.MPContext()
+    context.dps = 30
+    found = saddle(CONTACTS[kind].unstable, EGG.over(multiprecision(context)), context.mpf(BY_CYCLES[kind]))
+
+    assert abs(stable * unstable) < 1
+    with working(100):
+        assert abs(stable - arb(str(found.stable))) < 1e-10
+        assert abs(unstable - arb(str(found.unstable))) < 1e-8
 
 
 @pytest.mark.parametrize("shift", [-3, 3])
@@ -90,7 +98,7 @@ def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
     """The symmetry at the end of the orbit takes the cycle into itself, so the tangency is homoclinic as it stands."""
     precision = Precision(20)
     with working(precision.bits):
-        system = Touching(CONTACTS[kind], EGG, arb(BY_CYCLES[kind]).mid(), precision)
+        system = Touching(CONTACTS[kind], EGG, arb(CONTACTS[kind].letter), precision)
     orbit = CONTACTS[kind].unstable
     points = list(orbit.start)
     while len(points) < 6 * len(orbit.start):
@@ -98,89 +106,6 @@ def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
     image = system.sign * (points[0] + system.turns[0] * 2 * math.pi / 3)
 
     assert min(abs(math.remainder(image - x, 2 * math.pi)) for x in points) < 1e-4
-
-
-def at(orbit, letter, width=0.0):
-    """The saddle in balls, for letters around one."""
-    return enclosed_saddle(orbit, EGG.over(complex_balls(300)), acb(arb(letter, width), arb(0, width)))
-
-
-CASES = [(TRIANGLE, 2 / 3), (SYMMETRIC, 0.41), (MIRRORED, 0.4434)]
-
-
-@cache
-def few_and_many(case, unstable):
-    """The series to two orders, and the bound for what the shorter one leaves out."""
-    orbit, letter = CASES[case]
-    with working(300):
-        unit = scale(orbit, EGG, letter, unstable, OUTER)
-        few, many = (enclosed(at(orbit, letter), unstable, order, unit.unit, unit.chief) for order in (5, 20))
-        return few, many, remainder(few, OUTER), remainder(many, OUTER)
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.floats(-1, 1), st.sampled_from(range(len(CASES))), st.booleans())
-def test_a_remainder_bounds_what_many_more_orders_add(z, case, unstable):
-    few, many, error, least = few_and_many(case, unstable)
-    with working(300):
-        assert error > 1e20 * least
-        for short, long in zip(few.coefficients, many.coefficients, strict=True):
-            assert abs(horner(short, acb(z)) - horner(long, acb(z))) <= error + least
-
-
-@pytest.mark.parametrize("case", range(len(CASES)))
-@pytest.mark.parametrize("unstable", [True, False])
-def test_each_order_more_makes_the_remainder_smaller_by_the_radius_of_the_outer_disc(case, unstable):
-    few, many, error, least = few_and_many(case, unstable)
-    with working(300):
-        assert error < 100 * arb(OUTER) ** -(few.order + 1)
-        assert least < 100 * arb(OUTER) ** -(many.order + 1)
-
-
-@pytest.mark.parametrize("order", [0, 1, 2, 5])
-@pytest.mark.parametrize("case", range(len(CASES)))
-def test_a_falsified_coefficient_is_refused(case, order):
-    few = few_and_many(case, True)[0]
-    with working(300):
-        first, *others = few.coefficients
-        wrong = (*first[:order], first[order] * (1 + arb(10) ** -60), *first[order + 1 :])
-        false = replace(few, coefficients=(wrong, *others))
-
-        assert vanishing(few)
-        with pytest.raises(TooWideError, match="no coefficients of a manifold"):
-            remainder(false, OUTER)
-
-
-def test_a_disc_on_which_the_rule_is_not_finite_bounds_nothing():
-    few = few_and_many(2, True)[0]
-    with working(300), pytest.raises(TooWideError, match="not bounded"):
-        remainder(few, 100 * OUTER)
-
-
-@pytest.mark.parametrize("case", range(len(CASES)))
-@pytest.mark.parametrize("unstable", [True, False])
-def test_derivatives_of_a_pair_are_those_of_series_in_mpmath(case, unstable):
-    """Places on the manifold, and difference quotients by `z` and by the letter, from the series of `local`."""
-    orbit, letter = CASES[case]
-    unit, precision = scale(orbit, EGG, letter, unstable, OUTER), Precision(20)
-    with working(precision.bits):
-        found = pair(orbit, EGG, arb(letter), unit, precision).at(1, (arb(3) / 10).mid(), arb(0))
-    context = mpmath.MPContext()
-    context.dps = 60
-    map, h, z, lam = EGG.over(multiprecision(context)), context.mpf(10) ** -15, context.mpf(3) / 10, context.mpf(letter)
-    series = [local(saddle(orbit, map, lam + k * h), unstable, 8, 1e-40) for k in (-1, 0, 1)]
-
-    def place(z, k):
-        return series[1 + k].points(z * context.mpf(unit.unit) / series[1 + k].unit)[0 if unstable else 1]
-
-    with working(precision.bits):
-        assert abs(found.place - arb(str(place(z, 0)))) < 1e-30
-    assert float(found.first) == pytest.approx(float((place(z + h, 0) - place(z - h, 0)) / (2 * h)), rel=1e-12)
-    twice = (place(z + h, 0) - 2 * place(z, 0) + place(z - h, 0)) / h**2
-    assert float(found.second) == pytest.approx(float(twice), rel=1e-8)
-    assert float(found.by_letter) == pytest.approx(float((place(z, 1) - place(z, -1)) / (2 * h)), rel=1e-8)
-    mixed = [(place(z + h, k) - place(z - h, k)) / (2 * h) for k in (-1, 1)]
-    assert float(found.mixed) == pytest.approx(float((mixed[1] - mixed[0]) / (2 * h)), rel=1e-6)
 
 
 @cache
@@ -247,27 +172,6 @@ def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(na
 
     assert found.holds
     assert low <= found.letter <= high
-
-
-def test_a_saddle_of_the_henon_map_has_the_multipliers_of_the_textbook():
-    """By hand: `x = (b - 1 + sqrt((1 - b)**2 + 4*a))/(2*a)`, and `m**2 + 2*a*x*m - b = 0`."""
-    with working(200):
-        a, b = arb("1.4"), arb(3) / 10
-        x = (b - 1 + ((1 - b) ** 2 + 4 * a).sqrt()) / (2 * a)
-        root = ((a * x) ** 2 + b).sqrt()
-        found = enclosed_saddle(INNER, Henon(Rational(3, 10)).over(complex_balls(200)), acb(a))
-
-        assert found.points[0].overlaps(acb(x))
-        assert found.unstable.overlaps(acb(-a * x - root))
-        assert found.stable.overlaps(acb(-a * x + root))
-
-
-def test_what_no_ball_encloses_is_not_proved():
-    with working(100):
-        with pytest.raises(TooWideError, match=r"may be singular|contract"):
-            at(TRIANGLE, 0.66, 0.2)
-        with pytest.raises(TooWideError, match="complex"):
-            enclosed_saddle(Orbit("flat points", (-0.905,), 1, (1, 3)), EGG.over(complex_balls(100)), acb(0.66))
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from verification.manifolds.enclosed import (
 )
 from verification.manifolds.recurrence import Recurrence
 from verification.manifolds.remainder import remainder
-from verification.manifolds.saddle import Orbit, saddle
+from verification.manifolds.saddle import Orbit, Saddle, saddle
 from verification.manifolds.series import Local, horner, local
 from verification.shooting.jets import Jet
 
@@ -90,9 +90,10 @@ class Pair:
     """Coefficients of the two: `places` at the letter itself, `slopes` by it up to two steps away.
 
     The bounces are -1 and 0 of the unstable manifold, 0 and 1 of the stable one. `error` bounds the
-    remainder for all letters at most `margin` from those.
+    remainder for all letters at most `margin` from those; `saddle` is enclosed for the same letters.
     """
 
+    saddle: Saddle
     scale: Scale
     places: Polynomials
     slopes: Polynomials
@@ -154,4 +155,4 @@ def pair(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Pr
     bounces = list(zip(*(made.pair() for made in (here, beside, around)), strict=True))
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]
-    return Pair(scale, places, slopes, remainder(around, precision.outer), disc - 2 * step)
+    return Pair(around.saddle, scale, places, slopes, remainder(around, precision.outer), disc - 2 * step)

@@ -34,12 +34,16 @@ Checks = Mapping[str, bool | None]
 
 @dataclass(frozen=True)
 class Proof:
-    """A tangency in `letter`, when every check is True; `bend` and `speed` are `g_zz` and `g_letter`."""
+    """A tangency in `letter`, when every check is True; `bend` and `speed` are `g_zz` and `g_letter`.
+
+    `multipliers` are the stable and the unstable one of the saddle that the orbit leaves.
+    """
 
     letter: arb
     checks: Checks
     bend: arb | None = field(default=None, repr=False)
     speed: arb | None = field(default=None, repr=False)
+    multipliers: tuple[arb, ...] = field(default=(), repr=False)
 
     @property
     def holds(self) -> bool:
@@ -83,11 +87,19 @@ def _proved(system: Touching, map: Recurrence, precision: Precision) -> Proof:
     image = [x - d for x, d in zip(centre.unknowns, step, strict=True)]
     status = compared(image, box.unknowns)
     found = {Status.UNIQUE: True, Status.EMPTY: False, Status.UNKNOWN: None}[status]
-    checks = {"saddle": True, "remainder": True, "exists": found, "unique": found, "admissible": admissible(map)}
+    checks: dict[str, bool | None] = {
+        "saddle": True,
+        "remainder": True,
+        "exists": found,
+        "unique": found,
+        "admissible": admissible(map),
+    }
     if not found:
         return Proof(box.letter, checks | {"quadratic": None, "transversal": None})
     bend, speed = generic(system.linear(Point.of(image)), Point.of(image).along)
-    return Proof(image[-1], checks | {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}, bend, speed)
+    checks |= {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}
+    left = system.pairs[0].saddle
+    return Proof(image[-1], checks, bend, speed, (left.stable.real, left.unstable.real))
 
 
 def admissible(map: Recurrence) -> bool | None:

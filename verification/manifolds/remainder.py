@@ -32,10 +32,10 @@ def remainder(made: Enclosed, outer: int) -> arb:
     """What bounds the remainder of every bounce on the unit disc, by the rule on the disc of radius `outer`."""
     if not vanishing(made):
         raise TooWideError("remainder", "the rule has terms of low order; these are no coefficients of a manifold")
-    rounds = _round_outwards(made, outer)
-    least = bounds(made, rounds, [arb(0)] * len(rounds))
+    slopes = round_outwards(made, outer)
+    least = bounds(made, slopes, [arb(0)] * len(slopes))
     allowed = [2 * e for e in least]
-    found = bounds(made, rounds, allowed)
+    found = bounds(made, slopes, allowed)
     if not all(e <= a and a < arb(TUBE) for e, a in zip(found, allowed, strict=True)):
         raise TooWideError("remainder", "the remainder of the series is not bounded")
     return max(allowed, key=lambda e: e.mid())
@@ -52,7 +52,7 @@ def vanishing(made: Enclosed) -> bool:
 Outwards = list[tuple[int, arb, arb, arb]]  # for each bounce: defect, slope by the point inside it and the one before
 
 
-def _round_outwards(made: Enclosed, outer: int) -> Outwards:
+def round_outwards(made: Enclosed, outer: int) -> Outwards:
     """One round from the saddle, each rule solved for its outermost point, with bounds in units of `slope0`."""
     map, letter, p = made.saddle.map, made.saddle.letter, len(made.coefficients)
     inside = -1 if made.unstable else 1
@@ -70,7 +70,7 @@ def _round_outwards(made: Enclosed, outer: int) -> Outwards:
     return found
 
 
-def bounds(made: Enclosed, rounds: Outwards, errors: list[arb]) -> list[arb]:
+def bounds(made: Enclosed, slopes: Outwards, errors: list[arb]) -> list[arb]:
     """`E(e)` of the text above: bounds one round outwards from `errors`."""
     p, inside = len(errors), -1 if made.unstable else 1
     shrink = size(1 / made.factor if made.unstable else made.factor) ** (made.order + 1)
@@ -79,6 +79,6 @@ def bounds(made: Enclosed, rounds: Outwards, errors: list[arb]) -> list[arb]:
     def bound(j: int) -> arb:
         return known[j] if j in known else errors[j % p] * shrink ** abs(j // p)
 
-    for i, defect, here, far in rounds:
+    for i, defect, here, far in slopes:
         known[i] = size(defect + here * bound(i + inside) + far * bound(i + 2 * inside))
     return [known[i] for i in range(p)]

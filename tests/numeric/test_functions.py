@@ -101,3 +101,18 @@ def test_one_step_of_halley_is_of_third_order():
 
 def test_value_and_slope_are_those_of_the_polynomial():
     assert value_and_slope([1, 2, 3, 4], 2) == (1 + 4 + 12 + 32, 2 + 12 + 48)
+
+
+def test_a_turn_of_one_quarter_serves_the_whole_quarter():
+    x = np.concatenate([np.linspace(-np.pi / 2, np.pi / 2, 601), [np.pi / 4, np.nextafter(np.pi / 4, 1), 0.0]])
+    c, s = turn(OPS, x, 1)
+
+    assert max(abs(MP.cos(float(a)) - float(b)) for a, b in zip(x, c, strict=True)) <= 0.8 * EPS
+    assert max(abs(MP.sin(float(a)) - float(b)) for a, b in zip(x, s, strict=True)) <= 0.8 * EPS
+
+
+def test_the_angle_of_the_axes_and_of_the_diagonal():
+    y, x = np.array([0.0, 2.0, -2.0, 3.0, -3.0, -0.0]), np.array([5.0, 0.0, 0.0, 3.0, 3.0, 1.0])
+
+    assert angle(OPS, y, x).tolist() == [0.0, np.pi / 2, -np.pi / 2, np.pi / 4, -np.pi / 4, 0.0]
+    assert np.signbit(angle(OPS, y, x)).tolist() == [False, False, True, False, True, True]

@@ -205,6 +205,7 @@ def judge(path: str, text: str, seconds: dict[str, float], folder: Path) -> None
         own = mirrors(path, seconds)
         for stage in (own, seconds.keys() - own):  # to collect the tests of all other files takes a second
             if stage:
+                signal.setitimer(signal.ITIMER_REAL, 60)  # and not what the last test of the stage before has left
                 files = sorted({file_of(node) for node in stage})
                 chosen = Chosen({node: seconds[node] for node in stage}, folder / "test")
                 status = int(pytest.main([*QUIET, *files], plugins=[chosen]))

@@ -10,6 +10,7 @@ import pytest
 os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
+from numeric.question import Question
 
 SHAPES = {
     "circle": {},
@@ -29,6 +30,83 @@ def starts(map, count, seed, steepest=1.0):
     return component, theta, np.arcsin(rng.uniform(-steepest, steepest, count) * 0.9999)
 
 
+def boundary(name, where, theta, shape):
+    """Point, unit tangent, curvature in the paper's sign and speed, from the polar form of each table."""
+    zero = 0 * theta
+    if name == "ellipse":
+        (a,) = shape
+        first, second = (-a * np.sin(theta), np.cos(theta)), (-a * np.cos(theta), -np.sin(theta))
+        z = a * np.cos(theta), np.sin(theta)
+    else:
+        share, k = {"circle": (0, 1), "egg": (*shape, 3)}.get(name, (1, 1))
+        rho, slope, bend = (
+            1 + share * np.cos(k * theta),
+            -share * k * np.sin(k * theta),
+            -share * k * k * np.cos(k * theta),
+        )
+        u = np.cos(theta), np.sin(theta)
+        z = rho * u[0], rho * u[1]
+        first = slope * u[0] - rho * u[1], slope * u[1] + rho * u[0]
+        second = (bend - rho) * u[0] - 2 * slope * u[1], (bend - rho) * u[1] + 2 * slope * u[0]
+    if name == "cuspless":
+        wall = where == 1
+        z = np.where(wall, -0.25, z[0]), np.where(wall, -theta, z[1])
+        first = np.where(wall, zero, first[0]), np.where(wall, -1.0, first[1])
+        second = np.where(wall, zero, second[0]), np.where(wall, zero, second[1])
+    speed = np.hypot(*first)
+    return z, (first[0] / speed, first[1] / speed), -(first[0] * second[1] - first[1] * second[0]) / speed**3, speed
+
+
+def inside(name, x, y, shape):
+    """How far a point lies within the table, in no unit; negative outside."""
+    if name == "ellipse":
+        return 1 - (x / shape[0]) ** 2 - y**2
+    radius, angle = np.hypot(x, y), np.arctan2(y, x)
+    share, k = {"circle": (0, 1), "egg": (*shape, 3)}.get(name, (1, 1))
+    within = 1 + share * np.cos(k * angle) - radius
+    if name == "cuspless":  # between the wall and the tips of the arc there is no arc
+        within = np.minimum(np.where(abs(angle) < 2 * np.pi / 3, within, np.inf), x + 0.25)
+    return within
+
+
+class Bounced:
+    """One bounce of many balls, and what the definition of the map says of it, table by table in plain words."""
+
+    def __init__(self, map, where, theta, phi):
+        name, law = map.family.name if map.family.name != "fourier" else "egg", map.law
+        here = boundary(name, where, theta, map.shape)
+        lams = np.full(theta.size, float(map.lam))
+        own = map.states.enter(where, theta, phi, law)
+        with np.errstate(all="ignore"):
+            fields = list(map.engine.run(Question(law, record=True), own, lams, map.shape, 1).record[0])
+        self.fields, self.own = fields, own
+        self.where, self.theta = map.states.place(fields)
+        self.phi = map.states.exit(self.where, self.theta, fields, law)
+        there = boundary(name, self.where, self.theta, map.shape)
+        (x, y), (tx, ty), self.curvature0, _ = here
+        v = np.sin(phi) * tx - np.cos(phi) * ty, np.sin(phi) * ty + np.cos(phi) * tx
+        (x1, y1), (tx, ty), self.curvature1, _ = there
+        self.off_the_line = abs((x1 - x) * v[1] - (y1 - y) * v[0])
+        self.length = (x1 - x) * v[0] + (y1 - y) * v[1]
+        self.eta = -np.arctan2(v[0] * tx + v[1] * ty, v[0] * ty - v[1] * tx)
+        self.turned = abs(self.phi + map.lam * self.eta)
+        share = np.linspace(0.02, 0.98, 25)[:, None]
+        self.depth = np.min(inside(name, x + share * (x1 - x), y + share * (y1 - y), map.shape), axis=0)
+
+    def matrix(self, lam, phi):
+        """The derivative matrix in `(s, phi)` by the paper's formula. Paper: eq. (derivative_of_map)."""
+        k0, k1, t, c0, c1 = self.curvature0, self.curvature1, self.length, np.cos(phi), np.cos(self.eta)
+        a = t * k0 + c0
+        rows = [[a, t], [lam * (k1 * a + k0 * c1), lam * (k1 * t + c1)]]
+        return np.moveaxis(-np.array(rows) / c1, (0, 1), (-2, -1))
+
+
+@pytest.fixture
+def bounced():
+    """Bounces with what the definition says of them."""
+    return Bounced
+
+
 @pytest.fixture(params=list(SHAPES))
 def table(request):
     """Each table of the paper: its name, its shape, a map at some `lam`, and random balls."""
@@ -38,4 +116,5 @@ def table(request):
         shape=shape,
         map=lambda lam, **more: PinballMap(name, lam=lam, **shape, **more),
         starts=starts,
+        boundary=lambda where, theta, shape: boundary(name, where, theta, shape),
     )

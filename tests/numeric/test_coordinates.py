@@ -81,3 +81,57 @@ def test_a_point_off_the_boundary_is_refused():
 def test_a_place_outside_the_component_is_refused():
     with pytest.raises(ValueError, match=r"s = 9\.0 is not on the arc"):
         PinballMap("cuspless", lam=1).arclength.theta(9.0, 0)
+
+
+def boundary_of(table, count=61):
+    """A map, points on all its components, and what the table's definition says there."""
+    map = table.map(0.4)
+    component = np.repeat(np.arange(len(map.states.ends)), count)
+    theta = np.concatenate([grid(map, index, count) for index in range(len(map.states.ends))])
+    return map.states, component, theta, table.boundary(component, theta, map.shape)
+
+
+def test_the_frame_of_the_boundary_is_that_of_its_definition(table):
+    states, component, theta, (z, tangent, curvature, speed) = boundary_of(table)
+    away = speed > 0.1  # from the cusp, where the definition cancels
+
+    assert np.allclose(states.point(component, theta), z, rtol=0, atol=4 * EPS)
+    assert np.allclose(np.array(states.tangent(component, theta))[:, away], np.array(tangent)[:, away], atol=64 * EPS)
+    assert np.allclose(states.speed(component, theta), speed, rtol=0, atol=16 * EPS)
+    assert np.allclose(states.curvature(component, theta)[away], curvature[away], rtol=1e-11, atol=0)
+    x, y, *_ = states.curve(component, theta)
+    assert np.allclose([x, y], z, rtol=0, atol=4 * EPS)
+    ds = states.rate(component, theta)
+    assert np.allclose(ds, 1.0 if table.name in ("cardioid", "cuspless") else speed, rtol=0, atol=16 * EPS)
+
+
+def test_velocity_and_acceleration_are_the_derivatives_of_the_point(table):
+    states, component, theta, _ = boundary_of(table, 9)
+    h = 1e-5
+    before, here, after = (np.array(states.curve(component, theta + k * h)) for k in (-1, 0, 1))
+
+    assert np.allclose((after - before)[:4] / (2 * h), here[2:], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("law", ["slap", "elastic", "pinball"])
+def test_a_ball_comes_back_from_the_fields_of_its_kernel(table, law):
+    map = table.map(0.4)
+    component, theta, phi = table.starts(map, 60, seed=9, steepest=1.0 if law != "slap" else 0.0)
+    fields = map.states.enter(component, theta, phi, law)
+    where, at = map.states.place(fields)
+
+    assert len(fields) == len(map.family.fields(law))
+    assert all(field.dtype == float for field in fields)
+    assert np.array_equal(where, component)
+    assert np.max(np.abs(at - theta)) <= 4 * EPS
+    assert np.max(np.abs(map.states.exit(where, at, fields, law) - phi)) <= 16 * EPS
+
+
+def test_directions_and_exit_angles_are_each_others_inverse(table):
+    states, component, theta, (_, (tx, ty), *_) = boundary_of(table)
+    phi = np.linspace(-1.5, 1.5, theta.size)
+    vx, vy = states.direction(component, theta, phi)
+
+    assert np.allclose(vx * tx + vy * ty, np.sin(phi), rtol=0, atol=1e-12)  # the tangent, to the right of a ball
+    assert np.allclose(tx * vy - ty * vx, np.cos(phi), rtol=0, atol=1e-12)
+    assert np.allclose(states.angle_to_normal(component, theta, vx, vy), phi, rtol=0, atol=8 * EPS)

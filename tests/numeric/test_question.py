@@ -65,9 +65,10 @@ def test_at_the_bounds_nothing_happens():
 
 
 def test_a_vector_starts_with_no_growth_counted():
-    q, omega, n0 = np.array([0.3]), np.array([-2.0]), np.array([0.5])
+    q, omega, n0 = np.array([0.3, 0.0]), np.array([-2.0, 1.0]), np.array([0.5, 1.0])
+    nought, one = [0.0, 0.0], [1.0, 1.0]
 
-    assert [row.tolist() for row in starting(q, omega, n0)] == [[0.3], [-2.0], [0.0], [1.0], [1.0], [0.0], [0.5]]
+    assert [row.tolist() for row in starting(q, omega, n0)] == [[0.3, 0], [-2, 1], nought, one, one, nought, [0.5, 1]]
 
 
 def test_a_question_has_a_name_and_rows():

@@ -87,14 +87,62 @@ def test_where_newton_crawls_the_bracket_is_halved(power):
     assert asked <= 2 + 2 * 60
 
 
-def test_a_step_function_is_bisected():
+def test_a_step_function_is_bisected_to_the_last_bits_and_no_further():
     def jump(x):
         return np.where(x < 0.3, -1.0, 1.0), np.zeros_like(x)
 
-    x, asked = zero_of(jump, 2.0, -5.0, 8.0, 0)
+    x, asked = zero_of(jump, 1.0, -3.0, 5.0, 0)
 
-    assert abs(x - 0.3) <= 2.0**-52
-    assert asked <= 60
+    assert abs(x - 0.3) <= 2.0**-53
+    assert asked == 1 + 55  # from 4 to 2**-53, which is the tolerance of an error times that of a step
+
+
+def scripted(values, low=0.0, high=8.0, start=4.0, scale=1.0):
+    """The points at which a function of slope one is asked that has these values, one after the other."""
+    left = iter(values)
+    counted, asked = counting(lambda x: (np.array([next(left)]), np.ones(1)))
+    bracketed_zero(OPS, counted, np.array([start]), np.array([low]), np.array([high]), scale, 0)
+    return [float(x[0]) for x in asked]
+
+
+def test_a_step_that_leads_to_an_end_of_the_bracket_is_not_taken():
+    assert scripted([4.0, 0.0]) == [4, 2]
+    assert scripted([-4.0, 0.0]) == [4, 6]
+
+
+def test_a_step_is_taken_when_it_is_half_the_last_one_at_most():
+    assert scripted([1.0, 0.5, 0.0]) == [4, 3, 2.5]
+    assert scripted([1.0, 0.5 * (1 + EPS), 0.0]) == [4, 3, 1.5]
+
+
+def test_a_start_at_an_end_of_the_bracket_is_moved_to_its_middle():
+    assert scripted([0.0], start=8.0) == [4]
+    assert scripted([0.0], low=-2.0, start=-2.0) == [3]
+
+
+def test_steps_as_short_as_the_tolerance_are_the_last():
+    """Inside the loop, and before it; both as a share of the larger of zero and scale."""
+    assert scripted([8 * TOLERANCE, 0.0], scale=8.0) == [4]
+    assert scripted([8 * TOLERANCE * (1 + EPS), 0.0], scale=8.0) == [4, 4 - 8 * TOLERANCE * (1 + EPS)]
+    for step, asked in ((TOLERANCE, 1), (TOLERANCE * (1 + EPS), 2)):
+        left = iter([step, 0.0])
+        assert zero_of(lambda x, left=left: (np.array([next(left)]), np.ones(1)), 0.5, 0.0, 1.0, 1)[1] == asked
+
+
+@pytest.mark.parametrize("end", [0.0, 1.0])
+def test_a_zero_at_an_end_asks_for_no_bracket(end):
+    assert zero_of(lambda x: (x - end, np.ones(1)), 0.5, 0.0, 1.0, 2) == (end, 2)
+
+
+def test_of_a_large_zero_the_relative_digits_count():
+    def large(x):
+        return x * x - 1e12, 2 * x
+
+    (x, asked), (again, more) = (zero_of(large, start, 0.0, 1e9, 3) for start in (1.001e6, -5.0))
+
+    assert abs(x - 1e6) <= 1e6 * EPS
+    assert abs(again - 1e6) <= 1e6 * EPS
+    assert (asked, more) == (3, 3 + 14)
 
 
 def test_a_point_where_the_function_vanishes_is_kept():
@@ -130,6 +178,15 @@ def test_lanes_that_nobody_wants_stay_where_newton_took_them():
     assert x[1] == 50 - (2500 - 2) / 100
 
     asked.clear()
+
+    def crawls(x):
+        """Newton's method has no trouble in the first lane, and much in the second."""
+        return np.where([True, False], x - 1, (x - 1) ** 9), np.where([True, False], 1.0, 9 * (x - 1) ** 8)
+
+    slow, asked_slowly = counting(crawls)
+    bracketed_zero(OPS, slow, start, np.zeros(2), np.full(2, 60.0), 1.0, 0, np.array([True, False]))
+    assert len(asked_slowly) <= 3
+
     bracketed_zero(OPS, counted, start, np.zeros(2), np.full(2, 60.0), 1.0, 1, np.array([False, False]))
     assert len(asked) == 1
 
@@ -138,7 +195,8 @@ def test_polynomials_take_steps_of_halley_and_then_of_newton():
     p = [-2.0, 0.0, 0.0, 1.0]
     value, slope = value_and_slope(p, halley(p, halley(p, 1.3)))
     expected = halley(p, halley(p, 1.3)) - value / slope
-    found = polynomial_zero(OPS, [np.array([c]) for c in p], np.array([1.3]), 0.0, 2.0, 1.0, (2, 1))
+    nobody = np.array([False])
+    found = polynomial_zero(OPS, [np.array([c]) for c in p], np.array([1.3]), 0.0, 2.0, 1.0, (2, 1), nobody)
 
     assert found[0] == expected
     assert halley([-6.0, 2.0], 11.0) == 3.0

@@ -1,0 +1,129 @@
+"""Arc length of tables that have no closed form, its ends and its offsets."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from sympy import Rational, cos, pi, sin, sqrt
+
+from numeric import PinballMap
+from symbolic import tables
+from symbolic.symbols import theta
+
+EPS = 2.0**-52
+ROOTED = tables.polar(sqrt(1 + cos(theta) / 3 + sin(2 * theta) / 5), name="rooted")  # no symmetry, no finite sum
+SKEWED = tables.parametric(cos(theta) + sin(2 * theta) / 9, sin(theta) + cos(3 * theta) / 20, name="skewed")
+STADIUM = tables.piecewise(
+    tables.arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
+    tables.arc("top", -theta, 1, -1, 1),
+    tables.arc("left", -1 - cos(theta), -sin(theta), -pi / 2, pi / 2),
+    tables.arc("bottom", theta, -1, -1, 1),
+    name="stadium",
+)
+LENS = tables.piecewise(  # two bows of ellipses; neither parameter range begins at 0, and one does not hold it
+    tables.arc("lower", 2 * cos(theta), sin(theta) / 3, pi, 2 * pi),
+    tables.arc("upper", 2 * cos(theta), sin(theta), 0, pi),
+    name="lens",
+)
+
+
+def length(map, component, low, high):
+    """By quadrature of the speed."""
+
+    def speed(at):
+        return float(map.states.speed(np.array(component), np.array(at)))
+
+    return quad(speed, low, high, epsabs=4e-14, epsrel=1e-13)[0]
+
+
+@pytest.mark.parametrize("table", [ROOTED, SKEWED, LENS], ids=lambda table: table.name)
+def test_arc_length_is_the_integral_of_the_speed(table):
+    arc = PinballMap(table).arclength
+    map = PinballMap(table)
+    for component, (low, high) in enumerate(map.states.ends):
+        at = np.linspace(low, high, 8)
+        s = arc.s(at, component)
+        for a, b, s0, s1 in zip(at[:-1], at[1:], s[:-1], s[1:], strict=True):
+            assert abs((s1 - s0) - length(map, component, a, b)) <= 16 * EPS * max(1, abs(s0), abs(s1))
+
+
+@pytest.mark.parametrize("table", [ROOTED, SKEWED, LENS, STADIUM], ids=lambda table: table.name)
+def test_the_parameter_comes_back_from_its_arc_length(table):
+    map = PinballMap(table)
+    for component, (low, high) in enumerate(map.states.ends):
+        at = np.linspace(low, high, 301).reshape(7, 43)
+        back = map.arclength.theta(map.arclength.s(at, component), component)
+
+        assert back.shape == at.shape
+        assert np.max(np.abs(back - at)) <= 64 * EPS * max(1, abs(low), abs(high))
+        assert np.all((back >= low) & (back <= high))
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "perimeter"),
+    [
+        ("circle", {}, 2 * np.pi),
+        ("cardioid", {}, 8.0),
+        ("ellipse", {"a": 1}, 2 * np.pi),
+        ("egg", {"alpha": 0}, 2 * np.pi),
+    ],
+)
+def test_perimeters_that_are_known(name, shape, perimeter):
+    assert PinballMap(name, **shape).arclength.perimeter == pytest.approx(perimeter, abs=4e-15)
+
+
+def test_the_stadium_is_two_half_circles_and_two_straights():
+    arc = PinballMap(STADIUM).arclength
+    start = arc.s(np.array([-np.pi / 2, -1.0, -np.pi / 2, -1.0]), np.arange(4))
+    end = arc.s(np.array([np.pi / 2, 1.0, np.pi / 2, 1.0]), np.arange(4))
+
+    assert np.allclose(end - start, [np.pi, 2, np.pi, 2], rtol=0, atol=2e-15)
+    assert np.allclose(start[1:], end[:-1], rtol=0, atol=2e-15)
+    assert arc.perimeter == pytest.approx(4 + 2 * np.pi, abs=4e-15)
+    assert arc.s(0.3, 0) - arc.s(0.0, 0) == pytest.approx(0.3, abs=1e-15)
+
+
+@pytest.mark.parametrize(("table", "at"), [(STADIUM, 0.0), (LENS, np.pi), (ROOTED, 0.0)])
+def test_arc_length_is_zero_at_the_origin_or_where_its_component_begins_beyond_it(table, at):
+    assert table.origin == (0, 0)
+    assert float(PinballMap(table).arclength.s(at, 0)) == pytest.approx(0, abs=1e-15)
+
+
+@pytest.mark.parametrize("name", ["circle", "cuspless", "ellipse", "cardioid"])
+def test_the_ends_of_a_component_are_on_it_and_what_is_beyond_is_not(name):
+    map = PinballMap(name, **({"a": 2} if name == "ellipse" else {}))
+    arc = map.arclength
+    for component, (low, high) in enumerate(map.states.ends):
+        first, last = (float(arc.s(end, component)) for end in (low, high))
+        slack = 1e-14 * (last - first)
+
+        assert np.allclose(arc.theta([first, last], component), [low, high], rtol=0, atol=1e-7)
+        assert np.all(
+            np.abs(arc.theta([first - 0.9 * slack, last + 0.9 * slack], component)) <= max(-low, high) + 1e-13
+        )
+        lies = re.escape(f"there s lies in [{first:.17g}, {last:.17g}]")
+        for s in (first - 1.2 * slack, last + 1.2 * slack):
+            with pytest.raises(ValueError, match=rf"s = {f'{s:.6f}'[:-1]}\d* is not on the .*; {lies}"):
+                arc.theta([0.5 * (first + last), s], component)
+
+
+def test_the_place_that_is_refused_is_named_in_the_tables_arc_length():
+    with pytest.raises(ValueError, match=r"s = 7\.5 is not on the wall"):
+        PinballMap("cuspless").arclength.theta([7.5], 1)
+
+
+def test_shapes_of_arguments_are_kept():
+    arc = PinballMap("egg", alpha="0.08").arclength
+
+    assert (arc.s(0.3).shape, arc.theta(0.3).shape) == ((), ())
+    assert arc.s(np.zeros((2, 3)), np.zeros((2, 1), dtype=int)).shape == (2, 3)
+    assert arc.theta(np.empty((0,))).shape == (0,)
+
+
+def test_an_ellipse_by_another_name_has_the_same_arc_length():
+    other = tables.parametric(3 * cos(theta) / 2, sin(theta), name="other")
+    at = np.linspace(-3, 3, 25)
+    one, two = (map.arclength.s(at) for map in (PinballMap("ellipse", a=Rational(3, 2)), PinballMap(other)))
+
+    assert np.allclose(one, two, rtol=0, atol=8 * EPS)

@@ -83,3 +83,30 @@ def test_where_no_zero_settles_it_is_said():
     """A jump at 0 has no relative digits."""
     with pytest.raises(ArithmeticError, match=r"no zero found in \[.*\] to 50 digits"):
         OPS.zero(lambda x: (1 if x > 0 else -1, 0), MP.mpf(1), MP.mpf(-1), MP.mpf(2), MP.mpf(0), 1)
+
+
+def scripted(values, low, high, start):
+    """The points at which a function of slope one is asked that has these values, one after the other, then 0."""
+    left, asked = iter([*values, 0]), []
+
+    def function(x):
+        asked.append(float(x))
+        return MP.mpf(next(left)), MP.mpf(1)
+
+    OPS.zero(function, MP.mpf(start), MP.mpf(low), MP.mpf(high), MP.mpf(1), 1)
+    return asked
+
+
+def test_only_a_start_within_the_bracket_is_taken():
+    assert [scripted([], 1, 5, start) for start in (2, 3.5)] == [[2], [3.5]]
+    assert [scripted([], 1, 5, start) for start in (0, 1, 5, 9)] == [[3]] * 4
+
+
+def test_a_step_is_taken_within_the_bracket_when_it_is_half_the_last_one_at_most():
+    assert scripted([1.5], 1, 5, 4) == [4, 2.5]  # less than half the bracket, 4
+    assert scripted([2.5], 1, 5, 4) == [4, 2.5]  # more: the middle of 1 and 4, and so is
+    assert scripted([2], 1, 5, 4) == [4, 2]  # exactly half
+    assert scripted([-2], 1, 5, 3) == [3, 4]  # an end
+    assert scripted([1, 0.5], 1, 5, 4) == [4, 3, 2.5]
+    assert scripted([1, 0.75], 1, 5, 4) == [4, 3, 2]
+    assert scripted([1, -0.75], 1, 5, 4) == [4, 3, 3.5]

@@ -1,30 +1,34 @@
 """Every stiff and extreme case by every kernel: writes docs/extremes.md and the record that tests compare.
 
-    python benchmarks/extremes.py [--longer] [--check] [--collisions N]
+    python benchmarks/extremes.py [--longer] [--check]
+    python benchmarks/extremes.py --collisions 1e9 [--balls 256] [--only WORD]
+    python benchmarks/extremes.py --page
 
 `--longer` adds what takes a minute, cycles of period 2^8 and 2^12 and a product of 10^4 matrices; the page in the
 repository has it. `--check` writes nothing and says which verdicts differ from the record; the exit code is then 1.
+`--collisions` measures the long orbits alone, so many collisions of all balls together, and keeps their lines for the
+page with the command, each as soon as it is measured. `--page` writes the page again from what is kept.
 """
 
+import argparse
 import json
 import sys
 from pathlib import Path
 
 from verification.extremes.catalogue import rows
-from verification.extremes.orbits import SHORT
-from verification.extremes.page import WORDS, page, record
+from verification.extremes.orbits import BALLS, findings, orbits
+from verification.extremes.page import LONG, RECORD, lines, page, record
 
-ROOT = Path(__file__).resolve().parent.parent
-PAGE, RECORD = ROOT / "docs" / "extremes.md", ROOT / "verification" / "extremes" / "recorded.json"
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "extremes.md"
 
 
-def found(longer, collisions):
+def found(several):
     """All rows, with a line on standard error for each."""
     made = []
-    for group, case, several in rows(longer, collisions):
-        made.append((group, case, several))
-        sys.stderr.write(f"{group}: {case}: {', '.join(one.stability.name.lower() for one in several)}\n")
-    return made
+    for group, case, answers in several:
+        made.append((group, case, answers))
+        sys.stderr.write(f"{group}: {case}: {', '.join(one.stability.name.lower() for one in answers)}\n")
+    return record(made)
 
 
 def moved(now):
@@ -37,18 +41,43 @@ def moved(now):
     ]
 
 
-def main(longer, check, collisions):
-    several = found(longer, collisions)
-    now = record(several)
-    if check:
-        differ = moved(now)
-        sys.stdout.write("\n".join(differ or [f"all {len(now)} verdicts are as recorded"]) + "\n")
-        return 1 if differ else 0
-    PAGE.write_text(page(several, WORDS))
-    RECORD.write_text("[\n" + ",\n".join(json.dumps(one) for one in now) + "\n]\n")
+def kept(path, several):
+    """Writes a record, a line for each finding."""
+    path.write_text("[\n" + ",\n".join(json.dumps(one) for one in several) + "\n]\n")
+
+
+def long(collisions, balls, only):
+    """The long orbits, each kept as soon as it is measured."""
+    command = f"python benchmarks/extremes.py --collisions {collisions:.3g} --balls {balls}"
+    for one in orbits(collisions, balls):
+        if only in one.name:
+            now = found([(f"Orbits of {collisions:.0e} collisions", one.name, findings(one))])
+            cases = {line["case"] for line in now}
+            before = json.loads(LONG.read_text()) if LONG.exists() else []
+            before = [line for line in before if line["case"] not in cases]
+            several = before + [line | {"command": command} for line in now]
+            kept(LONG, sorted(several, key=lambda line: line["command"]))
+
+
+def main(asked):
+    if asked.collisions:
+        long(int(asked.collisions), asked.balls, asked.only)
+    elif not asked.page:
+        now = found(rows(asked.longer))
+        if asked.check:
+            differ = moved(now)
+            sys.stdout.write("\n".join(differ or [f"all {len(now)} verdicts are as recorded"]) + "\n")
+            return 1 if differ else 0
+        kept(RECORD, now)
+    PAGE.write_text(page(lines(RECORD), lines(LONG)))
     return 0
 
 
 if __name__ == "__main__":
-    size = int(float(sys.argv[sys.argv.index("--collisions") + 1])) if "--collisions" in sys.argv else SHORT
-    sys.exit(main("--longer" in sys.argv, "--check" in sys.argv, size))
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for word in ("longer", "check", "page"):
+        words.add_argument(f"--{word}", action="store_true")
+    words.add_argument("--collisions", type=float)
+    words.add_argument("--balls", type=int, default=BALLS)
+    words.add_argument("--only", default="")
+    sys.exit(main(words.parse_args()))

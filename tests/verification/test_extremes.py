@@ -12,14 +12,18 @@ from numeric import PinballMap, Status
 from symbolic.cycles import trace_and_determinant
 from symbolic.named_cycles import egg_diameter, minor_axis
 from symbolic.symbols import a, alpha, lam
-from verification.extremes import near, page, products
+from verification.arithmetic import multiprecision
+from verification.extremes import cases, near, page, products
 from verification.extremes.cases import CASES
 from verification.extremes.catalogue import rows
 from verification.extremes.flights import Asked, Truth, findings
 from verification.extremes.kernels import KERNELS, LONGDOUBLE, TEXTBOOK
 from verification.extremes.stability import SMALL, Measured, Stability
+from verification.shooting.condition import Conditioning
+from verification.shooting.newton import refined
+from verification.shooting.small import corner, corner_angle
 
-RECORD = Path(page.__file__).parent / "recorded.json"
+DOCS = Path(page.__file__).parent.parent.parent / "docs"
 WIDE = np.finfo(np.longdouble).nmant >= 63
 
 
@@ -30,7 +34,9 @@ def found():
 
 
 def test_every_verdict_and_every_outcome_is_as_recorded(found):
-    kept = {(one["case"], one["kernel"]): (one["verdict"], one["stopped_by"]) for one in json.loads(RECORD.read_text())}
+    kept = {
+        (one["case"], one["kernel"]): (one["verdict"], one["stopped_by"]) for one in json.loads(page.RECORD.read_text())
+    }
     now = {(one["case"], one["kernel"]): (one["verdict"], one["stopped_by"]) for one in page.record(found)}
     beyond = {one.name for one in chain(near.LONGER, products.LONGER)}
     missing = {key for key in kept if key not in now and key[0] not in beyond and (WIDE or key[1] != LONGDOUBLE.name)}
@@ -53,11 +59,46 @@ def test_whatever_is_not_stable_says_what_to_use_in_its_place(found):
     assert [one for one in odd if not one.instead] == []
 
 
-def test_the_page_shows_every_case(found):
-    text = (RECORD.parent.parent.parent / "docs" / "extremes.md").read_text()
+def test_the_page_is_what_the_records_make():
+    made = page.page(page.lines(page.RECORD), page.lines(page.LONG))
 
-    assert text.startswith(page.WORDS)
-    assert [case for _, case, several in found if case not in text and several[0].case not in text] == []
+    assert (DOCS / "extremes.md").read_text() == made
+
+
+def test_whatever_is_not_plainly_stable_says_why_on_the_page(found):
+    odd = [one for one in page.lines(page.RECORD) if one.verdict is not Stability.STABLE or one.stopped_by]
+
+    assert {one.case for one in odd} >= {one.case for *_, several in found for one in several if one.status}
+    assert [one for one in odd if not one.reason] == []
+
+
+def test_what_newtons_method_names_by_itself_is_what_a_hundred_digits_measure(found):
+    cycles = [one for *_, several in found for one in several if one.named is not None]
+
+    assert {one.named for one in cycles} == set(Conditioning)
+    assert [one for one in cycles if one.measured and one.stability is not one.measured.stability] == []
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if "join, the angle" in case.name], ids=lambda case: case.name)
+def test_a_join_is_named_where_the_true_flight_passes_it_and_nowhere_else(case):
+    truth = Truth(case)
+    for state in truth.starts(case):
+        asked = Asked(truth, state)
+        miss, _ = asked.why(Status.JOIN.name)
+        for kernel in KERNELS:
+            if kernel.runs(truth.map):
+                named = kernel.bounce(truth.map, state)[1] == Status.JOIN.name
+                assert not named or miss < 6  # 2^-50 is 4 units of the height, and the landing is off by two
+                assert named or miss > 0.5
+
+
+def test_the_corner_orbit_of_the_fixtures_is_the_proved_one():
+    exact = refined(corner(), [0.25, 0.07], 30)
+    words = multiprecision(type(exact.z[0]).context)
+
+    assert abs(exact.z[1] - words["q"](*Rational(cases.LAMBDA_STAR).as_numer_denom())) < 1e-27
+    assert float(exact.z[0]) == cases.THETA_STAR
+    assert float(corner_angle(words, exact.z[0])) == cases.PHI_STAR
 
 
 def test_the_textbook_discriminant_is_called_unstable_where_it_is_and_nowhere_else():

@@ -13,6 +13,9 @@ from sympy import sqrt
 
 JOIN = 2 * pi / 3
 HALF_HEIGHT = 3**0.5 / 4
+LAMBDA_STAR = "0.0712172452489159804115973829"  # paper, section 5.2; digits by `pinball locate lambda-star`
+PHI_STAR = -0.0289794737869139600  # the exit angle at the upper join, by `pinball locate phi-star`
+THETA_STAR = 0.2545268713206783425  # the orbit's bounce on the arc, by `verification.shooting.small.corner`
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,20 @@ def _joins() -> tuple[Case, ...]:
     return tuple(made)
 
 
+def _corner_orbit() -> tuple[Case, ...]:
+    """The orbit of period 4 through both joins: its flights from a join, from next to it, to it, and to next to it."""
+    group, made = "The orbit through both joins, at lambda*", []
+    for count in (0, 1, 2, 1000):
+        arc = tuple((0, Ulps(count, side), side * PHI_STAR) for side in (1, -1))
+        wall = tuple((1, Ulps(count, -side), side * PHI_STAR) for side in (1, -1))
+        made.append(Case(f"from the join, {count} ulp on the side of the arc", group, "cuspless", arc, LAMBDA_STAR))
+        made.append(Case(f"from the join, {count} ulp on the side of the wall", group, "cuspless", wall, LAMBDA_STAR))
+    for count in (0, 1, -1, 2, -2, 1000, -1000):
+        to = tuple((0, side * THETA_STAR, Aim(-side * count, -side)) for side in (1, -1))
+        made.append(Case(f"to the join, the angle {count:+d} ulp", group, "cuspless", to, LAMBDA_STAR))
+    return tuple(made)
+
+
 CASES: tuple[Case, ...] = (
     *(_grazing(scene) for scene in TABLES),
     *_cusp(),
@@ -143,4 +160,5 @@ CASES: tuple[Case, ...] = (
     *_eggs(),
     *_contractions(),
     *_joins(),
+    *_corner_orbit(),
 )

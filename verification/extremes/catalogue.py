@@ -5,13 +5,12 @@ from dataclasses import replace
 
 from verification.extremes import flights, near, products
 from verification.extremes.cases import CASES
-from verification.extremes.kernels import LONGDOUBLE, TEXTBOOK
+from verification.extremes.kernels import TEXTBOOK
 from verification.extremes.orbits import SHORT, orbits
 from verification.extremes.orbits import findings as of_orbit
 from verification.extremes.stability import Finding, Stability
 
 ADVICE = {
-    (LONGDOUBLE.name, Stability.UNSTABLE): "ExactMap: sines and zeros of the step are made for 53 bits",
     (TEXTBOOK.name, Stability.UNSTABLE): "PinballMap: the root that is known is divided out",
 }
 STOPPED = {

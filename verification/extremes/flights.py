@@ -18,11 +18,12 @@ from verification.arithmetic import bits_of
 from verification.enclosed_map import EnclosedMap, Refusal, as_ball
 from verification.exact_map import Ball, ExactMap
 from verification.extremes.cases import HALF_HEIGHT, Aim, Case, Ulps
-from verification.extremes.kernels import GOES_ON, KERNELS, TEXTBOOK, Kernel
-from verification.extremes.stability import WRONG, Finding, Measured
+from verification.extremes.kernels import DOUBLE, GOES_ON, KERNELS, TEXTBOOK, Kernel
+from verification.extremes.stability import WRONG, Finding, Measured, Stability
 from verification.truth import exact_ball
 
 DIGITS = 100
+CANCELS = "-q + sqrt(q*q - p*r) cancels where the flight is short"
 SMALLER = mpmath.mpf(10) ** -35  # step of the difference quotients: 30 digits are lost, 35 are left
 
 
@@ -33,7 +34,7 @@ class Truth:
         self.map = PinballMap(case.scene, lam=case.lam, **case.shapes)
         self.lam = Fraction(float(self.map.lam.flat[0]))
         exact = copy(self.map)
-        exact.exact_shape = list(case.shapes.values())
+        self.shape = exact.exact_shape = list(case.shapes.values())
         self.exact = ExactMap(exact, DIGITS, self.lam)
         self.mp = self.exact.context
         self.balls = EnclosedMap(exact, self.lam, bits_of(DIGITS + 20))
@@ -114,13 +115,25 @@ class Asked:
 
     def __init__(self, truth: Truth, state: list[Any]) -> None:
         self.truth, self.state = truth, state
-        ball = exact_ball(truth.map, truth.exact, state)
+        self.ball = ball = exact_ball(truth.map, truth.exact, state)
         self.landed = truth.bounce(ball)
         if self.landed.code:
             return
         mp, matrix = truth.mp, truth.derivative(ball, self.landed)
         self.spread = matrix * matrix.T + mp.eye(matrix.rows)  # of what one unit in data and result can do
         self.condition = mp.sqrt(max(mp.eigsy(self.spread, eigvals_only=True)))
+
+    def why(self, status: str) -> tuple[float, str]:
+        """What the truth has to say of the outcome that a kernel named: how far it is from that, and in words."""
+        mp, landed, (vx, vy) = self.truth.mp, self.landed, self.ball.v
+        if status == Status.JOIN.name:
+            x, height = -mp.mpf(1) / 4 - self.ball.x, mp.sqrt(3) / 4
+            miss = float(min(abs(vx * (y - self.ball.y) - vy * x) for y in (height, -height)) / DOUBLE)
+            return miss, f"the true flight passes the join {miss:.2g} units off"
+        if status == Status.GRAZING.name and landed.eta is not None:
+            cosine = float(mp.cos(landed.eta))
+            return cosine, f"the true cos(eta) is {cosine:.2g}, the border 2^-50"
+        return (0.0, "the truth stops there too") if landed.code else (1.0, "the truth goes on")
 
     def measured(self, fields: list[Any], unit: float) -> Measured:
         """What a kernel made of it."""
@@ -141,15 +154,19 @@ def findings(case: Case, starts: int | None = None) -> list[Finding]:
 
 
 def _finding(case: Case, truth: Truth, kernel: Kernel, asked: list[Asked]) -> Finding:
-    worst, stopped = None, set()
+    worst: Measured | None = None
+    stopped: dict[str, list[tuple[float, str]]] = {}
     for one in asked:
-        fields, status = kernel.bounce(truth.map, one.state)
+        fields, status = kernel.bounce(truth.map, one.state, truth.shape)
         if status != GOES_ON:
-            stopped.add(status)
+            stopped.setdefault(status, []).append(one.why(status))
             continue
         found = one.measured(fields, kernel.unit)
         worst = found if worst is None or found.backward > worst.backward else worst
-    return Finding(case.name, kernel.name, worst, ", ".join(sorted(stopped)))
+    said = [max(stopped[status])[1] for status in sorted(stopped)]
+    if worst is not None and worst.stability is Stability.UNSTABLE:
+        said.append(CANCELS if kernel is TEXTBOOK else "the backward error")
+    return Finding(case.name, kernel.name, worst, ", ".join(sorted(stopped)), reason="; ".join(said))
 
 
 def _ulps(end: float, count: int) -> float:

@@ -5,6 +5,7 @@ show that the measure tells it apart.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,26 +16,12 @@ from sympy import N
 from numeric import PinballMap
 from numeric.families.harmonic import Ellipse
 from numeric.question import Question
-from numeric.readers.arrays import Arrays
 from numeric.readers.scalars import Scalars
 from numeric.status import Status
+from verification.extremes.wide import WIDE, Wide, made_unit
 
-DOUBLE, WIDE = 2.0**-52, 2.0**-63  # units of rounding
+DOUBLE = 2.0**-52  # the unit of rounding
 GOES_ON = Status.REGULAR.name
-
-
-class Wide(Arrays):
-    """80-bit arrays: 64 bits of mantissa."""
-
-    splitter = 2.0**32 + 1
-
-    def constant(self, p: int, q: int = 1) -> Any:
-        """The 80-bit number nearest to `p/q`."""
-        return np.longdouble(p) / np.longdouble(q)
-
-    def number(self, x: float) -> Any:
-        """An 80-bit number."""
-        return np.longdouble(x)
 
 
 @dataclass(frozen=True)
@@ -50,8 +37,11 @@ class Kernel:
             return isinstance(map.family, Ellipse) and map.law != "slap"
         return self is not LONGDOUBLE or np.finfo(np.longdouble).nmant >= 63
 
-    def bounce(self, map: PinballMap, state: list[Any]) -> tuple[list[Any], str]:
-        """The fields after one bounce, and the outcome that the kernel itself names."""
+    def bounce(self, map: PinballMap, state: list[Any], exact: Sequence[Any] = ()) -> tuple[list[Any], str]:
+        """The fields after one bounce, and the outcome that the kernel itself names.
+
+        `exact` is the shape where no double is it: what has 80 bits rounds it for itself.
+        """
         if self in (LLVM, NUMPY):
             return _compiled(map, state, self is LLVM)
         if self is TEXTBOOK:
@@ -59,7 +49,7 @@ class Kernel:
         lam = float(map.lam.flat[0])
         if self is LONGDOUBLE:
             own = made_unit(map.family.name, [np.array([np.longdouble(x)]) for x in state])
-            shape = [np.longdouble(str(N(x, 25))) for x in map.exact_shape]
+            shape = [np.longdouble(str(N(x, 25))) for x in exact or map.exact_shape]
             with np.errstate(all="ignore"):
                 fields, code = map.family.bounce(Wide(), map.law, shape, np.array([np.longdouble(lam)]), own)
             return [field[0] for field in fields], _status(code)
@@ -95,20 +85,6 @@ def textbook(map: PinballMap, state: list[float]) -> list[Any]:
     eta = math.remainder(tangent - math.atan2(vy, vx) - math.pi / 2, math.tau)
     exit = tangent + math.pi / 2 + lam * eta
     return [math.cos(theta), math.sin(theta), math.cos(exit), math.sin(exit)]
-
-
-def made_unit(name: str, state: list[Any]) -> list[Any]:
-    """A state in 80 bits whose pairs have length one again; as doubles they have it to 53 bits only."""
-    if name == "circle":
-        return state
-    first = 1 if name in ("cuspless", "general") else 0
-    wall = first and state[0][0] > 0.5
-    made = state[:first]
-    for i in range(first, len(state) - 1, 2):
-        x, y = state[i : i + 2]
-        size = 1 if wall and i == first else np.hypot(x, y)
-        made += [x / size, y / size]
-    return made
 
 
 def _compiled(map: PinballMap, state: list[Any], kernels: bool) -> tuple[list[Any], str]:

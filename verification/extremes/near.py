@@ -7,6 +7,7 @@ the size of `1/d`. The truth is the solution with 100 digits.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import log10
 from typing import Any
 
 import mpmath
@@ -21,16 +22,14 @@ from verification.arithmetic import bits_of, multiprecision
 from verification.extremes.kernels import DOUBLE
 from verification.extremes.stability import WRONG, Finding, Measured
 from verification.ladder import rung
+from verification.shooting.condition import Conditioning
 from verification.shooting.follow import doubled
-from verification.shooting.newton import floats, refined
+from verification.shooting.newton import Solution, UnsettledError, in_floats, refined
 from verification.shooting.problem import Kind, Problem
 
 DIGITS = 100
 WHOLE = 16  # unknowns up to which the inverse's norm is taken from all of its columns, else from a few vectors
 TRIED, SEED = 6, 5
-CAP = "Problem(..., Kind.FOLD, 'lam'), whose matrix stays regular where the cycle's does not"
-MORE = "refined(..., digits=50): the condition number costs as many digits as it has"
-ONCE = "the cycle's own period, whose condition number is 2.9 (the line above)"
 Sought = tuple[Problem, list[float]]
 
 
@@ -41,7 +40,6 @@ class Cycle:
     name: str
     group: str
     sought: Callable[[], Sought]
-    instead: str = ""
 
 
 def nearly_round(gap: Expr) -> Sought:
@@ -92,17 +90,21 @@ def findings(cycle: Cycle) -> list[Finding]:
     wide = multiprecision(context)
     condition = norm_of_inverse(problem, wide, truth, context)
     made = []
-    for kernel, solve in ((FLOAT64, floats), (SIXTEEN, settled)):
+    for kernel, solve in ((FLOAT64, in_floats), (SIXTEEN, settled)):
         try:
-            z = [context.mpf(x) for x in solve(problem, start)]
-        except ValueError:  # that Newton's method did not settle
-            made.append(Finding(cycle.name, kernel, None, UNSETTLED, cycle.instead))
-            continue
+            found, stopped = solve(problem, start), False
+        except UnsettledError as error:
+            found, stopped = error.last, True
+        said = found.conditioning
+        status = [UNSETTLED] * stopped + ([] if said is Conditioning.SOUND else [said.name])
+        z = [context.mpf(x) for x in found.z]
         each = context.sqrt(len(z))
         residual = context.norm(context.matrix(problem.value(wide, z))) / each
         forward = context.norm(context.matrix([one - two for one, two in zip(z, truth, strict=True)])) / each
-        found = Measured(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
-        made.append(Finding(cycle.name, kernel, found if found.forward < 1 / DOUBLE else WRONG, "", cycle.instead))
+        sizes = Measured(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
+        measured = None if stopped else sizes if sizes.forward < 1 / DOUBLE else WRONG
+        why = f"condition number {found.condition:.2g}, {found.digits_sure} digits sure" if found.advice else ""
+        made.append(Finding(cycle.name, kernel, measured, ", ".join(status), found.advice, said, why))
     return made
 
 
@@ -111,10 +113,10 @@ def solution(problem: Problem, start: list[float]) -> list[Any]:
     try:
         return refined(problem, start, DIGITS).z
     except ValueError:
-        return settled(problem, start, bits_of(DIGITS + 20))
+        return settled(problem, start, bits_of(DIGITS + 20)).z
 
 
-def settled(problem: Problem, start: list[float], bits: int = 53) -> list[Any]:
+def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
     """Newton's method in mpmath, by default with the bits of a float64, until the corrections shrink no more."""
     context = mpmath.MPContext()
     context.prec = bits
@@ -123,12 +125,12 @@ def settled(problem: Problem, start: list[float], bits: int = 53) -> list[Any]:
         try:
             correction = problem.newton(arithmetic, z)
         except ZeroDivisionError:
-            return z
+            break
         size = max(abs(x) for x in correction)
         if size < 1e-6 and size >= last / 2:
-            return z
+            break
         z, last = [x - d for x, d in zip(z, correction, strict=True)], size
-    return z
+    return Solution(problem, z, int((bits - 1) * log10(2)), ())
 
 
 def norm_of_inverse(problem: Problem, arithmetic: Any, z: list[Any], context: Any) -> Any:
@@ -147,14 +149,14 @@ COARSE_GAP, FINE_GAP = Rational(1, 10**6), Rational(1, 2 * 10**13)
 FLIP_GAP = Rational(1, 10**14)
 CYCLES = (
     Cycle("short axis, a = 1 + 1e-6: 1.6e-5 from +1", ONE, lambda: nearly_round(COARSE_GAP)),
-    Cycle("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP), MORE),
+    Cycle("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP)),
     Cycle("triangle, 1e6 ulp above its fold", ONE, lambda: folded(10**6)),
-    Cycle("triangle, 4 ulp above its fold", ONE, lambda: folded(4), CAP),
+    Cycle("triangle, 4 ulp above its fold", ONE, lambda: folded(4)),
     Cycle("the fold itself, lam unknown", ONE, lambda: folded(None)),
     Cycle(
         "egg's diameter, alpha 1e-14 from its flip: 8e-13 from -1", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=False)
     ),
-    Cycle("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True), ONCE),
+    Cycle("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True)),
     Cycle("period 2^4 of the egg's ladder", LONG, lambda: laddered(4)),
 )
 LONGER = (

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from enum import Enum
 from math import inf, isfinite
 
+from verification.shooting.condition import Conditioning
+
 SMALL = 16  # units: a dozen roundings, each of them explained by the data
 LOST = 1e8  # half of the digits of a float64
 
@@ -55,15 +57,31 @@ WRONG = Measured(inf, inf, 1.0)  # another component, or no number at all
 
 @dataclass(frozen=True)
 class Finding:
-    """One kernel on one case: the worst answer of all starts, what stopped, and what to do instead."""
+    """One kernel on one case: the worst answer of all starts, what stopped, and what to do instead.
+
+    `named` is what the kernel itself says of its condition number, where it says anything; `reason` is what the
+    verdict is due to, where it is not plainly stable.
+    """
 
     case: str
     kernel: str
     measured: Measured | None
     status: str = ""
     instead: str = ""
+    named: Conditioning | None = None
+    reason: str = ""
 
     @property
     def stability(self) -> Stability:
-        """The verdict on the worst start; a kernel that gave no number at all has stopped."""
-        return Stability.STOPPED if self.measured is None else self.measured.stability
+        """The verdict on the worst start; a kernel that gave no number at all has stopped.
+
+        How sensitive the answer is is taken from what the kernel names, not from what was measured of it.
+
+        >>> Finding("fold", "Newton", Measured(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
+        'SENSITIVE'
+        """
+        if self.measured is None:
+            return Stability.STOPPED
+        if self.named is None or self.measured.stability is Stability.UNSTABLE:
+            return self.measured.stability
+        return Stability.STABLE if self.named is Conditioning.SOUND else Stability.SENSITIVE

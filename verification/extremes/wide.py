@@ -1,0 +1,121 @@
+"""The step of `numeric/families` on 80-bit arrays: 64 bits of mantissa, a judge of doubles with 11 bits to spare.
+
+What `numeric.readers.arrays` has for 53 bits is put aside here, word by word, as `numeric.readers.scalars` does it:
+sines and arctangents are the C library's, and a zero is sharpened until its correction is below the unit or ceases to
+shrink. Splitting for exact products, and the outcomes that stop a ball, remain as they are.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from numeric import roots
+from numeric.readers.arrays import Arrays
+
+WIDE = 2.0**-63  # the unit of rounding
+PI = np.longdouble("3.14159265358979323846264338327950288")
+PI_LOW = np.longdouble("-5.01655761266833202355732708033075701e-20")  # what PI lacks, to its own last bit
+SHARPER = 8  # Newton steps at most, from 53 bits on
+Slope = Callable[[Any], tuple[Any, Any]]
+
+
+class Wide(Arrays):
+    """80-bit arrays. Masks are boolean arrays."""
+
+    splitter = 2.0**32 + 1  # halves a mantissa of 64 bits
+
+    def constant(self, p: int, q: int = 1) -> Any:
+        """The 80-bit number nearest to `p/q`."""
+        return np.longdouble(p) / np.longdouble(q)
+
+    def number(self, x: float) -> Any:
+        """An 80-bit number."""
+        return np.longdouble(x)
+
+    def pi(self) -> Any:
+        """The 80-bit number nearest to pi."""
+        return PI
+
+    def pi_low(self) -> Any:
+        """What that number lacks."""
+        return PI_LOW
+
+    def angle(self, y: Any, x: Any) -> Any:
+        """`atan2(y, x)`."""
+        return np.arctan2(y, x)
+
+    def turn(self, x: Any, quarters: int = 2) -> tuple[Any, Any]:
+        """`(cos x, sin x)`."""
+        return np.cos(x), np.sin(x)
+
+    def zero(
+        self,
+        function: Slope,
+        x: Any,
+        low: Any,
+        high: Any,
+        scale: Any,
+        newton: int,
+        wanted: Any = None,
+        accepts: Callable[[Any], Any] | None = None,
+    ) -> Any:
+        """As `bracketed_zero`, to the last bits."""
+        found = roots.bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
+        return sharpened(function, found, scale, wanted)
+
+    def polynomial_zero(
+        self,
+        p: list[Any],
+        x: Any,
+        low: Any,
+        high: Any,
+        scale: Any,
+        steps: tuple[int, int],
+        wanted: Any = None,
+        accepts: Callable[[Any], Any] | None = None,
+    ) -> Any:
+        """The zero of a polynomial, likewise."""
+        found = roots.polynomial_zero(self, p, x, low, high, scale, steps, wanted, accepts)
+        return sharpened(lambda at: roots.value_and_slope(p, at), found, scale, wanted)
+
+
+def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
+    """Newton's steps from a zero known to 53 bits, each lane until its correction is below the unit or grows.
+
+    >>> root = sharpened(lambda x: (x * x - 2, 2 * x), np.array([np.longdouble(2.0**0.5)]), np.longdouble(1))
+    >>> bool(abs(root[0] - np.sqrt(np.longdouble(2))) <= 2 * np.finfo(np.longdouble).eps)
+    True
+    """
+    before = 0 * x + np.inf
+    going = np.isfinite(x) if wanted is None else np.isfinite(x) & wanted
+    for _ in range(SHARPER):
+        value, slope = function(x)
+        step = value / slope
+        size = abs(step)
+        going = going & (size < before / 2)  # a step that shrinks no more is rounding; nan is not taken either
+        if not np.any(going):
+            break
+        x, before = np.where(going, x - step, x), np.where(going, size, before)
+        going = going & (size > WIDE * np.maximum(abs(x), scale))
+    return x
+
+
+def made_unit(name: str, state: list[Any]) -> list[Any]:
+    """An 80-bit state, of arrays, whose pairs have length one again: as doubles they have it to 53 bits only.
+
+    >>> u, v = made_unit("cardioid", [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])
+    >>> bool(abs(u * u + v * v - 1)[0] <= 2.0**-63)
+    True
+    """
+    if name == "circle":
+        return state
+    first = {"cuspless": 1, "general": 2}.get(name, 0)
+    made = state[:first]
+    for i in range(first, len(state) - 1, 2):
+        x, y = state[i : i + 2]
+        size = np.hypot(x, y)
+        if name == "cuspless" and i == first:  # on the wall it is a height and no pair
+            size = np.where(state[0] > 0.5, 1, size)
+        made += [x / size, y / size]
+    return made

@@ -1,10 +1,14 @@
 """Bad input: one sentence that names the argument, the value and what would be accepted."""
 
+import re
+from fractions import Fraction
+
 import numpy as np
 import pytest
-from sympy import S, cos, pi, sin
+from sympy import Rational, S, cos, pi, sin, sqrt
 
 from numeric import PinballMap
+from numeric.inputs import angles, components, contraction, counted, real, shape_value
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
 
@@ -99,3 +103,83 @@ def test_components_that_do_not_close():
 
     with pytest.raises(ValueError, match="open: the boundary is not closed: lid ends at "):
         PinballMap(Table("open", components), lam=0.5)
+
+
+def test_numbers_of_any_real_kind_become_doubles():
+    for given in (1, np.int8(1), np.uint64(1), np.float32(1), np.float64(1), S.One, Fraction(1)):
+        assert (real("x", given).dtype, float(real("x", given))) == (np.float64, 1.0)
+    assert real("x", [[1, 2], [3, 4]]).tolist() == [[1.0, 2.0], [3.0, 4.0]]
+    assert real("x", [Fraction(1, 4), S.Half]).tolist() == [0.25, 0.5]
+    assert angles("phi", [0.5]).tolist() == [0.5]
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ([1.0, np.nan, np.inf], "x contains nan; every value must be finite"),
+        ([1.0, -np.inf], "x contains -inf"),
+        (True, "x has dtype bool"),
+        ("1", "x has dtype <U1; give real numbers that fit float64"),
+        (np.ones(2, dtype=np.longdouble), "x has dtype float128"),
+        (object, "is not a number or an array of numbers"),
+        ([1, S.ImaginaryUnit], "is not a number or an array of numbers"),
+        ([[1], [1, 2]], "x is no array of numbers: "),
+    ],
+)
+def test_what_is_no_number_is_named(given, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        real("x", given)
+
+
+def test_components_are_indices_or_one_name():
+    names = ["arc", "wall"]
+
+    assert (components("wall", names).tolist(), components([[0, 1]], names).tolist()) == (1, [[0, 1]])
+    assert components(np.uint8(1), names).dtype == np.int64
+    assert components(np.empty(0, dtype=int), names).size == 0
+    for given, wrong in (([0, -1], "component -1 does"), ([1, 2, 0], "component 2 does")):
+        with pytest.raises(ValueError, match=wrong + " not exist; the table has 0 to 1: arc, wall"):
+            components(given, names)
+    with pytest.raises(ValueError, match="no component is called 'roof'; the table has: arc, wall"):
+        components("roof", names)
+    for given in (0.0, True):
+        with pytest.raises(ValueError, match=r"component has dtype .*; give indices from 0 to 1"):
+            components(given, names)
+
+
+def test_a_contraction_lies_between_0_and_1_both_included():
+    assert [float(contraction(given)) for given in (0, 1, "1/4", "0.5", Fraction(1, 8), 1e-300)] == [
+        0, 1, 0.25, 0.5, 0.125, 1e-300,
+    ]  # fmt: skip
+    assert contraction([0.0, 1.0]).tolist() == [0.0, 1.0]
+    for given, named in (
+        ([0.5, -1e-9, 2.0], "lam = -1e-09 is"),
+        ([1.0, 1.1], "lam = 1.1 is"),
+        ("9/8", "lam = 1.125 is"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(named)):
+            contraction(given)
+    for given in ("1/0", "fast"):
+        with pytest.raises(ValueError, match=f"lam = '{given}' is no number such as 9/10 or 0.9".replace(".", r"\.")):
+            contraction(given)
+
+
+def test_shapes_are_the_numbers_that_they_show():
+    for given in (0.08, "0.08", "2/25", Fraction(2, 25), Rational(2, 25), np.float64(0.08)):
+        assert shape_value("a", given) == Fraction(2, 25)
+        assert isinstance(shape_value("a", given), Fraction)
+    assert (shape_value("a", 3), shape_value("a", Rational(3)), shape_value("a", np.int64(3))) == (3, 3, 3.0)
+    assert shape_value("a", sqrt(2)) == 2**0.5
+    for given in (True, "soft", "1/0", float("nan"), float("inf"), None, 1j, pi * S.ImaginaryUnit):
+        with pytest.raises(ValueError, match=r"a = .* is no number"):
+            shape_value("a", given)
+
+
+def test_counts_are_whole_and_large_enough():
+    assert (counted("n", 1), counted("n", np.int64(3)), counted("n", 0, least=0), counted("n", 7, 7)) == (1, 3, 0, 7)
+    assert type(counted("n", np.int64(3))) is int
+    for given, least in ((0, 1), (True, 1), (1.0, 1), ("1", 1), (6, 7), (-1, 0)):
+        with pytest.raises(
+            ValueError, match=rf"n = {given!r} is not possible; give a whole number of at least {least}"
+        ):
+            counted("n", given, least)

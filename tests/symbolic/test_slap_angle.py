@@ -1,0 +1,76 @@
+"""The slap map of the cardioid in half angles: exact facts, second derivations, and constants that can fail."""
+
+import mpmath
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from sympy import Rational, cos, simplify, sqrt
+
+from symbolic import slap_angle
+from symbolic.codegen import load
+from symbolic.signs import Outcome
+from symbolic.slap_angle import (
+    CUSP,
+    RATE,
+    SHRINKS,
+    branch,
+    derived,
+    expands,
+    gentle_elsewhere,
+    near_launch,
+    quiet_near_the_cusp,
+)
+from symbolic.slap_cardioid import LAUNCH_COS2, q
+from verification.arithmetic import multiprecision
+
+FACTS = (derived, expands, quiet_near_the_cusp, gentle_elsewhere)
+LANDINGS = st.fractions(Rational(-156, 100), Rational(78, 100), max_denominator=1000)
+
+
+def test_every_fact_that_the_variation_needs_is_proved():
+    assert [fact().outcome for fact in FACTS] == [Outcome.PROVED] * len(FACTS)
+
+
+@pytest.mark.parametrize(
+    ("fact", "constant", "wrong"),
+    [
+        (derived, "RATE", RATE * (1 + q / 1000)),
+        (derived, "LAUNCH_TAN2", slap_angle.LAUNCH_TAN2 * Rational(1001, 1000)),
+        (derived, "SPEED2", slap_angle.SPEED2 * Rational(1001, 1000)),
+        (expands, "SHRINKS", Rational(833, 1000)),  # the largest rate is 0.83399
+        (quiet_near_the_cusp, "CUSP", Rational(-68, 100)),
+        (gentle_elsewhere, "STEEP", Rational(308, 100)),  # the steepest is 3.0874
+        (gentle_elsewhere, "CUSP", Rational(-70, 100)),
+    ],
+)
+def test_a_wrong_constant_is_not_proved(fact, constant, wrong, monkeypatch):
+    monkeypatch.setattr(slap_angle, constant, wrong)
+
+    assert fact().outcome is not Outcome.PROVED
+
+
+@given(LANDINGS)
+def test_both_forms_of_the_launching_point_are_the_one_whose_cosine_is_proved_and_the_rate_their_derivative(landing):
+    mp = mpmath.MPContext()
+    mp.dps = 40
+    words = multiprecision(mp)
+    below, above = (load(branch(form), words) for form in (False, True))
+    half = mp.mpf(landing.numerator) / landing.denominator
+    slope = mp.diff(lambda x: below(x)[0], half)
+    at = mp.sin(half) / mp.sqrt(1 + 7 * mp.cos(half) ** 2)
+    cos2 = (1 - 3 * at) ** 2 * (1 - at) / ((1 + 7 * at**2) * (3 - at))
+
+    assert abs(below(half)[0] - above(half)[0]) < mp.mpf(10) ** -35
+    assert abs(mp.cos(below(half)[0]) ** 2 - cos2) < mp.mpf(10) ** -35
+    assert abs(slope - below(half)[1]) < mp.mpf(10) ** -15
+
+
+def test_the_slope_in_half_angles_is_least_at_a_quadratic_number_and_above_the_bound_there():
+    at = 3 - 8 / sqrt(7)
+
+    assert simplify(RATE.diff(q).subs(q, at)) == 0
+    assert 1 / SHRINKS < 1 / RATE.subs(q, at) < Rational(12, 10)
+
+
+def test_near_the_cusp_is_below_the_launching_angle_whose_cosine_is_proved():
+    assert abs((cos(near_launch()) ** 2 - LAUNCH_COS2.subs(q, CUSP)).n(30)) < 1e-25

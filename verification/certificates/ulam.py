@@ -1,0 +1,111 @@
+"""How well the transfer operator, averaged over cells, can be inverted: Ulam's matrix, with a proof.
+
+`N` equal cells, `P` the average over each, `Q = P L P`: a matrix of the shares of a cell that are carried to
+another. On vectors of sum 0, in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X` proves such a `K`: from
+`u = X(I - Q)u + (I - X(I - Q))u`,
+
+    K = |X| / (1 - |I - X(I - Q)|),        |A| = max over columns of ||column - w||, for any vector w,
+
+because `A u` is the sum of `u_j*(column_j - w)` when the `u_j` sum to 0. `X` is an inverse in floats, and what
+rounding may have done to the products is bounded and added.
+
+The entries of `Q` are differences of launching points in units of a cell. Each is rounded to a multiple of
+`2**-40`, so that entries and sums of columns are exact in doubles, and a displaced point moves at most twice its
+displacement of mass in a column.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from flint import arb
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from verification.arithmetic import working
+from verification.certificates.slap_transfer import Branches
+
+Matrix = NDArray[np.float64]
+BITS = 96
+GRAIN = 2.0**40
+UNIT = 2.0**-53
+BLANKET = 1 + 1e-9  # over the rounding of a sum of at most 1e5 positive doubles
+
+
+@dataclass(frozen=True)
+class Inverted:
+    """`||u|| <= K*||(I - Q)u||` for vectors of sum 0, `bound` above `K`; None where `X` was no good inverse."""
+
+    cells: int
+    bound: float | None
+    defect: float
+
+
+def launching_points(cells: int) -> tuple[Matrix, Matrix]:
+    """`g(-x)` and `g(x)` at the ends of cells, in cells, exact multiples of `1/GRAIN` and within that of the truth."""
+    if cells % 2 or not 0 < cells <= 4096:
+        raise ValueError(f"ulam: cells = {cells}; an even number of at most 4096 is needed")
+    at = Branches(BITS)
+    with working(BITS):
+        quarter = arb.pi() / 4
+
+        def point(k: int) -> float:  # landing at b = k cells
+            launch = at(arb(k) * 2 * quarter / cells)[0]
+            units = (launch * cells / (2 * quarter) * GRAIN).floor().unique_fmpz() if launch.is_finite() else None
+            if units is None:
+                raise ArithmeticError(f"ulam: the launching point of b = {k} cells is not known to {GRAIN}")
+            return float(int(units)) / GRAIN
+
+        below = [point(-k) for k in range(cells)] + [0.0]
+        above = [point(k) for k in range(cells // 2)] + [float(cells)]
+    return np.array(below), np.array(above)
+
+
+def ulam(cells: int) -> csc_matrix:
+    """`Q`, with column sums of exactly 1.
+
+    >>> float(abs(ulam(16).sum(axis=0) - 1).max())
+    0.0
+    """
+    rows, columns, shares = [], [], []
+    for ends in launching_points(cells):
+        for row, (one, other) in enumerate(pairwise(ends)):
+            low, high = min(one, other), max(one, other)
+            for column in range(int(low), min(int(np.ceil(high)), cells)):
+                rows.append(row)
+                columns.append(column)
+                shares.append(min(high, column + 1.0) - max(low, float(column)))
+    return csc_matrix((shares, (rows, columns)), shape=(cells, cells))
+
+
+def inverted(cells: int, inverse: Matrix | None = None) -> Inverted:
+    """The bound `K`, from an `inverse` of `I - Q` on vectors of sum 0 (if left out, one made in floats).
+
+    >>> found = inverted(64)
+    >>> found.defect < 1e-6, 10 < found.bound < 30
+    (True, True)
+    """
+    matrix = ulam(cells)
+    identity = np.eye(cells)
+    if inverse is None:
+        mass = np.full(cells, 1 / cells)
+        for _ in range(60):
+            mass = matrix @ mass
+        inverse = np.linalg.inv(identity - matrix.toarray() + mass[:, None])
+    entries = int(np.diff(matrix.indptr).max())
+    rounding = (entries + 4) * UNIT * (2 * float(abs(inverse).sum(axis=0).max()) + 1) * 1.01
+    size = spread(inverse)
+    displaced = 2 * (cells * 1.5 + 3) / GRAIN
+    defect = spread(identity - inverse + (matrix.T @ inverse.T).T) + rounding + size * displaced
+    bound = size / (1 - defect) * BLANKET if defect < 0.5 else None
+    return Inverted(cells, bound, defect)
+
+
+def spread(matrix: Matrix) -> float:
+    """The largest distance, in `L1`, of a column from one vector: what the matrix does to vectors of sum 0, at most.
+
+    >>> spread(np.array([[1.0, 1.0], [2.0, 2.0]]))
+    0.0
+    """
+    about = np.median(matrix, axis=1)
+    return float(abs(matrix - about[:, None]).sum(axis=0).max()) * BLANKET

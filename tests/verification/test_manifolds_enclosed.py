@@ -13,7 +13,7 @@ from sympy import Rational
 from verification.arithmetic import multiprecision, working
 from verification.manifolds.enclosed import TooWideError, complex_balls, enclosed, enclosed_saddle
 from verification.manifolds.known import MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
-from verification.manifolds.pair import Precision, pair, scale
+from verification.manifolds.pair import Precision, one_cycle, pair, scale
 from verification.manifolds.recurrence import Henon
 from verification.manifolds.remainder import bounds, remainder, round_outwards, vanishing
 from verification.manifolds.saddle import Orbit, saddle
@@ -183,6 +183,17 @@ def test_a_saddle_of_the_henon_map_has_the_multipliers_of_the_textbook():
         assert found.points[0].overlaps(acb(x))
         assert found.unstable.overlaps(acb(-a * x - root))
         assert found.stable.overlaps(acb(-a * x + root))
+
+
+def test_cycles_at_single_letters_are_held_against_the_one_over_a_disc():
+    """A cycle at another letter, or another bounce of the same cycle, is not taken for it."""
+    with working(300):
+        around, here, elsewhere = at(SYMMETRIC, 0.41, 1e-12), at(SYMMETRIC, 0.41), at(SYMMETRIC, 0.4101)
+        turned = at(Orbit("its mirror image", tuple(-x for x in SYMMETRIC.start), -1, (-2, 3)), 0.41)
+
+        assert one_cycle(around, here)
+        assert not one_cycle(around, elsewhere)
+        assert not one_cycle(around, turned)
 
 
 def test_what_no_ball_encloses_is_not_proved():

@@ -138,6 +138,11 @@ def _reach(made: Local) -> float:
     return low
 
 
+def one_cycle(around: Saddle, here: Saddle) -> bool:
+    """Is the cycle at one letter the one that is unique over a ball of letters? It is where its balls lie in those."""
+    return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
+
+
 def pair(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Precision) -> Pair:
     """The pair near an exact letter, with the saddle and the remainder proved for every letter of the disc."""
     balls = map.over(complex_balls(precision.bits))
@@ -152,6 +157,8 @@ def pair(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Pr
         return ((beside - here) / (beyond - letter)).real + _around(4 * step * second)
 
     here, beside, around = (near(at) for at in (acb(letter), acb(beyond), acb(letter) + around_zero(disc)))
+    if not all(one_cycle(around.saddle, made.saddle) for made in (here, beside)):
+        raise TooWideError("saddle", "the cycle at a letter may be another than the one over the disc of letters")
     bounces = list(zip(*(made.pair() for made in (here, beside, around)), strict=True))
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]

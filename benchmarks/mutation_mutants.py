@@ -45,7 +45,7 @@ LEFT_OUT = {
     "`VariableReplacer`, `VariableInserter`": "they need names as arguments and put random numbers in",
     "mutants in type annotations and under `if TYPE_CHECKING`": "not executed",
     "docstrings and other text": "cosmic-ray does not change text; doctests are tests here",
-    "`RemoveDecorator` on `@cache` and `@lru_cache`": "a memo changes the time, not the result",
+    "`@cache` and `@lru_cache`, taken away or of another size": "a memo changes the time, not the result",
     "mutants that do not compile, or have the syntax tree of the original or of another mutant": "no mutants, or"
     " counted already (`not a == b` is `a != b`)",
 }
@@ -84,7 +84,7 @@ def statements(tree: ast.Module) -> list[tuple[int, int]]:
 
 
 def is_unseen(node) -> bool:
-    """Whether no run executes this node: an annotation, or a branch for the type checker."""
+    """Whether no run sees this node: an annotation, a branch for the type checker, the size of a memo."""
     child = node
     while (parent := child.parent) is not None:
         kind = parent.type
@@ -93,6 +93,8 @@ def is_unseen(node) -> bool:
         if (kind == "param" and child.type == "tfpdef") or (kind == "tfpdef" and child is not parent.children[0]):
             return True
         if kind == "funcdef" and child is parent.annotation:
+            return True
+        if parent.type == "decorator" and is_memo(parent):
             return True
         if kind == "if_stmt" and parent.children[1].get_code().strip() == "TYPE_CHECKING":
             return True

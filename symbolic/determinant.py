@@ -45,7 +45,7 @@ def cycle_determinant(angles: list[Expr]) -> Expr:
     return simplify(prod(area_factor().subs(eta, angle) for angle in angles))
 
 
-def polygon_slope(p: int = 1, q: int = 3) -> Expr:
+def polygon_slope(p: int, q: int) -> Expr:
     """`f'(gamma)` of the polygon: positive when it contracts near `lam = 1`, negative when it expands.
 
     >>> bool(polygon_slope(1, 4) > 0), bool(polygon_slope(1, 5) < 0), bool(polygon_slope(2, 5) > 0)
@@ -54,7 +54,7 @@ def polygon_slope(p: int = 1, q: int = 3) -> Expr:
     return flux_slope(half_turn(p, q))
 
 
-def polygon_factor(delta: Expr, p: int = 1, q: int = 3) -> Expr:
+def polygon_factor(delta: Expr, p: int, q: int) -> Expr:
     """`det M` of one bounce of a polygon whose normal is tilted by `delta`: `f(gamma - delta)/f(gamma + delta)`.
 
     >>> from sympy import S

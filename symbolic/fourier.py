@@ -28,8 +28,6 @@ def coefficients(expression: Expr) -> dict[int, Expr] | None:
         poly = Poly(expand(rational * u**-lowest), u)
     except PolynomialError:
         return None
-    if poly.has(u) and any(c.has(u) for c in poly.coeffs()):
-        return None
     terms = {power[0] + lowest: c for power, c in poly.terms() if c != 0}
     return dict(sorted(terms.items()))
 

@@ -28,6 +28,6 @@ def joachimsthal_defect() -> Expr:
     >>> vanishes(joachimsthal_defect())
     True
     """
-    t0, t1 = symbols("theta0 theta1", real=True)
+    t0, t1 = symbols("theta0 theta1")
     q0, q1 = Matrix([a * cos(t0), sin(t0)]), Matrix([a * cos(t1), sin(t1)])
     return (gradient(*q0) + gradient(*q1)).dot(q1 - q0)

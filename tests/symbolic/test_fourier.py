@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Abs, Expr, I, Rational, S, Symbol, conjugate, cos, exp, expand, pi, simplify, sin, sqrt, tan
+from sympy import Abs, Expr, Float, I, Rational, S, Symbol, conjugate, cos, exp, expand, pi, simplify, sin, sqrt, tan
 
 from symbolic.fourier import boundary_coefficients, coefficients, in_half_tangent
 from symbolic.symbols import a, alpha, theta
@@ -43,6 +43,8 @@ def test_boundaries_have_the_coefficients_of_a_hand_calculation():
     found = boundary_coefficients(ellipse.components[0])
     assert {k: simplify(v - (a + k) / 2) for k, v in found.items()} == {-1: 0, 1: 0}
     assert boundary_coefficients(cuspless.component("wall")) is None
+    deltoid = 2 * cos(theta) + cos(2 * theta) + I * (2 * sin(theta) - sin(2 * theta))
+    assert coefficients(deltoid) == {-2: 1, 1: 2}
 
 
 @settings(max_examples=60)
@@ -73,6 +75,26 @@ def test_the_half_tangent_polynomial_has_the_sign_of_the_sum(expression, at):
 
     assert abs(value) < 1e-20 or (value > 0) == (image > 0)
     assert simplify(at_pi - expression.subs(theta, pi / step)) == 0
+
+
+@pytest.mark.parametrize("T", [Rational(1, 2), Rational(-1, 3), Rational(2)])
+@pytest.mark.parametrize("step", [1, 2, 3])
+def test_the_half_tangent_polynomial_is_the_sum_times_a_power_of_one_plus_its_square(T, step):
+    x = Symbol("x", real=True)
+    expression = 3 - 5 * sin(x) + 2 * cos(3 * x) + 7 * cos(x) * sin(2 * x) + a * cos(2 * x)
+    p, letter, at_pi = in_half_tangent(expression.subs(x, step * theta))
+    angle = {cos(x): (1 - T**2) / (1 + T**2), sin(x): 2 * T / (1 + T**2)}
+
+    assert letter.is_real
+    assert expand(p.subs(letter, T) - expand(expression, trig=True).subs(angle) * (1 + T**2) ** 3) == 0
+    assert at_pi == expression.subs(x, pi)
+    assert not p.has(Float)
+
+
+def test_a_constant_is_its_own_half_tangent_polynomial():
+    assert in_half_tangent(S(7))[::2] == (7, 7)
+    assert in_half_tangent(S.Zero)[::2] == (0, 0)
+    assert in_half_tangent(theta) is None
 
 
 @pytest.mark.parametrize(

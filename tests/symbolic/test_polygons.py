@@ -6,6 +6,7 @@ from sympy import Expr, Matrix, Rational, Symbol, acos, atan, cos, diff, pi, sim
 
 from symbolic.geometry import curvature, normal
 from symbolic.polygons import (
+    characteristic_on_branch,
     half_turn,
     largest_tilt,
     near_flat,
@@ -153,3 +154,27 @@ def test_the_fold_at_the_shape_of_the_paper_is_a_little_below_what_it_reads_from
 def test_a_rotation_number_out_of_range_is_refused(p, q):
     with pytest.raises(ValueError, match=f"^polygon: the rotation number {p}/{q} must lie strictly between 0 and 1/2$"):
         half_turn(p, q)
+
+
+def test_the_default_polygon_is_the_triangle_of_the_three_pointed_egg():
+    x, at = Symbol("x"), Symbol("at")
+
+    assert half_turn() == half_turn(1, 3)
+    assert required_tilt() == required_tilt(1, 3)
+    assert (tilt_tangent(), largest_tilt()) == (tilt_tangent(3), largest_tilt(3))
+    assert (saddle_node(), near_flat()) == (saddle_node(3, 1, 3), near_flat(3, 1, 3))
+    assert characteristic_on_branch(x, at) == characteristic_on_branch(x, at, 3, 1, 3)
+
+
+@pytest.mark.parametrize(("K", "p", "q"), [(3, 1, 3), (4, 1, 4), (5, 2, 5)])
+@pytest.mark.parametrize("at", [1, -1, Rational(1, 3)])
+def test_the_characteristic_polynomial_on_the_branch_is_that_of_the_bounce_it_has(K, p, q, at):
+    x, bounce = Rational(2, 5), (pi - Rational(2, 5)) / K
+    table = egg(K).at(alpha=SHAPE)
+    gamma, delta = half_turn(p, q), atan(tilt_tangent(K).subs({theta: bounce, alpha: SHAPE}))
+    trace, det = turn_trace_and_determinant(K0, t, Symbol("out"), Symbol("back"))
+    values = {Symbol("out"): gamma - delta, Symbol("back"): gamma + delta, lam: (gamma - delta) / (gamma + delta)}
+    values |= {K0: curvature(table.components[0]).subs(theta, bounce), t: 2 * (1 - SHAPE * cos(x)) * cos(gamma)}
+    expected = cos(gamma + delta) * (at**2 - at * trace.subs(values) + det.subs(values))
+
+    assert abs(number(characteristic_on_branch(x, at, K, p, q).subs(alpha, SHAPE) - expected)) < NOTHING

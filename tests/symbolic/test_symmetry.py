@@ -31,6 +31,22 @@ def test_two_symmetries_make_a_third(table):
             assert any((product - m.evalf(20)).norm() < 1e-15 for m in matrices)
 
 
+@pytest.mark.parametrize("table", [*TABLES, circle], ids=lambda table: table.name)
+def test_a_symmetry_is_a_rotation_or_a_reflection_and_its_shift_is_less_than_a_turn(table):
+    for symmetry in group(table):
+        assert simplify(symmetry.matrix.det()) == symmetry.sign
+        assert symmetry.name.startswith("reflection") == (symmetry.sign < 0)
+        assert len(symmetry.onto) == len(symmetry.shift) == len(table.components)
+        assert all(0 <= shift < 2 * pi for shift in symmetry.shift)
+
+
+def test_a_boundary_that_is_no_finite_sum_has_no_rotation_that_is_known_from_its_frequencies():
+    pear = polar(1 / (9 + cos(theta)))
+
+    assert order_of_rotation(pear.components[0]) == 1
+    assert [symmetry.name for symmetry in group(pear)] == ["identity", "reflection in the line at 0"]
+
+
 @pytest.mark.parametrize("K", [2, 3, 4, 5, 7, 12])
 def test_the_egg_with_k_points_has_the_dihedral_group_of_the_k_gon(K):
     found = group(egg(K))

@@ -4,6 +4,7 @@ import os
 import tempfile
 from types import SimpleNamespace
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -11,6 +12,7 @@ os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
 from numeric.question import Question
+from numeric.readers.scalars import Scalars
 
 SHAPES = {
     "circle": {},
@@ -99,6 +101,29 @@ class Bounced:
         a = t * k0 + c0
         rows = [[a, t], [lam * (k1 * a + k0 * c1), lam * (k1 * t + c1)]]
         return np.moveaxis(-np.array(rows) / c1, (0, 1), (-2, -1))
+
+
+def rounding(map, where, theta, phi):
+    """What rounding does to the fields of a landing, in eps: the step on arrays against the step with 40 digits."""
+    context = mpmath.MPContext()
+    context.dps = 40
+    own = map.states.enter(where, theta, phi, map.law)
+    result = map.engine.run(Question(map.law, record=True), own, np.full(theta.size, float(map.lam)), map.shape, 1)
+    found, shape, lam = result.record[0], [context.mpf(x) for x in map.shape], context.mpf(float(map.lam))
+    errors = []
+    for i in range(theta.size):
+        state = [context.mpf(float(field[i])) for field in own]
+        exact, code = map.family.bounce(Scalars(context), map.law, shape, lam, state)
+        assert (code or 0) == (result.rows["code"][i] if "code" in result.rows else 0)
+        errors.append([float(abs(a - b) / 2.0**-52) for a, b in zip(found[:, i].tolist(), exact, strict=True)])
+    at = len(map.family.position)
+    return np.max(np.array(errors)[:, :at]), np.max(np.array(errors)[:, at:], initial=0.0)
+
+
+@pytest.fixture(name="rounding")
+def rounding_():
+    """The largest errors of position and of direction."""
+    return rounding
 
 
 @pytest.fixture

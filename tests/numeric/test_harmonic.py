@@ -1,0 +1,89 @@
+"""The steps of ellipses and of convex Fourier sums: what rounding does to them, and a second way to the landing."""
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from numeric.question import Question
+from symbolic import tables
+from symbolic.symbols import theta as symbol
+
+HERE = np.zeros(24, dtype=np.int64)
+SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)
+TABLES = {
+    "ellipse": ("ellipse", {"a": "3/2"}),
+    "long ellipse": ("ellipse", {"a": 100}),
+    "egg": ("egg", {"alpha": "0.08"}),
+    "two-egg": ("egg", {"alpha": "0.15", "K": 2}),
+    "five-egg": ("egg", {"alpha": "0.03", "K": 5}),
+}
+
+
+@pytest.fixture(params=list(TABLES))
+def harmonic(request):
+    """A map of the contraction given."""
+    name, shape = TABLES[request.param]
+    return lambda lam, **more: PinballMap(name, lam=lam, **shape, **more)
+
+
+@pytest.mark.parametrize("lam", [0, 0.3, 1])
+def test_anywhere(harmonic, lam, rounding):
+    rng = np.random.default_rng(5)
+    theta, phi = rng.uniform(-3.1, 3.1, 24), rng.uniform(-1.4, 1.4, 24) * (lam > 0)
+    place, direction = rounding(harmonic(lam, kernels=False), HERE, theta, phi)
+
+    assert place <= 4
+    assert direction <= 8
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-7, 1e-12])
+def test_grazing(harmonic, gap, rounding):
+    place, direction = rounding(harmonic(0.9, kernels=False), HERE, np.linspace(-3, 3, 24), SIGN * (np.pi / 2 - gap))
+
+    assert place <= 4
+    assert direction <= 8
+
+
+def test_landings_are_on_the_line_of_flight(harmonic):
+    map = harmonic(0.7, kernels=False)
+    theta, phi = np.linspace(-3.1, 3.1, 400), np.tile(np.linspace(-1.5, 1.5, 20), 20)
+    here, step = map.states.point(np.zeros(400, dtype=int), theta), map.step(theta, phi)
+    vx, vy = map.states.direction(np.zeros(400, dtype=int), theta, phi)
+    dx, dy = step.x - here[0], step.y - here[1]
+
+    assert np.max(np.abs(dx * vy - dy * vx)) <= 32 * 2.0**-52 * max(1, map.shape[0])
+    assert np.min(dx * vx + dy * vy) > 0
+    assert not step.code.any()
+    (px, py), (tx, ty) = map.states.point(step.component, step.theta), map.states.tangent(step.component, step.theta)
+    assert np.max(np.hypot(px - step.x, py - step.y)) == 0
+    eta = -np.arctan2(vx * tx + vy * ty, vx * ty - vy * tx)
+    assert np.max(np.abs(step.phi + 0.7 * eta) * np.cos(eta)) <= 1e-12
+
+
+def test_the_slap_map_of_an_ellipse_needs_no_unit_normal_but_exponents_do(harmonic):
+    map = harmonic(0, kernels=False)
+    theta = np.linspace(-3, 3, 24)
+    own = map.states.enter(HERE, theta, 0 * theta, "slap")
+    fast = map.engine.run(Question("slap"), own, np.zeros(24), map.shape, 1).rows
+    step = map.at(lam=1).step(theta, 0.0)
+
+    assert np.max(np.abs(np.arctan2(fast["uy"], fast["ux"]) - step.theta)) <= 1e-13
+    slope = map.slap(theta).slope
+    curvature, length = (
+        map.states.curvature(HERE, theta),
+        np.hypot(step.x - map.states.point(HERE, theta)[0], step.y - map.states.point(HERE, theta)[1]),
+    )
+    assert np.allclose(slope, -(1 + length * curvature) / np.cos(step.eta), rtol=1e-11, atol=1e-11)
+
+
+def test_a_table_without_symmetry_is_as_exact(rounding):
+    from sympy import Rational, cos, sin
+
+    x = cos(symbol) + Rational(1, 9) * sin(2 * symbol) + Rational(1, 5)
+    y = sin(symbol) + Rational(1, 20) * cos(3 * symbol) - Rational(1, 30) * sin(symbol)
+    map = PinballMap(tables.parametric(x, y, name="skewed"), lam=0.4, kernels=False)
+    place, direction = rounding(map, HERE, np.linspace(-3, 3, 24), np.linspace(1.4, -1.4, 24))
+
+    assert map.path.startswith("chord")
+    assert place <= 4
+    assert direction <= 8

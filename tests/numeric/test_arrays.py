@@ -38,6 +38,17 @@ def test_the_emulated_fused_product_is_rounded_once(size):
     assert OPS.product(3.0, 0.1) == 3.0 * 0.1
 
 
+def test_what_a_product_loses_is_exact():
+    """Also of mantissas of ones, and of those next to where they are cut in halves."""
+    ends = [2 - 2.0**-52, 1 + 2.0**-52, 1 + 2.0**-26 + 2.0**-52, 1 + 2.0**-27 - 2.0**-52, 2 - 2.0**-26, 4 / 3, 1.1]
+    rng = np.random.default_rng(6)
+    x = np.concatenate([np.repeat(ends, len(ends)), rng.uniform(1, 2, 2000)])
+    y = np.concatenate([np.tile(ends, len(ends)), rng.uniform(1, 2, 2000)])
+    lost = OPS.fma(x, y, -x * y).tolist()
+    for a, b, c in zip(x.tolist(), y.tolist(), lost, strict=True):
+        assert Fraction(a) * Fraction(b) == Fraction(a * b) + Fraction(c)
+
+
 def test_the_power_of_two_below_a_number():
     x = np.array([1e-300, 0.49, 0.5, 1.0, 1.5, 2.0, 1023.0, 1e300])
     inverse, exponent = OPS.power_of_two(x)

@@ -11,7 +11,7 @@ from numeric.engine import Engine, _pieces
 from numeric.families.family import Family, Landing, law_of
 from numeric.question import TANGENT, Question, starting
 
-END = 4.0  # a ball beyond it is stopped with code 3
+END = 4.0  # a ball beyond it is stopped with code 1
 
 
 class Drift(Family):
@@ -23,7 +23,7 @@ class Drift(Family):
 
     def fly(self, ops, shape, law, position, exit):
         x = position[0] + shape[0] * exit[0]
-        code = ops.select(ops.number(END) < x, ops.number(3.0), ops.number(0.0))
+        code = ops.select(ops.number(END) < x, ops.number(1.0), ops.number(0.0))
         return Landing([x], exit[0], exit[0] + ops.number(1.0), code if self.stops else None)
 
     def leave(self, ops, shape, law, lam, landing):
@@ -63,7 +63,7 @@ def by_hand(x, v, lam, pace, bounces, end=END):
     states, lost, code = [(x, v)], 0, 0
     for _ in range(bounces):
         if code == 0 and x + pace * v > end:
-            code = 3
+            code = 1
         if code:
             lost += 1
         else:
@@ -180,6 +180,26 @@ def test_mantissas_are_looked_at_every_few_bounces_and_at_the_end(ways, bounces)
 
     assert rows["growth"][0] == 150 + min(bounces, 3)
     assert rows["shift"][0] / rows["down"][0] == 2.0 ** max(0, bounces - 3)
+
+
+@pytest.mark.parametrize("kernels", [True, False])
+def test_a_kernel_is_made_where_it_is_asked_for_and_only_there(kernels, monkeypatch):
+    asked = []
+    monkeypatch.setattr("numeric.machine.compiled", lambda *key: asked.append(key))  # and gives none, as without LLVM
+    engine = Engine(Drift(), "a test's", ["pace"], kernels)
+    result = engine.run(Question("pinball"), START, LAM, [0.5], 2)
+
+    assert result.rows["x"][0] == by_hand(float(START[0][0]), float(START[1][0]), 1.0, 0.5, 2)[0][-1][0]
+    assert len(asked) == kernels
+    assert Engine(Drift(), "", []).kernels
+
+
+def test_work_is_counted_in_bounces_of_lanes(monkeypatch):
+    asked = []
+    monkeypatch.setattr(engines, "_pieces", lambda *given: asked.append(given) or [(0, given[0])])
+    Engine(Drift(), "a test's", ["pace"], lanes=8).run(Question("pinball"), START, LAM, [0.5], 7, threads=2)
+
+    assert asked == [(3, 24 * 7, 2)]
 
 
 def test_blocks_are_shared_out_in_consecutive_pieces(monkeypatch):

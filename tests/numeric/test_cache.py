@@ -90,3 +90,92 @@ def test_without_llvmlite_numpy_does_the_work(monkeypatch):
 
     assert step.status == Status.REGULAR
     assert step.theta == PinballMap("ellipse", lam=0.5, a=2, kernels=False).step(0.3, 0.2).theta
+
+
+def test_what_is_written_is_read_under_its_own_key_and_no_other(tmp_path, monkeypatch):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path / "deep" / "folder"))
+    cache.write("kernel", "a", "b", b"content")
+
+    assert cache.read("kernel", "a", "b") == b"content"
+    assert [cache.read(*key) for key in (("kernel", "ab"), ("kernel", "a"), ("image", "a", "b"))] == [None] * 3
+    cache.write("kernel", "a", "b", b"")
+    assert cache.read("kernel", "a", "b") == b""
+    assert len(list((tmp_path / "deep" / "folder").iterdir())) == 1
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda old: old[:-1], lambda old: old + b"x", lambda old: b"", lambda old: b"\0" + old[1:]]
+)
+def test_a_damaged_entry_is_none(damage, tmp_path, monkeypatch):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
+    cache.write("kernel", "a", b"content")
+    (path,) = tmp_path.iterdir()
+    path.write_bytes(damage(path.read_bytes()))
+
+    assert cache.read("kernel", "a") is None
+
+
+def test_the_folder_is_the_one_that_was_chosen(tmp_path, monkeypatch):
+    for name in ("PINBALL_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert cache.folder() == str(tmp_path / ".cache" / "pinball-billiards")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert cache.folder() == str(tmp_path / "xdg" / "pinball-billiards")
+    monkeypatch.setenv("PINBALL_CACHE", "here")
+    assert cache.folder() == "here"
+    monkeypatch.setenv("PINBALL_CACHE", "")
+    assert cache.folder() is None
+    cache.write("kernel", "a", b"content")
+    assert cache.read("kernel", "a") is None
+    monkeypatch.delenv("PINBALL_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", "~nobody/cache")
+    assert cache.folder() is None
+
+
+def test_keys_keep_their_parts_apart():
+    keys = {cache.key_of(*parts) for parts in (("ab",), ("a", "b"), ("a", "b", ""), ("", "ab"))}
+
+    assert len(keys) == 4
+    assert {len(key) for key in keys} == {32}
+
+
+def test_sources_depend_on_every_file_of_the_packages_and_on_nothing_else(tmp_path, monkeypatch):
+    (tmp_path / "numeric" / "inside").mkdir(parents=True)
+    file = tmp_path / "numeric" / "inside" / "one.py"
+    file.write_text("x = 1")
+    (tmp_path / "numeric" / "cache.py").write_text("")
+    (tmp_path / "symbolic").mkdir()
+    (tmp_path / "symbolic" / "two.py").write_text("")
+    monkeypatch.setattr(cache, "__file__", str(tmp_path / "numeric" / "cache.py"))
+    digest = cache.sources.__wrapped__
+    first, both = digest("numeric"), digest("symbolic", "numeric")
+    (tmp_path / "numeric" / "notes.txt").write_text("no program")
+    (tmp_path / "symbolic" / "two.py").write_text("y = 2")
+
+    assert digest("numeric") == first != both
+    assert digest("symbolic", "numeric") != both
+    file.write_text("x = 2")
+    assert digest("numeric") != first
+    file.rename(file.with_name("two.py"))
+    assert digest("numeric") not in (first, both)
+
+
+def test_a_failed_write_leaves_nothing_and_names_the_folder_and_the_reason(tmp_path, monkeypatch):
+    def refused(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
+    monkeypatch.setattr("os.replace", refused)
+    monkeypatch.setattr(cache, "_said", set())
+    with pytest.warns(
+        UserWarning, match=rf"the cache folder {tmp_path} cannot be written \(Permission denied\); working"
+    ):
+        cache.write("kernel", "a", b"content")
+
+    assert list(tmp_path.iterdir()) == []
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    monkeypatch.setenv("PINBALL_CACHE", str(blocked / "below"))
+    with pytest.warns(UserWarning, match="cannot be written"):
+        cache.write("kernel", "a", b"content")

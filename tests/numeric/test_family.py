@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from numeric.families.family import Family, Landing, grazing
+from numeric.readers.arrays import Arrays
+
 EPS = 2.0**-52
 LAWS = [0, 0.3, 1]
 
@@ -50,3 +53,19 @@ def test_directions_have_the_length_one(flights):
     place = found.fields[: len(map.family.position)][-2:]
     if map.family.name not in ("circle", "cuspless"):
         assert np.max(np.abs(np.hypot(*place) - 1)) <= 4 * EPS
+
+
+def test_a_landing_is_a_tangency_below_four_eps_of_cosine():
+    across = np.array([1.0, -1.0, 1.0, 1.0, 3.0, 1.0, 0.0])
+    along = np.array([4 * EPS, 4 * EPS * (1 + EPS), 4 * EPS * (1 + EPS), -1.0, 12 * EPS, np.nan, 1e-300])
+
+    assert grazing(Arrays(), across, along).tolist() == [True, False, False, True, True, True, False]
+
+
+def test_a_family_of_its_own_has_outcomes_and_registers_to_fill():
+    assert (Family.stops, Family.often, Family.width) == (True, 8, 32)
+    assert Family().kept(None, [], []) == []
+    assert (Landing([], 0, 0).code, Landing([], 0, 0).more) == (None, {})
+    for method, count in (("fly", 5), ("leave", 5), ("slapped", 3), ("departure", 4), ("bend", 3)):
+        with pytest.raises(NotImplementedError):
+            getattr(Family(), method)(*[None] * count)

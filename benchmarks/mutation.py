@@ -67,7 +67,7 @@ class Plan:
                     self.lines[path][line].add(node)
 
     def tests(self, mutant: Mutant, budget: float, near: bool) -> dict[str, float]:
-        """Node ids with their seconds: those that run the statement, quickest first, as far as the budget goes.
+        """Node ids with their seconds: as far as the budget goes, the own first, then the quickest.
 
         `near` takes the module's own tests alone, where it has some.
         """
@@ -79,9 +79,9 @@ class Plan:
             files = {file_of(node) for node in self.seconds if node}
             users = {file for file in files if name_of(mutant.path) in reached(name_of(file))}
             rest = {node for node in self.seconds if file_of(node) in users}
-        own = mirrors(mutant.path, running | rest) if near else set()
+        own = mirrors(mutant.path, running | rest)
         chosen, total = {}, 0.0
-        for group in (own,) if own else (running, rest - running):
+        for group in (own,) if near and own else (own, running - own, rest - running - own):
             for node in sorted(group - {""}, key=self.seconds.__getitem__):
                 total += self.seconds[node]
                 if chosen and total > budget:
@@ -97,8 +97,10 @@ def covering(paths: list[str]) -> None:
     def work() -> None:
         new = cover(paths)
         known = json.loads(COVER.read_text()) if COVER.is_file() else {}  # read late: another run may have written
-        files = {file_of(node) for node in new} - {""}
-        old = {node: entry for node, entry in known.items() if file_of(node) not in files}
+        whole = set(paths)  # of files that are named, tests that are gone are forgotten
+        old = {node: entry for node, entry in known.items() if file_of(node) not in whole}
+        for path, lines in known.get("", {"lines": {}})["lines"].items():
+            new[""]["lines"][path] = sorted({*new[""]["lines"][path], *lines})
         COVER.write_text(json.dumps(old | new))
         say(f"{len(new) - 1} tests, {sum(entry['seconds'] for entry in new.values()):.0f} s")
 
@@ -110,8 +112,10 @@ def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[
     found = mutants(path)
     if args.sample < 1:
         found = [mutant for mutant in found if random.Random(f"{args.seed} {mutant.key}").random() < args.sample]
-    again = (args.again,) if args.again != "all" else ("survived", "uncovered", "timeout", "killed")
-    return [mutant for mutant in found if mutant.key not in known or known[mutant.key]["status"] in again]
+    if not args.again:
+        return [mutant for mutant in found if mutant.key not in known]
+    again = ("survived", "uncovered", "timeout", "killed") if args.again == "all" else (args.again,)
+    return [mutant for mutant in found if mutant.key in known and known[mutant.key]["status"] in again]
 
 
 def run_module(path: str, chosen: list[Mutant], plan: Plan, budget: float, near: bool) -> None:

@@ -163,14 +163,12 @@ def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Fi
 def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
     """The verdict of Sturm's theorem; None where it does not apply, at irrational ends and coefficients."""
     poly = Poly(p, x).sqf_part()
-    low = None if interval.start is -oo else interval.start
-    high = None if interval.end is oo else interval.end
     try:
-        roots = poly.count_roots(low, high)
+        roots = poly.count_roots(interval.start, interval.end)
     except (CoercionFailed, DomainError):
         return None
-    for end, is_open in ((low, interval.left_open), (high, interval.right_open)):
-        if end is not None and is_open and poly.eval(end) == 0:
+    for end, is_open in ((interval.start, interval.left_open), (interval.end, interval.right_open)):
+        if is_open and end.is_finite and poly.eval(end) == 0:
             roots -= 1
     where = f"{x} in {interval_text(interval)}"
     if roots == 0 and not p.subs(x, _samples(interval)[-1]).is_positive:  # one sample fixes the sign
@@ -189,7 +187,7 @@ def _orthant(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
 
 
 def bernstein(p: Expr, box: Box) -> list[Expr]:
-    """The nonzero coefficients of the polynomial `p` on the orthant that the open `box` is mapped to.
+    """The coefficients of the polynomial `p` on the orthant that the open `box` is mapped to.
 
     None negative: positive in the open box. All of one sign, none vanishing: of that sign on the
     closed box.

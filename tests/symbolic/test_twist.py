@@ -13,7 +13,8 @@ from symbolic.twist import bounce, chord, composed, egg_diameter, plus, powers, 
 x, p, y = symbols("x p y")
 H = {
     (2, 0): Rational(1, 3), (1, 1): Rational(-5, 2), (0, 2): Rational(3, 4), (3, 0): 2, (2, 1): Rational(1, 7),
-    (1, 2): -3, (0, 3): Rational(2, 5), (4, 0): -1, (3, 1): 5, (2, 2): Rational(7, 3), (1, 3): -2, (0, 4): Rational(1, 6),
+    (1, 2): -3, (0, 3): Rational(2, 5), (4, 0): -1, (3, 1): 5, (2, 2): Rational(7, 3),
+    (1, 3): -2, (0, 4): Rational(1, 6),
 }  # fmt: skip
 ROTATION = {(1, 0): Rational(3, 5), (0, 1): Rational(-4, 5)}, {(1, 0): Rational(4, 5), (0, 1): Rational(3, 5)}
 QUARTICS = [(4, 0), (3, 1), (2, 2), (1, 3), (0, 4)]

@@ -118,7 +118,7 @@ class Fourier(Harmonic):
         u = position[0], position[1]
         B = plane.unit(ops, (plane.exact_dot(ops, E, u), plane.exact_cross(ops, u, E)))
         p = self.chord(ops, *E, *B, *shape)
-        _zero, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
+        one, two = ops.number(1.0), ops.number(2.0)
         start = -(p[0] * p[1]) / (p[1] * p[1] - p[0] * p[2])  # Halley's step from T = 0
         T = ops.polynomial_zero(p, start, ops.number(-FAR), ops.number(FAR), one, self.steps)
         s = two * T / (T * T + one)

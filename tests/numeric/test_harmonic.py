@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from sympy import Rational, cos, sin
 
-from numeric import PinballMap
+from numeric import PinballMap, Status
 from numeric.question import Question
 from symbolic import tables
 from symbolic.symbols import theta as symbol
@@ -16,6 +17,7 @@ TABLES = {
     "egg": ("egg", {"alpha": "0.08"}),
     "two-egg": ("egg", {"alpha": "0.15", "K": 2}),
     "five-egg": ("egg", {"alpha": "0.03", "K": 5}),
+    "long": (tables.parametric(5 * cos(symbol) + cos(2 * symbol) / 10, sin(symbol), name="long"), {}),
 }
 
 
@@ -51,7 +53,7 @@ def test_landings_are_on_the_line_of_flight(harmonic):
     vx, vy = map.states.direction(np.zeros(400, dtype=int), theta, phi)
     dx, dy = step.x - here[0], step.y - here[1]
 
-    assert np.max(np.abs(dx * vy - dy * vx)) <= 32 * 2.0**-52 * max(1, map.shape[0])
+    assert np.max(np.abs(dx * vy - dy * vx)) <= 32 * 2.0**-52 * max([1, *map.shape])
     assert np.min(dx * vx + dy * vy) > 0
     assert not step.code.any()
     (px, py), (tx, ty) = map.states.point(step.component, step.theta), map.states.tangent(step.component, step.theta)
@@ -77,8 +79,6 @@ def test_the_slap_map_of_an_ellipse_needs_no_unit_normal_but_exponents_do(harmon
 
 
 def test_a_table_without_symmetry_is_as_exact(rounding):
-    from sympy import Rational, cos, sin
-
     x = cos(symbol) + Rational(1, 9) * sin(2 * symbol) + Rational(1, 5)
     y = sin(symbol) + Rational(1, 20) * cos(3 * symbol) - Rational(1, 30) * sin(symbol)
     map = PinballMap(tables.parametric(x, y, name="skewed"), lam=0.4, kernels=False)
@@ -87,3 +87,27 @@ def test_a_table_without_symmetry_is_as_exact(rounding):
     assert map.path.startswith("chord")
     assert place <= 4
     assert direction <= 8
+
+
+def test_a_tangent_ball_stops_where_it_is(harmonic):
+    map = harmonic(0.9, kernels=False)
+    step = map.step([0.3, 0.3], [np.nextafter(np.pi / 2, 0), 1.5])
+
+    assert list(step.status) == [Status.GRAZING, Status.REGULAR]
+    assert step.theta[0] == 0.3
+
+
+@pytest.mark.parametrize("lam", [0, 0.3, 1])
+def test_the_derivative_is_the_papers_matrix(harmonic, lam):
+    map = harmonic(lam, kernels=False)
+    theta, phi = np.linspace(-3, 3, 24), np.linspace(-1, 1, 24) * (lam > 0)
+    step, (x, y) = map.at(lam=1).step(theta, phi), map.states.point(HERE, theta)
+    k0, k1 = map.states.curvature(HERE, theta), map.states.curvature(HERE, step.theta)
+    t, c0, c1 = np.hypot(step.x - x, step.y - y), np.cos(phi), np.cos(step.eta)
+    a = t * k0 + c0
+    formula = (
+        -np.moveaxis(np.array([[a, t], [lam * (k1 * a + k0 * c1), lam * (k1 * t + c1)]]), -1, 0) / c1[:, None, None]
+    )
+    size = np.max(np.abs(formula)) ** 2
+
+    assert np.allclose(map.derivative(theta, phi), formula, rtol=1e-10, atol=1e-12 * size)

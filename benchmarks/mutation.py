@@ -26,7 +26,7 @@ from fnmatch import fnmatch
 from os import waitpid
 
 from mutation_mutants import ROOT, STOREYS, Mutant, mutants
-from mutation_page import write_page
+from mutation_page import reason, write_page
 from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, reached, warm
 
 STATE = ROOT / "report" / "mutation"
@@ -108,14 +108,15 @@ def covering(paths: list[str]) -> None:
 
 
 def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[Mutant]:
-    """The mutants of a module that are still to be asked."""
+    """The mutants of a module that are still to be asked; again only those for whose survival no reason is given."""
     found = mutants(path)
     if args.sample < 1:
         found = [mutant for mutant in found if random.Random(f"{args.seed} {mutant.key}").random() < args.sample]
     if not args.again:
         return [mutant for mutant in found if mutant.key not in known]
     again = ("survived", "uncovered", "timeout", "killed") if args.again == "all" else (args.again,)
-    return [mutant for mutant in found if mutant.key in known and known[mutant.key]["status"] in again]
+    open_ones = [mutant for mutant in found if mutant.key in known and known[mutant.key]["status"] in again]
+    return [mutant for mutant in open_ones if not reason(path, mutant.old, mutant.new)]
 
 
 def run_module(path: str, chosen: list[Mutant], plan: Plan, budget: float, near: bool) -> None:

@@ -7,6 +7,7 @@ survivors it explains.
 
 import json
 import tomllib
+from functools import cache
 from importlib.metadata import version
 from math import sqrt
 
@@ -53,14 +54,26 @@ def killed(entry: dict) -> int:
     return entry.get("killed", 0) + entry.get("timeout", 0)
 
 
+@cache
+def given() -> list[dict]:
+    """The entries of the file with the reasons."""
+    return tomllib.loads(REASONS.read_text()).get("reason", [])
+
+
+def reason(path: str, before: str, after: str) -> str:
+    """Why this mutant survives; empty when nobody has said."""
+    for entry in given():
+        named = f"{before} -> {after}" in entry.get("changes", []) or before in entry.get("lines", [])
+        if named and entry["module"] == path:
+            return entry["why"].strip()
+    return ""
+
+
 def reasons(path: str, alive: list[dict]) -> dict[str, list[dict]]:
     """The survivors of a module under the reasons given for them."""
-    given = [entry for entry in tomllib.loads(REASONS.read_text()).get("reason", []) if entry["module"] == path]
     found: dict[str, list[dict]] = {}
     for mutant in alive:
-        before, change = mutant["before"], f"{mutant['before']} -> {mutant['after']}"
-        why = [r["why"] for r in given if change in r.get("changes", []) or before in r.get("lines", [])]
-        found.setdefault(why[0].strip() if why else OPEN, []).append(mutant)
+        found.setdefault(reason(path, mutant["before"], mutant["after"]) or OPEN, []).append(mutant)
     return found
 
 

@@ -169,3 +169,27 @@ def test_an_order_that_does_not_exist_is_refused_with_those_that_do():
 def test_no_letter_of_the_shape_is_lost():
     assert alpha in chord_angle(egg(3), order=1).arguments
     assert symbols("x") not in chord_angle(egg(3), order=1).arguments
+
+
+def test_components_are_the_first_ones_unless_others_are_named():
+    assert chord_angle(cuspless) == chord_angle(cuspless, 0, 0, 1)
+    assert chord_kernel(cuspless) == chord_kernel(cuspless, 0, 0, 1)
+    assert collision_rule(cuspless) == collision_rule(cuspless, (0, 0, 0), 1)
+    assert collision_kernel(cuspless) == collision_kernel(cuspless, (0, 0, 0))
+
+
+@pytest.mark.parametrize("table", [ellipse, egg(3)], ids=lambda table: table.name)
+def test_the_derivatives_of_the_rule_are_those_of_its_residual(table):
+    """At rational parameters, in 40 digits, by SymPy's differentiation of the whole residual."""
+    staged = collision_rule(table)
+    values = dict(
+        zip(staged.arguments, [Rational(-3, 2), Rational(1, 5), Rational(7, 4), Rational(2, 3)], strict=False)
+    )
+    (shape,) = (p.symbol for p in table.shapes)
+    values[shape] = SHAPES[table.name][shape.name]
+    residual = staged.whole("residual")
+    names = ["d_previous", "d_here", "d_next", "d_lam", f"d_{shape}"]
+
+    for name, letter in zip(names, (*staged.arguments[:4], shape), strict=True):
+        difference = staged.whole(name).subs(values).evalf(40) - diff(residual, letter).subs(values).evalf(40)
+        assert abs(difference) < Rational(1, 10**35)

@@ -39,6 +39,14 @@ def test_area_contracts_by_lambda_times_the_ratio_of_cosines():
     assert simplify(determinant() - lam * cos_phi0 / cos_eta1) == 0
 
 
+def test_birkhoff_coordinates_scale_the_second_row_and_the_second_column():
+    plain = Matrix([[2, 3], [5, 7]])
+
+    assert birkhoff_matrix(plain, cos_phi0, cos_phi1) == Matrix(
+        [[2, 3 / cos_phi0], [5 * cos_phi1, 7 * cos_phi1 / cos_phi0]]
+    )
+
+
 def test_birkhoff_area_contracts_by_lambda_times_the_cosines_of_the_same_bounce():
     D = birkhoff_matrix(derivative_matrix(), cos_phi0, cos_phi1)
 

@@ -132,6 +132,33 @@ def test_what_is_no_formula_is_named_with_its_place(text, complaint):
     assert complaint in str(caught.value)
 
 
+def test_the_last_formula_within_each_limit_is_read():
+    assert parse("1" + " " * 1999) == 1
+    assert parse("(" * 59 + "1" + ")" * 59) == 1
+    assert parse("1*" * 300 + "(" * 59 + "1" + ")" * 59) == 1  # what is closed no longer counts
+    assert parse("1e400") == S(10) ** 400 == 1 / parse("1e-400")
+    assert parse("9" * 400) == S(10) ** 400 - 1
+
+
+@pytest.mark.parametrize(
+    "text", ["1" + " " * 2000, "(" * 60 + "1" + ")" * 60, "1*" * 300 + "(" * 60 + "1" + ")" * 60, "1e-401", "0" * 401]
+)
+def test_the_first_formula_beyond_each_limit_is_refused(text):
+    with pytest.raises(ValueError, match=r"2001 characters|nested too deeply|too long a number"):
+        parse(text)
+
+
+def test_what_is_shown_of_a_text_is_at_most_forty_characters():
+    for length, shown in ((40, "a" * 40), (41, "a" * 37 + "...")):
+        with pytest.raises(ValueError, match=f"^'{shown}' at column 1 is unknown"):
+            parse("a" * length)
+
+
+def test_a_refusal_says_what_would_be_accepted():
+    with pytest.raises(ValueError, match=r"accepted: an integer or half-integer between -64 and 64$"):
+        parse("(theta**64)**2")
+
+
 def test_only_the_given_names_are_known():
     x = Symbol("x")
 

@@ -11,8 +11,10 @@ from sympy import N, Rational, sqrt
 from numeric import PinballMap, Status
 from symbolic.cycles import trace_and_determinant
 from symbolic.named_cycles import egg_diameter, minor_axis
+from symbolic.polygons import saddle_node
 from symbolic.symbols import a, alpha, lam
 from verification.arithmetic import multiprecision
+from verification.certificates.everywhere import trace_and_determinant as monodromy
 from verification.extremes import cases, near, page, products
 from verification.extremes.cases import CASES
 from verification.extremes.catalogue import rows
@@ -21,6 +23,7 @@ from verification.extremes.kernels import KERNELS, LONGDOUBLE, TEXTBOOK
 from verification.extremes.stability import SMALL, Measured, Stability
 from verification.shooting.condition import Conditioning
 from verification.shooting.newton import refined
+from verification.shooting.problem import Linearised, Rows
 from verification.shooting.small import corner, corner_angle
 
 DOCS = Path(page.__file__).parent.parent.parent / "docs"
@@ -141,6 +144,18 @@ def test_the_multipliers_are_within_1e_12_of_plus_and_minus_one():
         mu = (trace + sign * sqrt(trace**2 - 4 * det)) / 2
 
         assert 0 < abs(mu - sign) < 1e-12
+
+
+def test_the_triangle_next_to_its_fold_has_a_multiplier_within_1e_12_of_one():
+    problem, start = near.touching(near.FOLD_GAP)
+    z = near.solution(problem, start)
+    context = type(z[0]).context
+    trace, det = monodromy(Linearised(Rows(problem, multiprecision(context)), z).plain)
+    shape = dict(problem.table.fixed)["alpha"]
+    fold = N(saddle_node().subs(alpha, shape) - problem.lam, 60)
+
+    assert 0 < abs((trace + context.sqrt(trace**2 - 4 * det)) / 2 - 1) < 1e-12
+    assert abs(fold + near.FOLD_GAP) < 1e-50
 
 
 def test_no_forward_error_exceeds_condition_times_backward(found):

@@ -21,6 +21,7 @@ from verification.shooting.problem import Problem
 from verification.shooting.small import corner
 
 FINE = near.nearly_round(near.FINE_GAP)
+ONCE = near.nearly_flipped(near.FLIP_GAP, twice=False)
 TWICE = near.nearly_flipped(near.FLIP_GAP, twice=True)
 SOLVED = [near.folded(4), near.folded(None), near.nearly_round(near.COARSE_GAP), near.laddered(4)]
 
@@ -52,7 +53,9 @@ def test_the_ascent_finds_the_largest_row_sum_of_a_matrix_without_signs(matrix):
     assert found == pytest.approx(np.abs(matrix).sum(axis=1).max(), rel=1e-14)  # the first step of the ascent is exact
 
 
-@pytest.mark.parametrize(("problem", "start"), [*SOLVED, FINE, near.nearly_flipped(near.FLIP_GAP, twice=False)])
+@pytest.mark.parametrize(
+    ("problem", "start"), [*SOLVED, FINE, near.nearly_flipped(near.FLIP_GAP, twice=False), near.touching(near.FOLD_GAP)]
+)
 def test_the_digits_called_sure_are_right(problem, start):
     found, truth = in_floats(problem, start), near.solution(problem, start)
 
@@ -68,6 +71,16 @@ def test_next_to_a_fold_newtons_method_names_its_condition_and_more_digits_cure_
     assert sharp.conditioning is Conditioning.SOUND
     assert sharp.digits_sure == 50
     assert sharp.condition == pytest.approx(rough.condition, rel=1e-3)
+
+
+@pytest.mark.parametrize("aside", [0, 1e-8, 1e-6, 1e-4, 1e-2])
+def test_at_a_fold_newtons_method_names_it_from_wherever_it_comes(aside):
+    """There the solution found is off by 1e-8, and its condition number is about one over that: half of the digits."""
+    problem, start = near.touching(near.FOLD_GAP)
+    found = in_floats(problem, [x + aside for x in start])
+
+    assert found.conditioning is Conditioning.SENSITIVE
+    assert max(abs(x - y) for x, y in zip(found.z, start, strict=True)) < 10.0**-found.digits_sure
 
 
 def test_the_fold_itself_is_well_conditioned_where_its_cycle_is_singular():

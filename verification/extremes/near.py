@@ -12,7 +12,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from sympy import Expr, N, Rational, acos, pi
+from sympy import Expr, N, Rational, acos, pi, sqrt, tan
 
 from symbolic import polygons, tables
 from symbolic.symbols import alpha as alpha_letter
@@ -67,6 +67,16 @@ def folded(ulps: int | None) -> Sought:
     lam = exact + ulps * float(np.spacing(exact))
     aside = np.sqrt(ulps * float(np.spacing(exact)))
     return Problem(table, (0, 0, 0), lam=Rational(lam)), [x + aside for x in start]
+
+
+def touching(gap: Expr) -> Sought:
+    """The egg's triangle at a contraction that is a double, the shape such that its fold lies `gap` below."""
+    lam = Rational(float(N(polygons.saddle_node().subs(alpha_letter, Rational(2, 25)), 30)))
+    tilt = pi / 6 * (1 - lam + gap) / (1 + lam - gap)  # the closed form of the fold, solved for the shape
+    shape = Rational(str(N(tan(tilt) / sqrt(9 + tan(tilt) ** 2), 60)))
+    turn = -acos(-shape) / 3
+    start = [float(N(turn + 2 * pi * k / 3, 30)) + float(sqrt(gap)) for k in range(3)]
+    return Problem(tables.egg(3).at(alpha=shape), (0, 0, 0), lam=lam), start
 
 
 def laddered(power: int) -> Sought:
@@ -127,7 +137,7 @@ def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
         except ZeroDivisionError:
             break
         size = max(abs(x) for x in correction)
-        if size < 1e-6 and size >= last / 2:
+        if size < 1e-6 and size >= last:  # at a fold they halve, which is still shrinking
             break
         z, last = [x - d for x, d in zip(z, correction, strict=True)], size
     return Solution(problem, z, int((bits - 1) * log10(2)), ())
@@ -146,12 +156,13 @@ def norm_of_inverse(problem: Problem, arithmetic: Any, z: list[Any], context: An
 
 ONE, MINUS, LONG = "Multipliers next to +1", "Multipliers next to -1", "Long cycles"
 COARSE_GAP, FINE_GAP = Rational(1, 10**6), Rational(1, 2 * 10**13)
-FLIP_GAP = Rational(1, 10**14)
+FLIP_GAP, FOLD_GAP = Rational(1, 10**14), Rational(1, 10**27)
 CYCLES = (
     Cycle("short axis, a = 1 + 1e-6: 1.6e-5 from +1", ONE, lambda: nearly_round(COARSE_GAP)),
     Cycle("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP)),
     Cycle("triangle, 1e6 ulp above its fold", ONE, lambda: folded(10**6)),
     Cycle("triangle, 4 ulp above its fold", ONE, lambda: folded(4)),
+    Cycle("triangle, lam 1e-27 above its fold: 9e-13 from +1", ONE, lambda: touching(FOLD_GAP)),
     Cycle("the fold itself, lam unknown", ONE, lambda: folded(None)),
     Cycle(
         "egg's diameter, alpha 1e-14 from its flip: 8e-13 from -1", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=False)

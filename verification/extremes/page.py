@@ -13,7 +13,7 @@ from typing import Any
 
 from verification.extremes.catalogue import Group
 from verification.extremes.kernels import KERNELS, TEXTBOOK
-from verification.extremes.stability import LOST, SMALL, Finding, Stability
+from verification.extremes.stability import SMALL, Finding, Stability
 
 FLIGHTS = tuple(kernel.name for kernel in KERNELS)
 RECORD, LONG = (Path(__file__).parent / name for name in ("recorded.json", "long.json"))
@@ -193,17 +193,18 @@ With data `x`, truth `f(x)` and answer `y`: the **forward error** is `|y - f(x)|
 smallest `(dx, dy)` with `y + dy = f(x + dx)`, to first order (Higham's mixed error); the **condition number** is
 the largest factor between them, from difference quotients of the truth. Errors are absolute, in units of 2^-52
 (80-bit floats: 2^-63), of the landing's parameter and the direction of flight. A method is called stable when no
-backward error is above {SMALL}, sensitive when the condition number is above {LOST:g} besides. Each line shows the
-worst start of its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run the same step; `textbook
-discriminant` is the quadratic formula with nothing divided out.
+backward error is above {SMALL}, sensitive when such an error costs half of 15 digits besides: from a condition number
+of 9e+06 on. Each line shows the worst start of its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run
+the same step; `textbook discriminant` is the quadratic formula with nothing divided out.
 
 **What kernels say of themselves.** A ball that stops is named by the kernel (`PinballMap.step(...).status`). A cycle
 found by Newton's method is a `Solution` with its `condition` number (Higham's estimate of the largest row sum of the
 inverse, from the factors, in 0.2 ms when it is asked for), the `digits_sure` that it leaves and a `conditioning`:
 SOUND, SENSITIVE next to a fold or a flip, REPEATED for a shorter cycle run through several times; where float64 does
 not settle the error carries the same. `pinball cycles` prints it. The verdicts of cycles below are read from there; a
-test holds them to what 100 digits measure. A contraction that is a double comes no nearer to the triangle's fold than
-a few 1e-8 in the multiplier; the ellipse and the egg come nearer by their shape.
+test holds them to what 100 digits measure. `pinball follow` needs no such word: it goes by arc length, in a system
+that is regular at a fold. A contraction that is a double comes no nearer to the triangle's fold than a few 1e-8 in the
+multiplier; nearer ones are reached by the shape, given exactly.
 
 **JOIN, CUSP and GRAZING are decided on the landing that a kernel computes**: JOIN within 2^-50 of the tangent of half
 the parameter, or of the height times the start's `cos(theta/2)`, that is 2 or up to 4 units of position. The computed

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from enum import Enum
 from math import inf, isfinite
 
-from verification.shooting.condition import Conditioning
+from verification.shooting.condition import ROUNDINGS, Conditioning, costs_half
 
-SMALL = 16  # units: a dozen roundings, each of them explained by the data
-LOST = 1e8  # half of the digits of a float64
+SMALL = ROUNDINGS  # units: a dozen roundings, each of them explained by the data
+UNIT, DIGITS = 2.0**-52, 15  # of a float64
 
 
 class Stability(Enum):
@@ -49,7 +49,7 @@ class Measured:
         """
         if not self.backward <= SMALL:
             return Stability.UNSTABLE
-        return Stability.SENSITIVE if self.condition > LOST else Stability.STABLE
+        return Stability.SENSITIVE if costs_half(self.condition, UNIT, DIGITS) else Stability.STABLE
 
 
 WRONG = Measured(inf, inf, 1.0)  # another component, or no number at all

@@ -16,6 +16,7 @@ from verification.arithmetic import Arithmetic
 Vector = list[Any]
 Solve = Callable[[Vector], Vector]
 ASCENTS = 4  # vectors tried after the first; two are enough nearly always
+ROUNDINGS = 16  # of a residual
 
 
 class Conditioning(Enum):
@@ -99,6 +100,18 @@ def digits_left(condition: float, unit: float) -> int:
     (7, 15, 0)
     """
     return max(0, int(-log10(condition * unit))) if isfinite(condition) else 0
+
+
+def costs_half(condition: float, unit: float, digits: int) -> bool:
+    """Does a residual of some units of rounding leave less than half of the `digits`?
+
+    At a fold it does, whatever is computed there: off by `h`, of the size of the root of the residual, the condition
+    number is of the size of `1/h`.
+
+    >>> costs_half(8e6, 2.0**-52, 15), costs_half(1e7, 2.0**-52, 15), costs_half(1e7, 1e-65, 50)
+    (False, True, False)
+    """
+    return condition * ROUNDINGS * unit > 10 ** (-digits / 2)
 
 
 def unit(n: int, j: int) -> Vector:

@@ -13,14 +13,13 @@ from typing import Any, Protocol
 import mpmath
 
 from verification.arithmetic import FLOAT64, Arithmetic, bits_of, multiprecision
-from verification.shooting.condition import Conditioning, Cyclic, digits_left, norm_of_inverse
+from verification.shooting.condition import ROUNDINGS, Conditioning, Cyclic, costs_half, digits_left, norm_of_inverse
 
 GUARD = 15  # decimal digits beyond those asked for
 START = 16  # digits of the first step in mpmath
 DIGITS = 15  # of a float64, which every number of so many digits survives
 ATTEMPTS = 6  # steps with the same number of digits
 EPS = 2.0**-52
-ROUNDINGS = 16  # of a residual
 NEAR = 1e-2  # radians: bounces farther apart are not the same, whatever the condition
 TOLD = 1e12  # the largest condition number that float64 can be trusted to tell
 
@@ -85,7 +84,7 @@ class Solution:
         """The condition number in a word, with advice as its value."""
         if self.shorter:
             return Conditioning.REPEATED
-        few = self.condition * self.unit > 10 ** (-self.digits / 2)
+        few = costs_half(self.condition, self.unit, self.digits)
         return Conditioning.SENSITIVE if few else Conditioning.SOUND
 
     @property

@@ -52,6 +52,18 @@ class Endless(Drift):
     stops = False
 
 
+class Silent(Endless):
+    """A family that has outcomes, but none under the law of the run, as ellipses at lam = 0."""
+
+    name = "silent"
+    stops = True
+
+    def fly(self, ops, shape, law, position, exit):
+        landing = super().fly(ops, shape, law, position, exit)
+        landing.code = None
+        return landing
+
+
 @pytest.fixture(params=[True, False], ids=["lanes", "arrays"])
 def ways(request):
     """An engine, of lanes or arrays, eight to a block."""
@@ -94,6 +106,21 @@ def test_every_bounce_of_every_ball_is_recorded(ways, family, bounces, threads):
             assert (result.rows["lost"][i], result.rows["code"][i]) == (lost, code)
     if family.stops and bounces == 7:
         assert set(result.rows["lost"]) > {0.0, 7.0}
+
+
+def test_rows_of_outcomes_stay_empty_where_the_law_has_none(ways):
+    silent, endless = (ways(family).run(Question("pinball"), START, LAM, [0.5], 7) for family in (Silent(), Endless()))
+
+    assert not silent.rows["code"].any()
+    assert not silent.rows["lost"].any()
+    assert all(np.array_equal(silent.rows[name], row) for name, row in endless.rows.items())
+
+
+def test_a_state_of_one_row_is_a_state(ways):
+    result = ways(Endless()).run(Question("slap", record=True), START[:1], 0 * LAM, [0.5], 2)
+
+    assert result.record.shape == (2, 1, COUNT)
+    assert np.array_equal(result.rows["x"], START[0])
 
 
 def test_a_run_without_a_record_ends_at_the_same_place(ways):

@@ -1,5 +1,7 @@
 """Any table: the general path, on its own tables and against the special ones."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -148,3 +150,104 @@ def test_landings_on_the_cut_between_two_pieces_are_found():
     assert [status.name for status in step.status] == ["REGULAR"] * 4
     assert np.allclose(step.x, [-2, 2, 2, 0], rtol=0, atol=1e-15)
     assert ExactMap(map, 30).bounce(ExactMap(map, 30).ball(0, 0, 0)).code == 0
+
+
+WAISTED = tables.polar(1 + cos(2 * theta) / 2, name="waisted")
+SKEWED = tables.polar(1 + cos(2 * theta) / 2 + sin(3 * theta) / 5, name="skewed")
+INSIDE = {
+    "wavy": lambda x, y: 1 + np.cos(5 * np.arctan2(y, x)) / 10 - np.hypot(x, y),
+    "waisted": lambda x, y: 1 + np.cos(2 * np.arctan2(y, x)) / 2 - np.hypot(x, y),
+    "rooted": lambda x, y: np.sqrt(1 + np.cos(np.arctan2(y, x)) / 3) - np.hypot(x, y),
+    "stadium": lambda x, y: 1 - np.hypot(np.maximum(abs(x) - 1, 0), y),
+}
+
+
+def balls(map, count, seed=6, steepest=1.4):
+    """Random balls on all components."""
+    rng = np.random.default_rng(seed)
+    where = rng.integers(0, len(map.states.ends), count)
+    ends = np.array(map.states.ends)[where]
+    at = ends[:, 0] + np.ptp(ends, axis=1) * rng.uniform(0.002, 0.998, count)
+    return where, at, rng.uniform(-steepest, steepest, count)
+
+
+@pytest.mark.parametrize("table", [WAVY, WAISTED, ROOTED, STADIUM], ids=lambda table: table.name)
+def test_flights_are_straight_inside_and_reflected_by_the_law(table):
+    map = PinballMap(table, lam=0.6, kernels=False)
+    where, at, phi = balls(map, 150)
+    step, (x, y) = map.step(at, phi, where), map.states.point(where, at)
+    vx, vy = map.states.direction(where, at, phi)
+    dx, dy = step.x - x, step.y - y
+    tx, ty = map.states.tangent(step.component, step.theta)
+    eta = -np.arctan2(vx * tx + vy * ty, vx * ty - vy * tx)
+    share = np.linspace(0.01, 0.99, 99)[:, None]
+
+    assert not step.code.any()
+    assert np.max(np.abs(dx * vy - dy * vx)) <= 64 * 2.0**-52
+    assert np.min(dx * vx + dy * vy) > 0
+    assert np.min(INSIDE[table.name](x + share * dx, y + share * dy)) > 0
+    assert np.max(np.abs(INSIDE[table.name](step.x, step.y))) <= 64 * 2.0**-52
+    assert np.max(np.abs(step.phi + 0.6 * eta) * np.cos(eta)) <= 1e-13
+
+
+@pytest.mark.parametrize("lam", [0, 0.6])
+@pytest.mark.parametrize("table", [WAVY, STADIUM], ids=lambda table: table.name)
+def test_the_derivative_is_the_papers_matrix_on_any_table(table, lam):
+    map = PinballMap(table, lam=lam, kernels=False)
+    where, at, phi = balls(map, 40, steepest=1.0)
+    phi = phi * (lam > 0)
+    step, (x, y) = map.at(lam=1).step(at, phi, where), map.states.point(where, at)
+    k0, k1 = map.states.curvature(where, at), map.states.curvature(step.component, step.theta)
+    t, c0, c1 = np.hypot(step.x - x, step.y - y), np.cos(phi), np.cos(step.eta)
+    a = t * k0 + c0
+    formula = (
+        -np.moveaxis(np.array([[a, t], [lam * (k1 * a + k0 * c1), lam * (k1 * t + c1)]]), -1, 0) / c1[:, None, None]
+    )
+    size = np.max(np.abs(formula), axis=(1, 2))[:, None, None] ** 2 + 1
+
+    assert np.max(np.abs(map.derivative(at, phi, where) - formula) / size) <= 1e-12
+
+
+@pytest.mark.parametrize("table", [WAVY, WAISTED, SKEWED, STADIUM, ROOTED], ids=lambda table: table.name)
+def test_pieces_cover_the_boundary_and_turn_one_way_by_a_quarter_at_most(table):
+    map = PinballMap(table, kernels=False)
+    for component, (low, high) in enumerate(map.states.ends):
+        pieces = [(a, b) for index, a, b in map.family.pieces if index == component]
+        assert pieces[0][0] == low
+        assert high <= pieces[-1][1] <= high + 2.0**-46
+        assert all(one[1] == two[0] for one, two in pairwise(pieces))
+        assert len(pieces) <= 16  # ten inflections, and six quarters beside them
+        for a, b in pieces:
+            at = np.linspace(a, b, 41)[1:-1]
+            _, _, dx, dy, ax, ay = map.states.curve(np.full(39, component), at)
+            turning, angle = dx * ay - dy * ax, np.unwrap(np.arctan2(dy, dx))
+            assert np.all(turning > -1e-12) or np.all(turning < 1e-12)
+            assert np.ptp(angle) <= np.pi / 2 + 1e-2
+
+
+@pytest.mark.parametrize("where", [0, 1, 2, 3])
+def test_on_any_table_a_landing_within_rounding_of_a_join_is_one(where):
+    """From the middle of each side of the stadium to each of its joins, and past them by 1e-9 on either side."""
+    map = PinballMap(STADIUM, lam=0.5, kernels=False)
+    (x, y) = (float(a[0]) for a in map.states.point(np.array([where]), np.array([0.1])))
+    for jx, jy in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+        if abs(jy - y) < 0.5 and where in (1, 3):
+            continue  # along the side
+        aim = np.arctan2(jy - y, jx - x)
+        phi = float(map.states.angle_to_normal(np.array([where]), np.array([0.1]), np.cos(aim), np.sin(aim))[0])
+        near = phi + np.arange(-9, 10) * 2.0**-53
+        found = map.step(np.full(2, 0.1), phi + np.array([1e-9, -1e-9]), where)
+
+        assert 1 in map.step(np.full(19, 0.1), near, where).code
+        assert found.code.tolist() == [0, 0]
+        assert found.component[0] != found.component[1]
+
+
+def test_slap_maps_of_any_table_leave_along_the_unit_normal():
+    map = PinballMap(WAVY, lam=0, kernels=False)
+    _, at, _ = balls(map, 30)
+    own = map.states.enter(np.zeros(30, dtype=int), at, 0 * at, "slap")
+    nx, ny = map.family.slapped(map.states.ops, map.shape, own)
+    tx, ty = map.states.tangent(np.zeros(30, dtype=int), at)
+
+    assert np.max(np.abs([nx + ty, ny - tx])) <= 4 * 2.0**-52

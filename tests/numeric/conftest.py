@@ -12,6 +12,7 @@ os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
 from numeric.question import Question
+from numeric.readers.arrays import Arrays
 from numeric.readers.scalars import Scalars
 
 SHAPES = {
@@ -124,6 +125,32 @@ def rounding(map, where, theta, phi):
 def rounding_():
     """The largest errors of position and of direction."""
     return rounding
+
+
+class Watching(Arrays):
+    """Arrays that keep the masks of the branches that are rarely taken."""
+
+    def __init__(self):
+        self.masks = []
+
+    def when(self, mask, values, changed):
+        self.masks.append(np.array(mask))
+        return super().when(mask, values, changed)
+
+
+@pytest.fixture
+def unsettled():
+    """The share of random balls whose flight needs the bracket, after the steps that every flight takes."""
+
+    def share(map, slap=False, count=20_000):
+        component, theta, phi = starts(map, count, seed=1)
+        own = map.states.enter(component, theta, phi * (not slap), "pinball")
+        ops, at = Watching(), len(map.family.position)
+        with np.errstate(all="ignore"):
+            map.family.fly(ops, map.shape, "pinball", own[:at], own[at:])
+        return float(np.mean(ops.masks[0]))
+
+    return share
 
 
 @pytest.fixture

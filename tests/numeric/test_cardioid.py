@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
-from numeric import PinballMap
+from numeric import PinballMap, Status
+from numeric.families.cardioid import Cardioid
+from numeric.readers.arrays import Arrays
+from numeric.roots import value_and_slope
 
 ARC = np.zeros(24, dtype=np.int64)
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)
@@ -69,3 +72,55 @@ def test_a_landing_within_rounding_of_the_cusp_is_the_cusp():
 
     assert step.code.tolist() == [2, 2, 0, 0, 2, 0]
     assert np.all(np.abs(step.theta[[2, 3, 5]]) > np.pi - 0.1)
+
+
+def test_few_flights_need_the_bracket(unsettled):
+    """Of 40,000 random balls 1.2 % do, of those that leave along the normal 3.5 %; another start makes it more."""
+    assert unsettled(cardioid(0.5)) <= 0.014
+    assert unsettled(cardioid(0.5), slap=True) <= 0.038
+
+
+def cubics(count=4000):
+    """Random balls and the cubic of each, with its interval, as `fly` asks for them."""
+    rng = np.random.default_rng(8)
+    theta, phi = rng.uniform(-3.1, 3.1, count), rng.uniform(-1.55, 1.55, count)
+    family, sigma = Cardioid(), (np.cos(theta / 2), np.sin(theta / 2))
+    leaving = np.cos(phi), np.sin(phi)
+    cubic, Q, k, back = family.cubic(Arrays(), sigma, leaving)
+    mirrored = np.sign(k)
+    ahead = 1 - back[0], -sigma[0] * back[1] * mirrored
+    start, low, accepts = family.interval(Arrays(), cubic, Q, leaving[0], ahead)
+    psi = np.remainder(1.5 * theta + np.pi - phi + np.pi, 2 * np.pi) - np.pi  # the direction of flight
+    return cubic, Q, start, low(), accepts, sigma[0], psi * mirrored, theta * mirrored
+
+
+def test_the_cubic_changes_its_sign_on_the_interval():
+    cubic, Q, start, low, _, _, _, _ = cubics()
+
+    assert np.all(low < Q)
+    assert np.all(start < Q)
+    assert np.all(value_and_slope(cubic, low)[0] < 0)
+    assert np.all(value_and_slope(cubic, Q)[0] > 0)
+
+
+def test_the_interval_ends_at_the_direction_of_flight_unless_the_ball_crosses_the_axis_to_get_there():
+    _, Q, _, low, accepts, p, psi, theta = cubics()
+    before = psi < theta - 1e-9
+    bound = p * np.tan(psi / 2)
+
+    assert 0.3 < np.mean(before) < 0.9
+    assert np.allclose(low[before], bound[before], rtol=1e-9, atol=1e-9)
+    assert np.all(low[~before] <= Q[~before] - 8)
+    assert np.all(accepts(Q)[before])
+    assert np.array_equal(accepts(bound + 1e-6)[before], np.ones(before.sum(), dtype=bool))
+    assert not np.any(accepts(bound - 1e-6)[before])
+    assert np.all(accepts(-1e9 + 0 * Q)[psi > theta + 1e-9])
+
+
+@pytest.mark.parametrize("theta", [0.3, -1.0])
+def test_outcomes_have_their_names(theta):
+    map = cardioid(0.9)
+    step = map.step(np.full(4, theta), [np.nextafter(np.pi / 2, 0), -np.nextafter(np.pi / 2, 0), theta / 2, 1.5])
+
+    assert list(step.status) == [Status.GRAZING, Status.GRAZING, Status.CUSP, Status.REGULAR]
+    assert map.at(lam=0).step(theta, 0.0).status == Status.REGULAR

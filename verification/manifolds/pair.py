@@ -77,12 +77,12 @@ class Near:
 
 @dataclass(frozen=True)
 class Scale:
-    """`unit` is the length of `z = 1` along the eigenvector whose entry `chief` is 1; `factor` is the multiplier."""
+    """`unit` is the length of `z = 1` along the eigenvector whose entry `chief` is 1; `rough` the series in float64."""
 
     unstable: bool
     unit: float
     chief: int
-    factor: float
+    rough: Local
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def scale(orbit: Orbit, map: Recurrence, letter: float, unstable: bool, outer: i
     """The unit with which the disc of radius `outer` moves bounces by `REACH`, from the series in float64."""
     made = local(saddle(orbit, map.over(FLOAT64), letter), unstable, ROUGH)
     first = [abs(c[1]) for c in made.coefficients]
-    return Scale(unstable, _reach(made) / outer, first.index(max(first)), float(made.factor))
+    return Scale(unstable, _reach(made) / outer, first.index(max(first)), made)
 
 
 def _reach(made: Local) -> float:

@@ -20,9 +20,9 @@ from flint import arb, arb_mat
 
 from verification.arithmetic import FLOAT64, balls
 from verification.manifolds.enclosed import TooWideError
+from verification.manifolds.flight import Flight, bounce, flight
 from verification.manifolds.pair import Near, Pair, Precision, pair, scale
 from verification.manifolds.recurrence import Recurrence
-from verification.manifolds.series import horner
 from verification.manifolds.tangency import Contact, rounds
 from verification.shooting.jets import Jet
 
@@ -91,29 +91,24 @@ class Touching:
             unit = scale(orbit, map, float(letter), unstable, precision.outer)
             self.pairs.append(pair(orbit, map, letter, unit, precision))
         out, into = (made.scale for made in self.pairs)
-        z, w = contact.z / out.unit, contact.end / into.unit
-        early, late = rounds(z / LARGEST, out.factor), rounds(w / LARGEST, 1 / into.factor)
+        near = contact.z / out.unit / LARGEST, contact.end / into.unit / LARGEST
+        early, late = rounds(near[0], float(out.rough.factor)), rounds(near[1], 1 / float(into.rough.factor))
         self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
         self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
-        self.turns, self.start = self._flown(map.over(FLOAT64), z / out.factor**early, w * into.factor**late)
+        self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 
-    def _flown(self, map: Recurrence, z: float, w: float) -> tuple[list[int], Point]:
-        """An orbit in float64 with its vector, and the turns of the table at its end."""
-        flight, ends = ([self._rough(k, i, x) for i in (0, 1)] for k, x in ((0, z), (1, w)))
-        for _ in range(self.bounces):
-            flight.append(map.lifted.following(flight[-2], flight[-1], float(self.letter)))
+    def _from(self, flight: Flight) -> tuple[list[int], Point]:
+        """The turns of the table at the end of an orbit, and the point from which Newton's method starts."""
+        map, units = self.map, [made.scale.unit for made in self.pairs]
+        ends = [bounce(self.pairs[1].scale.rough, j, flight.w) for j in (0, 1)]
         unit = 2 * math.pi / map.turn if map.turn else math.inf
-        apart = [self.sign * x.c[0] - end.c[0] for x, end in zip(flight[-2:], ends, strict=True)]
+        apart = [self.sign * x.c[0] - end.c[0] for x, end in zip(flight.bounces[-2:], ends, strict=True)]
         turns = [round(d / unit) for d in apart]
         if map.turn and (turns[1] - turns[0]) % map.turn:
             raise TooWideError("exists", "the orbit does not end near an image of the saddle")
-        along = [1.0, *(x.c[1] for x in flight), self.sign * flight[-2].c[1] / ends[0].c[1]]
-        orbit = [z, *(x.c[0] for x in flight), w]
+        along = [1.0, *(units[0] * x.c[1] for x in flight.bounces), units[0] / units[1] * flight.w.c[1]]
+        orbit = [flight.z / units[0], *(x.c[0] for x in flight.bounces), flight.w.c[0] / units[1]]
         return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.letter)
-
-    def _rough(self, which: int, i: int, z: float) -> Jet:
-        found: Jet = horner([float(c) for c in self.pairs[which].places[i]], Jet(z, 1.0))
-        return found
 
     def linear(self, at: Point) -> Linear:
         """The equations at a point whose letter is the middle one, or over a box around it."""

@@ -243,7 +243,8 @@ def by_qr(step, derivative, ball, bounces):
     Q, sums = np.eye(2), np.zeros(2)
     for _ in range(bounces):
         Q, R = np.linalg.qr(derivative(theta, phi) @ Q)
-        sums += np.log(np.abs(np.diag(R)))
+        with np.errstate(divide="ignore"):  # at lam = 0 the other exponent is minus infinity
+            sums += np.log(np.abs(np.diag(R)))
         landed = step(theta, phi)
         theta, phi = float(landed.theta), float(landed.phi)
     return float(np.max(sums)) / bounces

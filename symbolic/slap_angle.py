@@ -4,7 +4,7 @@ In `b = Theta/2` of the landing point and `theta/2` of the launching point the s
 
     2*(3 - q)/((1 + q)*(5 - 7*q)),     q = sin(b)/sqrt(1 + 7*cos(b)**2),
 
-at least 1.199 everywhere, though `T0'(s)` itself falls below 1. What follows bounds how the transfer
+at least 1.197 everywhere, though `T0'(s)` itself falls below 1. What follows bounds how the transfer
 operator acts on functions of bounded variation: `rate` is one over the slope, the upper half of the
 table lands at `-pi/2 < b < pi/4`, and `launch` is where it left. Not in the paper.
 """

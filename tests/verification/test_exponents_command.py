@@ -52,6 +52,20 @@ def test_the_slap_map_has_one_exponent(capsys):
     assert group["certified"]["nu_minus"] is None
 
 
+def test_the_chaotic_slap_map_of_the_cardioid_has_a_proved_exponent_and_the_sampled_one_agrees(capsys):
+    scene = ("lyapunov", "cardioid", "--lam", "0", "--certified")
+    status, document, text = run(capsys, *scene, "--bounces", "2000", "--orbits", "50", "--seed", "1")
+    (group,) = document["groups"]
+    proved = group["certified"]
+
+    assert status == 0
+    assert set(proved["checks"].values()) == {True}
+    assert float(proved["radius"]) < 1e-13
+    assert proved["nu_minus"] is None
+    assert abs(group["nu_plus"] - float(proved["nu_plus"])) < 4 * group["nu_plus_stderr"]
+    assert f"proved: {proved['nu_plus']}, -oo" in text
+
+
 def test_symmetric_attractors_are_one_result_and_different_ones_none(capsys):
     egg = ("lyapunov", "egg", "--alpha", "0.08", "--bounces", "300", "--orbits", "30", "--seed", "1")
     images = run(capsys, *egg, "--lam", "0.7")[1]

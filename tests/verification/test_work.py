@@ -20,6 +20,7 @@ from verification.work.catalogue import QUESTIONS, question
 from verification.work.choice import Entry, cheapest, crossovers, entries, table
 from verification.work.compare import moved
 from verification.work.elsewhere import available, sampled
+from verification.work.exponents import proved
 from verification.work.figure import drawn, height, image
 from verification.work.measure import measured
 from verification.work.orbit_choice import digits_lost, for_orbit
@@ -93,6 +94,19 @@ def test_the_usual_ways_agree_with_the_reference_as_far_as_doubles_let_them(name
     best = {row.method: row for row in sorted(rows, key=lambda row: -row.error)}
     assert best
     assert [f"{row.method} {row.setting}: {row.error}" for row in best.values() if not row.error < USUAL[name]] == []
+
+
+def test_the_exponent_of_chaos_is_proved_to_more_digits_than_a_million_bounces_give():
+    asked = question("exponent-chaos")
+    ladders = {"compiled kernel, error bar": (1_000_000,), "arb, certified": (4,)}
+    ways = tuple(replace(m, ladder=ladders[m.name]) for m in asked.methods if m.name in ladders)
+    bar, proof = measured(replace(asked, methods=ways, reference=lambda digits: [proved(10)]), runs=1, most_digits=16)
+
+    assert asked.certified
+    assert bar.error < 2 * bar.promise
+    assert bar.promise < Decimal("1e-3")
+    assert proof.kept is True
+    assert proof.proved
 
 
 def test_single_shooting_loses_the_long_unstable_cycle_and_the_chord_system_does_not():

@@ -21,6 +21,7 @@ from verification.certificates.taylor import Function, expanded
 
 LONGEST = 0.03  # of the stretches that get a series of their own
 NEARNESS = 0.1  # their length over the distance from the cusp, at most, where the rate is 0 and its logarithm is not
+SHARE = 0.35  # of a piece that a stretch or its launching points take up, at most
 OWN, BELOW, ABOVE = 0, -1, 1  # the function itself, and the two summands of the operator: signs of the landing
 
 
@@ -87,7 +88,14 @@ class Judge:
         return total + rest
 
     def _longest(self, low: arb) -> float:
-        return min(LONGEST, NEARNESS * float(arb.pi() / 2 - low))
+        """How long a stretch from `low` on should be, for its series to converge fast: a matter of precision only."""
+        ends = self.pieces.ends
+        limits = [LONGEST, NEARNESS * float(arb.pi() / 2 - low)]
+        launched = [self.branches(low * side) for side in (BELOW, ABOVE) if side == BELOW or low * 4 < arb.pi()]
+        for point, rate in ((low, arb(1)), *launched):
+            piece = self.pieces.met(point, point)[-1]
+            limits.append(SHARE * float((ends[piece + 1] - ends[piece]) / rate))
+        return min(limits)
 
     def _met(self, side: int, low: arb, high: arb) -> range:
         """The pieces that the launching points of a stretch meet."""

@@ -34,7 +34,7 @@ LONG = 10_000  # bounces of a transient, unless it is given
 )
 @click.option("--until-error", type=float, help="Go on, twice as long each time, until every error is at most this.")
 @click.option("--budget", type=click.IntRange(1), default=SIZE, show_default=True, help="Bounces of all balls, then.")
-@click.option("--certified", is_flag=True, help="Also the exponents of each cycle, proved, from its multipliers.")
+@click.option("--certified", is_flag=True, help="Also the proved ones: of cycles; of the cardioid's chaos at --lam 0.")
 @json_option
 def command(
     scene: Scene,
@@ -78,7 +78,9 @@ def command(
     if until_error is not None:
         document |= {"until_error": until_error, "reached": survey.ended == "error"}
     if certified:
-        certify(scene, survey, document)
+        with output.progress("Proving", 1) as step:
+            certify(scene, survey, document)
+            step("")
     output.write(document)
     show(output.console, document)
     if survey.ended == "interrupted":
@@ -106,12 +108,14 @@ def with_families(scene: Scene, map: "PinballMap", survey: "Survey") -> "Survey"
 
 
 def certify(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
-    """Adds the proved exponents of each cycle to its group, null where the proof failed."""
-    from verification.dynamics.certified_exponents import certified_exponents
+    """Adds the proved exponents of each cycle to its group, null where the proof failed; and those of chaos."""
+    from verification.dynamics.certified_exponents import certified_exponents, chaotic_exponents
 
     for one, described in zip(survey.groups, document["groups"], strict=True):
         if described.get("period") and one.attractor is not None:
             described["certified"] = certified_exponents(scene.table(), scene.contraction(), one.attractor.points)
+        elif described["kind"] == "chaotic" and (found := chaotic_exponents(scene.table(), scene.contraction())):
+            described["certified"] = found
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:

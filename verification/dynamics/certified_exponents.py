@@ -1,4 +1,4 @@
-"""Lyapunov exponents of a cycle, proved: the logarithms of its certified multipliers over its period."""
+"""Lyapunov exponents, proved: of a cycle, from its certified multipliers; of the cardioid's chaotic slap map."""
 
 from typing import Any
 
@@ -6,6 +6,7 @@ from flint import arb
 from sympy import Expr
 
 from symbolic.table import Table
+from symbolic.tables import cardioid
 from verification.arithmetic import bits_of, working
 from verification.balls import decimal
 from verification.dynamics.certified import DIGITS, certificate
@@ -56,3 +57,23 @@ def certified_exponents(table: Table, lam: Expr, near: Places, digits: int = DIG
         upper, radius = decimal(plus, digits)
         lower = decimal(minus, digits) if minus is not None else (None, radius)
     return {"nu_plus": upper, "nu_minus": lower[0], "radius": radius, "checks": dict(proof.checks)}
+
+
+def chaotic_exponents(table: Table, lam: Expr) -> dict[str, Any] | None:
+    """The exponents of almost every start, where chaos is proved to have them: the cardioid at `lam = 0`; else None.
+
+    The lower one is minus infinity, and null.
+
+    >>> from sympy import S
+    >>> chaotic_exponents(cardioid, S(1) / 2) is None  # no proof is known there
+    True
+    """
+    if table != cardioid or lam != 0:
+        return None
+    from verification.certificates.chaotic_exponent import slap_exponent
+
+    proof = slap_exponent()
+    if not proof.certified:
+        return None
+    value, radius = decimal(proof.value, DIGITS)
+    return {"nu_plus": value, "nu_minus": None, "radius": radius, "checks": dict(proof.checks)}

@@ -1,4 +1,4 @@
-"""A Lyapunov exponent, against collisions: of an attracting cycle, where it is proved, and of a chaotic attractor."""
+"""A Lyapunov exponent, against collisions: of an attracting cycle, and of a chaotic attractor; both are proved."""
 
 from functools import cache
 from typing import Any
@@ -11,6 +11,7 @@ from numeric.growth import Growth
 from numeric.sampling import interior_starts
 from verification.arithmetic import Arithmetic, balls, bits_of, working
 from verification.baselines import module
+from verification.certificates.chaotic_exponent import slap_exponent
 from verification.certificates.everywhere import trace_and_determinant
 from verification.dynamics.certified_exponents import exponents as enclosed_exponents
 from verification.dynamics.exponents import ALIGNED, Count
@@ -20,14 +21,13 @@ from verification.shooting.chain import Vector
 from verification.shooting.problem import Linearised, Problem, Rows
 from verification.work.cycles import EGG, HALF, first_exit, triangle_start, whole
 from verification.work.question import Claimed, Method, Question
-from verification.work.sought import Sought
+from verification.work.sought import Sought, to_digits
 
 FEW, MANY = (30, 300, 3_000), (100, 10_000, 1_000_000)
 ORBITS = 64
 EARLY = 1_000  # bounces before anything is counted
-LONG = 2_000  # orbits of the long run that stands for the truth of a chaotic attractor
-REFERENCE = 200_000  # bounces of each
-SURE = 4  # standard errors in the radius of that reference
+SHARP = 20  # digits of the density behind the proved exponent of chaos
+PROOFS = (4, 8, 12, 16)
 
 
 def of_a_cycle() -> Question:
@@ -71,8 +71,11 @@ def larger(arithmetic: Arithmetic, trace: Any, determinant: Any, period: int) ->
 
 
 def of_chaos() -> Question:
-    """The larger exponent of the cardioid's chaotic attractor; no proof of it is known, so the truth is a long run."""
-    map = PinballMap("cardioid", lam="1/2")
+    """The exponent of the cardioid at `lam = 0`, whose chaotic attractor has a proved natural measure.
+
+    The radius of the reference is below 1e-18, however many digits are asked for.
+    """
+    map = PinballMap("cardioid", lam=0)
 
     def counted(bounces: int) -> Claimed:
         found = run(map, ORBITS, max(bounces // ORBITS, 8))
@@ -90,17 +93,31 @@ def of_chaos() -> Question:
     own = [
         Method("compiled kernel, error bar", "float64", "bounces", (1_000, 30_000, 1_000_000, 10_000_000), counted),
         Method("NumPy", "float64", "bounces", (1_000, 10_000, 100_000), plainly),
+        Method("arb, certified", "arb", "digits", PROOFS, lambda d: [proved(d + 2)], to_digits, proved=True),
     ]
     return Question(
         "exponent-chaos",
         "The exponent of a chaotic attractor, cardioid",
-        "the larger Lyapunov exponent of the cardioid at lam = 1/2",
+        "the Lyapunov exponent of the cardioid at lam = 0, its slap map",
         "per bounce",
-        lambda digits: [long_run()],
+        lambda digits: [sharply()],
         (*own, *textbook(map, ball)),
-        certified=False,
         most_digits=16,
     )
+
+
+def proved(digits: int) -> arb:
+    """The exponent of the cardioid at `lam = 0` in a ball of radius below `10**(2 - digits)`."""
+    proof = slap_exponent(digits)
+    if not proof.certified:
+        raise ArithmeticError(f"exponent-chaos: with {digits} digits only {proof.checks} is proved")
+    return proof.value
+
+
+@cache
+def sharply() -> arb:
+    """The same, as sharp as the reference is."""
+    return proved(SHARP)
 
 
 def numpy_map(map: PinballMap) -> PinballMap:
@@ -131,13 +148,6 @@ def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
 def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
     """Balls on the attractor: component, parameter, exit angle."""
     return _arrived(map.blueprint.table, float(map.lam), orbits)
-
-
-@cache
-def long_run() -> arb:
-    """The exponent from a long run, with a radius of some standard errors: measured, not proved."""
-    found = run(PinballMap("cardioid", lam="1/2"), LONG, REFERENCE)
-    return arb(found.mean, SURE * found.error)
 
 
 def textbook(map: PinballMap, ball: tuple[float, float]) -> list[Method]:

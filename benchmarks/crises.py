@@ -19,6 +19,7 @@ from verification import crises
 from verification.manifolds import passages
 from verification.manifolds.known import CONTACTS, SHAPE, contact, table
 from verification.manifolds.located import crisis
+from verification.manifolds.proof import sharpened, tangency_proved
 from verification.manifolds.shadows import shadow
 from verification.manifolds.tangency import tangency
 from verification.shooting.newton import refined
@@ -41,6 +42,14 @@ def by_cycle(kind: str, digits: int) -> Any:
     return refined(cycle.problem, cycle.start, digits).z[-1]
 
 
+def by_proof(kind: str, digits: int) -> Any:
+    """The tangency proved in balls, from a start of eight digits."""
+    where, map = contact(kind, SHAPE), table(SHAPE)
+    found = tangency_proved(where, map, sharpened(where, map, str(where.letter), digits), digits)
+    assert found.holds
+    return found.letter.mid().str(2 * digits, radius=False)
+
+
 def values() -> Shown:
     """The table of methods."""
     shown = Shown("crisis", "method", "seconds", "error", "of the sampling's time")
@@ -53,6 +62,7 @@ def values() -> Shown:
         rows.append(
             ("manifolds, 20 digits", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 20).letter))
         )
+        rows.append(("tangency, 24 digits, proved", *timed(lambda k=kind: by_proof(k, 24))))
         for digits in (20, 50, 200):
             rows.append((f"cycle, {digits} digits", *timed(lambda k=kind, d=digits: by_cycle(k, d))))
         base = rows[0][1]

@@ -233,7 +233,10 @@ def symmetry_breaking(digits: int, alpha: Expr) -> Found:
 
 
 def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
-    """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch. Not proved. Paper: section 6.7."""
+    """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch, which is proved. Paper: section 6.7.
+
+    That no other contact ends the attractor before is not.
+    """
     from verification.manifolds.located import crisis, decimals, proof  # NumPy, which no other name needs
 
     found = crisis(kind, alpha, digits)

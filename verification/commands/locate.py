@@ -30,8 +30,8 @@ def command(
     """Where does it happen, to N certified digits? Exit status 1 when something is not proved.
 
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
-    merging-crisis, boundary-crisis, band-merging and symmetry-restoring: tangencies of manifolds, located by two
-    methods and not certified.
+    merging-crisis, boundary-crisis, band-merging and symmetry-restoring: tangencies of manifolds, which are proved;
+    that the attractor changes there, and nowhere before, is not.
     """
     from symbolic.formula import number
     from verification.locate import GMPY2, SAMPLED, WORDS, locate

@@ -8,7 +8,7 @@ import pytest
 
 from numeric import engine as engines
 from numeric.engine import Engine, _pieces
-from numeric.families.family import Family, Landing, law_of
+from numeric.families.family import Family, Landing
 from numeric.question import TANGENT, Question, starting
 
 END = 4.0  # a ball beyond it is stopped with code 1
@@ -241,18 +241,3 @@ def test_blocks_are_shared_out_in_consecutive_pieces(monkeypatch):
     assert len(_pieces(9, 0, 4)) == 4
     monkeypatch.setattr("os.cpu_count", lambda: None)
     assert _pieces(9, 99 * worth, None) == [(0, 9)]
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "law"),
-    [
-        (0, 0, "slap"),
-        (1, 1, "elastic"),
-        (0, 1, "pinball"),
-        (0.5, 0.5, "pinball"),
-        (0, 0.5, "pinball"),
-        (0.5, 1, "pinball"),
-    ],
-)
-def test_a_law_serves_every_contraction_between_two(low, high, law):
-    assert law_of(low, high) == law

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from numeric.families.family import Family, Landing, grazing
+from numeric.families.cardioid import Cardioid
+from numeric.families.family import NEAR, Family, Landing, grazing, law_of
 from numeric.readers.arrays import Arrays
 
 EPS = 2.0**-52
@@ -69,3 +70,52 @@ def test_a_family_of_its_own_has_outcomes_and_registers_to_fill():
     for method, count in (("fly", 5), ("leave", 5), ("slapped", 3), ("departure", 4), ("bend", 3)):
         with pytest.raises(NotImplementedError):
             getattr(Family(), method)(*[None] * count)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "law"),
+    [
+        (0, 0, "slap"),
+        (1, 1, "elastic"),
+        (0, 1, "pinball"),
+        (0.5, 0.5, "pinball"),
+        (0, 0.5, "pinball"),
+        (0.5, 1, "pinball"),
+    ],
+)
+def test_a_law_serves_every_contraction_between_two(low, high, law):
+    assert law_of(low, high) == law
+
+
+def test_a_landing_nearer_than_four_eps_to_the_cusp_is_the_cusp():
+    miss = np.geomspace(1e-49, 1e-42, 200)
+    one, nought = np.ones(200), np.zeros(200)
+    with np.errstate(all="ignore"):
+        landing = Cardioid().fly(Arrays(), [], "pinball", [one, nought], [np.cos(miss), miss])
+    p = landing.position[0]
+
+    assert np.array_equal(landing.code == 2, p <= 4 * EPS)
+    assert set(landing.code) == {0, 2}
+    assert np.any((p > 3 * EPS) & (p <= 4 * EPS))
+    assert np.any((p > 4 * EPS) & (p < 5 * EPS))
+    assert NEAR == 4 * EPS
+
+
+@pytest.mark.parametrize("bounces", [1, 3])
+def test_areas_change_by_lam_and_the_ratios_of_cosines(table, bounces):
+    map = table.map(0.6, kernels=False)
+    where, theta, phi = table.starts(map, 20, seed=5, steepest=0.9)
+    found, orbit = map.exponents(theta, phi, bounces, component=where), map.orbit(theta, phi, bounces, where)
+    logs = np.log(0.6 * np.cos(orbit.phi[:-1]) / np.cos(orbit.eta[1:]))
+
+    assert np.allclose(found.nu_plus + found.nu_minus, logs.mean(axis=0), rtol=0, atol=1e-12)
+
+
+def test_at_slap_a_vector_grows_by_the_slopes(table):
+    map = table.map(0, kernels=False)
+    where, theta, _ = table.starts(map, 20, seed=5)
+    orbit = map.orbit(theta, 0.0, 3, where)
+    slopes = [map.slap(orbit.theta[i], 1, orbit.component[i]).slope for i in range(3)]
+    found = map.exponents(theta, 0.0, 3, component=where)
+
+    assert np.allclose(found.nu_plus, np.mean(np.log(np.abs(slopes)), axis=0), rtol=0, atol=1e-11)

@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from pathlib import Path
 from types import SimpleNamespace
 
 import mpmath
@@ -11,6 +12,7 @@ import pytest
 os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
+from numeric.kernel import kernel_text, operations
 from numeric.question import Question
 from numeric.readers.arrays import Arrays
 from numeric.readers.scalars import Scalars
@@ -136,6 +138,22 @@ class Watching(Arrays):
     def when(self, mask, values, changed):
         self.masks.append(np.array(mask))
         return super().when(mask, values, changed)
+
+
+@pytest.fixture
+def as_on_the_page():
+    """Whether one bounce takes the operations that docs/kernels.md has for it, under every law."""
+    page = (Path(__file__).parent.parent.parent / "docs" / "kernels.md").read_text().splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in page if line.startswith("| ")]
+
+    def compare(name, **shape):
+        for lam in (0, "1/2", 1):
+            map = PinballMap(name, lam=lam, **shape)
+            found = operations(kernel_text(map.family, map.engine.names, Question(map.law, exponents=True)))
+            (row,) = (row[3:] for row in rows if row[:3] == [name, map.law, "exponents"])
+            assert [str(count) for count in found.values()] == row
+
+    return compare
 
 
 @pytest.fixture

@@ -91,20 +91,22 @@ def cubics(count=4000):
     ahead = 1 - back[0], -sigma[0] * back[1] * mirrored
     start, low, accepts = family.interval(Arrays(), cubic, Q, leaving[0], ahead)
     psi = np.remainder(1.5 * theta + np.pi - phi + np.pi, 2 * np.pi) - np.pi  # the direction of flight
-    return cubic, Q, start, low(), accepts, sigma[0], psi * mirrored, theta * mirrored
+    return cubic, Q, start, low(), accepts, sigma[0], psi * mirrored, theta * mirrored, leaving[0]
 
 
 def test_the_cubic_changes_its_sign_on_the_interval():
-    cubic, Q, start, low, _, _, _, _ = cubics()
+    cubic, Q, start, low, *_, c = cubics()
+    slope = value_and_slope(cubic, Q)[1]
+    far = np.sqrt(np.maximum((c - slope) / cubic[3], 0))
 
     assert np.all(low < Q)
-    assert np.all(start < Q)
+    assert np.allclose(start, Q - np.maximum(far, c), rtol=1e-9, atol=1e-9)
     assert np.all(value_and_slope(cubic, low)[0] < 0)
     assert np.all(value_and_slope(cubic, Q)[0] > 0)
 
 
 def test_the_interval_ends_at_the_direction_of_flight_unless_the_ball_crosses_the_axis_to_get_there():
-    _, Q, _, low, accepts, p, psi, theta = cubics()
+    _, Q, _, low, accepts, p, psi, theta, _ = cubics()
     before = psi < theta - 1e-9
     bound = p * np.tan(psi / 2)
 
@@ -124,3 +126,7 @@ def test_outcomes_have_their_names(theta):
 
     assert list(step.status) == [Status.GRAZING, Status.GRAZING, Status.CUSP, Status.REGULAR]
     assert map.at(lam=0).step(theta, 0.0).status == Status.REGULAR
+
+
+def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
+    as_on_the_page("cardioid")

@@ -29,3 +29,7 @@ def test_landings_are_exact_up_to_one_rounding_of_the_angle(lam, kernels):
 def test_no_landing_stops_a_ball_and_none_of_its_rows_is_for_that():
     assert not Circle.stops
     assert not PinballMap("circle", lam=1).step(0.0, 1.5707963).code
+
+
+def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
+    as_on_the_page("circle")

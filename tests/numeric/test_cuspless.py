@@ -87,3 +87,7 @@ def test_tangent_balls_stop_where_they_are():
     step = cuspless(0.9).step([0.3, 0.3, 0.1], [steep, -steep, 0.3], [0, 0, 1])
 
     assert list(step.status) == [Status.GRAZING, Status.GRAZING, Status.REGULAR]
+
+
+def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
+    as_on_the_page("cuspless")

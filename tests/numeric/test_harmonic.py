@@ -120,3 +120,8 @@ def test_few_flights_need_the_bracket(alpha, share, unsettled):
 
     assert unsettled(map) <= share
     assert unsettled(map, slap=True) == 0
+
+
+def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
+    as_on_the_page("ellipse", a="3/2")
+    as_on_the_page("egg", alpha="0.08")

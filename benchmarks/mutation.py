@@ -119,21 +119,23 @@ def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[
     return [mutant for mutant in open_ones if not reason(path, mutant.old, mutant.new)]
 
 
-def run_module(path: str, chosen: list[Mutant], plan: Plan, budget: float, near: bool) -> None:
+def run_module(path: str, chosen: list[Mutant], plan: Plan, fresh: set[str], args: argparse.Namespace) -> None:
     """In a server of its own: imports what does not depend on the module, then asks about each mutant."""
     for name in independent(name_of(path)):
         __import__(name)
     for number, mutant in enumerate(chosen, 1):
-        tests = plan.tests(mutant, budget, near)
+        tests = plan.tests(mutant, args.budget, args.near)
         status, test, seconds = ask(path, mutant.text, tests) if tests else ("uncovered", "", 0.0)
         known = {"key": mutant.key, "operator": mutant.operator, "status": status, "test": test, "seconds": seconds}
-        append(RESULTS, known | {"tests": len(tests), "budget": budget})
+        drawn = args.fresh or mutant.key in fresh
+        append(RESULTS, known | {"tests": len(tests), "budget": args.budget, "fresh": drawn})
         say(f"{time.strftime('%H:%M:%S')} {path}:{mutant.line} {number}/{len(chosen)} {status} {seconds:.1f} s {test}")
 
 
 def running(args: argparse.Namespace) -> None:
     """Module by module, a fork server for each; at most as many at once as there are workers."""
     plan, known = Plan(), results()
+    fresh = {key for key, entry in known.items() if entry.get("fresh")}
     warm()
     busy = []
     for path in modules(args.only):
@@ -142,7 +144,7 @@ def running(args: argparse.Namespace) -> None:
             continue
         if len(busy) >= args.workers:
             waitpid(busy.pop(0), 0)
-        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, args.budget, args.near)))
+        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, fresh, args)))
     for child in busy:
         waitpid(child, 0)
 
@@ -161,7 +163,9 @@ def tables(args: argparse.Namespace) -> dict[str, dict]:
             for mutant, entry in asked
             if entry["status"] in ("survived", "uncovered")
         ]
+        fresh = [entry["status"] not in ("survived", "uncovered") for _, entry in asked if entry.get("fresh")]
         found[path] = {"mutants": len(every), "asked": len(asked), **count, "alive": alive}
+        found[path] |= {"fresh": len(fresh), "fresh_killed": sum(fresh)}
     return found
 
 
@@ -185,6 +189,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=1, help="modules at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
     parser.add_argument("--near", action="store_true", help="a first sieve: the module's own tests alone")
+    parser.add_argument("--fresh", action="store_true", help="these are drawn after the last test was written")
     parser.add_argument("--again", default="", choices=["", "survived", "uncovered", "timeout", "all"])
     args = parser.parse_args()
     if args.verb == "cover":

@@ -86,10 +86,13 @@ def summary(name: str, figures: dict[str, dict]) -> str:
     text = f"`{name}`: {hits} of {asked} mutants killed, {percent(hits / asked)}; {alive} survive, "
     text += f"of which {alive - opened} are explained below" if opened else "each explained below"
     if asked < total:
-        low, high = wilson(hits, asked)
-        text += (
-            f". A random part of {total} mutants was asked; 95 % interval (Wilson) {percent(low)} to {percent(high)}"
-        )
+        text += f". Asked was a random part of {total} mutants"
+    fresh, fresh_hits = (sum(entry.get(key, 0) for entry in figures.values()) for key in ("fresh", "fresh_killed"))
+    if fresh:
+        low, high = wilson(fresh_hits, fresh)
+        text += f". Of {fresh} mutants drawn at random after the last test was written {fresh_hits} are killed, "
+        text += f"{percent(fresh_hits / fresh)}; Wilson's 95 % interval for all that were not asked before is "
+        text += f"{percent(low)} to {percent(high)}"
     return text + "."
 
 

@@ -75,7 +75,11 @@ def test_whatever_is_called_zero_is_zero_at_points(expression):
         tan(theta) * cos(theta) - sin(theta), 1 / (1 + sqrt(a)) - (1 - sqrt(a)) / (1 - a),
         sqrt(4 * a + 4) - 2 * sqrt(a + 1),
         (1 + a) ** Rational(3, 2) - (1 + a) * sqrt(1 + a), cos(5 * theta) - 16 * cos(theta) ** 5 + 20 * cos(theta) ** 3
-        - 5 * cos(theta), S.Zero,
+        - 5 * cos(theta), S.Zero, (7 + 5 * sqrt(2)) ** Rational(1, 3) - 1 - sqrt(2),
+        (2 + sqrt(5)) ** Rational(1, 3) - (1 + sqrt(5)) / 2, sqrt(1 + sin(theta) ** 2) - sqrt(2 - cos(theta) ** 2),
+        sqrt(a / 2 + Rational(1, 2)) - sqrt(2 * a + 2) / 2, (a / 9 + 1) ** Rational(-3, 2)
+        - 27 * (a + 9) ** Rational(-3, 2),
+        1 / sqrt(1 + sin(theta)) + sin(theta) / sqrt(1 + sin(theta)) - sqrt(1 + sin(theta)),
     ],
 )  # fmt: skip
 def test_known_identities_vanish(expression):

@@ -198,6 +198,9 @@ def test_cycles_at_single_letters_are_held_against_the_one_over_a_disc():
 
 def test_what_no_ball_encloses_is_not_proved():
     with working(100):
+        sink = Orbit("sink", (1.09,))
+        with pytest.raises(TooWideError, match="not separated"):
+            enclosed_saddle(sink, Henon(Rational(3, 10)).over(complex_balls(100)), acb(0.2))
         with pytest.raises(TooWideError, match="may be singular"):
             at(TRIANGLE, 0.66, 0.2)
         with pytest.raises(TooWideError, match="did not contract"):

@@ -8,7 +8,7 @@ and prove nothing: `checked` works the whole checklist through again.
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz
 
@@ -20,13 +20,18 @@ from verification.certificates.bifurcation import Claim, Proof, proved
 from verification.certificates.special import SpecialClaim, SpecialProof, specially_proved
 from verification.shooting.problem import Kind, Problem
 
+if TYPE_CHECKING:
+    from verification.manifolds.claim import TangencyProof
+
 SCHEMA = 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
 
 
-def document(name: str, proof: Proof | SpecialProof) -> dict[str, Any]:
+def document(name: str, proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
     """A proof as a JSON document."""
     claim = proof.claim
+    if not isinstance(claim, Claim | SpecialClaim):
+        return {"schema": SCHEMA, "name": f"{name}, the tangency"} | claim.to_dict() | {"checks": dict(proof.checks)}
     box = {
         "bits": claim.bits,
         "digits": claim.digits,
@@ -102,8 +107,12 @@ def read(path: Path) -> dict[str, Any]:
     return found
 
 
-def checked(given: Mapping[str, Any]) -> Proof | SpecialProof:
+def checked(given: Mapping[str, Any]) -> "Proof | SpecialProof | TangencyProof":
     """The checklist of a document's claim, worked through anew; what the file says of it is not believed."""
+    if given.get("kind") == "tangency" and given.get("schema") == SCHEMA:
+        from verification.manifolds import claim as tangency  # NumPy, which no other certificate needs
+
+        return tangency.worked_through(tangency.claim_of(given))
     claim = claim_of(given)
     return specially_proved(claim) if isinstance(claim, SpecialClaim) else proved(claim)
 

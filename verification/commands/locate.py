@@ -34,17 +34,13 @@ def command(
     that the attractor changes there, and nowhere before, is not.
     """
     from symbolic.formula import number
-    from verification.locate import GMPY2, SAMPLED, WORDS, locate
+    from verification.locate import GMPY2, WORDS, locate
 
     given = {letter: text for letter, text in zip(LETTERS, (lam, alpha, n), strict=True) if text is not None}
     shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}
     if "n" in shape and not shape["n"].is_Integer:
         raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
     if certificate is not None:
-        if name in SAMPLED:
-            raise ValueError(
-                f"--certificate: {name} has no certificate file; accepted: names other than {', '.join(SAMPLED)}"
-            )
         writable(certificate)
     with output.progress(f"Locating {name}", 1) as step:
         found = locate(name, digits, **shape)

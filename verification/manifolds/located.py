@@ -12,8 +12,9 @@ from typing import Any
 import mpmath
 from sympy import Expr
 
+from verification.manifolds.claim import TangencyClaim, TangencyProof, worked_through
 from verification.manifolds.known import contact, table
-from verification.manifolds.proof import LEAST_DIGITS, Proof, sharpened, tangency_proved
+from verification.manifolds.proof import LEAST_DIGITS, sharpened
 from verification.manifolds.shadows import Shadow, shadow
 from verification.manifolds.tangency import Touch, tangency
 from verification.shooting.newton import refined
@@ -93,7 +94,7 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     return Crisis(kind, context.mpf(letter), error, touch, float(abs(context.mpf(touch.letter) - letter)), cycle)
 
 
-def proof(found: Crisis, alpha: Expr, digits: int) -> Proof:
+def proof(found: Crisis, alpha: Expr, digits: int) -> TangencyProof:
     """The proof in balls of a tangency near the value, within `10**-digits` or less.
 
     It proves the contact of the manifolds, and not that the attractor ends there.
@@ -103,7 +104,7 @@ def proof(found: Crisis, alpha: Expr, digits: int) -> Proof:
         value = sharpened(touch.contact, map, str(touch.letter), digits)
     except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
         value = str(touch.letter)
-    return tangency_proved(touch.contact, map, value, digits)
+    return worked_through(TangencyClaim(touch.contact, alpha, value, digits))
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

@@ -27,6 +27,7 @@ from verification.manifolds.tangency import Contact, rounds
 from verification.shooting.jets import Jet
 
 LARGEST = 0.4  # parameters at the start, where the remainder's derivatives are bounded up to 1/2
+MOST_BOUNCES = 2000
 Vector = list[arb]
 
 
@@ -94,6 +95,8 @@ class Touching:
         near = contact.z / out.unit / LARGEST, contact.end / into.unit / LARGEST
         early, late = rounds(near[0], float(out.rough.factor)), rounds(near[1], 1 / float(into.rough.factor))
         self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
+        if self.bounces > MOST_BOUNCES:
+            raise TooWideError("exists", f"an orbit of {self.bounces} bounces is too long")
         self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
         self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 

@@ -9,7 +9,7 @@ operator acts on functions of bounded variation: `rate` is one over the slope, t
 table lands at `-pi/2 < b < pi/4`, and `launch` is where it left. Not in the paper.
 """
 
-from sympy import Expr, Interval, Rational, Symbol, atan, cancel, cos, pi, sin, sqrt, together
+from sympy import Expr, Interval, Rational, Symbol, atan, cancel, cos, expand, pi, sin, sqrt, together
 
 from symbolic.codegen import Kernel, kernel
 from symbolic.signs import Finding, Outcome, conjunction, nonnegative, positive
@@ -41,6 +41,30 @@ def derived() -> Finding:
     }
     zero = {fact: Outcome.PROVED if cancel(together(e)) == 0 else Outcome.UNKNOWN for fact, e in facts.items()}
     return conjunction(*(Finding(outcome, fact) for fact, outcome in zero.items()))
+
+
+def lands_first() -> Finding:
+    """Of all points where the normal of an upper launch meets the boundary, the landing at `q < 1/3` alone is ahead.
+
+    The flight equation is quadratic in `u`, so the launches to a landing are `u(q)` and, mirrored, that of `-q`; and
+    `u(q)` is continuous for `-1 < q < 1`, in the upper half below 1/3 and in the lower above. Along `-exp(3*I*theta/2)`
+    the flight from `u(q)` has a length that is 0 nowhere: it would end where it began, which only the cusp solves, and
+    no `q` between -1 and 1 lands there. It is positive at `q = 0`, so it is everywhere. That direction points inward in
+    the upper half, and outward in the lower one: a launch there meets the boundary at such a `q` behind it.
+
+    >>> lands_first().outcome.name
+    'PROVED'
+    """
+    u, cosine = Symbol("u"), sqrt(LAUNCH_COS2.subs(q, 0))
+    cubic = u**3 + (2 + u) * u**2 + u * (2 * u + 1) * u + u**2  # the flight equation where it ends as it began
+    length = 2 * cosine**3 - 2 * (4 * cosine**3 - 3 * cosine)  # -Re((2 - z)*exp(-3*I*theta/2)), landing at z = 2
+    facts = {
+        "only the cusp lands on itself": expand(cubic - 4 * u**2 * (u + 1)) == 0,
+        "the landing at q = 0 is theta = 0": COS2.subs(q, 0) == 1,
+        "ahead there": bool(length > 0),
+    }
+    found = [Finding(Outcome.PROVED if true else Outcome.UNKNOWN, fact) for fact, true in facts.items()]
+    return conjunction(positive(COS2, {q: Interval.open(-1, 1)}), *found)
 
 
 def expands() -> Finding:

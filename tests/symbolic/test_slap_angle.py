@@ -1,8 +1,10 @@
 """The slap map of the cardioid in half angles: exact facts, second derivations, and constants that can fail."""
 
+from fractions import Fraction
+
 import mpmath
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from sympy import Rational, cos, simplify, sqrt
 
@@ -17,14 +19,15 @@ from symbolic.slap_angle import (
     derived,
     expands,
     gentle_elsewhere,
+    lands_first,
     near_launch,
     quiet_near_the_cusp,
 )
 from symbolic.slap_cardioid import LAUNCH_COS2, q
 from verification.arithmetic import multiprecision
 
-FACTS = (derived, expands, quiet_near_the_cusp, gentle_elsewhere)
-LANDINGS = st.fractions(Rational(-156, 100), Rational(78, 100), max_denominator=1000)
+FACTS = (lands_first, derived, expands, quiet_near_the_cusp, gentle_elsewhere)
+LANDINGS = st.fractions(Fraction(-156, 100), Fraction(78, 100), max_denominator=1000)
 
 
 def test_every_fact_that_the_variation_needs_is_proved():
@@ -63,6 +66,22 @@ def test_both_forms_of_the_launching_point_are_the_one_whose_cosine_is_proved_an
     assert abs(below(half)[0] - above(half)[0]) < mp.mpf(10) ** -35
     assert abs(mp.cos(below(half)[0]) ** 2 - cos2) < mp.mpf(10) ** -35
     assert abs(slope - below(half)[1]) < mp.mpf(10) ** -15
+
+
+@given(st.fractions(Fraction(1, 50), Fraction(3135, 1000), max_denominator=1000))
+@example(Fraction(31, 10))  # near the cusp the normal meets the boundary at two points behind
+def test_of_all_points_on_the_normal_one_is_ahead_and_it_is_the_landing(angle):
+    mp = mpmath.MPContext()
+    mp.dps = 40
+    start = mp.mpf(angle.numerator) / angle.denominator
+    u, inward = mp.expj(start), -mp.expj(3 * start / 2)
+    roots = mp.polyroots([1, 2 + u, u * (2 * u + 1), u**2], maxsteps=500, extraprec=400)
+    met = [U for U in roots if abs(abs(U) - 1) < mp.mpf(10) ** -25]
+    (ahead,) = (U for U in met if mp.re(((1 + U) ** 2 - (1 + u) ** 2) / inward) > 0)
+    launch, _ = load(branch(False), multiprecision(mp))(mp.arg(ahead) / 2)
+
+    assert len(met) == 3 or angle < 3
+    assert abs(launch - start / 2) < mp.mpf(10) ** -20
 
 
 def test_the_slope_in_half_angles_is_least_at_a_quadratic_number_and_above_the_bound_there():

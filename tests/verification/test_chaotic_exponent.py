@@ -133,6 +133,24 @@ def test_a_bad_candidate_costs_precision_and_never_truth(piece, power, off):
     assert spoiled.value.rad() > 0.9 * proof().value.rad()
 
 
+def test_the_gap_and_the_distance_follow_from_the_inequalities_by_hand():
+    known, found, inverse = variation(), proof(), cells()
+    with working(BITS):
+        pieces = near().grounded()
+        judge = Judge(pieces, DIGITS, BITS)
+        residual = judge.residual()
+        apart = judge.mean() / pieces.integral() - found.value
+    adds, loss, K = float(known.adds), 1 - float(known.shrinks), inverse.bound
+    cell = HALF / inverse.cells
+    norm, change = float(residual.norm), float(residual.variation)
+    matrix, right = [[1.0, -(K + 1) * cell / 2], [-adds / loss, 1.0]], [K * norm, change / loss]
+    _, distance = np.linalg.solve(matrix, right)  # of the norm and of the variation
+
+    assert found.gap == pytest.approx(1 - adds * (K + 1) * cell / 2 / loss, rel=1e-9)
+    assert float(found.distance) == pytest.approx(distance, rel=1e-6)
+    assert float(apart.rad()) >= float(found.distance) * 1.5 * HALF / np.e
+
+
 @pytest.mark.parametrize(
     ("wrong", "items"),
     [

@@ -36,6 +36,7 @@ from symbolic.slap_angle import (
     derived,
     expands,
     gentle_elsewhere,
+    lands_first,
     near_launch,
     quiet_near_the_cusp,
 )
@@ -67,6 +68,7 @@ def variation() -> Variation:
     facts = (
         parametrised,
         forward_once,
+        lands_first,
         derived,
         expands,
         quiet_near_the_cusp,

@@ -17,12 +17,14 @@ State is kept in report/mutation/; nothing in the tree is written but the page.
 """
 
 import argparse
+import ast
 import json
 import random
 import sys
 import time
 from collections import Counter, defaultdict
 from fnmatch import fnmatch
+from functools import cache
 from os import waitpid
 
 from mutation_mutants import ROOT, STOREYS, Mutant, mutants
@@ -52,6 +54,13 @@ def results() -> dict[str, dict]:
     return {entry["key"]: entry for entry in map(json.loads, lines)}
 
 
+@cache
+def executed_late(path: str) -> frozenset[int]:
+    """The lines inside of functions. All others run when the module is imported, be that in the middle of a test."""
+    functions = [n for n in ast.walk(ast.parse((ROOT / path).read_text())) if isinstance(n, ast.FunctionDef)]
+    return frozenset(line for f in functions for line in range(f.body[0].lineno, (f.end_lineno or 0) + 1))
+
+
 class Plan:
     """Which tests to ask about a mutant."""
 
@@ -75,7 +84,7 @@ class Plan:
         here = self.lines[mutant.path]
         running = set().union(*(here[line] for line in range(first, last + 1)))
         rest = set()
-        if "" in running or not running:
+        if "" in running or not running or first not in executed_late(mutant.path):
             files = {file_of(node) for node in self.seconds if node}
             users = {file for file in files if name_of(mutant.path) in reached(name_of(file))}
             rest = {node for node in self.seconds if file_of(node) in users}

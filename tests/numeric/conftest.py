@@ -160,13 +160,13 @@ def as_on_the_page():
 def unsettled():
     """The share of random balls whose flight needs the bracket, after the steps that every flight takes."""
 
-    def share(map, slap=False, count=20_000):
+    def share(map, slap=False, branch=0, count=20_000):
         component, theta, phi = starts(map, count, seed=1)
         own = map.states.enter(component, theta, phi * (not slap), "pinball")
         ops, at = Watching(), len(map.family.position)
         with np.errstate(all="ignore"):
             map.family.fly(ops, map.shape, "pinball", own[:at], own[at:])
-        return float(np.mean(ops.masks[0]))
+        return float(np.mean(ops.masks[branch]))
 
     return share
 

@@ -225,5 +225,6 @@ apart after 40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many 
 
 **Long orbits** end the page: invariants, closed forms, an attracting cycle proved in balls, mirror images, and means
 over an ergodic map. Nothing drifts: the root mean square change of the ellipse's invariant is 0.48, 0.48 and 0.47 units
-times the root of the number of bounces, after 10^4, 4*10^6 and 10^9 of them. Orbits of 10^9 collisions on every table are in `docs/kernels.md` (`benchmarks/soak.py`).
+times the root of the number of bounces, after 10^4, 4*10^6 and 10^9 of them.
+Orbits of 10^9 collisions on every table are in `docs/kernels.md` (`benchmarks/soak.py`).
 """

@@ -83,3 +83,15 @@ def test_growth_beyond_what_a_double_holds_is_summed():
     growth.advance(5000)
 
     assert growth.stretch[0] / 10_000 == pytest.approx(np.log(5 / 4), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["ellipse", "egg", "cardioid"])
+def test_areas_beyond_what_a_double_holds_are_summed(name):
+    """The logarithm of the product of the ratios of cosines, bounce by bounce along the orbit."""
+    map = PinballMap(name, lam=0.97, **{"ellipse": {"a": 2}, "egg": {"alpha": "0.08"}}.get(name, {}))
+    theta, phi = np.array([0.3, 1.1]), np.array([0.4, -0.9])
+    growth, orbit = Growth(map, 0, theta, phi), map.orbit(theta, phi, 1500)
+    growth.advance(1500)
+    sums = np.sum(np.log(np.cos(orbit.phi[:-1]) / np.cos(orbit.eta[1:])), axis=0)
+
+    assert np.allclose(growth.volume, sums, rtol=0, atol=1e-9)

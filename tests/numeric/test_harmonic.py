@@ -125,3 +125,26 @@ def test_few_flights_need_the_bracket(alpha, share, unsettled):
 def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
     as_on_the_page("ellipse", a="3/2")
     as_on_the_page("egg", alpha="0.08")
+
+
+@pytest.mark.parametrize("lam", [0.3, 1])
+def test_areas_change_by_lam_and_the_ratios_of_cosines(harmonic, lam):
+    map = harmonic(lam, kernels=False)
+    theta, phi = np.linspace(-3, 3, 24), np.linspace(-1, 1, 24)
+    found, orbit = map.exponents(theta, phi, 3), map.orbit(theta, phi, 3)
+    logs = np.log(lam * np.cos(orbit.phi[:-1]) / np.cos(orbit.eta[1:]))
+
+    assert np.allclose(found.nu_plus + found.nu_minus, logs.mean(axis=0), rtol=0, atol=1e-10)
+
+
+def test_chords_may_lie_far_from_those_of_the_circle():
+    """Twenty times longer than wide, the middle of a chord is off by more than an eighth of a turn."""
+    made = tables.parametric(20 * cos(symbol) + cos(2 * symbol) / 10, sin(symbol), name="thin")
+    map = PinballMap(made, lam=0.7, kernels=False)
+    theta, phi = np.repeat(np.linspace(-3.1, 3.1, 40), 40), np.tile(np.linspace(-1.5, 1.5, 40), 40)
+    step, (x, y) = map.step(theta, phi), map.states.point(np.zeros(1600, dtype=int), theta)
+    vx, vy = map.states.direction(np.zeros(1600, dtype=int), theta, phi)
+
+    assert map.path.startswith("chord")
+    assert np.max(np.abs((step.x - x) * vy - (step.y - y) * vx)) <= 1e-12
+    assert np.min((step.x - x) * vx + (step.y - y) * vy) > 0

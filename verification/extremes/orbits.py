@@ -121,12 +121,16 @@ def turning(asked: Long) -> list[Finding]:
     map = PinballMap("circle", lam=1)
     rows = entered(map, *starts(asked.balls))
     (theta, phi), said = advanced(map, rows, asked.bounces)
-    mp = mpmath.MPContext()
-    mp.dps = 50
+    context = mpmath.MPContext()
+    context.dps = 50
     gaps = []
     for start, exit, end in zip(rows[0], rows[1], theta, strict=True):
-        gap = mp.mpf(float(start)) + asked.bounces * (mp.pi - 2 * mp.mpf(float(exit))) - mp.mpf(float(end))
-        gaps.append(float(gap - 2 * mp.pi * mp.nint(gap / (2 * mp.pi))))
+        gap = (
+            context.mpf(float(start))
+            + asked.bounces * (context.pi - 2 * context.mpf(float(exit)))
+            - context.mpf(float(end))
+        )
+        gaps.append(float(gap - 2 * context.pi * context.nint(gap / (2 * context.pi))))
     if not np.array_equal(phi, rows[1]):
         said = "phi changed"
     error, condition = root_mean_square(np.array(gaps)) / DOUBLE, 2.0 * asked.bounces + 1
@@ -145,13 +149,14 @@ def attracted(asked: Long) -> list[Finding]:
     if not proof.proved:
         raise ValueError(f"{asked.name}: the triangle is not proved to attract: {dict(proof.checks)}")
     (ux, uy, *_), said = advanced(map, entered(map, *starts(asked.balls)), asked.bounces)
-    mp = mpmath.MPContext()
-    mp.dps = 40
-    exact = [sign * mp.mpf(x.str(35, radius=False)) for x in proof.theta for sign in (1, -1)]  # the table is its image
+    context = mpmath.MPContext()
+    context.dps = 40
+    proved = [context.mpf(x.str(35, radius=False)) for x in proof.theta]
+    exact = [sign * x for x in proved for sign in (1, -1)]  # the mirror image attracts as well
     gaps = []
     for x, y in zip(ux, uy, strict=True):
-        here = mp.atan2(mp.mpf(float(y)), mp.mpf(float(x)))
-        away = [here - one - 2 * mp.pi * mp.nint((here - one) / (2 * mp.pi)) for one in exact]
+        here = context.atan2(context.mpf(float(y)), context.mpf(float(x)))
+        away = [here - one - 2 * context.pi * context.nint((here - one) / (2 * context.pi)) for one in exact]
         gaps.append(float(min(away, key=abs)))
     error, condition = float(np.max(np.abs(gaps))) / DOUBLE, given(problem, triangle).condition
     return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said)]

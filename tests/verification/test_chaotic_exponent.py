@@ -17,7 +17,7 @@ from symbolic.codegen import load
 from symbolic.slap_angle import branch
 from verification.arithmetic import ARRAYS, bits_of, working
 from verification.certificates import chaotic_exponent
-from verification.certificates.chaotic_exponent import judged
+from verification.certificates.chaotic_exponent import judged, symmetric
 from verification.certificates.slap_candidate import Pieces, candidate
 from verification.certificates.slap_residual import Judge
 from verification.certificates.slap_transfer import Branches, variation
@@ -53,6 +53,11 @@ def cells():
 @cache
 def small():
     return ulam(64), inverted(64).bound
+
+
+@cache
+def mirrored():
+    return ulam(64, sign=-1), inverted(64, sign=-1).bound
 
 
 @cache
@@ -176,6 +181,28 @@ def test_too_few_cells_or_a_bad_inverse_end_the_proof():
     assert judged(near(), DIGITS, bad).checks["inverse"] is None
 
 
+def test_the_density_of_the_whole_boundary_is_its_own_mirror_image_if_the_constants_are_right():
+    odd = inverted(chaotic_exponent.MIRRORED, sign=-1)
+
+    assert symmetric(odd, variation()) is True
+    assert symmetric(odd, replace(variation(), adds=2 * variation().adds)) is None
+    assert symmetric(odd, replace(variation(), proved=False)) is None
+    assert symmetric(inverted(64, np.eye(64), sign=-1), variation()) is None
+    assert symmetric(cells(), variation()) is None  # an inverse for vectors of sum 0 alone
+
+
+def test_densities_that_the_mirror_image_negates_fade_under_the_map_of_the_float64_kernels():
+    map, rng = PinballMap("cardioid", lam=0), np.random.default_rng(5)
+    theta = rng.uniform(0, np.pi, 200_000)  # all in the upper half
+    halves = []
+    for _ in range(60):
+        theta = map.step(theta, np.zeros_like(theta)).theta
+        halves.append(np.mean(theta > 0))
+
+    assert abs(halves[0] - 0.5) > 0.05
+    assert abs(halves[-1] - 0.5) < 5 * 0.5 / np.sqrt(theta.size)
+
+
 def test_an_inverse_that_is_off_by_a_millionth_is_noticed_and_still_gives_a_bound():
     matrix = ulam(64).toarray()
     inverse = np.linalg.inv(np.eye(64) - matrix + 1 / 64)
@@ -188,12 +215,17 @@ def test_an_inverse_that_is_off_by_a_millionth_is_noticed_and_still_gives_a_boun
 @settings(max_examples=30)
 @given(st.lists(st.floats(-1, 1), min_size=64, max_size=64))
 @example([1.0, -1.0] + [0.0] * 62)
-def test_the_bound_of_the_inverse_holds_for_vectors_of_sum_0(numbers):
+def test_the_bounds_of_the_inverse_hold_for_vectors_of_sum_0_and_for_odd_ones(numbers):
     vector = np.array(numbers) - np.mean(numbers)
     matrix, bound = small()
     moved = vector - matrix @ vector
 
     assert np.abs(vector).sum() <= bound * np.abs(moved).sum() + 1e-9
+
+    odd, bound = mirrored()
+    moved = np.array(numbers) - odd @ np.array(numbers)
+
+    assert np.abs(numbers).sum() <= bound * np.abs(moved).sum() + 1e-9
 
 
 def test_the_bound_of_the_inverse_is_at_most_twice_too_large():

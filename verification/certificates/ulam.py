@@ -9,6 +9,8 @@ another. On vectors of sum 0, in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X
 because `A u` is the sum of `u_j*(column_j - w)` when the `u_j` sum to 0. `X` is an inverse in floats, and what
 rounding may have done to the products is bounded and added.
 
+For densities that the mirror image negates, the first summand of `L` is negated; then `w = 0`, and any vector is meant.
+
 The entries of `Q` are differences of launching points in units of a cell. Each is rounded to a multiple of
 `2**-40`, so that entries and sums of columns are exact in doubles, and a displaced point moves at most twice its
 displacement of mass in a column.
@@ -34,11 +36,15 @@ BLANKET = 1 + 1e-9  # over the rounding of a sum of at most 1e5 positive doubles
 
 @dataclass(frozen=True)
 class Inverted:
-    """`||u|| <= K*||(I - Q)u||` for vectors of sum 0, `bound` above `K`; None where `X` was no good inverse."""
+    """`||u|| <= K*||(I - Q)u||`, `bound` above `K`; None where `X` was no good inverse.
+
+    For vectors of sum 0 when the `sign` of the first summand is 1, for all when it is -1.
+    """
 
     cells: int
     bound: float | None
     defect: float
+    sign: int
 
 
 def launching_points(cells: int) -> tuple[Matrix, Matrix]:
@@ -61,44 +67,51 @@ def launching_points(cells: int) -> tuple[Matrix, Matrix]:
     return np.array(below), np.array(above)
 
 
-def ulam(cells: int) -> csc_matrix:
-    """`Q`, with column sums of exactly 1.
+def ulam(cells: int, sign: int = 1) -> csc_matrix:
+    """`Q`, with column sums of exactly 1; or with the first summand of the operator times a `sign` of -1.
 
     >>> float(abs(ulam(16).sum(axis=0) - 1).max())
     0.0
     """
     rows, columns, shares = [], [], []
-    for ends in launching_points(cells):
+    for factor, ends in zip((sign, 1), launching_points(cells), strict=True):
         for row, (one, other) in enumerate(pairwise(ends)):
             low, high = min(one, other), max(one, other)
             for column in range(int(low), min(int(np.ceil(high)), cells)):
                 rows.append(row)
                 columns.append(column)
-                shares.append(min(high, column + 1.0) - max(low, float(column)))
+                shares.append(factor * (min(high, column + 1.0) - max(low, float(column))))
     return csc_matrix((shares, (rows, columns)), shape=(cells, cells))
 
 
-def inverted(cells: int, inverse: Matrix | None = None) -> Inverted:
+def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Inverted:
     """The bound `K`, from an `inverse` of `I - Q` on vectors of sum 0 (if left out, one made in floats).
+
+    With a `sign` of -1, `K` is for all vectors.
 
     >>> found = inverted(64)
     >>> found.defect < 1e-6, 10 < found.bound < 30
     (True, True)
     """
-    matrix = ulam(cells)
+    matrix, size_of = ulam(cells, sign), spread if sign == 1 else largest
     identity = np.eye(cells)
     if inverse is None:
         mass = np.full(cells, 1 / cells)
         for _ in range(60):
             mass = matrix @ mass
-        inverse = np.linalg.inv(identity - matrix.toarray() + mass[:, None])
+        inverse = np.linalg.inv(identity - matrix.toarray() + (mass[:, None] if sign == 1 else 0))
     entries = int(np.diff(matrix.indptr).max())
-    rounding = (entries + 4) * UNIT * (2 * float(abs(inverse).sum(axis=0).max()) + 1) * 1.01
-    size = spread(inverse)
+    rounding = (entries + 4) * UNIT * (2 * largest(inverse) + 1)
+    size = size_of(inverse)
     displaced = 2 * (cells * 1.5 + 3) / GRAIN
-    defect = spread(identity - inverse + (matrix.T @ inverse.T).T) + rounding + size * displaced
-    bound = size / (1 - defect) * BLANKET if defect < 0.5 else None
-    return Inverted(cells, bound, defect)
+    defect = size_of(identity - inverse + (matrix.T @ inverse.T).T) + rounding * BLANKET + size * displaced
+    bound = size / (1 - defect) * BLANKET if sign in (1, -1) and defect < 0.5 else None
+    return Inverted(cells, bound, defect, sign)
+
+
+def largest(matrix: Matrix) -> float:
+    """The largest `L1` norm of a column: the norm of the matrix, from above."""
+    return float(abs(matrix).sum(axis=0).max()) * BLANKET
 
 
 def spread(matrix: Matrix) -> float:
@@ -108,4 +121,4 @@ def spread(matrix: Matrix) -> float:
     0.0
     """
     about = np.median(matrix, axis=1)
-    return float(abs(matrix - about[:, None]).sum(axis=0).max()) * BLANKET
+    return largest(matrix - about[:, None])

@@ -8,7 +8,7 @@ from fractions import Fraction
 from math import pi
 
 import numpy as np
-from sympy import Expr, sympify
+from sympy import Expr, S
 
 from verification.certificates.bifurcation import Proof
 from verification.continuation.branch import Event, What
@@ -42,7 +42,7 @@ def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fractio
         if centred is None:
             return None
         x, mirror = centred, True
-    contraction = None if lam is None else sympify(lam)
+    contraction = None if lam is None else S(lam)
     problem = Problem(ring.table, ring.components, KINDS[event.what], letter, contraction, mirror)
     return certify(problem, [*(float(v) for v in x), event.value], digits)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
-from sympy import Expr, N, sympify
+from sympy import Expr, N, S
 
 from symbolic import named_cycles, tables
 from symbolic.cycles import Cycle
@@ -74,7 +74,7 @@ def freed(ring: Chords, K: int, letter: str, interval: Sequence[Expr | Fraction]
     table = tables.named(ring.table.name, K)
     for value in interval:
         try:
-            table.at(**{letter: sympify(value)})
+            table.at(**{letter: S(value)})
         except ValueError as why:
             raise ValueError(f"--shape: {why}") from None
     return Chords(table, ring.components, ring.ends)

@@ -63,7 +63,7 @@ class States:
     def curvature(self, component: NDArray[np.int64], theta: Array) -> Array:
         """The paper's signed curvature, negative where the boundary focuses."""
         if self.family.name in ("cardioid", "cuspless"):
-            return np.where(component == 1, 0.0, -0.75 / np.cos(np.where(component == 1, 0.0, theta) / 2))
+            return np.where(component == 1, 0.0, -0.75 / np.cos(theta / 2))
         _, _, dx, dy, ax, ay = self.curve(component, theta)
         return np.asarray(-(dx * ay - dy * ax) / np.hypot(dx, dy) ** 3)
 

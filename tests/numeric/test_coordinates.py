@@ -135,3 +135,10 @@ def test_directions_and_exit_angles_are_each_others_inverse(table):
     assert np.allclose(vx * tx + vy * ty, np.sin(phi), rtol=0, atol=1e-12)  # the tangent, to the right of a ball
     assert np.allclose(tx * vy - ty * vx, np.cos(phi), rtol=0, atol=1e-12)
     assert np.allclose(states.angle_to_normal(component, theta, vx, vy), phi, rtol=0, atol=8 * EPS)
+
+
+def test_a_ball_on_the_wall_is_told_as_a_landing_there_leaves_it():
+    states = PinballMap("cuspless", lam=0.4).states
+    fields = states.enter(np.array([1, 0]), np.array([0.25, 0.0]), np.zeros(2), "slap")
+
+    assert [field.tolist() for field in fields] == [[1, 0], [-0.25, 1], [0, 0]]

@@ -27,11 +27,10 @@ from fnmatch import fnmatch
 from functools import cache
 from os import waitpid
 
-from mutation_mutants import ROOT, STOREYS, Mutant, mutants
+from mutation_mutants import ROOT, STATE, STOREYS, Mutant, mutants
 from mutation_page import reason, write_page
 from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, reached, warm
 
-STATE = ROOT / "report" / "mutation"
 COVER, RESULTS = STATE / "cover.json", STATE / "results.jsonl"
 
 

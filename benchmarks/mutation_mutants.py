@@ -9,9 +9,11 @@ Left out, and why (the page says the same): see LEFT_OUT.
 """
 
 import ast
+import hashlib
+import json
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import ClassVar
 
@@ -21,6 +23,7 @@ from cosmic_ray.plugins import get_operator
 
 ROOT = Path(__file__).resolve().parent.parent
 STOREYS = ("symbolic", "numeric", "verification")
+STATE = ROOT / "report" / "mutation"
 
 ARITHMETIC = (
     "Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul", "FloorDiv_Div", "Mod_FloorDiv", "LShift_RShift",
@@ -145,8 +148,19 @@ def shape_of(source: str) -> str:
 
 
 def mutants(path: str) -> list[Mutant]:
-    """Every mutant of a module, in the order of its lines; the same text is not counted twice."""
+    """Every mutant of a module, in the order of its lines; made once for each text of the module and of this file."""
     source = (ROOT / path).read_text()
+    key = hashlib.sha256("\0".join((path, source, Path(__file__).read_text())).encode()).hexdigest()[:24]
+    kept = STATE / f"mutants-{key}.json"
+    if not kept.is_file():
+        STATE.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps([asdict(mutant) for mutant in made(path, source)]))
+    entries = json.loads(kept.read_text())
+    return [Mutant(**entry | {"statement": tuple(entry["statement"])}) for entry in entries]
+
+
+def made(path: str, source: str) -> list[Mutant]:
+    """The mutants of a text; the same syntax tree is not counted twice."""
     spans, same = statements(ast.parse(source)), {shape_of(source)}
     repeats: Counter[tuple[str, str]] = Counter()
     found = []

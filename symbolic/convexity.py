@@ -32,8 +32,6 @@ def convexity(table: Table, box: Box | None = None, strictly: bool = False) -> F
 def _turns_left(expression: Expr, box: Box, strictly: bool) -> Finding:
     judge = positive if strictly else nonnegative
     if not expression.has(theta):
-        if expression == 0 and not strictly:
-            return Finding(Outcome.PROVED, "straight")
         return judge(expression, {x: r for x, r in box.items() if x in expression.free_symbols})
     half = in_half_tangent(expression)
     if half is None:

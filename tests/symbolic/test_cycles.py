@@ -3,6 +3,7 @@
 import pytest
 from sympy import Matrix, Rational, S, cancel, pi, simplify, sqrt
 
+from symbolic.collision import derivative_matrix
 from symbolic.cycles import (
     Cycle,
     discriminant,
@@ -145,3 +146,17 @@ def test_vieta():
     assert simplify(plus + minus - trace) == 0
     assert simplify(plus * minus - det) == 0
     assert simplify((plus - minus) ** 2 - discriminant(trace, det)) == 0
+
+
+def test_in_the_circle_a_chord_makes_the_same_angle_at_both_its_ends():
+    """Arcs of 60, 120 and 180 degrees: chords of length 1, sqrt(3), 2, whose cosines are half of that."""
+    cycle = Cycle("scalene", circle, ((0, S.Zero), (0, pi / 3), (0, pi)))
+    lengths, sines = [S.One, sqrt(3), S(2)], [sqrt(3) / 2, S.Half, S.Zero]
+
+    for i in range(3):
+        assert cycle.length(i) == lengths[i]
+        assert (cycle.cos_exit(i), cycle.cos_incidence(i)) == (lengths[i] / 2, lengths[i - 1] / 2)
+        assert cycle.sliding(i) == (sines[i], sines[i - 1])
+        same = {"t": lengths[i], "cos_phi0": lengths[i] / 2, "cos_eta1": lengths[i] / 2}
+        assert is_zero(flight_matrix(cycle, i) - derivative_matrix(K0=-S.One, K1=-S.One, **same))
+        assert is_zero(flight_matrix(cycle, i + 3) - flight_matrix(cycle, i))

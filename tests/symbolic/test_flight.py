@@ -66,7 +66,9 @@ def test_the_support_is_the_pair_of_scalar_products():
     assert support({2: ((3, 5), (7, 11))}, 2, (13, 17)) == (3 * 13 + 5 * 17, 7 * 13 + 11 * 17)
 
 
-@pytest.mark.parametrize("component", [circle.components[0], ellipse.components[0], LOOSE, egg(2).components[0]])
+@pytest.mark.parametrize(
+    "component", [circle.components[0], ellipse.components[0], LOOSE, egg(2).components[0], egg(3).components[0]]
+)
 def test_the_polynomial_is_the_deflated_sum_of_the_module_s_own_formula(component):
     """`sum U_(k-1)(cos B) * Im(conj(M_k)*exp(i*k*m))`, by SymPy's complex numbers at `T = 1/2` and `T = -3`."""
     h = harmonics(component)
@@ -81,7 +83,7 @@ def test_the_polynomial_is_the_deflated_sum_of_the_module_s_own_formula(componen
         for k, (C, sine) in h.items():
             if k:
                 M = C[0] * E[0] + C[1] * E[1] - I * (sine[0] * E[0] + sine[1] * E[1])  # the conjugate
-                chebyshev = {1: 1, 2: 2 * cos_B, 3: 4 * cos_B**2 - 1}[k]
+                chebyshev = {1: 1, 2: 2 * cos_B, 3: 4 * cos_B**2 - 1, 4: 8 * cos_B**3 - 4 * cos_B}[k]
                 total += chebyshev * im(expand(M * m**k))
         value = sum(c * T**j for j, c in enumerate(found))
 

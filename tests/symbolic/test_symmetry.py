@@ -35,7 +35,8 @@ def test_two_symmetries_make_a_third(table):
 def test_a_symmetry_is_a_rotation_or_a_reflection_and_its_shift_is_less_than_a_turn(table):
     for symmetry in group(table):
         assert simplify(symmetry.matrix.det()) == symmetry.sign
-        assert symmetry.name.startswith("reflection") == (symmetry.sign < 0)
+        line = f"reflection in the line at {symmetry.angle / 2}"
+        assert symmetry.name == line if symmetry.sign < 0 else not symmetry.name.startswith("reflection")
         assert len(symmetry.onto) == len(symmetry.shift) == len(table.components)
         assert all(0 <= shift < 2 * pi for shift in symmetry.shift)
 

@@ -132,3 +132,13 @@ def test_cuspless_joins_share_a_tangent_and_not_a_curvature():
 )
 def test_intervals_print_as_mathematicians_write_them(interval, text):
     assert interval_text(interval) == text
+
+
+@pytest.mark.parametrize("table", TABLES, ids=identity)
+def test_a_table_is_a_value_that_can_be_a_key(table):
+    assert {table: 1}[table] == 1
+    for part in (table, table.components[0], *table.shapes, *table.undefined):
+        with pytest.raises(AttributeError):
+            part.name = "other"
+        with pytest.raises(AttributeError):
+            part.symbol = alpha

@@ -248,3 +248,24 @@ def test_a_point_within_a_billionth_of_the_tables_size_is_on_the_boundary():
     assert abs(map.locate(1000 + 9e-7, 0.0)[1]) < 1e-9
     with pytest.raises(ValueError, match=r"is not on the boundary; it is 1\.1e-06 away"):
         map.locate(1000 + 1.1e-6, 0.0)
+
+
+def test_what_is_not_said_is_along_the_normal_once_and_compiled():
+    map = PinballMap("ellipse", lam=0.5, a=2)
+
+    assert map.engine.kernels
+    assert map.step(0.3).theta == map.step(0.3, 0.0, 0).theta
+    assert map.slap(0.3).theta.shape == (2,)
+    assert map.exponents(0.3, 0.2, 5).theta == map.exponents(0.3, 0.2, 5, 0, 0).theta
+    with pytest.raises(ValueError, match="transient = -1 is not possible; give a whole number of at least 0"):
+        map.exponents(0.3, 0.2, 5, transient=-1)
+    with pytest.raises(ValueError, match="bounces = 0 is not possible"):
+        map.exponents(0.3, 0.2, 0)
+
+
+def test_a_ball_that_never_bounced_has_grown_by_nothing():
+    found = PinballMap("cardioid", lam=0.5, kernels=False).exponents([0.3, 0.0], [0.1, 0.0], 4)
+
+    assert found.nu_plus[1] == 0
+    assert found.nu_minus[1] == np.log(0.5)
+    assert np.isfinite(found.nu_plus[0])

@@ -151,7 +151,10 @@ def test_derivatives_of_a_pair_are_those_of_series_in_mpmath(case, unstable):
     orbit, letter = CASES[case]
     unit, precision = scale(orbit, EGG, letter, unstable, OUTER), Precision(20)
     with working(precision.bits):
-        found = pair(orbit, EGG, arb(letter), unit, precision).at(1, (arb(3) / 10).mid(), arb(0))
+        made = pair(orbit, EGG, arb(letter), unit, precision)
+        found = made.at(1, (arb(3) / 10).mid(), arb(0))
+        with pytest.raises(TooWideError, match="radius 1/2"):
+            made.at(1, arb("0.4", "0.2"), arb(0))
     context = mpmath.MPContext()
     context.dps = 60
     map, h, z, lam = EGG.over(multiprecision(context)), context.mpf(10) ** -15, context.mpf(3) / 10, context.mpf(letter)

@@ -16,6 +16,7 @@ from verification.manifolds.saddle import Orbit
 from verification.manifolds.tangency import Contact
 
 LARGEST_DIGITS, LARGEST_PERIOD, LARGEST_FLIGHT = 600, 64, 1000
+FARTHEST = 1000.0  # along an eigenvector, in radians
 DECIMAL = re.compile(r"0\.\d{1,1000}")
 KIND = "tangency"
 
@@ -103,7 +104,7 @@ def _contact(given: Mapping[str, Any]) -> Contact:
     if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
         raise ValueError(f"certificate: bounces = {bounces} or sign = {sign} is out of range")
     z, end, letter = (float(given[name]) for name in ("z", "end", "letter"))
-    if not (0 < abs(z) < 1 and 0 < abs(end) < 1 and 0 < letter < 1):
+    if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < letter < 1):
         raise ValueError(f"certificate: z = {z}, end = {end} or letter = {letter} is out of range")
     return Contact(unstable, stable, bounces, sign, z, end, letter)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from verification.manifolds.recurrence import Recurrence
 from verification.manifolds.series import Local, horner
-from verification.manifolds.tangency import Contact
+from verification.manifolds.tangency import Contact, rounds
 from verification.shooting.jets import Jet
 
 
@@ -28,6 +28,8 @@ class Flight:
 def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: int, late: int) -> Flight:
     """The orbit from `early` rounds before the start of the contact to `late` rounds after its end.
 
+    Both are at least as many as take the ends of the contact into the domains of the series.
+
     >>> from verification.arithmetic import FLOAT64
     >>> from verification.manifolds.known import CONTACTS, SHAPE, table
     >>> from verification.manifolds.saddle import saddle
@@ -38,20 +40,24 @@ def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: in
     13
     """
     p, q = len(contact.unstable.start), len(contact.stable.start)
-    z = contact.z / float(out.factor) ** early
-    found = [bounce(out, j, Jet(z, 1.0)) for j in range(-1, early * p + 2)]
-    for _ in range(contact.bounces):
+    before, after = (
+        rounds(contact.z / out.unit, float(out.factor)),
+        rounds(contact.end / into.unit, 1 / float(into.factor)),
+    )
+    z, w0 = contact.z / float(out.factor) ** early, contact.end * float(into.factor) ** after
+    found = [bounce(out, j, Jet(z, 1.0)) for j in range(-1, (early - before) * p + 2)]
+    for _ in range(contact.bounces + before * p + after * q):
         found.append(map.lifted.following(found[-2], found[-1], contact.letter))
-    end, rate = bounce(into, 0, Jet(contact.end, 1.0)).c
-    sign = contact.sign * contact.unstable.sign**early  # each early round may mirror what follows
-    w = Jet(contact.end, sign * found[-2].c[1] / rate)
+    end, rate = bounce(into, 0, Jet(w0, 1.0)).c
+    sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**after  # each round may mirror the rest
+    w = Jet(w0, sign * found[-2].c[1] / rate)
     turn = found[-2].c[0] - sign * end
     if map.turn:
         unit = 2 * map.words["pi"] / map.turn
         turn = round(turn / unit) * unit
-    for j in range(2, late * q + 2):
+    for j in range(2, (late - after) * q + 2):
         found.append(sign * bounce(into, j, w) + turn)
-    return Flight(found, z, w * float(into.factor) ** late)
+    return Flight(found, z, w * float(into.factor) ** (late - after))
 
 
 def bounce(local: Local, j: int, z: Jet) -> Jet:

@@ -7,7 +7,7 @@ so its derivatives are bounded by Cauchy as well, on parameters up to 1/2.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flint import acb, arb
 
@@ -28,6 +28,7 @@ from verification.manifolds.series import Local, horner, local
 from verification.shooting.jets import Jet
 
 REACH = 0.04  # how far the outer disc moves a bounce at most: little beside a chord, so that the rule stays finite
+SMALLER = 3  # units that are tried before the last one
 ROUGH = 28  # order of the series in float64 that sets the scale
 Polynomials = list[list[arb]]
 
@@ -138,6 +139,20 @@ def _reach(made: Local) -> float:
     return low
 
 
+def smaller(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Precision) -> Pair:
+    """The pair with the largest of a few units for which the remainder is bounded.
+
+    Along long cycles the coefficients' balls grow with the order, in the largest unit by up to 100 for each.
+    """
+    for unit in (scale.unit / 10**k for k in range(SMALLER)):
+        try:
+            return pair(orbit, map, letter, replace(scale, unit=unit), precision)
+        except TooWideError as why:
+            if why.item != "remainder":
+                raise
+    return pair(orbit, map, letter, replace(scale, unit=scale.unit / 10**SMALLER), precision)
+
+
 def one_cycle(around: Saddle, here: Saddle) -> bool:
     """Is the cycle at one letter the one that is unique over a ball of letters? It is where its balls lie in those."""
     return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
@@ -156,10 +171,12 @@ def pair(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Pr
         second = 2 * size(around - here) / (disc - 2 * step) ** 2
         return ((beside - here) / (beyond - letter)).real + _around(4 * step * second)
 
-    here, beside, around = (near(at) for at in (acb(letter), acb(beyond), acb(letter) + around_zero(disc)))
+    around = near(acb(letter) + around_zero(disc))
+    error = remainder(around, precision.outer)
+    here, beside = near(acb(letter)), near(acb(beyond))
     if not all(one_cycle(around.saddle, made.saddle) for made in (here, beside)):
         raise TooWideError("saddle", "the cycle at a letter may be another than the one over the disc of letters")
     bounces = list(zip(*(made.pair() for made in (here, beside, around)), strict=True))
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]
-    return Pair(around.saddle, scale, places, slopes, remainder(around, precision.outer), disc - 2 * step)
+    return Pair(around.saddle, scale, places, slopes, error, disc - 2 * step)

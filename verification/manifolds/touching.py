@@ -21,7 +21,7 @@ from flint import arb, arb_mat
 from verification.arithmetic import FLOAT64, balls
 from verification.manifolds.enclosed import TooWideError
 from verification.manifolds.flight import Flight, bounce, flight
-from verification.manifolds.pair import Near, Pair, Precision, pair, scale
+from verification.manifolds.pair import Near, Pair, Precision, scale, smaller
 from verification.manifolds.recurrence import Recurrence
 from verification.manifolds.tangency import Contact, rounds
 from verification.shooting.jets import Jet
@@ -89,26 +89,23 @@ class Touching:
         self.map, self.letter = map.over(balls(precision.bits)), letter
         self.pairs: list[Pair] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
-            unit = scale(orbit, map, float(letter), unstable, precision.outer)
-            self.pairs.append(pair(orbit, map, letter, unit, precision))
+            found = scale(orbit, map, float(letter), unstable, precision.outer)
+            self.pairs.append(smaller(orbit, map, letter, found, precision))
         out, into = (made.scale for made in self.pairs)
         near = contact.z / out.unit / LARGEST, contact.end / into.unit / LARGEST
-        early, late = rounds(near[0], float(out.rough.factor)), rounds(near[1], 1 / float(into.rough.factor))
+        early = rounds(near[0], float(out.rough.factor))
+        late = max(1, rounds(near[1], 1 / float(into.rough.factor)))  # the orbit ends on the series, lifted as it is
         self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
         if self.bounces > MOST_BOUNCES:
             raise TooWideError("exists", f"an orbit of {self.bounces} bounces is too long")
         self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
         self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 
-    def _from(self, flight: Flight) -> tuple[list[int], Point]:
+    def _from(self, flight: Flight) -> tuple[int, Point]:
         """The turns of the table at the end of an orbit, and the point from which Newton's method starts."""
         map, units = self.map, [made.scale.unit for made in self.pairs]
-        ends = [bounce(self.pairs[1].scale.rough, j, flight.w) for j in (0, 1)]
-        unit = 2 * math.pi / map.turn if map.turn else math.inf
-        apart = [self.sign * x.c[0] - end.c[0] for x, end in zip(flight.bounces[-2:], ends, strict=True)]
-        turns = [round(d / unit) for d in apart]
-        if map.turn and (turns[1] - turns[0]) % map.turn:
-            raise TooWideError("exists", "the orbit does not end near an image of the saddle")
+        apart = self.sign * flight.bounces[-2] - bounce(self.pairs[1].scale.rough, 0, flight.w)
+        turns = round(apart.c[0] * map.turn / (2 * math.pi))
         along = [1.0, *(units[0] * x.c[1] for x in flight.bounces), units[0] / units[1] * flight.w.c[1]]
         orbit = [flight.z / units[0], *(x.c[0] for x in flight.bounces), flight.w.c[0] / units[1]]
         return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.letter)
@@ -124,7 +121,7 @@ class Touching:
             self._bounced(made, at, k)
         unit = 2 * self.map.words["pi"] / self.map.turn if self.map.turn else arb(0)
         for i, near in enumerate(into):
-            _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns[i] * unit, near)
+            _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns * unit, near)
         return made
 
     def _ends(self, at: Point) -> list[tuple[Pair, arb]]:

@@ -11,7 +11,7 @@ from verification.certificates.files import document
 from verification.commands.check import command as check
 from verification.commands.locate import command as locate_command
 from verification.ladder import ladder
-from verification.locate import NAMES, SAMPLED, locate
+from verification.locate import NAMES, locate
 
 ALPHA = Rational(2, 25)
 SHAPES = {
@@ -33,13 +33,20 @@ KNOWN = {  # each from its second method: closed forms of the symbolic storey, o
 }
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in SAMPLED])
+@pytest.mark.parametrize("name", KNOWN)
 def test_each_name_is_located_and_certified(name):
     found = locate(name, 25, **SHAPES.get(name, {}))
 
     assert found.certified, found.checks
     assert found.value.startswith(KNOWN[name])
     assert float(found.radius) < 1e-25
+
+
+def test_every_name_is_a_bifurcation_with_a_known_value_or_a_contact_of_manifolds():
+    contacts = {"merging-crisis", "boundary-crisis", "symmetry-restoring", "band-merging"}
+    contacts |= {f"{what}-{event}" for what in ("window", "family") for event in ("end", "merging")}
+
+    assert set(NAMES) == set(KNOWN) | contacts
 
 
 @pytest.mark.parametrize(("name", "near"), [("merging-crisis", 0.44343), ("boundary-crisis", 0.6622)])
@@ -100,6 +107,9 @@ def test_the_papers_ladder_is_judged_digit_by_digit(n, printed, right):
         ("saddle-node", {"alpha": Integer(0)}, "alpha = 0 is a circle"),
         ("saddle-node", {"alpha": Rational(1, 5)}, r"alpha must lie in \[0, 1/10\]"),
         ("alpha-tilde", {"lam": Integer(2)}, "lam = 2 is out of range"),
+        ("window-end", {"alpha": ALPHA}, "given --alpha; it takes --alpha, --period"),
+        ("window-end", {"alpha": ALPHA, "period": Integer(7)}, "period = 7 is not known; accepted: 9, 12, 14, 15, 18"),
+        ("band-merging", {"alpha": ALPHA, "period": Integer(3)}, "accepted: 4, 8, 16"),
     ],
 )
 def test_a_search_that_cannot_succeed_says_what_is_accepted(name, shape, message):

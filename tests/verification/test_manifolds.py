@@ -11,8 +11,9 @@ from sympy import Rational
 
 from symbolic import tables
 from verification.arithmetic import ARRAYS, FLOAT64
+from verification.ladder import ladder
 from verification.manifolds.grow import branch, far
-from verification.manifolds.known import MIRRORED, SHAPE, TRIANGLE, contact, table
+from verification.manifolds.known import CONTACTS, MIRRORED, SHAPE, TRIANGLE, contact, table
 from verification.manifolds.located import crisis, heteroclinic_exponent, homoclinic_exponent
 from verification.manifolds.plot import portrait
 from verification.manifolds.recurrence import Henon, Pinball
@@ -145,6 +146,47 @@ def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_mul
 
     assert gaps[0] / gaps[1] == pytest.approx(at.multipliers[1] ** 3, rel=0.05)
     assert gaps[1] / gaps[2] == pytest.approx(at.multipliers[1] ** 3, rel=0.01)
+
+
+@pytest.mark.parametrize("kind", ["window-end-9", "window-end-15", "family-end-8", "family-merging-8"])
+def test_the_folds_of_shadowing_cycles_approach_the_ends_of_windows_at_the_rate_of_the_saddle(kind):
+    """Two methods: each round of the saddle more brings the fold nearer by its unstable multiplier."""
+    from verification.shooting.newton import floats
+
+    where = contact(kind, SHAPE)
+    at = tangency(where, EGG, 8)
+    gaps, periods = [], []
+    for rounds in (4, 6):
+        cycle = shadow(where, EGG, float(at.letter), rounds)
+        gaps.append(floats(cycle.problem, cycle.start)[-1] - at.letter)
+        periods.append(cycle.problem.period)
+    more = (periods[1] - periods[0]) // len(where.unstable.start)
+
+    assert gaps[0] / gaps[1] == pytest.approx(at.multipliers[1] ** more, rel=0.05)
+
+
+def test_bands_merge_at_distances_from_the_end_of_the_cascade_that_fall_by_feigenbaums_ratio():
+    """The end is from the certified doublings, with which the contacts share only the chord."""
+    rungs = ladder(SHAPE)
+    values = [next(rungs).lam for _ in range(8)]
+    end = values[-1] + (values[-1] - values[-2]) / (4.669201609 - 1)
+    joined = [CONTACTS[f"band-merging-{period}"].letter - end for period in (4, 8, 16)]
+    ratios = [far / near for far, near in pairwise(joined)]
+
+    assert ratios == pytest.approx([4.669201609] * 2, rel=3e-3)
+    assert abs(ratios[1] / 4.669201609 - 1) < abs(ratios[0] / 4.669201609 - 1)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in CONTACTS if name.endswith(("14", "15", "18")) or "family-end" in name]
+)
+def test_a_small_attractor_joins_its_bands_before_it_ends(name):
+    end = CONTACTS[name.replace("merging", "end")]
+    merging = CONTACTS[name.replace("end", "merging")]
+
+    assert merging.letter < end.letter
+    assert len(merging.unstable.start) == len(end.unstable.start)
+    assert tangency(CONTACTS[name], EGG, 8).letter == pytest.approx(CONTACTS[name].letter, abs=1e-12)
 
 
 def test_below_the_boundary_crisis_the_manifolds_are_apart_and_above_they_cross():

@@ -13,7 +13,7 @@ from verification.commands.output import Output, json_option, write_whole
 if TYPE_CHECKING:
     from verification.locate import Located
 
-LETTERS = ("lam", "alpha", "n")
+LETTERS = ("lam", "alpha", "n", "period")
 
 
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
@@ -22,24 +22,35 @@ LETTERS = ("lam", "alpha", "n")
 @click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat.")
 @click.option("--alpha", metavar="NUMBER", help="The shape of the egg, for the names that need one.")
 @click.option("--n", metavar="INTEGER", help="Which doubling: from period 2^(n-1) to 2^n.")
+@click.option("--period", metavar="INTEGER", help="Of the attractors that a window, a family or bands began with.")
 @click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
 @json_option
 def command(
-    name: str, digits: int, lam: str | None, alpha: str | None, n: str | None, certificate: str | None, output: Output
+    name: str,
+    digits: int,
+    lam: str | None,
+    alpha: str | None,
+    n: str | None,
+    period: str | None,
+    certificate: str | None,
+    output: Output,
 ) -> int:
     """Where does it happen, to N certified digits? Exit status 1 when something is not proved.
 
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
-    merging-crisis, boundary-crisis, band-merging and symmetry-restoring: tangencies of manifolds, which are proved;
-    that the attractor changes there, and nowhere before, is not.
+    merging-crisis, boundary-crisis, symmetry-restoring, band-merging and, with --period, window-end, window-merging,
+    family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes there, and
+    nowhere before, is not.
     """
     from symbolic.formula import number
     from verification.locate import GMPY2, WORDS, locate
 
-    given = {letter: text for letter, text in zip(LETTERS, (lam, alpha, n), strict=True) if text is not None}
+    given = {letter: text for letter, text in zip(LETTERS, (lam, alpha, n, period), strict=True) if text is not None}
     shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}
     if "n" in shape and not shape["n"].is_Integer:
         raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
+    if "period" in shape and not shape["period"].is_Integer:
+        raise ValueError(f"--period {period} is no integer; accepted: the period of a window, as in docs/crises.md")
     if certificate is not None:
         writable(certificate)
     with output.progress(f"Locating {name}", 1) as step:

@@ -21,6 +21,7 @@ from verification.arithmetic import FLOAT64
 from verification.manifolds.recurrence import Pinball
 from verification.manifolds.saddle import Orbit
 from verification.manifolds.tangency import Contact, Gap, tangency
+from verification.manifolds.windows import WINDOWS
 from verification.progress import telling
 
 SHAPE = Rational(2, 25)
@@ -35,7 +36,8 @@ CONTACTS = {
     "boundary": Contact(TRIANGLE, TRIANGLE, 5, 1, 0.03431592, -0.02607124, 0.66214427),
     "band-merging": Contact(FOUR, FOUR, 20, 1, -0.01239661, 0.00116269, 0.39768737),
     "symmetry-restoring": Contact(SYMMETRIC, SYMMETRIC, 12, 1, -0.03158573, -0.00186500, 0.41026825),
-}
+} | WINDOWS
+CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # as those of periods 8 and 16 are called
 
 
 def table(alpha: Expr) -> Pinball:

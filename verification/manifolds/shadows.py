@@ -6,6 +6,7 @@ tangency like `unstable**-rounds`. A fold is a problem of the chord system, solv
 as wanted, and provable; a long cycle gives the tangency itself.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,13 +35,23 @@ def shadow(contact: Contact, map: Pinball, letter: float, rounds: int) -> Shadow
         points, bent, image = period(gap, rounds + more)
         sign, turns = image
         if sign == -1 or turns % map.turn == 0:
-            unit = 2 * floats.words["pi"] / map.turn
-            if sign == -1:  # a mirror: turned so that its axis is theta = 0
-                points = [x + turns * unit for x in points]
-            points = [*points[bent + 1 :], *(sign * x for x in points[: bent + 1])]
-            problem = Problem(map.table, (0,) * len(points), Kind.FOLD, "lam", mirror=sign == -1)
-            return Shadow(problem, [*points, letter])
-    raise ValueError("shadow: no number of rounds closes the cycle up to a mirror")
+            return closed(points, bent, image, map, letter)
+    return closed(*period(gap, rounds), map, letter)  # it turns at each passage, and closes after several
+
+
+def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball, letter: float) -> Shadow:
+    """The problem of the fold of a cycle that repeats after its points, turned or as its mirror image."""
+    sign, turns = image
+    unit = 2 * math.pi / map.turn
+    if sign == -1:  # a mirror: turned so that its axis is theta = 0
+        points, shift = [x + turns * unit for x in points], 0
+    else:
+        shift = turns % map.turn
+    after = [sign * x + shift * unit for x in points[: bent + 1]]
+    problem = Problem(
+        map.table, (0,) * len(points), Kind.FOLD, "lam", mirror=sign == -1, shift=(shift, map.turn if shift else 1)
+    )
+    return Shadow(problem, [*points[bent + 1 :], *after, letter])
 
 
 def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:

@@ -20,6 +20,7 @@ from verification.manifolds.series import Local, horner, local
 from verification.shooting.jets import Jet
 
 STEPS = 30
+NOISE = 1e4  # times the goal: steps of secants that small and no longer shrinking are rounding
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ class Gap:
         for _ in range(STEPS):
             step = (horner(c, z) - here) / horner(slope, z)
             z = z - step
-            size = max(abs(float(x)) for x in step.c)
+            size = max(abs(float(x)) / (1 + abs(float(y))) for x, y in zip(step.c, z.c, strict=True))
             if size == 0 or (before < 1e-6 and not size < before / 2):
                 return z
             before = size
@@ -167,15 +168,18 @@ def secant(contact: Contact, map: Recurrence, order: int, tail: float, letters: 
     a, b = letters
     b = b + 0 * a
     fa = Gap(contact, map, a, order, tail).extremum()[1].c[0]
+    before = math.inf
     for _ in range(STEPS):
         gap = Gap(contact, map, b, order, tail)
         _, found, _ = gap.extremum()
         fb = found.c[0]
         speed = (fb - fa) / (b - a)
         a, fa, b = b, fb, b - fb / speed
-        if abs(b - a) < goal:
+        step = float(abs(b - a))
+        if step < goal or before / 2 <= step < NOISE * goal:  # many bounces leave the gap with noise
             out, into = gap.out.saddle, gap.into.saddle
             near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
             residual = max(gap.out.residual, gap.into.residual)
-            return Touch(contact, b, float(abs(b - a)) + goal, float(2 * found.c[2]), float(speed), near, residual)
+            return Touch(contact, b, step + goal, float(2 * found.c[2]), float(speed), near, residual)
+        before = step
     raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last were {float(a)} and {float(b)}")

@@ -36,6 +36,7 @@ class Problem:
     """A cycle by its components, in a table whose only free shape is `free`.
 
     With `mirror` it is half a cycle: after its bounces come their images under `theta -> -theta`.
+    With a `shift` of `p/q` of a turn they come again that much further on; certificates know no shift.
     `lam` is free when None, exact, or a number as it is: a ball proves for every `lam` in it, a jet differentiates.
     """
 
@@ -45,6 +46,7 @@ class Problem:
     free: str = ""
     lam: Expr | Any = None
     mirror: bool = False
+    shift: tuple[int, int] = (0, 1)
 
     def __post_init__(self) -> None:
         shapes = {p.symbol.name for p in self.table.shapes}
@@ -147,7 +149,9 @@ class Rows:
     def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
         """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""
         components, n, turn = self.problem.components, self.problem.period, self.problem.turn
-        ring = [turn * z[n - 1], *z[:n], turn * z[0]]
+        p, q = self.problem.shift
+        shift = 2 * self.arithmetic["pi"] * self.arithmetic["q"](p, q) if p else 0
+        ring = [turn * (z[n - 1] - shift), *z[:n], turn * z[0] + shift]
         shape = (z[n],) if self.shape else ()
         out, into = [], []
         for i in range(n):

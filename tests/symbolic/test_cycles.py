@@ -160,3 +160,15 @@ def test_in_the_circle_a_chord_makes_the_same_angle_at_both_its_ends():
         same = {"t": lengths[i], "cos_phi0": lengths[i] / 2, "cos_eta1": lengths[i] / 2}
         assert is_zero(flight_matrix(cycle, i) - derivative_matrix(K0=-S.One, K1=-S.One, **same))
         assert is_zero(flight_matrix(cycle, i + 3) - flight_matrix(cycle, i))
+
+
+def test_the_parallel_tangents_touch_at_mirror_images_away_from_the_axis():
+    cycle = egg_parallel()
+    (c,) = parallel_shape().free_symbols
+    (x0, y0), (x1, y1) = (
+        [coordinate.subs(c, Rational(-1, 9)) for coordinate in cycle.table.components[index].at(value)]
+        for index, value in cycle.bounces
+    )
+
+    assert simplify(x0 - x1) == simplify(y0 + y1) == 0
+    assert y0 > 1 > abs(x0)

@@ -44,7 +44,7 @@ BAD = {
     "a float alone": (lambda: polar(1.5), "contains a rounded float"),
     "an unknown symbol": (lambda: polar(1 + b * cos(theta)), "unknown symbol b in .*; it may use: theta$"),
     "another letter for the parameter": (lambda: polar(1 + cos(Symbol("t")) / 9), "unknown symbol t in"),
-    "an open spiral": (lambda: polar(5 + theta), r"not closed: polar ends at \(-5 - pi, 0\) and polar starts at"),
+    "an open spiral": (lambda: polar(5 + theta), r"ends at \(-5 - pi, 0\) and polar starts at \(-5 \+ pi, 0\)$"),
     "a half circle": (lambda: piecewise(arc("half", cos(theta), sin(theta), 0, pi)), "half ends at .* half starts at"),
     "a gap between components": (lambda: stadium(gap=1), "not closed: bottom ends at .* right starts at"),
     "a figure eight": (lambda: parametric(sin(theta), sin(2 * theta)), "area 0; it crosses itself"),

@@ -71,3 +71,16 @@ def test_the_nearest_component_is_taken_and_the_farthest_point_named():
         located(states, np.array([0.0, 0.0]), np.array([1.0, 0.5]))
     with pytest.raises(ValueError, match="x and y are empty; give at least one point"):
         located(states, np.empty(0), np.empty(0))
+
+
+def test_off_is_measured_by_the_size_of_the_table():
+    small = PinballMap(tables.parametric(cos(theta) / 1000, sin(theta) / 900, name="small")).states
+
+    assert abs(located(small, np.array(1e-3 + 5e-13), np.array(0.0))[1]) < 1e-8
+    with pytest.raises(ValueError, match=r"it is 1e-10 away"):
+        located(small, np.array(1e-3 + 1e-10), np.array(0.0))
+
+
+def test_of_several_points_off_the_boundary_the_first_is_named():
+    with pytest.raises(ValueError, match=r"the point \(0\.5, 0\.25\) is not on the boundary; it is 0\.441 away"):
+        located(PinballMap("circle").states, np.array([1.0, 0.5, 2.0]), np.array([0.0, 0.25, 0.0]))

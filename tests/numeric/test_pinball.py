@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sympy import Rational, cos, sin
+from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap, Status
 from symbolic import tables
@@ -269,3 +269,28 @@ def test_a_ball_that_never_bounced_has_grown_by_nothing():
     assert found.nu_plus[1] == 0
     assert found.nu_minus[1] == np.log(0.5)
     assert np.isfinite(found.nu_plus[0])
+
+
+def test_of_several_mistakes_the_first_is_named():
+    cardioid, cuspless = (PinballMap(name, kernels=False) for name in ("cardioid", "cuspless"))
+
+    with pytest.raises(ValueError, match=r"phi = 1\.6 does not"):
+        cardioid.step(0.0, [0.0, 1.6, 1.7])
+    with pytest.raises(ValueError, match=r"theta = -3\.14"):
+        cardioid.step([0.0, -np.pi, np.pi], 0.0)
+    with pytest.raises(ValueError, match=r"theta = 2\.5 is not on the arc"):
+        cuspless.step([0.0, 2.5, 2.6], 0.0)
+    with pytest.raises(ValueError, match="theta and phi are empty; give at least one ball"):
+        cardioid.step([], [])
+
+
+@pytest.mark.parametrize(("low", "high", "turn"), [(-3, 3, pi / 3), (-1, 2 * pi - 1, 1)])
+def test_a_parameter_is_wound_back_only_where_a_turn_is_two_pi(low, high, turn):
+    """The circle, once with a parameter from -3 to 3, and once from -1 to one turn more."""
+    made = tables.piecewise(tables.arc("round", cos(turn * theta), sin(turn * theta), low, high), name="round")
+    map = PinballMap(made, lam=0.5, kernels=False)
+    if turn == 1:
+        assert float(map.step(-2.0, 0.3).x) == pytest.approx(float(PinballMap("circle").step(-2.0, 0.3).x), abs=1e-14)
+    else:
+        with pytest.raises(ValueError, match=r"theta = 3\.1 is not on the round"):
+            map.step(3.1, 0.3)

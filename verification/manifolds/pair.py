@@ -78,12 +78,16 @@ class Near:
 
 @dataclass(frozen=True)
 class Scale:
-    """`unit` is the length of `z = 1` along the eigenvector whose entry `chief` is 1; `rough` the series in float64."""
+    """`unit` is the length of `z = 1` along the eigenvector whose entry `chief` is 1; `rough` the series in float64.
+
+    The polynomials have so many orders `more` than the precision asks for.
+    """
 
     unstable: bool
     unit: float
     chief: int
     rough: Local
+    more: int = 0
 
 
 @dataclass(frozen=True)
@@ -140,17 +144,23 @@ def _reach(made: Local) -> float:
 
 
 def smaller(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Precision) -> Pair:
-    """The pair with the largest of a few units for which the remainder is bounded.
+    """The pair with the largest of a few units for which the remainder is bounded, each with more orders.
 
-    Along long cycles the coefficients' balls grow with the order, in the largest unit by up to 100 for each.
+    Along long cycles the coefficients' balls grow with the order, in the largest unit by up to 100 for each; and
+    the slopes along a round multiply to a number that only many orders outweigh where the multiplier is near 1.
     """
-    for unit in (scale.unit / 10**k for k in range(SMALLER)):
+    for k in range(SMALLER):
         try:
-            return pair(orbit, map, letter, replace(scale, unit=unit), precision)
+            return pair(orbit, map, letter, shrunk(scale, k), precision)
         except TooWideError as why:
             if why.item != "remainder":
                 raise
-    return pair(orbit, map, letter, replace(scale, unit=scale.unit / 10**SMALLER), precision)
+    return pair(orbit, map, letter, shrunk(scale, SMALLER), precision)
+
+
+def shrunk(scale: Scale, times: int) -> Scale:
+    """A tenth of the unit and ten orders more, so many times."""
+    return replace(scale, unit=scale.unit / 10**times, more=10 * times)
 
 
 def one_cycle(around: Saddle, here: Saddle) -> bool:
@@ -165,7 +175,8 @@ def pair(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Pr
     beyond = (letter + step).mid()
 
     def near(at: acb) -> Enclosed:
-        return enclosed(enclosed_saddle(orbit, balls, at), scale.unstable, precision.order, scale.unit, scale.chief)
+        order = precision.order + scale.more
+        return enclosed(enclosed_saddle(orbit, balls, at), scale.unstable, order, scale.unit, scale.chief)
 
     def slope(here: acb, beside: acb, around: acb) -> arb:
         second = 2 * size(around - here) / (disc - 2 * step) ** 2

@@ -92,9 +92,9 @@ class Touching:
             found = scale(orbit, map, float(letter), unstable, precision.outer)
             self.pairs.append(smaller(orbit, map, letter, found, precision))
         out, into = (made.scale for made in self.pairs)
-        near = contact.z / out.unit / LARGEST, contact.end / into.unit / LARGEST
-        early = rounds(near[0], float(out.rough.factor))
-        late = max(1, rounds(near[1], 1 / float(into.rough.factor)))  # the orbit ends on the series, lifted as it is
+        early = rounds(contact.z / min(LARGEST * out.unit, out.rough.unit), float(out.rough.factor))
+        late = rounds(contact.end / min(LARGEST * into.unit, into.rough.unit), 1 / float(into.rough.factor))
+        late = max(late, 1)  # the orbit ends on the series, and has their turns
         self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
         if self.bounces > MOST_BOUNCES:
             raise TooWideError("exists", f"an orbit of {self.bounces} bounces is too long")

@@ -172,3 +172,11 @@ def test_the_parallel_tangents_touch_at_mirror_images_away_from_the_axis():
 
     assert simplify(x0 - x1) == simplify(y0 + y1) == 0
     assert y0 > 1 > abs(x0)
+
+
+def test_a_flight_takes_the_curvature_it_leaves_and_the_one_it_lands_on():
+    """From `(2, 0)`, curvature -2, to `(0, 1)`, curvature -1/4, of the ellipse with `a = 2`."""
+    cycle = Cycle("three of four vertices", ellipse.at(a=2), ((0, S.Zero), (0, pi / 2), (0, pi)))
+    hand = derivative_matrix(K0=-S(2), K1=-Rational(1, 4), t=sqrt(5), cos_phi0=2 / sqrt(5), cos_eta1=1 / sqrt(5))
+
+    assert is_zero(flight_matrix(cycle, 0) - hand)

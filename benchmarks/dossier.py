@@ -3,7 +3,7 @@
     python benchmarks/dossier.py
 
 writes the page from `docs/bench.json` (`pinball bench --json`), `docs/work_precision.json`, `docs/leave_out.md`,
-`docs/mutation.json`, `verification/extremes/recorded.json` and `tests/symbolic/corpus.json`; each is written by the
+`docs/mutation.md`, `verification/extremes/recorded.json` and `tests/symbolic/corpus.json`; each is written by the
 command that the page names. The words are in `dossier.md` beside this file. Nothing is measured here, and a test
 holds the page to its sources.
 """
@@ -178,16 +178,9 @@ def scenes(text):
     return table(["table", "least operations", "most", "doubles of state", "MB", "ms to the answer"], lines)
 
 
-def mutation(document):
-    """The share of mutants that the tests kill."""
-    modules = document["modules"]
-    parts = []
-    for package in ("symbolic", "numeric"):
-        own = [m for name, m in modules.items() if name.startswith(package)]
-        if own:
-            killed, made = sum(m["killed"] for m in own), sum(m["mutants"] for m in own)
-            parts.append(f"`{package}/` {killed:,} of {made:,} ({killed / made:.1%}, {len(own)} modules)")
-    return "; ".join(parts)
+def mutation(text):
+    """What the page on mutants sums up, a sentence or two for each storey."""
+    return "\n\n".join(line for line in text.splitlines() if re.match(r"`(symbolic|numeric)`: ", line))
 
 
 def fuzz(text, corpus):
@@ -216,7 +209,7 @@ def page():
         verdicts=verdicts(record),
         exceptions=exceptions(record),
         scenes=scenes((ROOT / "docs" / "leave_out.md").read_text().split("## Before")[0]),
-        mutation=mutation(load("docs/mutation.json")),
+        mutation=mutation((ROOT / "docs" / "mutation.md").read_text()),
         fuzz=fuzz((ROOT / "benchmarks" / "fuzz.py").read_text(), load("tests/symbolic/corpus.json")),
     )
 

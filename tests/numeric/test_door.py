@@ -7,12 +7,14 @@ import pytest
 from sympy import Float, Rational, Symbol, cos, exp, pi, sin, sqrt, sympify, tan
 
 from numeric.blueprint import blueprint
-from numeric.door import converted, drawn, named
+from numeric.door import converted, drawn, named, seen_ahead
 from numeric.program import Builder
 from numeric.readers.scalars import Scalars
 from symbolic import tables
+from symbolic.flight import ONE, chord_polynomial
 from symbolic.geometry import velocity
 from symbolic.symbols import theta
+from symbolic.table import Component, Table
 
 MP = mpmath.MPContext()
 MP.dps = 40
@@ -86,6 +88,27 @@ def test_cosine_and_sine_of_multiples_share_one_call():
     assert [line[0] for line in program_of(cos(B), sin(theta / 2)).lines].count("cos") == 1
 
 
+@pytest.mark.parametrize("k", [-1, -2, -5, 0])
+@pytest.mark.parametrize("function", [cos, sin])
+def test_multiples_that_sympy_would_turn_round_are_as_good(function, k):
+    expression = function(k * theta, evaluate=False)
+    (found,) = program_of(expression)(OPS, MP.mpf(AT.p) / AT.q, MP.mpf(0))
+
+    assert abs(found - value(function(k * theta))) <= 100 * MP.eps
+
+
+@pytest.mark.parametrize("k", [1, 2, 5])
+def test_in_the_frame_of_the_flight_any_harmonic_has_the_same_chords(k):
+    """In rational numbers, with `E` and `B` of length one; `k = 1` beside it, so that the polynomial is one."""
+    E, B = (((1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)) for t in (Rational(1, 3), Rational(-9, 4)))
+    one = ((Rational(2), Rational(1, 7)), (Rational(-1, 5), Rational(3, 2)))
+    other = ((Rational(1, 3), Rational(-2, 5)), (Rational(3, 4), Rational(5, 7)))
+    h = {1: one, k: other}
+    ahead = {n: seen_ahead(n, *vectors, E) for n, vectors in h.items()}
+
+    assert chord_polynomial(ahead, ONE, B) == chord_polynomial(h, E, B)
+
+
 @pytest.mark.parametrize(
     ("expression", "words"),
     [
@@ -137,6 +160,10 @@ FAMILIES = {
     "egg": ("fourier", tables.egg(4)),
     "lifted": ("ellipse", tables.parametric(cos(theta) + 1, 2 * sin(theta) - 3, name="lifted")),
     "rooted": ("general", tables.polar(sqrt(2 + cos(theta)), name="rooted")),
+    "twice": (
+        "general",
+        Table("twice", (Component("round", (cos(2 * theta), sin(2 * theta)), -pi / 2, pi / 2),)),
+    ),
     "halves": (
         "general",
         tables.piecewise(

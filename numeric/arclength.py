@@ -27,8 +27,8 @@ class ArcLength:
         self.lengths = [self._length(index) for index in range(len(states.ends))]
         index, program = states.blueprint.origin
         offsets = {}
-        zero = float(program(states.ops, *states.shape)[0])
-        reached = -float(self.lengths[index](np.clip(zero, *states.ends[index])))  # 0 where nothing else is said
+        zero, (first, last) = float(program(states.ops, *states.shape)[0]), states.ends[index]
+        reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 where nothing else is said
         for turn in range(len(states.ends)):
             at = (index + turn) % len(states.ends)
             low, high = states.ends[at]

@@ -12,8 +12,8 @@ from sympy import Rational
 
 from verification.arithmetic import multiprecision, working
 from verification.manifolds.enclosed import TooWideError, complex_balls, enclosed, enclosed_saddle
-from verification.manifolds.known import MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
-from verification.manifolds.pair import Precision, one_cycle, pair, scale
+from verification.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
+from verification.manifolds.pair import Precision, one_cycle, pair, scale, smaller
 from verification.manifolds.recurrence import Henon
 from verification.manifolds.remainder import bounds, remainder, round_outwards, vanishing
 from verification.manifolds.saddle import Orbit, saddle
@@ -186,6 +186,20 @@ def test_a_saddle_of_the_henon_map_has_the_multipliers_of_the_textbook():
         assert found.points[0].overlaps(acb(x))
         assert found.unstable.overlaps(acb(-a * x - root))
         assert found.stable.overlaps(acb(-a * x + root))
+
+
+def test_where_the_balls_of_a_long_cycle_grow_a_smaller_unit_bounds_the_remainder():
+    """Stable manifold of five bounces, multiplier -0.011: its balls grow by 30 with each order."""
+    where, precision = CONTACTS["window-merging-15"], Precision(24)
+    large = scale(where.stable, EGG, where.letter, False, precision.outer)
+    with working(precision.bits):
+        with pytest.raises(TooWideError, match="not bounded"):
+            pair(where.stable, EGG, arb(where.letter), large, precision)
+        found = smaller(where.stable, EGG, arb(where.letter), large, precision)
+
+    assert found.scale.unit < large.unit
+    assert len(found.places[0]) > precision.order + 1
+    assert found.error < 1e-40
 
 
 def test_cycles_at_single_letters_are_held_against_the_one_over_a_disc():

@@ -133,6 +133,13 @@ def test_a_nonnegative_expression_needs_no_box():
     assert nonnegative(x**3 * (x - 2), {x: Interval(1, 3)}).outcome is Outcome.REFUTED
 
 
+def test_a_change_of_sign_between_the_samples_refutes_nonnegative_in_one_letter():
+    finding = nonnegative((16 * x - 3) * (4 * x - 1), {x: UNIT})  # negative from 3/16 to 1/4
+
+    assert finding.outcome is Outcome.REFUTED
+    assert "has 2 root(s)" in finding.reason
+
+
 def test_bernstein_coefficients_are_those_of_a_hand_calculation():
     """`x -> u/(1 + u)` on the unit interval, `u` and `-u` on half-lines; each row a power of the next letter."""
     assert bernstein(x**2 - 3 * x + 3, {x: UNIT}) == [3, 3, 1]

@@ -232,3 +232,40 @@ def test_a_number_is_written_with_all_its_bits():
     assert ops.number(-1.5).text == "splat (double 0xBFF8000000000000)"
     assert ops.number(0.1).text == "splat (double 0x3FB999999999999A)"
     assert (ops.pi().value, Arrays().pi()) == (math.pi, math.pi)
+
+
+@pytest.mark.parametrize("kernels", [True, False])
+def test_a_product_written_in_a_branch_is_written_again_behind_it(kernels):
+    """What is written inside of a branch, or of a loop, is not there for what follows."""
+
+    def formula(o, x, y, z):
+        product = x * y
+        for _ in range(2):
+            (z,) = o.when(x < z, [z], lambda z=z: [o.select(x < z, product, z)])
+        (z, _) = o.repeat(
+            lambda s: o.number(0.5) < s[1],
+            lambda s: [o.select(s[0] < x, product, s[0]), o.number(0.0) * x],
+            [z, abs(x)],
+            3,
+        )
+        return o.select(z < x, product, o.maximum(product, z))
+
+    expected = []
+    for x, y, z in zip(*ROW, strict=True):
+        for _ in range(2):
+            z = x * y if x < z else z
+        z = x * y if abs(x) > 0.5 and z < x else z
+        expected.append(x * y if z < x else max(x * y, z))
+
+    assert valued(formula, kernels=kernels) == expected
+
+
+def test_blocks_are_named_as_the_count_of_operations_reads_them():
+    ops, x, y = traced()
+    ops.repeat(lambda s: s[0] < y, lambda s: [s[0] + y], [x], 3)
+    ops.when(x < y, [x], lambda: [y])
+    labels = [line[:-1] for line in ops.lines if line.endswith(":")]
+
+    assert [label.rstrip("0123456789") for label in labels] == ["head", "inside", "after", "inside", "after"]
+    assert len(set(labels)) == 5
+    assert (Lanes().width, ops.constant(7).value) == (32, 7.0)

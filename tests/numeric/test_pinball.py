@@ -256,6 +256,7 @@ def test_what_is_not_said_is_along_the_normal_once_and_compiled():
     assert map.engine.kernels
     assert map.step(0.3).theta == map.step(0.3, 0.0, 0).theta
     assert map.slap(0.3).theta.shape == (2,)
+    assert map.arclength is map.arclength
     assert map.exponents(0.3, 0.2, 5).theta == map.exponents(0.3, 0.2, 5, 0, 0).theta
     with pytest.raises(ValueError, match="transient = -1 is not possible; give a whole number of at least 0"):
         map.exponents(0.3, 0.2, 5, transient=-1)

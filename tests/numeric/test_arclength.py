@@ -105,7 +105,7 @@ def test_the_ends_of_a_component_are_on_it_and_what_is_beyond_is_not(name):
         lies = re.escape(f"there s lies in [{first:.17g}, {last:.17g}]")
         for s in (first - 1.2 * slack, last + 1.2 * slack):
             with pytest.raises(ValueError, match=rf"s = {f'{s:.6f}'[:-1]}\d* is not on the .*; {lies}"):
-                arc.theta([0.5 * (first + last), s], component)
+                arc.theta([first, last, s], component)
 
 
 def test_the_place_that_is_refused_is_named_in_the_tables_arc_length():
@@ -119,6 +119,7 @@ def test_shapes_of_arguments_are_kept():
     assert (arc.s(0.3).shape, arc.theta(0.3).shape) == ((), ())
     assert arc.s(np.zeros((2, 3)), np.zeros((2, 1), dtype=int)).shape == (2, 3)
     assert arc.theta(np.empty((0,))).shape == (0,)
+    assert (float(arc.s(0.3)), float(arc.theta(0.3))) == (float(arc.s(0.3, 0)), float(arc.theta(0.3, 0)))
 
 
 def test_an_ellipse_by_another_name_has_the_same_arc_length():

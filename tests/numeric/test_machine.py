@@ -1,5 +1,7 @@
 """Kernels are compiled once, kept in memory and on disk, and looked for there first; else NumPy serves."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -121,3 +123,11 @@ def test_a_kernel_can_be_read_as_assembly():
 
     assert "run" in machine.assembly(text)
     assert "define void @run" in str(machine.optimised(text))
+
+
+@pytest.mark.parametrize(("library", "version"), [(None, None), ("another llvm", "")])
+def test_a_compiler_without_a_version_has_an_empty_one_and_none_has_none(library, version, monkeypatch):
+    monkeypatch.setitem(sys.modules, "llvmlite", None)
+    monkeypatch.setattr(machine, "_llvm", lambda: library)
+
+    assert machine._version() == version

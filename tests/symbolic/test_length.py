@@ -8,7 +8,7 @@ from symbolic.geometry import speed, trigonometric
 from symbolic.length import arc_length, perimeter, positions
 from symbolic.symbols import a, alpha, theta
 from symbolic.table import Component, Table
-from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
 
 mp = mpmath.MPContext()
 mp.dps = 30
@@ -127,3 +127,11 @@ def test_the_order_of_the_axes_does_not_change_a_perimeter():
     upright = parametric(cos(theta), 2 * sin(theta))
 
     assert abs((perimeter(upright) - perimeter(ellipse.at(a=2))).evalf(30)) < Rational(1, 10**25)
+
+
+def test_the_length_of_a_curve_whose_speed_is_no_finite_sum_stays_an_integral():
+    pear = polar(1 / (9 + cos(theta))).components[0]
+    found = arc_length(pear)
+
+    assert isinstance(found, Integral)
+    assert simplify(found.diff(theta) - speed(pear)) == 0

@@ -1,6 +1,10 @@
 """What is counted in a kernel's text, and what is left out of it."""
 
+import numpy as np
+
+from numeric import PinballMap
 from numeric.kernel import alive, operations
+from numeric.question import Question
 
 TEXT = """\
 define void @run() {
@@ -55,3 +59,14 @@ def test_what_a_branch_needs_is_alive_and_what_only_the_dead_need_is_not():
         "  call void @g(i64 %y)",
         "  %y = add i64 1, 2",
     ]
+
+
+def test_a_ball_that_stops_keeps_its_outcome_and_counts_what_it_loses():
+    """From the middle of the cuspless arc: to the upper join, to the lower one, and elsewhere."""
+    map = PinballMap("cuspless", lam=0.9)
+    aim = np.arctan2(np.sqrt(3) / 4, 2.25)
+    own = map.states.enter(np.zeros(3, dtype=int), np.zeros(3), np.array([aim, -aim, 0.3]), map.law)
+    rows = map.engine.run(Question(map.law), own, np.full(3, 0.9), [], 5).rows
+
+    assert rows["code"].tolist() == [1, 1, 0] or rows["code"].tolist() in ([1, 0, 0], [0, 1, 0])
+    assert rows["lost"].tolist() == (5 * rows["code"]).tolist()

@@ -7,15 +7,16 @@ from pathlib import Path
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin
+from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin, tan
 
 from symbolic.crossing import chord_of_length_zero
 from symbolic.fourier import boundary_coefficients
 from symbolic.length import perimeter
+from symbolic.signs import Outcome
 from symbolic.symbols import a, theta
 from symbolic.table import Component, Shape, Table
 from symbolic.tables import arc, cardioid, cuspless, egg, ellipse, named, parametric, piecewise, polar
-from symbolic.validity import enclosed_area, validated
+from symbolic.validity import enclosed_area, radius_sign, validated
 
 b = Symbol("b")
 
@@ -195,3 +196,52 @@ def test_a_crossing_is_found_where_no_proof_reaches(made):
 
 def test_a_polygon_that_does_not_cross_is_a_table():
     assert perimeter(polygon((0, 0), (4, 0), (4, 3), (0, 3))) == 14
+
+
+@pytest.mark.parametrize(
+    "direction",
+    [(1, 0), (4, 3), (3, 4), (0, 1), (-3, 4), (-1, 0), (-3, -4), (0, -1), (3, -4), (4, -3)],
+    ids=str,
+)
+def test_the_least_radius_decides_in_whatever_direction_it_lies(direction):
+    size = Rational(1, 5) if all(direction) else S.One
+    dip = (1 - size * (direction[0] * cos(theta) + direction[1] * sin(theta))) ** 2
+
+    assert radius_sign(dip + Rational(1, 50)) is Outcome.PROVED
+    assert radius_sign(dip) is Outcome.REFUTED
+    assert radius_sign(dip - Rational(1, 50)) is Outcome.REFUTED
+
+
+def test_a_sum_along_the_ray_is_no_radius_where_the_point_is_off_the_ray():
+    x, y = cos(theta) + 2 * sin(theta) ** 2, sin(theta) - 2 * sin(theta) * cos(theta)
+
+    assert simplify(x * cos(theta) + y * sin(theta)) == 1  # yet theta = pi/3 and -pi/3 are one point
+    with pytest.raises(ValueError, match="meets itself"):
+        parametric(x, y)
+
+
+POLES = {
+    "in y alone": (cos(theta), 1 / (2 * sin(theta) - 1)),
+    "in x alone": (1 / (3 * cos(theta) - 2), sin(theta)),
+    "opposite to theta = 0": (cos(theta), sin(theta) / (1 + cos(theta)) ** 2),
+    "of a tangent": (cos(theta), tan(theta)),
+}
+
+
+@pytest.mark.parametrize("point", POLES.values(), ids=POLES.keys())
+def test_a_pole_is_found_in_either_coordinate_and_wherever_it_lies(point):
+    with pytest.raises(ValueError, match=r"has a pole, where .* = 0; a boundary must be finite"):
+        parametric(*point)
+
+
+def test_a_denominator_without_a_zero_is_no_pole_for_one_table_nor_for_a_family():
+    x, y = cos(theta) / (2 + cos(theta)), sin(theta) / (2 + cos(theta))
+
+    assert parametric(x, y).components[0].point == (x, y)
+    assert parametric(a * x, y, shapes=ellipse.shapes).at(a=2).components[0].point == (2 * x, y)
+
+
+def test_the_refusal_of_an_open_boundary_says_where_it_ends_and_where_it_should():
+    where = r"bend ends at \(2, 6\) and bend starts at \(1, 3\)$"
+    with pytest.raises(ValueError, match=where):
+        piecewise(arc("bend", theta, theta**2 + 2, 1, 2))

@@ -98,6 +98,21 @@ def test_statements_that_fail_on_a_branch_do_not_vanish(expression):
     assert not vanishes(expression)
 
 
+@pytest.mark.parametrize(
+    ("nested", "plain"),
+    [
+        (sqrt(5 + 2 * sqrt(6)), sqrt(2) + sqrt(3)),
+        ((7 + 5 * sqrt(2)) ** Rational(1, 3), 1 + sqrt(2)),
+        (sqrt(6 + sqrt(11)), sqrt(22) / 2 + S.One / sqrt(2)),
+    ],
+)
+def test_a_nested_root_is_recognised_where_only_the_angles_cancel(nested, plain):
+    turn = sin(theta) ** 2 + cos(theta) ** 2
+
+    assert vanishes(nested * turn - plain)
+    assert not vanishes(nested * turn - plain + Rational(1, 10**9))
+
+
 def test_the_reduced_numerator_holds_no_squared_sine():
     reduced = reduced_numerator(sin(theta) ** 4 + sin(theta) ** 3 / 2)
 

@@ -85,6 +85,8 @@ def _cuspless(rng: np.random.Generator, side: Any, tiny: Array, angle: Array) ->
     zero, join = np.zeros(count, dtype=np.int64), 2 * np.pi / 3
     yield Case("cuspless, start near a join", map, zero, side * (join - tiny), angle)
     yield Case("cuspless, from the wall", map, zero + 1, rng.uniform(-0.4329, 0.4329, count), angle)
+    along = side * (np.pi / 2 - tiny)
+    yield Case("cuspless, along the wall", map, zero + 1, rng.uniform(-0.4329, 0.4329, count), along)
     yield Case("cuspless, from the wall near a join", map, zero + 1, side * (np.sqrt(3) / 4 - tiny), angle)
     theta = rng.uniform(-2, 2, count)
     x, y = map.states.point(zero, theta)

@@ -31,13 +31,24 @@ def test_one_bounce_is_right_to_the_last_bits(table, lam):
 def test_grazing_flights_are_as_exact_as_others(table, gap):
     map = table.map(0.9)
     where, theta, _ = table.starts(map, 12, seed=8)
-    if table.name == "cuspless":  # from the wall a grazing flight ends next to a join
-        where, theta = np.zeros_like(where), np.linspace(-1.9, 1.9, 12)
     phi = np.where(np.arange(12) % 2 == 0, 1, -1) * (np.pi / 2 - gap)
     position, direction = measured(map, where, theta, phi)
 
     assert max(position) <= 4
     assert max(direction) <= 8
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.01, 1e-3, 1e-6, 1e-12])
+@pytest.mark.parametrize("kernels", [True, False])
+def test_flights_that_leave_the_wall_along_it(gap, kernels):
+    """From wherever on the wall; they land on the arc next to a join."""
+    map = PinballMap("cuspless", lam=0.9, kernels=kernels)
+    y = np.linspace(-0.43, 0.43, 12)
+    for side in (1, -1):
+        position, direction = measured(map, np.ones(12, dtype=int), y, np.full(12, side * (np.pi / 2 - gap)))
+
+        assert max(position) <= 4
+        assert max(direction) <= 8
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-5, 1e-8, 1e-11])

@@ -157,9 +157,9 @@ def _lines(steps: dict[Symbol, Expr], results: list[Symbol], names: set[str]) ->
     return lines, printer.used
 
 
-def _natural(symbol: Symbol) -> tuple[str, int]:
+def _natural(symbol: Symbol) -> tuple[str, int, str]:
     stem = symbol.name.rstrip("0123456789")
-    return stem, int(symbol.name[len(stem) :] or 0)
+    return stem, int(symbol.name[len(stem) :] or 0), symbol.name  # the name tells `u` from `u0`
 
 
 def _folded(name: str, terms: list[str]) -> list[str]:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sympy import Float, Function, I, Integral, Rational, Symbol, acos, cos, exp, log, oo, pi, sqrt, symbols, tan
+from sympy import Float, Function, I, Integral, Rational, Symbol, acos, cos, exp, log, oo, pi, sin, sqrt, symbols, tan
 
 from symbolic.codegen import VOCABULARY, kernel, load, module_text
 from verification.arithmetic import FLOAT64, balls, working
@@ -44,6 +44,20 @@ def test_bytes_do_not_depend_on_the_hash_seed(tmp_path):
         subprocess.run(command, env=environment, check=True, cwd=root)
         for file in sorted((HERE / "golden").glob("*.py")):
             assert (folder / file.name).read_bytes() == file.read_bytes()
+
+
+def test_names_that_are_one_number_are_written_in_one_order():
+    names = [letter + zeros for letter in "abdefghk" for zeros in ("", "0", "00")]
+    made = kernel("f", [x], {"value": sum(symbols(names))}, {Symbol(name): sin(x + i) for i, name in enumerate(names)})
+
+    assert [line.split()[0] for line in made.text.splitlines()[1:25]] == names
+
+
+def test_names_with_numbers_are_written_in_the_order_of_their_numbers():
+    names = ["a", "a1", "a2", "a10", "b", "b1"]
+    made = kernel("f", [x], {"value": sum(symbols(names))}, {Symbol(name): sin(x + i) for i, name in enumerate(names)})
+
+    assert [line.split()[0] for line in made.text.splitlines()[1:7]] == names
 
 
 def test_generated_lines_are_short_and_hold_no_division_of_integers():

@@ -121,6 +121,12 @@ def test_a_turned_egg_has_its_mirrors_turned():
     assert {simplify(symmetry.angle) for symmetry in turned if symmetry.sign < 0} == {pi / 3, pi, 5 * pi / 3}
 
 
+def test_a_turned_egg_with_an_even_number_of_points_has_its_mirrors_between_those_of_the_egg():
+    turned = group(polar(1 + sin(4 * theta) / 60))
+
+    assert {symmetry.angle for symmetry in turned if symmetry.sign < 0} == {pi * k / 4 for k in (1, 3, 5, 7)}
+
+
 def test_the_circle_is_listed_by_the_symmetries_of_the_square():
     assert order_of_rotation(circle.components[0]) == 4
     assert len(group(circle)) == 8

@@ -8,6 +8,7 @@ html_theme = "furo"
 html_title = "Pinball billiards"
 exclude_patterns = ["_build"]
 myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
 autodoc_typehints = "description"
 add_module_names = False
 default_role = "code"

@@ -31,12 +31,18 @@ SPACE = [*GRID, "--starts", "4", "--bounces", "400"]
 SECONDS = [*GRID, "--starts", "64", "--bounces", "40000"]  # so long that an interruption is never too late
 
 
-def started(arguments, **more):
+def started(arguments, prepare=None):
+    """A sweep that hears Ctrl-C, also where a shell that runs the tests in the background has them ignore it."""
     command = [sys.executable, "-m", "verification", "sweep", *arguments]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.Popen(
-        command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more
-    )
+
+    def prepared():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        if prepare is not None:
+            prepare()
+
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(command, cwd=ROOT, env=environment, preexec_fn=prepared, **pipes)
 
 
 def files(store):
@@ -98,7 +104,7 @@ def test_an_interrupted_sweep_says_how_to_go_on(tmp_path):
 def test_a_limit_on_files_is_met_with_one_sentence(tmp_path):
     diagram = ["bifurcation", "circle", "--lams", "0.1:0.9:3", "--orbits", "20", "--points", "500", "--bounces", "8"]
     arguments = [*diagram, "--transient", "0", "--store", str(tmp_path / "store")]
-    process = started(arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000)))
+    process = started(arguments, lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000)))
     out, said = process.communicate()
 
     assert (process.returncode, out) == (1, "")

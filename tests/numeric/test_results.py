@@ -28,6 +28,10 @@ def test_exponents_are_labelled_by_ball():
     assert np.array_equal(found.nu_plus.values, exponents.nu_plus)
 
 
+def test_the_outcomes_of_balls_stand_beside_their_exponents():
+    assert list(EGG.exponents([0.1, 0.2], 0.1, 50).status) == [Status.REGULAR] * 2
+
+
 def test_the_slope_of_a_slap_map_has_a_value_for_each_start():
     found = EGG.slap([0.1, 0.2, 0.3], iterates=2).to_xarray()
 

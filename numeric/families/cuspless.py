@@ -16,7 +16,6 @@ from numeric.plane import Pair
 QUARTER = 0.25
 FLAT_WALL = 0.125  # cosines of the incidence below which a flight is sharpened: on the wall,
 FLAT_ARC = 0.875  # and on the arc past the other join, there with cos(theta/2) added, which is 1/2 at the join
-SKIMS = 2.0**-6  # cosines of the exit below which a flight along the wall is looked for at its far end
 TINY = 2.0**-30  # landings from the wall are found relatively, down to this distance from a join
 
 
@@ -42,7 +41,7 @@ class Cuspless(Cardioid):
         # the flight skims the wall, or the arc next to the join, in sqrt(3) - tan(theta1/2), so that nothing cancels
         y, up, four = -ops.times_sign(p, s), abs(s), ops.number(4.0)
         L, below = ops.fma(c, y, ops.number(QUARTER) * up), ops.number(QUARTER) * root3 - y
-        skims = (c < ops.number(SKIMS)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
+        skims = (c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
         plain = [-two * up - L, four * c, two * (up - L), nought, -L]
         turned = [ops.number(16.0) * c * below, four * c * (four * root3 * y - one)]
         turned += [-ops.number(3.0) * up - ops.number(20.0) * c * y, four * root3 * L, -L]

@@ -24,6 +24,7 @@ from verification.continuation.certified import proof_of
 from verification.continuation.dataset import dataset
 from verification.continuation.linear import spectrum
 from verification.continuation.maps import cubic, delayed, henon, logistic
+from verification.continuation.plot import runs
 from verification.continuation.recurrence import Chords, Ends
 from verification.continuation.switching import switched
 from verification.ladder import ladder
@@ -244,6 +245,16 @@ def test_a_dataset_labels_points_and_events_by_the_letter():
     assert table["lam"].where(table["event"] == "fold", drop=True).values == pytest.approx(one.events[0].value)
     steps = [b - a for a, b in pairwise(table["arclength"].values)]
     assert min(steps) >= 0
+
+
+def test_a_run_that_ends_across_the_circle_keeps_its_stability():
+    """The triangle's third bounce is at pi where `lam = 1`, on the edge of stability: below, it is stable."""
+    one = branch(Chords(TABLE, (0, 0, 0)), TRIANGLE, "lam", 1.0, (0.37, 1.0))
+    for bounce in range(3):
+        span = {True: 0.0, False: 0.0}
+        for values, _, stable in runs(one, bounce):
+            span[stable] += abs(values[-1] - values[0])
+        assert min(span.values()) > 0.6  # either partner, from 0.378 to 1
 
 
 def run(*words):

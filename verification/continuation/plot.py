@@ -65,7 +65,7 @@ def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float]
         if not values:
             values, angles = [ends[0][0]], [ends[0][1]]
         if abs(ends[1][1] - ends[0][1]) > np.pi:
-            yield values, angles, stable
+            yield values, angles, spectrum_of(a).stable  # the end at lam = 1 is on the edge itself
             values, angles = [], []
             continue
         values.append(ends[1][0])

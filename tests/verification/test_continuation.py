@@ -26,6 +26,7 @@ from verification.continuation.linear import spectrum
 from verification.continuation.maps import cubic, delayed, henon, logistic
 from verification.continuation.plot import runs
 from verification.continuation.recurrence import Chords, Ends
+from verification.continuation.starts import named
 from verification.continuation.switching import switched
 from verification.ladder import ladder
 from verification.locate import locate
@@ -249,7 +250,8 @@ def test_a_dataset_labels_points_and_events_by_the_letter():
 
 def test_a_run_that_ends_across_the_circle_keeps_its_stability():
     """The triangle's third bounce is at pi where `lam = 1`, on the edge of stability: below, it is stable."""
-    one = branch(Chords(TABLE, (0, 0, 0)), TRIANGLE, "lam", 1.0, (0.37, 1.0))
+    ring, x, _ = named("triangle", TABLE)
+    one = branch(ring, x, "lam", 1.0, (0.37, 1.0))
     for bounce in range(3):
         span = {True: 0.0, False: 0.0}
         for values, _, stable in runs(one, bounce):

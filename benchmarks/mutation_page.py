@@ -9,7 +9,6 @@ import json
 import tomllib
 from functools import cache
 from importlib.metadata import version
-from math import sqrt
 
 from mutation_mutants import LEFT_OUT, ROOT
 
@@ -35,13 +34,6 @@ imported.
 | module | mutants | killed | of these by timeout | survived | share killed | explained |
 |---|---|---|---|---|---|---|
 """
-
-
-def wilson(hits: int, count: int) -> tuple[float, float]:
-    """Wilson's 95 % interval for a share."""
-    z, share = 1.96, hits / count
-    middle, half = share + z * z / (2 * count), z * sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    return (middle - half) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
 
 
 def percent(share: float) -> str:
@@ -89,10 +81,12 @@ def summary(name: str, figures: dict[str, dict]) -> str:
         text += f". Asked was a random part of {total} mutants"
     fresh, fresh_hits = (sum(entry.get(key, 0) for entry in figures.values()) for key in ("fresh", "fresh_killed"))
     if fresh:
-        low, high = wilson(fresh_hits, fresh)
+        from verification.dynamics.kinds import wilson  # here: no mutant is asked after the package was imported
+
+        share = wilson(fresh_hits, fresh)
         text += f". Of {fresh} mutants drawn at random after the last test was written {fresh_hits} are killed, "
         text += f"{percent(fresh_hits / fresh)}; Wilson's 95 % interval for all that were not asked before is "
-        text += f"{percent(low)} to {percent(high)}"
+        text += f"{percent(share.low)} to {percent(share.high)}"
     return text + "."
 
 

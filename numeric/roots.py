@@ -114,7 +114,7 @@ def polynomial_zero(
     wanted: Any = None,
     accepts: Callable[[Any], Any] | None = None,
 ) -> Any:
-    """`bracketed_zero` of a polynomial given by its coefficients; `steps` of Halley, then of Newton."""
+    """`ops.zero` of a polynomial given by its coefficients; `steps` of Halley, then of Newton."""
     for _ in range(steps[0]):
         x = halley(p, x)
-    return bracketed_zero(ops, lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)
+    return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)

@@ -53,12 +53,13 @@ def command(
     theta, phi = start_of(start)
     digits = wanted(digits, tolerance)
     picked: dict[str, str] = {}
+    if arithmetic != "float64":
+        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
     if arithmetic == "auto":
         from verification.work.orbit_choice import for_orbit
 
-        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
-        choice = for_orbit(map, (index, float(theta), float(phi)), bounces, digits or FEW)
-        arithmetic, digits = choice.arithmetic, digits or FEW
+        choice = for_orbit(map, (index, float(theta), float(phi)), bounces, digits := digits or FEW)
+        arithmetic = choice.arithmetic
         picked = {"arithmetic": arithmetic, "why": choice.why}
     digits = digits or MANY
     if arithmetic == "float64":
@@ -66,7 +67,6 @@ def command(
     else:
         from verification.orbits import in_balls, in_multiprecision
 
-        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
         follow = in_multiprecision if arithmetic == "mpmath" else in_balls
         with output.progress("Bouncing", bounces) as step:
             entries = follow(map, exact("--lam", scene.lam), (index, theta, phi), bounces, digits, step)

@@ -64,21 +64,6 @@ class Wide(Arrays):
         found = roots.bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
         return sharpened(function, found, scale, wanted)
 
-    def polynomial_zero(
-        self,
-        p: list[Any],
-        x: Any,
-        low: Any,
-        high: Any,
-        scale: Any,
-        steps: tuple[int, int],
-        wanted: Any = None,
-        accepts: Callable[[Any], Any] | None = None,
-    ) -> Any:
-        """The zero of a polynomial, likewise."""
-        found = roots.polynomial_zero(self, p, x, low, high, scale, steps, wanted, accepts)
-        return sharpened(lambda at: roots.value_and_slope(p, at), found, scale, wanted)
-
 
 def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
     """Newton's steps from a zero known to 53 bits, each lane until its correction is below the unit or grows.

@@ -46,7 +46,7 @@ def table(alpha: Expr) -> Pinball:
 
 
 def contact(kind: str, alpha: Expr) -> Contact:
-    """The `merging` or the `boundary` contact at a shape, followed there from `alpha = 0.08`."""
+    """A contact by its name at a shape, followed there from `alpha = 0.08`."""
     if kind not in CONTACTS:
         raise ValueError(f"crisis: {kind!r} is not known; accepted: {', '.join(CONTACTS)}")
     before = here = CONTACTS[kind]

@@ -14,10 +14,11 @@ PATIENCE = 30_000  # milliseconds
 
 
 @pytest.fixture(scope="module")
-def address():
-    """The page of `pinball explore`, served by the command itself."""
+def address(tmp_path_factory):
+    """The page of `pinball explore`, served by the command itself, which must have nothing to complain of."""
     asked = [sys.executable, "-u", "-m", "verification", "explore", "--no-open"]
-    with subprocess.Popen(asked, stdout=subprocess.PIPE, text=True) as process:
+    said = tmp_path_factory.mktemp("explore") / "stderr"
+    with said.open("w") as errors, subprocess.Popen(asked, stdout=subprocess.PIPE, stderr=errors, text=True) as process:
         found = re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
         for _ in range(120):
             try:
@@ -28,6 +29,7 @@ def address():
                     process.wait(0.25)
         yield found
         process.terminate()
+    assert "Traceback" not in said.read_text()
 
 
 def outside(url):
@@ -78,6 +80,17 @@ def test_a_formula_that_is_none_is_answered_with_a_sentence(table):
 def test_the_cycle_near_the_ball_is_found_with_its_multipliers(table):
     table.get_by_role("button", name="Find the cycle").click()
 
+    table.get_by_text("A cycle of period").wait_for()
+
+
+def test_an_impatient_visitor_is_answered(table):
+    for alpha in range(91, 80, -1):  # while phase space is filled
+        table.get_by_role("button", name="Find the cycle").click()
+        table.get_by_label("alpha, shape of the egg").fill(f"0.0{alpha}")
+        table.keyboard.press("Enter")
+
+    command(table, "pinball orbit egg --alpha 0.081")
+    table.get_by_role("button", name="Find the cycle").click()
     table.get_by_text("A cycle of period").wait_for()
 
 

@@ -1,6 +1,6 @@
 """The page of the live table, in Panel: widgets on the left, the table and phase space on the right."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -57,9 +57,9 @@ class LiveTable:
         for button, text in zip(self.copies, (self.command, self.python), strict=True):
             button.js_on_click(args={"source": text}, code=copy)
         for widget in (self.table, self.formula, self.shape, self.lam):
-            widget.param.watch(lambda _: self.rebuild(), "value")
-        self.bounces.param.watch(lambda _: self.redraw(), "value")
-        self.find.on_click(lambda _: self.find_cycle())
+            widget.param.watch(lambda _: in_turn(self.rebuild), "value")
+        self.bounces.param.watch(lambda _: in_turn(self.redraw), "value")
+        self.find.on_click(lambda _: in_turn(self.find_cycle))
 
     def _figures(self) -> None:
         self.wall, self.path, self.dots, self.cloud, self.here, self.ring, self.loop = (
@@ -199,6 +199,11 @@ class LiveTable:
     def _tapped(self, event: Any) -> None:
         if abs(event.y) < 1:
             self.start(ball_in_phase(self.map, float(event.x), float(event.y)))
+
+
+def in_turn(change: Callable[[], None]) -> None:
+    """Makes a change when the page's lock is ours: Panel calls a widget's watchers without it, amid other writes."""
+    pn.state.execute(change, schedule=True)
 
 
 def page() -> Any:

@@ -1,10 +1,10 @@
 """A ball's state in people's coordinates: boundary parameter, angle, arc length, Cartesian point; and back.
 
 `States` translate between the fields a kernel bounces and `(component, theta, phi)`. They run on
-NumPy arrays, once per question and not once per bounce.
+NumPy arrays, once per question and not once per bounce; of a recorded orbit, a tile at a time.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,25 @@ from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
 WALL = 0.25
+TILE = 1 << 13  # points of orbits translated at a time
+
+
+class Frame(NamedTuple):
+    """Points of the boundary with the unit tangent there; the normal to its left points into the table."""
+
+    x: Array
+    y: Array
+    tx: Array
+    ty: Array
+
+    def direction(self, phi: Array) -> tuple[Array, Array]:
+        """The unit direction of exit angle `phi`."""
+        c, s = np.cos(phi), np.sin(phi)
+        return s * self.tx - c * self.ty, s * self.ty + c * self.tx
+
+    def angle(self, vx: Array, vy: Array) -> Array:
+        """The angle of a direction from the inward normal, positive towards the tangent."""
+        return np.asarray(np.arctan2(vx * self.tx + vy * self.ty, vy * self.tx - vx * self.ty))
 
 
 class States:
@@ -30,6 +49,9 @@ class States:
     def curve(self, component: NDArray[np.int64], theta: Array) -> Array:
         """Rows `x, y`, first and second derivatives with respect to `theta`."""
         rows = np.empty((6, *theta.shape))
+        if len(self.blueprint.parts) == 1:
+            rows[:] = [values + 0 * theta for values in self.blueprint.parts[0].curve(self.ops, theta, *self.shape)]
+            return rows
         for index, part in enumerate(self.blueprint.parts):
             here = component == index
             if np.any(here):
@@ -38,14 +60,32 @@ class States:
                     rows[i, here] = value
         return rows
 
-    def tangent(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
-        """The unit tangent, in closed form where the table has one without cancellation."""
-        if self.family.name in ("cardioid", "cuspless"):
-            x, y = -np.sin(1.5 * theta), np.cos(1.5 * theta)
-            return np.where(component == 1, 0.0, x), np.where(component == 1, -1.0, y)
-        _, _, dx, dy, _, _ = self.curve(component, theta)
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+        """Point and tangent, in closed form where the table has one without cancellation."""
+        if self.family.name in ("cardioid", "cuspless"):  # relative accuracy near the cusp
+            wall, radius = component == 1, 2 * np.cos(theta / 2) ** 2
+            x, y = np.where(wall, -WALL, radius * np.cos(theta)), np.where(wall, -theta, radius * np.sin(theta))
+            tx, ty = np.where(wall, 0.0, -np.sin(1.5 * theta)), np.where(wall, -1.0, np.cos(1.5 * theta))
+            return Frame(x, y, tx, ty)
+        x, y, dx, dy, _, _ = self.curve(component, theta)
         speed = np.hypot(dx, dy)
-        return dx / speed, dy / speed
+        return Frame(x, y, dx / speed, dy / speed)
+
+    def point(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        """The Cartesian point."""
+        return self.frame(component, theta)[:2]
+
+    def tangent(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        """The unit tangent."""
+        return self.frame(component, theta)[2:]
+
+    def direction(self, component: NDArray[np.int64], theta: Array, phi: Array) -> tuple[Array, Array]:
+        """The unit direction of exit angle `phi`."""
+        return self.frame(component, theta).direction(phi)
+
+    def angle_to_normal(self, component: NDArray[np.int64], theta: Array, vx: Array, vy: Array) -> Array:
+        """The angle of a direction from the inward normal, positive towards the tangent."""
+        return self.frame(component, theta).angle(vx, vy)
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         """`ds/dtheta`."""
@@ -54,18 +94,17 @@ class States:
         _, _, dx, dy, _, _ = self.curve(component, theta)
         return np.asarray(np.hypot(dx, dy))
 
-    def rate(self, component: NDArray[np.int64], theta: Array) -> Array:
-        """`ds/dp` for the parameter `p` of the family's tangent vectors: `theta`, or arc length itself."""
+    def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        """`ds/dp` for the parameter `p` of the family's tangent vectors, `theta` or arc length; and the curvature."""
         if self.family.name in ("cardioid", "cuspless"):
-            return np.ones(np.shape(theta))
-        return self.speed(component, theta)
+            return np.ones(np.shape(theta)), np.where(component == 1, 0.0, -0.75 / np.cos(theta / 2))
+        _, _, dx, dy, ax, ay = self.curve(component, theta)
+        speed = np.hypot(dx, dy)
+        return speed, -(dx * ay - dy * ax) / speed**3
 
     def curvature(self, component: NDArray[np.int64], theta: Array) -> Array:
         """The paper's signed curvature, negative where the boundary focuses."""
-        if self.family.name in ("cardioid", "cuspless"):
-            return np.where(component == 1, 0.0, -0.75 / np.cos(theta / 2))
-        _, _, dx, dy, ax, ay = self.curve(component, theta)
-        return np.asarray(-(dx * ay - dy * ax) / np.hypot(dx, dy) ** 3)
+        return self.bending(component, theta)[1]
 
     # ---- fields of the kernels
 
@@ -102,33 +141,48 @@ class States:
             return np.rint(rows[0]).astype(np.int64), rows[1]
         return np.zeros(rows[0].shape, dtype=np.int64), np.arctan2(rows[1], rows[0])
 
-    def exit(self, component: NDArray[np.int64], theta: Array, rows: Any, law: str) -> Array:
-        """The exit angle of kernel fields, in radians."""
+    def exit(self, frame: Frame, rows: Any, law: str) -> Array:
+        """The exit angle of kernel fields in the frame of their place, in radians."""
         if law == SLAP:
-            return np.zeros_like(theta)
+            return np.zeros_like(frame.x)
         if self.family.name == "circle":
             return np.asarray(rows[1])
         x, y = rows[len(self.family.position) :][:2]
         if self.family.name in ("cardioid", "cuspless"):
             return np.asarray(np.arctan2(y, x))
-        return self.angle_to_normal(component, theta, x, y)
+        return frame.angle(x, y)
 
-    def angle_to_normal(self, component: NDArray[np.int64], theta: Array, vx: Array, vy: Array) -> Array:
-        """The angle of a direction from the inward normal, positive towards the tangent."""
-        tx, ty = self.tangent(component, theta)
-        return np.asarray(np.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
+    def leaving(self, frame: Frame, phi: Array, rows: Any, law: str) -> tuple[Array, Array]:
+        """The unit direction of the flight that begins: the one that the kernel keeps, if it keeps one."""
+        if law == SLAP or self.family.name in ("circle", "cardioid", "cuspless"):
+            return frame.direction(phi)
+        return tuple(rows[len(self.family.position) :][:2])
 
-    def direction(self, component: NDArray[np.int64], theta: Array, phi: Array) -> tuple[Array, Array]:
-        """The unit direction of exit angle `phi`."""
-        tx, ty = self.tangent(component, theta)
-        c, s = np.cos(phi), np.sin(phi)
-        return s * tx - c * ty, s * ty + c * tx
+    def told(self, record: Array, start: tuple[Any, ...], own: list[Array], lam: Array, law: str) -> list[Any]:
+        """Component, parameter, exit angle, incidence angle and point, at the start and after each recorded bounce.
 
-    def point(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
-        """The Cartesian point; relative accuracy near the cardioid's cusp."""
-        if self.family.name in ("cardioid", "cuspless"):
-            radius = 2 * np.cos(theta / 2) ** 2
-            wall = component == 1
-            return np.where(wall, -WALL, radius * np.cos(theta)), np.where(wall, -theta, radius * np.sin(theta))
-        x, y = self.curve(component, theta)[:2]
-        return x, y
+        A tile at a time, so that what is worked on stays in the processor's cache.
+        """
+        where, theta, phi = start
+        told: list[Any] = [np.empty((len(record) + 1, lam.size), dtype=kind) for kind in (np.int64, *[float] * 5)]
+        begun = self.frame(where, theta)
+        for rows, first in zip(told, (where, theta, phi, np.nan, begun.x, begun.y), strict=True):
+            rows[0] = first
+        across = min(lam.size, TILE)
+        down = TILE // across
+        for left in range(0, lam.size, across):
+            ball = slice(left, left + across)
+            frame = Frame(*(side[ball] for side in begun))
+            flight = self.leaving(frame, phi[ball], [field[ball] for field in own], law)
+            for top in range(0, len(record), down):
+                fields = list(record[top : top + down, :, ball].swapaxes(0, 1))
+                component, at = self.place(fields)
+                frame = self.frame(component, at)
+                exit = self.exit(frame, fields, law) * (lam[ball] != 0)  # the normal, whatever atan2 rounds to
+                leaving = self.leaving(frame, exit, fields, law)
+                vx, vy = (np.concatenate([v[None], later[:-1]]) for v, later in zip(flight, leaving, strict=True))
+                flight = leaving[0][-1], leaving[1][-1]
+                found = component, at, exit, frame.angle(-vx, -vy), frame.x, frame.y
+                for rows, part in zip(told, found, strict=True):
+                    rows[top + 1 : top + 1 + down, ball] = part
+        return told

@@ -17,7 +17,7 @@ from numeric.question import Question, fields, rescaled
 from numeric.readers.arrays import Arrays
 
 Array = NDArray[np.float64]
-PART = 1 << 24  # doubles recorded at a time
+PART = 1 << 17  # doubles recorded at a time: a page that stays in the cache
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
 
@@ -64,13 +64,14 @@ class Engine(NamedTuple):
         contraction = np.empty(width)
         contraction[:count], contraction[count:] = lam, lam[-1]
         record = np.empty((bounces, len(own), count)) if question.record else None
-        most = max(1, PART // (len(own) * width)) if question.record else bounces
+        most = min(bounces, max(1, PART // (len(own) * width))) if question.record else bounces
+        page = np.empty((most, len(own), width)) if question.record else None
         for done in range(0, bounces, most):
             part = min(most, bounces - done)
-            page = np.empty((part, len(own), width)) if question.record else None
-            self._advance(question, state, contraction, shape, part, page, threads)
-            if record is not None and page is not None:
-                record[done : done + part] = page[:, :, :count]
+            told = page[:part] if page is not None else None
+            self._advance(question, state, contraction, shape, part, told, threads)
+            if record is not None and told is not None:
+                record[done : done + part] = told[:, :, :count]
         rows = {name: row[:count] for name, row in zip(names, state, strict=True)}
         return Result(rows, record)
 

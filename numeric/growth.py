@@ -46,12 +46,12 @@ class Growth:
 
     def began(self) -> None:
         """Starts the sums anew, with the generic vector."""
-        self.speed = self.map.states.rate(self.component, self.theta)
+        self.speed, curvature = self.map.states.bending(self.component, self.theta)
         ds, dphi = (1.0, 0.0) if self.law == SLAP else GENERIC
         with np.errstate(all="ignore"):
             rate = self.map.family.rate(self.map.states.ops, self.map.shape, self.law, self.own)
         self.n0 = rate + np.zeros(self.theta.size)
-        omega = self.map.states.curvature(self.component, self.theta) * ds + dphi
+        omega = curvature * ds + dphi
         self.tangent: list[Any] = starting(self.n0 * (ds / self.speed), omega, self.n0)
         self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
 
@@ -68,12 +68,12 @@ class Growth:
         going = self.code == 0
         rows = self._run(Question(self.law, exponents=True), bounces, self.tangent, threads)
         self.tangent = [rows[name] for name in TANGENT]
-        states, place, at = self.map.states, self.component, self.theta
-        moved = rows["shift"] / rows["n0"] * states.rate(place, at)
-        turned = rows["omega"] - states.curvature(place, at) * moved
+        speed, curvature = self.map.states.bending(self.component, self.theta)
+        moved = rows["shift"] / rows["n0"] * speed
+        turned = rows["omega"] - curvature * moved
         with np.errstate(divide="ignore"):
             stretch = np.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * np.log(2.0)
-            ends = np.log(states.rate(place, at) / self.speed) + np.log(self.n0 / rows["n0"])
+            ends = np.log(speed / self.speed) + np.log(self.n0 / rows["n0"])
             volume = np.log(rows["up"] / rows["down"]) + rows["volume"] * np.log(2.0) + ends
         self.stretch = np.where(going, stretch, self.stretch)
         self.volume = np.where(going, volume, self.volume)
@@ -85,7 +85,7 @@ class Growth:
         rows = map.engine.run(question, self.own, self.lam, map.shape, bounces, tangent, threads).rows
         self.own = [rows[name] for name in map.family.fields(self.law)]
         self.component, self.theta = map.states.place(self.own)
-        self.phi = map.states.exit(self.component, self.theta, self.own, self.law)
+        self.phi = map.states.exit(map.states.frame(self.component, self.theta), self.own, self.law)
         if "code" in rows:
             self.code = np.where(self.code == 0, rows["code"].astype(np.int64), self.code)
         return rows

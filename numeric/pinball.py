@@ -87,45 +87,37 @@ class PinballMap:
         bounces = counted("bounces", bounces)
         law = self._law(phi)
         own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
-        result = self.engine.run(
-            Question(law, record=True), own, self._lams(theta), self.shape, bounces, threads=threads
-        )
+        lam = self._lams(theta)
+        result = self.engine.run(Question(law, record=True), own, lam, self.shape, bounces, threads=threads)
         assert result.record is not None
-        rows = np.concatenate([np.array(own)[None], result.record])
-        fields = [rows[:, i] for i in range(rows.shape[1])]
-        component_at, theta_at = self.states.place(fields)
-        theta_at[0], component_at[0] = theta.ravel(), where.ravel()
-        phi_at = self.states.exit(component_at, theta_at, fields, law)
-        phi_at[1:] *= self._lams(theta) != 0  # exactly the normal, whatever atan2 rounds to
-        phi_at[0] = phi.ravel()
+        told = self.states.told(result.record, (where.ravel(), theta.ravel(), phi.ravel()), own, lam, law)
         code = self._codes(result.rows, bounces, theta.size)
-        eta = np.full_like(theta_at, np.nan)
-        vx, vy = self.states.direction(component_at[:-1], theta_at[:-1], phi_at[:-1])
-        if law != SLAP and self.family.name != "circle":
-            vx, vy = self._directions(fields, component_at, theta_at, phi_at)
-        eta[1:] = -self._incidence(component_at[1:], theta_at[1:], vx, vy)
-        eta[1:][code[1:] != 0] = np.nan
-        x, y = self.states.point(component_at, theta_at)
+        told[3][code != 0] = np.nan
         shape = (bounces + 1, *theta.shape)
-        return Orbit(*(a.reshape(shape) for a in (component_at, theta_at, phi_at, eta, x, y, code)))
+        return Orbit(*(a.reshape(shape) for a in (*told, code)))
 
     def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
-        """`d(s1, phi1)/d(s0, phi0)`, a matrix for each ball. Paper: eq. (derivative_of_map)."""
+        """`d(s1, phi1)/d(s0, phi0)`, a matrix for each ball. Paper: eq. (derivative_of_map).
+
+        The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is.
+        """
         where, theta, phi = self._start(theta, phi, component)
-        law, columns = self._law(phi), []
-        speed = self.states.rate(where, theta)
-        curvature = self.states.curvature(where, theta)
-        for ds, dphi in ((1.0, 0.0), (0.0, 1.0)):
-            vector = ds / speed, curvature * ds + dphi
-            rows = self._tangent_run(PINBALL if law == SLAP else law, where, theta, phi, 1, vector, None)
-            scale = np.exp2(rows["growth"]) / rows["down"]
-            place, at = self.states.place([rows[name] for name in self.family.position])
-            shape = theta.shape
-            moved = -(rows["shift"] / rows["n0"] * scale).reshape(shape) * self.states.rate(place, at).reshape(shape)
-            turned = -(rows["omega"] * scale).reshape(shape) - self.states.curvature(place, at).reshape(shape) * moved
-            columns.append([moved, turned])
-        matrix = np.array(columns)
-        return np.moveaxis(matrix, (0, 1), (-1, -2))
+        law, states, count = self._law(phi), self.states, theta.size
+        law = PINBALL if law == SLAP else law
+        own = states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
+        with np.errstate(all="ignore"):
+            n0 = self.family.rate(states.ops, self.shape, law, own) + np.zeros(count)
+        rate, curvature = states.bending(where.ravel(), theta.ravel())
+        q, omega = np.append(n0 / rate, np.zeros(count)), np.append(curvature, np.ones(count))  # of ds, then of dphi
+        balls, lam = [np.tile(field, 2) for field in own], np.tile(self._lams(theta), 2)
+        found = self.engine.run(
+            Question(law, exponents=True), balls, lam, self.shape, 1, starting(q, omega, np.tile(n0, 2))
+        )
+        rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
+        rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
+        moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
+        turned = self._lams(theta) * (curvature * moved - omega.reshape(2, count))
+        return np.moveaxis(np.array([moved, turned]), 2, 0).reshape(*theta.shape, 2, 2)
 
     def exponents(
         self,
@@ -190,22 +182,6 @@ class PinballMap:
         """The law of a run; the slap kernel can only start along the normal."""
         return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
 
-    def _tangent_run(
-        self, law: str, where: Any, theta: Array, phi: Array, bounces: int, vector: Any, early: Any, threads: Any = None
-    ) -> dict[str, Array]:
-        """The rows after `bounces` bounces of a ball and a tangent vector `(dp, omega)`."""
-        if early is None:
-            own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
-        else:
-            own = [early[name] for name in self.family.fields(law)]
-        dp, omega = (np.broadcast_to(x, theta.shape).ravel().astype(float) for x in vector)
-        with np.errstate(all="ignore"):
-            n0 = self.family.rate(self.states.ops, self.shape, law, own) + np.zeros(theta.size)
-        question = Question(law, exponents=True)
-        tangent = starting(n0 * dp, omega, n0)
-        rows = self.engine.run(question, own, self._lams(theta), self.shape, bounces, tangent, threads).rows
-        return rows | {"began": n0}
-
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
         name = self.blueprint.table
         ranges = {entry.name: entry for entry in self.blueprint.shape}
@@ -225,7 +201,7 @@ class PinballMap:
     def _convex(self) -> bool:
         """No curvature of the wrong sign on a fine grid, up to rounding."""
         theta = np.linspace(-np.pi, np.pi, 4096)
-        curvature = self.states.curvature(np.zeros(theta.size, dtype=np.int64), theta)
+        _, curvature = self.states.bending(np.zeros(theta.size, dtype=np.int64), theta)
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
     def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:
@@ -265,15 +241,3 @@ class PinballMap:
             stopped = np.arange(bounces + 1)[:, None] >= first[None]
             codes[stopped] = np.broadcast_to(rows["code"].astype(np.int64), codes.shape)[stopped]
         return codes
-
-    def _directions(self, fields: Any, component: Any, theta: Array, phi: Array) -> tuple[Array, Array]:
-        """The directions of the flights that start at each bounce but the last."""
-        if self.family.name in ("cardioid", "cuspless"):
-            return self.states.direction(component[:-1], theta[:-1], phi[:-1])
-        at = len(self.family.position)
-        return fields[at][:-1], fields[at + 1][:-1]
-
-    def _incidence(self, component: Any, theta: Array, vx: Array, vy: Array) -> Array:
-        """The angle of arrival whose sine is `v.tangent`."""
-        tx, ty = self.states.tangent(component, theta)
-        return np.asarray(np.arctan2(vx * tx + vy * ty, vx * ty - vy * tx))

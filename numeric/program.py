@@ -5,11 +5,13 @@ A program is a list of lines in a closed vocabulary, without names, branches or 
 hashed, and written to a file from which it is read back without importing SymPy.
 """
 
+import operator
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 UNARY = {"neg", "sqrt", "sin", "cos"}
-BINARY = {"+", "-", "*", "/"}
+BINARY = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
+VOCABULARY = {"q", "pi"} | UNARY | set(BINARY)
 Line = tuple[Any, ...]  # a word of the vocabulary and the numbers of its operands
 
 
@@ -24,16 +26,16 @@ class Program(NamedTuple):
         """The outputs, in the arithmetic of `ops`; every rational enters as `ops.constant(p, q)`."""
         known = list(values)
         for word, *operands in self.lines:
-            if word == "q":
+            if word in BINARY:
+                i, j = operands
+                known.append(BINARY[word](known[i], known[j]))
+            elif word == "q":
                 known.append(ops.constant(*operands))
             elif word == "pi":
                 known.append(ops.pi())
-            elif word in UNARY:
-                (x,) = (known[i] for i in operands)
-                known.append(-x if word == "neg" else getattr(ops, word)(x))
             else:
-                x, y = (known[i] for i in operands)
-                known.append(_combined(word, x, y))
+                x = known[operands[0]]
+                known.append(-x if word == "neg" else getattr(ops, word)(x))
         return [known[i] for i in self.outputs]
 
     def as_data(self) -> list[Any]:
@@ -45,17 +47,9 @@ class Program(NamedTuple):
         """The inverse of `as_data`; a word outside the vocabulary is an error."""
         inputs, lines, outputs = data
         for line in lines:
-            if line[0] not in UNARY | BINARY | {"q", "pi"}:
+            if line[0] not in VOCABULARY:
                 raise ValueError(f"program: {line[0]!r} is no word of the vocabulary")
         return Program(tuple(inputs), tuple(tuple(line) for line in lines), tuple(outputs))
-
-
-def _combined(word: str, x: Any, y: Any) -> Any:
-    if word == "+":
-        return x + y
-    if word == "-":
-        return x - y
-    return x * y if word == "*" else x / y
 
 
 class Builder:
@@ -121,7 +115,7 @@ class Node:
         other = self.builder.exact(other)
         x, y = (other, self) if swapped else (self, other)
         if x.value is not None and y.value is not None:
-            return Node(self.builder, Fraction(_combined(word, x.value, y.value)), None)
+            return Node(self.builder, Fraction(BINARY[word](x.value, y.value)), None)
         if word == "*" and 0 in (x.value, y.value):
             return self.builder.exact(0)
         if (word in "*/" and y.value == 1) or (word in "+-" and y.value == 0):

@@ -123,11 +123,24 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
             yield Row(name, "float64", "llvm, 2 threads", error, both, runs)
             recorded = run(Question(map.law, record=True), bounces=100)
             yield Row(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
+            yield Row(name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs)
     for law in ("slap", "elastic"):
         map = PinballMap(name, lam=LAWS[law], **_shape(name))
         own, lam = attracted(map, BALLS, 1), np.full(BALLS, float(map.lam))
         alone = run(Question(law), map=map, own=own, lam=lam, bounces=1000)
         yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
+
+
+def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
+    """Seconds for one bounce of an orbit that is told in full."""
+    component, theta = map.states.place(own)
+    phi = map.states.exit(map.states.frame(component, theta), own, map.law)
+
+    def once() -> object:
+        return map.orbit(theta, phi, bounces, component, threads=1)
+
+    once()
+    return best(once, runs) / bounces / theta.size
 
 
 def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[Row]:

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from numeric import PinballMap
+from numeric import PinballMap, coordinates
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()
@@ -101,7 +101,7 @@ def test_the_frame_of_the_boundary_is_that_of_its_definition(table):
     assert np.allclose(states.curvature(component, theta)[away], curvature[away], rtol=1e-11, atol=0)
     x, y, *_ = states.curve(component, theta)
     assert np.allclose([x, y], z, rtol=0, atol=4 * EPS)
-    ds = states.rate(component, theta)
+    ds, _ = states.bending(component, theta)
     assert np.allclose(ds, 1.0 if table.name in ("cardioid", "cuspless") else speed, rtol=0, atol=16 * EPS)
 
 
@@ -124,7 +124,7 @@ def test_a_ball_comes_back_from_the_fields_of_its_kernel(table, law):
     assert all(field.dtype == float for field in fields)
     assert np.array_equal(where, component)
     assert np.max(np.abs(at - theta)) <= 4 * EPS
-    assert np.max(np.abs(map.states.exit(where, at, fields, law) - phi)) <= 16 * EPS
+    assert np.max(np.abs(map.states.exit(map.states.frame(where, at), fields, law) - phi)) <= 16 * EPS
 
 
 def test_directions_and_exit_angles_are_each_others_inverse(table):
@@ -142,3 +142,15 @@ def test_a_ball_on_the_wall_is_told_as_a_landing_there_leaves_it():
     fields = states.enter(np.array([1, 0]), np.array([0.25, 0.0]), np.zeros(2), "slap")
 
     assert [field.tolist() for field in fields] == [[1, 0], [-0.25, 1], [0, 0]]
+
+
+@pytest.mark.parametrize("lam", [0, 0.4, 1])
+@pytest.mark.parametrize("tile", [1, 7, 30, 64])
+def test_tiles_of_an_orbit_have_no_seam(table, lam, tile, monkeypatch):
+    map = table.map(lam)
+    component, theta, phi = table.starts(map, 10, seed=10, steepest=0.9 * (lam != 0))
+    whole = map.orbit(theta, phi, 12, component)
+    monkeypatch.setattr(coordinates, "TILE", tile)
+    again = map.orbit(theta, phi, 12, component)
+
+    assert all(np.array_equal(*pair, equal_nan=True) for pair in zip(whole, again, strict=True))

@@ -72,6 +72,18 @@ def test_the_derivative_is_the_limit_of_differences(table, lam_):
         assert np.allclose(found, truth, rtol=1e-12, atol=1e-12 * np.abs(truth).max() ** 2)
 
 
+@pytest.mark.parametrize("lam_", [2.0**-40, 2.0**-1000])
+def test_the_exit_angle_moves_in_proportion_to_lam_however_small(table, lam_):
+    map = table.map(lam_)
+    where, theta, phi = table.starts(map, 40, seed=13, steepest=0.9)
+    small, whole = map.derivative(theta, phi, where), map.at(lam=0.5).derivative(theta, phi, where)
+    rounding = {"rtol": 16 * EPS, "atol": 16 * EPS * np.abs(whole).max()}  # the landing is the same
+
+    assert np.allclose(small[:, 0], whole[:, 0], **rounding)
+    assert np.allclose(small[:, 1] / lam_, whole[:, 1] / 0.5, **rounding)
+    assert not np.any(map.at(lam=0).derivative(theta, phi, where)[:, 1])
+
+
 def test_exponents_of_the_short_cycle_are_the_papers_eigenvalues():
     a, lam_ = 1.2, 0.02  # below lambda_-(a): a node, so the exponents are the logarithms of mu+ and mu-
     p = (a**2 - 2) ** 2 * (lam_**2 + 1) - 8 * (a**2 - 1) * lam_

@@ -7,6 +7,7 @@ by term. The inverse is Newton's method on these, whose derivative is the speed 
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,70 @@ from numeric.coordinates import States
 Array = NDArray[np.float64]
 MOST = 1 << 14  # terms; a boundary that needs more is not smooth
 SETTLED = 1e-9  # radians: the step after one this short is below rounding
-ROUNDING = 4e-16  # of the mean speed: what a transform of exact samples leaves in a coefficient that is 0
+HIGHEST = 1 << 10  # degree of a Chebyshev series
+ROUNDING = 4e-16  # of the largest speed: what a transform of rounded samples leaves in a coefficient that is 0
+
+
+class Waves(NamedTuple):
+    """The integral of a speed of period `2*pi` from 0: `mean*theta`, and waves of a few frequencies.
+
+    >>> Waves.of(lambda theta: 2 + np.cos(3 * theta)).frequencies.tolist()
+    [3]
+    """
+
+    mean: float
+    frequencies: NDArray[np.int64]
+    sines: Array  # coefficients of `sin(k*theta)`, and of `1 - cos(k*theta)` in the integral
+    rises: Array
+
+    @staticmethod
+    def of(speed: Callable[[Array], Array]) -> "Waves":
+        """From twice as many samples until they will do."""
+        count = 64
+        while True:
+            theta = 2 * np.pi * np.arange(count) / count - np.pi
+            values = speed(theta)
+            c = np.fft.rfft(values) / count * np.exp(1j * np.pi * np.arange(count // 2 + 1))
+            if settled(c, values) or count >= MOST:
+                break
+            count *= 2
+        kept = np.nonzero(np.abs(c[: count // 3]) > ROUNDING * np.max(values))[0][1:]
+        terms = 2 * c[kept] / kept
+        return Waves(c[0].real, kept, terms.real, -terms.imag)
+
+    def __call__(self, theta: Array) -> Array:
+        """The integral, smallest waves first."""
+        flat = theta.ravel()
+        k = self.frequencies[:, None]
+        waves = self.sines[:, None] * np.sin(k * flat) + 2 * self.rises[:, None] * np.sin(k * flat / 2) ** 2
+        return np.asarray((self.mean * flat + np.sum(waves[::-1], axis=0)).reshape(theta.shape))
+
+
+def settled(coefficients: Array, values: Array) -> bool:
+    """Whether the last third of the coefficients is what rounding leaves of such values."""
+    last = coefficients[2 * (len(coefficients) - 1) // 3 :]
+    return bool(np.max(np.abs(last)) < ROUNDING * np.max(values))
+
+
+def chebyshev(speed: Callable[[Array], Array], low: float, high: float) -> Callable[[Array], Array]:
+    """The integral of a speed from 0, or from `low` where 0 is beyond, from twice the degree until that will do.
+
+    The coefficients are those of the waves of the speed in an angle whose cosine runs from one end to the other.
+    """
+    from numpy.polynomial import Chebyshev
+
+    degree = 16
+    while True:
+        x = np.cos(np.pi * np.arange(degree + 1) / degree)
+        values = speed(low + (high - low) * (1 + x) / 2)
+        c = np.fft.hfft(values)[: degree + 1] / degree  # `values` is half of an even sequence
+        c[[0, -1]] /= 2
+        if settled(c, values) or degree >= HIGHEST:
+            break
+        degree *= 2
+    kept = np.nonzero(np.abs(c) > ROUNDING * np.max(values))[0][-1] + 1
+    integral = Chebyshev(c[:kept], [low, high]).integ(lbnd=0.0 if low <= 0.0 <= high else low)
+    return lambda theta: np.asarray(integral(theta))
 
 
 class ArcLength:
@@ -97,43 +161,10 @@ class ArcLength:
 
             m = (1 - self.states.shape[0]) * (1 + self.states.shape[0])
             return lambda theta: np.asarray(ellipeinc(theta, m))
+
+        def speed(at: Array) -> Array:
+            return self.states.speed(np.full(at.shape, index), at)
+
         low, high = self.states.ends[index]
         closed = len(self.states.ends) == 1 and abs(high - low - 2 * np.pi) < 1e-12
-        return self._fourier(index) if closed else self._chebyshev(index, low, high)
-
-    def _fourier(self, index: int) -> Callable[[Array], Array]:
-        count = 64
-        while True:
-            theta = 2 * np.pi * np.arange(count) / count - np.pi
-            values = self.states.speed(np.full(count, index), theta)
-            c = np.fft.rfft(values) / count * np.exp(1j * np.pi * np.arange(count // 2 + 1))
-            if np.max(np.abs(c[count // 3 :])) < ROUNDING * abs(c[0]) or count >= MOST:
-                break
-            count *= 2
-        kept = np.nonzero(np.abs(c) > ROUNDING * abs(c[0]))[0]
-        kept = kept[(kept > 0) & (kept < count // 3)]
-        mean, k, terms = c[0].real, kept[:, None], 2 * c[kept][:, None] / kept[:, None]
-
-        def length(theta: Array) -> Array:
-            flat = theta.ravel()
-            half = k * flat / 2
-            waves = terms.real * np.sin(k * flat) - 2 * terms.imag * np.sin(half) ** 2
-            return np.asarray((mean * flat + np.sum(waves[::-1], axis=0)).reshape(theta.shape))
-
-        return length
-
-    def _chebyshev(self, index: int, low: float, high: float) -> Callable[[Array], Array]:
-        from numpy.polynomial import Chebyshev
-
-        def speed(theta: Array) -> Array:
-            return self.states.speed(np.full(theta.shape, index), theta)
-
-        degree = 16
-        while True:
-            series = Chebyshev.interpolate(speed, degree, [low, high])
-            tail = np.max(np.abs(series.coef[-4:]))
-            if tail < 1e-16 * np.max(np.abs(series.coef)) or degree >= 1024:
-                break
-            degree *= 2
-        integral = series.integ(lbnd=0.0 if low <= 0.0 <= high else low)
-        return lambda theta: np.asarray(integral(theta))
+        return Waves.of(speed).__call__ if closed else chebyshev(speed, low, high)

@@ -2,16 +2,21 @@
 
 import re
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import jv
 from sympy import Rational, cos, pi, sin, sqrt
 
 from numeric import PinballMap
+from numeric.arclength import MOST, Waves, chebyshev
 from symbolic import tables
 from symbolic.symbols import theta
 
 EPS = 2.0**-52
+MP = mpmath.MPContext()
+MP.dps = 40
 ROOTED = tables.polar(sqrt(1 + cos(theta) / 3 + sin(2 * theta) / 5), name="rooted")  # no symmetry, no finite sum
 SKEWED = tables.parametric(cos(theta) + sin(2 * theta) / 9, sin(theta) + cos(3 * theta) / 20, name="skewed")
 STADIUM = tables.piecewise(
@@ -128,3 +133,104 @@ def test_an_ellipse_by_another_name_has_the_same_arc_length():
     one, two = (map.arclength.s(at) for map in (PinballMap("ellipse", a=Rational(3, 2)), PinballMap(other)))
 
     assert np.allclose(one, two, rtol=0, atol=8 * EPS)
+
+
+def counted(speed):
+    """A speed that remembers how many samples it was asked for."""
+    asked = []
+
+    def sampled(at):
+        asked.append(at.size)
+        return speed(at)
+
+    return sampled, asked
+
+
+def test_the_waves_of_a_finite_sum_are_its_own_and_no_others():
+    speed, asked = counted(lambda at: 2 + np.cos(3 * at) / 10 - np.sin(5 * at) / 7 + np.cos(20 * at) / 30)
+    waves = Waves.of(speed)
+
+    assert asked == [64]
+    assert waves.mean == pytest.approx(2, abs=EPS)
+    assert waves.frequencies.tolist() == [3, 5, 20]
+    assert np.allclose(waves.sines, [1 / 30, 0, 1 / 600], rtol=0, atol=EPS)
+    assert np.allclose(waves.rises, [0, -1 / 35, 0], rtol=0, atol=EPS)
+    assert np.all(waves(np.zeros((2, 1))) == 0)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3, 0.5, 0.8, 0.9, 0.97])
+def test_a_series_of_waves_is_as_long_as_it_must_be(share):
+    """The coefficients of Poisson's kernel are powers of `share`, and the first that is rounding decides."""
+    speed, asked = counted(lambda at: (1 - share**2) / (1 - 2 * share * np.cos(at) + share**2))
+    waves = Waves.of(speed)
+    largest = (1 + share) / (1 - share)
+    enough = next(64 << i for i in range(20) if share ** ((64 << i) // 3) < 4e-16 * largest)
+    first, last = (int(np.log(rounding * largest) / np.log(share)) for rounding in (5e-16, 3e-16))
+    k, noise = waves.frequencies, 64 * EPS / (1 - share) ** 2  # of the kernel, where the cosine is rounded
+
+    assert asked == [64 << i for i in range(len(asked))]
+    assert asked[-1] == enough
+    assert np.array_equal(k, np.arange(1, k.size + 1))
+    assert first <= k.size <= last
+    assert np.max(np.abs(waves.sines * k - 2 * share**k)) <= noise
+    assert np.max(np.abs(waves.rises * k)) <= noise
+
+
+def test_what_is_not_smooth_is_sampled_no_finer_than_is_said():
+    for speed, asked in (counted(lambda at: 2 + np.abs(np.sin(at))), counted(lambda at: 2 + np.abs(at - 0.1))):
+        Waves.of(speed)
+        assert asked == [64 << i for i in range(9)]
+    assert MOST == 64 << 8
+
+    speed, asked = counted(lambda at: 2 + np.abs(at - 0.1))
+    chebyshev(speed, -1.0, 1.0)
+    assert asked == [17, 33, 65, 129, 257, 513, 1025]
+
+
+@pytest.mark.parametrize("rate", [0.25, 0.8, 2, 5, 12, 20])
+@pytest.mark.parametrize(
+    ("low", "high", "zero"), [(-1.0, 2.0, 0.0), (0.0, 1.5, 0.0), (-2.0, 0.0, 0.0), (0.5, 2.0, 0.5), (-3.0, -2.5, -3.0)]
+)
+def test_a_chebyshev_series_is_as_long_as_it_must_be(rate, low, high, zero):
+    """The coefficients of `cos(rate*theta)` are Bessel functions of half its phase (Jacobi and Anger)."""
+    speed, asked = counted(lambda at: 2 + np.cos(rate * at))
+    length = chebyshev(speed, low, high)
+    at, half = np.linspace(low, high, 50), rate * (high - low) / 2
+    middle = rate * (high + low) / 2 - np.arange(1100) * np.pi / 2
+    size = 2 * np.abs(jv(np.arange(1100), half) * np.cos(middle))
+    largest = 2 + np.max(np.cos(rate * at))
+    enough = next(16 << i for i in range(9) if np.max(size[2 * (16 << i) // 3 : 16 << i]) < 4e-16 * largest)
+    truth = 2 * (at - zero) + (np.sin(rate * at) - np.sin(rate * zero)) / rate
+
+    assert np.max(np.abs(length(at) - truth)) <= 8 * EPS * max(1, abs(zero))
+    assert asked == [(16 << i) + 1 for i in range(len(asked))]
+    assert asked[-1] == enough + 1
+
+
+def test_the_inverse_keeps_its_digits_up_to_the_cusp():
+    arc = PinballMap("cardioid").arclength
+    s = (4 - 2.0 ** -np.arange(30.0)) * [[1], [-1]]
+    truth = [[float(2 * MP.asin(MP.mpf(x) / 4)) for x in row] for row in s.tolist()]
+
+    assert np.max(np.abs(arc.theta(s) - truth)) <= 4 * EPS
+
+
+def test_the_inverse_takes_two_steps_from_its_grid(monkeypatch):
+    for map in (PinballMap(table) for table in (ROOTED, SKEWED, LENS)):
+        arc, asked = map.arclength, []
+        speed = type(map.states).speed
+        monkeypatch.setattr(type(map.states), "speed", lambda *at, ask=speed, said=asked: said.append(0) or ask(*at))
+        for component, (low, high) in enumerate(map.states.ends):
+            arc.theta(arc.s(np.linspace(low, high, 500), component), component)
+        monkeypatch.undo()
+
+        assert len(asked) == 2 * len(map.states.ends)
+
+
+def test_closed_curves_have_waves_and_arcs_have_polynomials():
+    def has_waves(length):
+        return isinstance(getattr(length, "__self__", None), Waves)
+
+    assert has_waves(PinballMap("egg", alpha="0.08").arclength.lengths[0])
+    assert all(has_waves(PinballMap(table).arclength.lengths[0]) for table in (ROOTED, SKEWED))
+    assert not any(has_waves(length) for length in PinballMap(STADIUM).arclength.lengths)

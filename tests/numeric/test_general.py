@@ -225,6 +225,27 @@ def test_pieces_cover_the_boundary_and_turn_one_way_by_a_quarter_at_most(table):
             assert np.ptp(angle) <= np.pi / 2 + 1e-2
 
 
+@pytest.mark.parametrize("table", [WAVY, WAISTED, SKEWED, STADIUM, ROOTED], ids=lambda table: table.name)
+def test_a_piece_ends_at_an_inflection_or_where_it_has_turned_by_a_quarter(table):
+    """So there are as few as can be: at an inflection the turning changes sign within two roundings."""
+    map = PinballMap(table, kernels=False)
+
+    def turning(component, at):
+        _, _, dx, dy, ax, ay = map.states.curve(np.full(at.size, component), at)
+        return dx * ay - dy * ax
+
+    for (component, a, b), (following, *_) in pairwise(map.family.pieces):
+        if component != following:
+            continue
+        _, _, dx, dy, _, _ = map.states.curve(np.full(401, component), np.linspace(a, b, 401))
+        turned = abs(np.ptp(np.unwrap(np.arctan2(dy, dx))))
+        low, high = map.states.ends[component]
+        step = 2 * (high - low) / 4096 * np.max(np.abs(turning(component, np.linspace(a, b, 401)) / (dx**2 + dy**2)))
+        before, after = turning(component, b + np.array([-4, 4]) * np.spacing(b))
+
+        assert before * after <= 0 or np.pi / 2 - step <= turned <= np.pi / 2 + 1e-5
+
+
 @pytest.mark.parametrize("where", [0, 1, 2, 3])
 def test_on_any_table_a_landing_within_rounding_of_a_join_is_one(where):
     """From the middle of each side of the stadium to each of its joins, and past them by 1e-9 on either side."""

@@ -1,6 +1,7 @@
 """Where a closed curve crosses itself: proved absent for finite Fourier sums, looked for on a polygon otherwise."""
 
 from fractions import Fraction
+from math import atan2, tau
 
 from sympy import Dummy, Expr, I, Interval, Rational, S, Symbol, acos, atan, chebyshevu, expand, pi, sign
 
@@ -11,12 +12,12 @@ CORNERS = 96  # of the polygon, over all components
 Corner = tuple[Fraction, Fraction]
 
 
-def chord_of_length_zero(c: dict[int, Expr]) -> str | None:
+def chord_of_length_zero(c: dict[int, Expr], scale: Expr = S.One) -> str | None:
     """A sentence on where `sum c_k exp(i*k*theta)` meets itself or stops; None when it is proved simple.
 
     The chord between `m + B` and `m - B` is `2*i*sin(B)` times `sum sgn(k) c_k U_(|k|-1)(cos B)
     exp(i*k*m)`. A simple regular curve has no zero of that sum for `-1 <= cos B <= 1`; boxes of
-    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part.
+    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part. `scale` is theta in this angle.
 
     >>> chord_of_length_zero({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
     'the boundary meets itself, or stops, near theta = -89 and 90 degrees'
@@ -34,7 +35,7 @@ def chord_of_length_zero(c: dict[int, Expr]) -> str | None:
         return None
     m = 2 * atan((box[T].start + box[T].end) / 2)
     half = acos((box[C].start + box[C].end) / 2)
-    ends = sorted((angle * 180 / pi).round() for angle in (m - half, m + half))
+    ends = sorted((scale * angle * 180 / pi).round() for angle in (m - half, m + half))
     return f"the boundary meets itself, or stops, near theta = {ends[0]} and {ends[1]} degrees"
 
 
@@ -68,7 +69,8 @@ def polygon_crossing(table: Table) -> str | None:
         for j in range(i + 2, n if i else n - 1):
             if _cross(corners[i], corners[i + 1 - n], corners[j], corners[j + 1 - n]):
                 return f"the boundary crosses itself, near {names[i]} and {names[j]}"
-    return None
+    turns = _turns(corners)
+    return None if turns == 1 else f"the boundary turns round {turns} times before it closes, and should once"
 
 
 def _corners(table: Table) -> tuple[list[Corner], list[str]]:
@@ -81,6 +83,16 @@ def _corners(table: Table) -> tuple[list[Corner], list[str]]:
             corners.append((Fraction(x.p, x.q), Fraction(y.p, y.q)))
             names.append(f"{component.name} at theta = {value}")
     return corners, names
+
+
+def _turns(corners: list[Corner]) -> int:
+    """How often the polygon's direction turns round, either way: once where it is simple (Hopf)."""
+    total, n = 0.0, len(corners)
+    for i in range(n):
+        a, b, c = corners[i - 2], corners[i - 1], corners[i]
+        ahead = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
+        total += atan2(_side(a, b, c), ahead)
+    return round(abs(total) / tau)
 
 
 def _cross(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:

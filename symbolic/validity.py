@@ -19,6 +19,7 @@ from sympy import (
     integrate,
     nan,
     oo,
+    pi,
     sin,
     tan,
     together,
@@ -173,13 +174,15 @@ def simple(table: Table) -> None:
     if any(c.free_symbols - {theta} for component in table.components for c in component.point):
         return
     if len(table.components) == 1 and not table.undefined:
+        scale = (whole.end - whole.start) / (2 * pi)
         x, y = whole.point
         radius = trigonometric(x * cos(theta) + y * sin(theta))
-        if trigonometric(y * cos(theta) - x * sin(theta)) == 0 and radius_sign(radius) is Outcome.PROVED:
+        straight = scale == 1 and trigonometric(y * cos(theta) - x * sin(theta)) == 0
+        if straight and radius_sign(radius) is Outcome.PROVED:
             return
-        c = boundary_coefficients(whole)
+        c = boundary_coefficients(replace(whole, point=(x.subs(theta, scale * theta), y.subs(theta, scale * theta))))
         if c is not None and max(abs(k) for k in c) <= HIGHEST_HARMONIC:
-            crossing = chord_of_length_zero(c)
+            crossing = chord_of_length_zero(c, scale)
             if crossing:
                 raise ValueError(f"{table.name}: {crossing}")
             return

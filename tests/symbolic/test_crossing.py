@@ -75,3 +75,19 @@ def test_touching_is_no_crossing():
     table = Table("touching", (*straight[:2], Component("bend", (1 - theta, bend), S.Zero, S.One), straight[3]))
 
     assert polygon_crossing(table) is None
+
+
+@pytest.mark.parametrize("turns", [2, 3])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_polygon_that_runs_round_more_than_once_says_how_often(turns, sense):
+    square = [(0, 0), (4, 0), (4, 3), (0, 3)][::sense]
+
+    said = f"the boundary turns round {turns} times before it closes, and should once"
+    assert polygon_crossing(chain(*square * turns)) == said
+
+
+def test_angles_are_those_of_the_curve_whatever_its_parameter_runs_through():
+    said, scaled = (chord_of_length_zero(limacon(S.One, LEFT), scale) for scale in (S.One, Rational(1, 2)))
+    ends, halves = ([int(word) for word in text.split() if word.strip("-").isdigit()] for text in (said, scaled))
+
+    assert [abs(2 * half - end) <= 1 for half, end in zip(halves, ends, strict=True)] == [True, True]

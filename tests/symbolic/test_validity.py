@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin, tan
+from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin, sqrt, tan
 
 from symbolic.crossing import chord_of_length_zero
 from symbolic.fourier import boundary_coefficients
@@ -248,3 +248,16 @@ def test_the_refusal_of_an_open_boundary_says_where_it_ends_and_where_it_should(
     where = r"bend ends at \(2, 6\) and bend starts at \(1, 3\)$"
     with pytest.raises(ValueError, match=where):
         piecewise(arc("bend", theta, theta**2 + 2, 1, 2))
+
+
+ROOTED = [sqrt(1 + cos(theta) / 3) * wave(theta) for wave in (cos, sin)]  # no finite sum
+
+
+@pytest.mark.parametrize("point", [(2 * cos(theta), sin(theta)), (cos(theta), sin(theta)), ROOTED])
+@pytest.mark.parametrize("rate", [S.One, S(2), Rational(1, 2), pi])
+def test_a_closed_curve_may_run_once_through_any_parameter_and_not_twice(point, rate):
+    x, y = (coordinate.subs(theta, rate * theta) for coordinate in point)
+
+    assert piecewise(arc("once", x, y, -pi / rate, pi / rate)).components[0].point == (x, y)
+    with pytest.raises(ValueError, match=r"meets itself, or stops|turns round 2 times"):
+        piecewise(arc("twice", x, y, -pi / rate, 3 * pi / rate))

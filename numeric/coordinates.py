@@ -49,15 +49,14 @@ class States:
     def curve(self, component: NDArray[np.int64], theta: Array) -> Array:
         """Rows `x, y`, first and second derivatives with respect to `theta`."""
         rows = np.empty((6, *theta.shape))
-        if len(self.blueprint.parts) == 1:
-            rows[:] = [values + 0 * theta for values in self.blueprint.parts[0].curve(self.ops, theta, *self.shape)]
-            return rows
         for index, part in enumerate(self.blueprint.parts):
-            here = component == index
-            if np.any(here):
-                values = part.curve(self.ops, theta[here], *self.shape)
-                for i, value in enumerate(values):
-                    rows[i, here] = value
+            here: Any = component == index
+            if not np.any(here):
+                continue
+            if np.all(here):
+                here = ...  # a view in place of copies
+            for i, values in enumerate(part.curve(self.ops, theta[here], *self.shape)):
+                rows[i, here] = values
         return rows
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
@@ -147,7 +146,7 @@ class States:
             return np.zeros_like(frame.x)
         if self.family.name == "circle":
             return np.asarray(rows[1])
-        x, y = rows[len(self.family.position) :][:2]
+        x, y = self.kept(rows)
         if self.family.name in ("cardioid", "cuspless"):
             return np.asarray(np.arctan2(y, x))
         return frame.angle(x, y)
@@ -156,7 +155,12 @@ class States:
         """The unit direction of the flight that begins: the one that the kernel keeps, if it keeps one."""
         if law == SLAP or self.family.name in ("circle", "cardioid", "cuspless"):
             return frame.direction(phi)
-        return tuple(rows[len(self.family.position) :][:2])
+        return self.kept(rows)
+
+    def kept(self, rows: Any) -> tuple[Array, Array]:
+        """The two rows of the exit, which follow those of the place."""
+        x, y, *_ = rows[len(self.family.position) :]
+        return x, y
 
     def told(self, record: Array, start: tuple[Any, ...], own: list[Array], lam: Array, law: str) -> list[Any]:
         """Component, parameter, exit angle, incidence angle and point, at the start and after each recorded bounce.

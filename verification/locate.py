@@ -257,7 +257,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
         "mechanism": f"homoclinic tangency of the {orbit.name}, multipliers {unstable:.6g} and {stable:.6g}",
         "method": f"the fold of a cycle of {found.period} bounces that shadows it, estimated error, not a proof",
         "second_method": f"tangency of the manifolds, {found.apart:.1e} away with error {found.touch.error:.1e}",
-        "transient": f"grows like a power of the distance above, exponent {found.exponent:.4f} in the limit",
+        "transient": f"if an attractor ends here, lasts like (distance beyond)^-{found.exponent:.4f}, in the limit",
     }
     value, error = decimals(found)
     with working(bits_of(digits, 100)):

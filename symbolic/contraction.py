@@ -71,8 +71,8 @@ def elastic_mean(f: Expr) -> Expr:
     >>> elastic_mean(weak_dissipation())
     0
     """
-    density = simplify(f * cos(eta)).replace(lambda x: x.func is tan, lambda x: sin(x.args[0]) / cos(x.args[0]))
-    return simplify(integrate(simplify(density), (eta, -pi / 2, pi / 2)) / 2)
+    density = simplify((f * cos(eta)).subs(tan(eta), sin(eta) / cos(eta)))
+    return simplify(integrate(density, (eta, -pi / 2, pi / 2)) / 2)
 
 
 def image_share() -> Expr:

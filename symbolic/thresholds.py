@@ -42,8 +42,8 @@ def lambda_c() -> Expr:
 def tilt(K: int | Expr = 3) -> Expr:
     """`W = 2*K**2*alpha/(1-alpha**2)`, which is `sqrt(1 - P)` on the diameters of an egg with odd K.
 
-    >>> tilt(5)
-    50*alpha/(1 - alpha**2)
+    >>> tilt(), tilt(5)
+    (18*alpha/(1 - alpha**2), 50*alpha/(1 - alpha**2))
     """
     P = stability_number(egg_diameter(K))
     W = 2 * S(K) ** 2 * alpha / (1 - alpha**2)

@@ -1,6 +1,6 @@
 """How areas contract: the factor of a bounce, its sum along orbits, and what is left near the elastic case."""
 
-from sympy import Rational, S, diff, limit, log, oo, pi, simplify, sin, symbols, tan
+from sympy import Rational, S, cos, diff, limit, log, oo, pi, simplify, sin, symbols, tan
 
 from symbolic.contraction import area_factor, elastic_mean, image_share, steepening, telescoped, weak_dissipation
 from symbolic.invariants import joachimsthal_defect
@@ -36,6 +36,7 @@ def test_determinants_along_an_orbit_telescope_to_the_sum_rule():
 def test_leaving_the_elastic_law_contracts_nothing_on_average_over_phase_space():
     assert elastic_mean(weak_dissipation()) == 0
     assert elastic_mean(eta * tan(eta)) == 1
+    assert elastic_mean(eta * tan(eta) * cos(eta) ** 2) == Rational(2, 9)  # by parts: the integral of cos(eta)**3/6
 
 
 def test_oblique_bounces_expand_and_steep_ones_contract_under_weak_dissipation():

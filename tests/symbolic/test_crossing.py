@@ -3,6 +3,7 @@
 import pytest
 from sympy import I, Rational, S, conjugate
 
+from symbolic import crossing
 from symbolic.crossing import chord_of_length_zero, polygon_crossing
 from symbolic.symbols import theta
 from symbolic.table import Component, Table
@@ -91,3 +92,20 @@ def test_angles_are_those_of_the_curve_whatever_its_parameter_runs_through():
     ends, halves = ([int(word) for word in text.split() if word.strip("-").isdigit()] for text in (said, scaled))
 
     assert [abs(2 * half - end) <= 1 for half, end in zip(halves, ends, strict=True)] == [True, True]
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_two_sides_with_one_between_them_may_cross(first, monkeypatch):
+    """A bow tie of four corners, one on each side of the chain: either pair of opposite sides."""
+    monkeypatch.setattr(crossing, "CORNERS", 4)
+    corners = [(0, 0), (1, 1), (1, 0), (0, 1)]
+    said = polygon_crossing(chain(*corners[first:], *corners[:first]))
+
+    assert said is not None
+    assert said.startswith("the boundary crosses itself")
+
+
+def test_a_segment_that_ends_on_the_line_of_another_does_not_cross_it():
+    assert crossing._cross((0, 0), (2, 0), (1, -1), (1, 1))
+    assert not crossing._cross((0, 0), (1, 0), (1, -1), (1, 1))
+    assert not crossing._cross((0, 0), (2, 0), (1, 0), (1, 1))

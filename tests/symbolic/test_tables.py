@@ -9,8 +9,8 @@ from symbolic.convexity import convexity
 from symbolic.geometry import turning
 from symbolic.signs import Outcome, positive
 from symbolic.symbols import a, alpha, theta
-from symbolic.table import Table, interval_text
-from symbolic.tables import cardioid, circle, cuspless, egg, ellipse, named
+from symbolic.table import Mark, Table, interval_text
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, named, piecewise
 from symbolic.validity import enclosed_area
 from symbolic.zero import vanishes
 
@@ -142,3 +142,20 @@ def test_a_table_is_a_value_that_can_be_a_key(table):
             part.name = "other"
         with pytest.raises(AttributeError):
             part.symbol = alpha
+
+
+def test_what_is_left_out_is_the_papers():
+    square = [
+        arc(f"side {i}", *side, -1, 1) for i, side in enumerate([(theta, -1), (1, theta), (-theta, 1), (-1, -theta)])
+    ]
+
+    assert egg() == named("egg") == egg(3)
+    assert named("egg", 4) == egg(4)
+    assert piecewise(*square).origin == Table("square", tuple(square)).origin == (0, 0)
+    assert cardioid.undefined == (Mark("cusp", 0, pi),)
+
+
+@pytest.mark.parametrize("given", [True, False, None, [1], {"x": 1}])
+def test_what_is_neither_number_nor_formula_is_refused(given):
+    with pytest.raises(ValueError, match="is no formula; give an exact expression"):
+        arc("side", given, theta, -1, 1)

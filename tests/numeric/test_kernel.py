@@ -3,7 +3,7 @@
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernel import alive, operations
+from numeric.kernel import alive, kernel_text, operations
 from numeric.question import Question
 
 TEXT = """\
@@ -70,3 +70,20 @@ def test_a_ball_that_stops_keeps_its_outcome_and_counts_what_it_loses():
 
     assert rows["code"].tolist() == [1, 1, 0] or rows["code"].tolist() in ([1, 0, 0], [0, 1, 0])
     assert rows["lost"].tolist() == (5 * rows["code"]).tolist()
+
+
+def test_a_kernel_has_the_lanes_of_its_family_unless_told_otherwise():
+    map = PinballMap("cardioid", lam=0.5)
+    asked = map.family, map.engine.names, Question("pinball")
+
+    assert kernel_text(*asked) == kernel_text(*asked, map.family.width) != kernel_text(*asked, 8)
+
+
+def test_a_tangent_vector_is_looked_at_every_few_bounces_and_without_one_nothing_is():
+    map = PinballMap("cardioid", lam=0.5)
+    plain, watched = (
+        kernel_text(map.family, map.engine.names, Question("pinball", exponents=asked)) for asked in (False, True)
+    )
+
+    assert "%full = add i64 %bounces, 0" in plain
+    assert f"%full = add i64 %begun, {map.family.often}" in watched

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from scipy.stats import chi2, chi2_contingency, kstest
-from sympy import cos
+from sympy import cos, sin
 
-from numeric import PinballMap
+from numeric import PinballMap, sampling
 from numeric.sampling import interior_starts, longest, phase_grid, phase_starts
 from symbolic import tables
 from symbolic.symbols import theta
@@ -125,3 +125,42 @@ def test_impossible_counts_are_named():
         interior_starts(map, 0, seed=1)
     with pytest.raises(ValueError, match=r"rows = 1\.5 is not possible"):
         phase_grid(map, 3, 1.5)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 40, 41])
+def test_as_many_starts_come_as_were_asked_for_in_however_many_batches(count, monkeypatch):
+    monkeypatch.setattr(sampling, "BATCH", 5)
+    starts = interior_starts(PinballMap("cardioid", lam=1), count, seed=9)
+
+    assert [field.shape for field in starts] == [(count,)] * 5
+
+
+def test_the_bound_does_not_depend_on_where_the_table_lies():
+    here, there = (
+        PinballMap(tables.parametric(dx + 2 * cos(theta), dy + sin(theta), name="moved"))
+        for dx, dy in ((0, 0), (7, -5))
+    )
+
+    assert longest(there) == pytest.approx(longest(here), rel=1e-12)
+    assert longest(here) == pytest.approx(4 + here.arclength.perimeter / 512, abs=1e-3)
+
+
+class Extreme:
+    """Draws the ends of every range."""
+
+    def choice(self, given, size, p):
+        return np.arange(size) % given.size
+
+    def uniform(self, low, high, size):
+        return np.where(np.arange(size) < size // 2, low, high)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_no_start_lies_at_the_end_of_a_component_or_along_it(name):
+    map = PinballMap(name, lam=1, **SCENES[name])
+    starts = sampling._uniform(map, 8, Extreme())
+    low, high = np.array(map.states.ends)[starts.component].T
+
+    assert np.all((low < starts.theta) & (starts.theta < high))
+    assert np.all(np.abs(starts.phi) < np.pi / 2)
+    assert np.all(np.abs(starts.phi) > np.pi / 2 - 1e-5)

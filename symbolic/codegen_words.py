@@ -4,7 +4,6 @@ from sympy import Add, Expr, Float, Integer, Mul, Pow, Rational, S, Symbol, atan
 from sympy.core.function import AppliedUndef
 
 FUNCTIONS = {sin: "sin", cos: "cos", atan: "atan", exp: "exp", log: "log", sqrt: "sqrt"}
-SUM, PRODUCT, ATOM = range(3)
 
 
 def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
@@ -59,7 +58,7 @@ class Words:
         self.names: dict[Symbol, str] = {}
         self.used: set[str] = set()
         self.before: list[tuple[str, str]] = []
-        self.powers: dict[tuple[str, int], str] = {}
+        self.kept: dict[str, str] = {}
         self.count = 0
 
     def rename(self, symbol: Symbol) -> str:
@@ -84,94 +83,94 @@ class Words:
             return text
         return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
 
-    def _print(self, e: Expr) -> tuple[str, int]:
+    def _print(self, e: Expr) -> tuple[str, bool]:
+        """The text, and whether it is a sum, or begins with a sign, so that a product has to enclose it."""
         if isinstance(e, Symbol):
-            return self.names.get(e, e.name), ATOM
+            return self.names.get(e, e.name), False
         if isinstance(e, Integer):
-            return str(e), ATOM if e >= 0 else SUM
+            return str(e), e < 0
         if isinstance(e, Rational):
             self.used.add("q")
-            return (f"q({e.p}, {e.q})", ATOM) if e > 0 else (f"-q({-e.p}, {e.q})", SUM)
+            return f"q({e.p}, {e.q})" if e > 0 else f"-q({-e.p}, {e.q})", e < 0
         if e == pi:
             self.used.add("pi")
-            return "pi", ATOM
+            return "pi", False
         if isinstance(e, Add):
-            return " ".join(self._term(term, i > 0) for i, term in enumerate(_terms(e))), SUM
+            return " ".join(self._term(term, i > 0) for i, term in enumerate(_terms(e))), True
         if isinstance(e, Mul):
             return self._product(e)
         if isinstance(e, Pow) and e.exp.is_negative:
             return self._product(e)
         if isinstance(e, Pow):
-            return self._power(e.base, e.exp)
-        return self._call(e)
+            return self._power(e.base, e.exp), False
+        return self._call(e), False
 
-    def _call(self, e: Expr) -> tuple[str, int]:
+    def _call(self, e: Expr) -> str:
         if e == S.Exp1:
             self.used.add("exp")
-            return "exp(1)", ATOM
+            return "exp(1)"
+        (argument,) = e.args
         if isinstance(e, tan):
-            return self._product(sin(e.args[0]) / cos(e.args[0]))
+            return self._product(sin(argument) / cos(argument))[0]
         word = FUNCTIONS[e.func]
         self.used.add(word)
-        return f"{word}({self._print(e.args[0])[0]})", ATOM
+        return f"{word}({self._print(argument)[0]})"
 
-    def _product(self, e: Expr) -> tuple[str, int]:
+    def _product(self, e: Expr) -> tuple[str, bool]:
         coefficient, rest = e.as_coeff_Mul()
-        sign, coefficient = ("-", -coefficient) if coefficient < 0 else ("", coefficient)
+        sign, coefficient = ("-", -coefficient) if coefficient.is_negative else ("", coefficient)
         above, below = [], []
-        for factor in _factors(rest):
+        for factor in rest.as_ordered_factors():
             if isinstance(factor, Pow) and factor.exp.is_negative:
-                below.append(self._factor(Pow(factor.base, -factor.exp)))
+                below.append(Pow(factor.base, -factor.exp))
             else:
-                above.append(self._factor(factor))
+                above.append(factor)
         if coefficient != 1 or not above:
-            above.insert(0, self._factor(coefficient))
-        if len(above) == 1 and not below and coefficient == 1:
-            above = [self._print(rest)[0]] if not isinstance(rest, Mul | Pow) else above
-        text = sign + "*".join(above)
+            above.insert(0, coefficient)
+        alone = len(above) == 1 and not below
+        text = sign + "*".join(self._factor(factor, alone) for factor in above)
         if below:
-            product = "*".join(below)
+            product = "*".join(self._factor(factor, False) for factor in below)
             text += "/" + (product if _closed(product) else f"({product})")
-        return text, PRODUCT if not sign else SUM
+        return text, bool(sign)
 
-    def _factor(self, e: Expr) -> str:
-        text, level = self._print(e)
-        return text if level >= PRODUCT and "/" not in text else f"({text})"
+    def _factor(self, e: Expr, alone: bool) -> str:
+        text, enclosed = self._print(e)
+        return f"({text})" if enclosed or ("/" in text and not alone) else text
 
-    def _power(self, base: Expr, power: Rational) -> tuple[str, int]:
+    def _power(self, base: Expr, power: Rational) -> str:
         whole, half = divmod(power, 1)
         parts = [self._whole_power(self._named(base), int(whole))] if whole else []
         if half:
             self.used.add("sqrt")
             inner = self._named(base) if whole else self._print(base)[0]
             parts.append(f"sqrt({inner})")
-        return "*".join(parts), ATOM if len(parts) == 1 and "*" not in parts[0] else PRODUCT
+        return "*".join(parts)
 
     def _named(self, base: Expr) -> str:
-        if isinstance(base, Symbol) or base == pi:
-            return self._print(base)[0]
         text = self._print(base)[0]
-        return self._kept((text, 1), text)
+        return text if isinstance(base, Symbol) or base == pi else self._kept(text)
 
     def _whole_power(self, name: str, n: int) -> str:
         if n <= 3:
             return "*".join([name] * n)
-        half = self._kept((name, n // 2), self._whole_power(name, n // 2))
+        half = self._kept(self._whole_power(name, n // 2))
         return "*".join([half, half] + [name] * (n % 2))
 
-    def _kept(self, key: tuple[str, int], text: str) -> str:
-        if key not in self.powers:
-            self.powers[key] = self._fresh()
-            self.before.append((self.powers[key], text))
-        return self.powers[key]
+    def _kept(self, text: str) -> str:
+        """The name under which a text is kept; it is written once."""
+        if text not in self.kept:
+            self.kept[text] = self._fresh()
+            self.before.append((self.kept[text], text))
+        return self.kept[text]
 
 
 def _closed(text: str) -> bool:
     """True for a name, a number, or one call or one pair of parentheses around everything."""
     depth = 0
-    for i, character in enumerate(text):
+    for character in text:
         depth += (character == "(") - (character == ")")
-        if depth == 0 and (character in "*/+- " or (character == ")" and i + 1 < len(text))):
+        if depth == 0 and character in "*/+- ":
             return False
     return True
 
@@ -183,7 +182,3 @@ def _terms(e: Expr) -> list[Expr]:
     terms = list(e.as_ordered_terms())
     first = next((t for t in terms if not t.could_extract_minus_sign()), terms[0])
     return [first, *(t for t in terms if t is not first)]
-
-
-def _factors(e: Expr) -> list[Expr]:
-    return list(e.as_ordered_factors()) if e != 1 else []

@@ -1,9 +1,9 @@
 """One expression in words, as a careful hand would write it: few signs and parentheses, and nothing twice."""
 
 import pytest
-from sympy import Rational, S, cos, exp, pi, sin, sqrt, symbols, tan
+from sympy import Add, Float, Mul, Rational, S, cos, exp, pi, sin, sqrt, symbols, tan
 
-from symbolic.codegen_words import Words
+from symbolic.codegen_words import Words, checked
 
 x, y = symbols("x y", real=True)
 
@@ -17,7 +17,12 @@ WRITTEN = [
     (sqrt(2) / 2, "q(1, 2)*sqrt(2)"),
     (S.Exp1, "exp(1)"), (exp(x) / y, "exp(x)/y"), (tan(x), "sin(x)/cos(x)"), (sin(x) * cos(y) + 1, "sin(x)*cos(y) + 1"),
     (1 / (sin(x) * cos(x)), "1/(sin(x)*cos(x))"), (1 / sin(x + y), "1/sin(x + y)"), (x / (sin(x) + 1) + pi,
-    "x/(sin(x) + 1) + pi"), (x**2, "x*x"), (x**3, "x*x*x"), (x**-2, "1/(x*x)"),
+    "x/(sin(x) + 1) + pi"), (x**2, "x*x"), (x**3, "x*x*x"), (x**-2, "1/(x*x)"), (x**2 * y, "x*x*y"), (-(x**2), "-x*x"),
+    (-tan(x), "-sin(x)/cos(x)"), (2 * tan(x), "2*(sin(x)/cos(x))"), (y * tan(x), "y*(sin(x)/cos(x))"),
+    (tan(x) / y, "(sin(x)/cos(x))/y"), (y / tan(x), "y/(sin(x)/cos(x))"),
+    (Mul(-1, x + y, evaluate=False), "-(x + y)"), (Mul(x, Mul(-1, y, evaluate=False), evaluate=False), "x*(-y)"),
+    (Mul(x, S(-2), evaluate=False), "(-2)*x"), (Add(x, S(-2), evaluate=False), "x - 2"), (sqrt(-2 * x), "sqrt(2)*sqrt(-x)"),
+    (x * exp(-y / 3) - Rational(1, 2), "x*exp(-q(1, 3)*y) - q(1, 2)"),
 ]  # fmt: skip
 KEPT = [
     (x**4, [("c0", "x*x")], "c0*c0"),
@@ -56,3 +61,9 @@ def test_names_that_are_taken_are_not_given_and_words_are_counted():
     assert words.used == {"q", "pi", "sqrt"}
     assert words.rename(x) == "c3"
     assert words.assignment(x + 1)[1] == ["c3", "+ 1"]
+
+
+@pytest.mark.parametrize(("given", "exact"), [("0.001", (1, 1000)), ("0.000999000999", (1, 1000)), ("0.125", (1, 8))])
+def test_a_float_is_told_the_nearest_fraction_of_at_most_three_digits(given, exact):
+    with pytest.raises(ValueError, match=r"write it exactly, as Rational\({}, {}\)$".format(*exact)):
+        checked("x", x * Float(given), {x})

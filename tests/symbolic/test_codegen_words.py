@@ -21,8 +21,8 @@ WRITTEN = [
     (-tan(x), "-sin(x)/cos(x)"), (2 * tan(x), "2*(sin(x)/cos(x))"), (y * tan(x), "y*(sin(x)/cos(x))"),
     (tan(x) / y, "(sin(x)/cos(x))/y"), (y / tan(x), "y/(sin(x)/cos(x))"),
     (Mul(-1, x + y, evaluate=False), "-(x + y)"), (Mul(x, Mul(-1, y, evaluate=False), evaluate=False), "x*(-y)"),
-    (Mul(x, S(-2), evaluate=False), "(-2)*x"), (Add(x, S(-2), evaluate=False), "x - 2"), (sqrt(-2 * x), "sqrt(2)*sqrt(-x)"),
-    (x * exp(-y / 3) - Rational(1, 2), "x*exp(-q(1, 3)*y) - q(1, 2)"),
+    (Mul(x, S(-2), evaluate=False), "(-2)*x"), (Add(x, S(-2), evaluate=False), "x - 2"),
+    (sqrt(-2 * x), "sqrt(2)*sqrt(-x)"), (x * exp(-y / 3) - Rational(1, 2), "x*exp(-q(1, 3)*y) - q(1, 2)"),
 ]  # fmt: skip
 KEPT = [
     (x**4, [("c0", "x*x")], "c0*c0"),

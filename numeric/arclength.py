@@ -40,11 +40,11 @@ class Waves(NamedTuple):
         while True:
             theta = 2 * np.pi * np.arange(count) / count - np.pi
             values = speed(theta)
-            c = np.fft.rfft(values) / count * np.exp(1j * np.pi * np.arange(count // 2 + 1))
+            c = np.fft.rfft(values) / count * (-1.0) ** np.arange(count // 2 + 1)
             if settled(c, values) or count >= MOST:
                 break
             count *= 2
-        kept = np.nonzero(np.abs(c[: count // 3]) > ROUNDING * np.max(values))[0][1:]
+        kept = np.flatnonzero(np.abs(c[: count // 3]) > ROUNDING * np.max(values))[1:]
         terms = 2 * c[kept] / kept
         return Waves(c[0].real, kept, terms.real, -terms.imag)
 
@@ -74,12 +74,12 @@ def chebyshev(speed: Callable[[Array], Array], low: float, high: float) -> Calla
         x = np.cos(np.pi * np.arange(degree + 1) / degree)
         values = speed(low + (high - low) * (1 + x) / 2)
         c = np.fft.hfft(values)[: degree + 1] / degree  # `values` is half of an even sequence
-        c[[0, -1]] /= 2
+        c[0] /= 2
         if settled(c, values) or degree >= HIGHEST:
             break
         degree *= 2
-    kept = np.nonzero(np.abs(c) > ROUNDING * np.max(values))[0][-1] + 1
-    integral = Chebyshev(c[:kept], [low, high]).integ(lbnd=0.0 if low <= 0.0 <= high else low)
+    kept = np.flatnonzero(np.abs(c) > ROUNDING * np.max(values))
+    integral = Chebyshev(c[: kept[-1] + 1], [low, high]).integ(lbnd=0.0 if low <= 0.0 <= high else low)
     return lambda theta: np.asarray(integral(theta))
 
 

@@ -19,6 +19,7 @@ from numeric.plane import Pair
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
 LONG = 2.0**20  # a parameter, whose rounding moves the point
+FAR = 2.0**100  # as far as nothing was met
 TURN = np.pi / 2  # of the tangent on one piece, at most
 
 
@@ -73,8 +74,8 @@ class General(Family):
         component, theta = position
         v = exit[0], exit[1]
         x0, y0, *_ = self.curve(ops, shape, component, theta)
-        far = ops.number(2.0**100)
-        best = [far, ops.number(0.0) * theta, ops.number(0.0) * theta]
+        far = ops.number(FAR)
+        best = [far, component, theta]
         for index, low, high in self.pieces:
             best = self._hits(ops, shape, (index, low, high), (component, theta), (x0, y0), v, best)
         t, where, at = best
@@ -117,11 +118,14 @@ class General(Family):
             _, _, dx, dy, ax, ay = curve(ops, at, *shape)
             return plane.cross(v, (dx, dy)), plane.cross(v, (ax, ay))
 
-        at_low, at_high = slope(a)[0] + theta * nought, slope(b)[0] + theta * nought
+        def each(x: Any) -> Any:
+            return x + theta * nought  # one for each ball
+
+        at_low, at_high = each(slope(a)[0]), each(slope(b)[0])
         turns = at_low * at_high < nought
         sign = ops.times_sign(ops.number(1.0), at_high)
         middle = ops.zero(
-            lambda x: tuple(sign * f for f in slope(x)), ops.number(0.5) * (a + b) + theta * nought, a, b,
+            lambda x: tuple(sign * f for f in slope(x)), each(ops.number(0.5) * (a + b)), a, b,
             ops.number(high - low), 2, turns,
         )  # fmt: skip
         middle = ops.select(turns, middle, b)
@@ -136,8 +140,8 @@ class General(Family):
             crosses = ops.negated((nought < f0 * f1) | (f0 == f1) | departs) & (first < last)
             up = ops.times_sign(ops.number(1.0), f1 - f0)
             at = ops.zero(
-                lambda x, up=up: tuple(up * f for f in flight(x)), ops.number(0.5) * (first + last) + theta * nought,
-                first + theta * nought, last + theta * nought, ops.number(high - low), 3, crosses,
+                lambda x, up=up: tuple(up * f for f in flight(x)), each(ops.number(0.5) * (first + last)),
+                each(first), each(last), ops.number(high - low), 3, crosses,
             )  # fmt: skip
             x, y, *_ = curve(ops, at, *shape)
             t = plane.dot(v, (x - z0[0], y - z0[1]))

@@ -189,7 +189,8 @@ def test_what_is_not_smooth_is_sampled_no_finer_than_is_said():
 
 @pytest.mark.parametrize("rate", [0.25, 0.8, 2, 5, 12, 20])
 @pytest.mark.parametrize(
-    ("low", "high", "zero"), [(-1.0, 2.0, 0.0), (0.0, 1.5, 0.0), (-2.0, 0.0, 0.0), (0.5, 2.0, 0.5), (-3.0, -2.5, -3.0)]
+    ("low", "high", "zero"),
+    [(-0.9, 2.1, 0.0), (0.0, 1.5, 0.0), (-2.0, 0.0, 0.0), (0.5, 2.0, 0.5), (-3.0, -2.5, -3.0), (-2.0, -0.5, -2.0)],
 )
 def test_a_chebyshev_series_is_as_long_as_it_must_be(rate, low, high, zero):
     """The coefficients of `cos(rate*theta)` are Bessel functions of half its phase (Jacobi and Anger)."""
@@ -234,3 +235,38 @@ def test_closed_curves_have_waves_and_arcs_have_polynomials():
     assert has_waves(PinballMap("egg", alpha="0.08").arclength.lengths[0])
     assert all(has_waves(PinballMap(table).arclength.lengths[0]) for table in (ROOTED, SKEWED))
     assert not any(has_waves(length) for length in PinballMap(STADIUM).arclength.lengths)
+
+
+@pytest.mark.parametrize("rate", [pi, pi / 3, Rational(1, 2)])
+def test_a_closed_curve_has_its_length_whatever_its_parameter_runs_through(rate):
+    once = tables.arc("once", 2 * cos(rate * theta), sin(rate * theta), -pi / rate, pi / rate)
+    arc, truth = PinballMap(tables.piecewise(once)).arclength, PinballMap("ellipse", a=2).arclength
+    at = np.linspace(-3, 3, 40)
+
+    assert arc.perimeter == pytest.approx(truth.perimeter, abs=8e-15)
+    assert np.allclose(arc.s(at / float(rate)), truth.s(at), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("origin", "before"), [((0, 1.25), 0), ((1, 0.5), 1), ((3, -0.25), 3)])
+def test_arc_length_begins_where_a_table_says(origin, before):
+    index, at = origin
+    arc = PinballMap(tables.piecewise(*STADIUM.components, origin=(index, Rational(str(at))))).arclength
+
+    assert float(arc.s(at, index)) == pytest.approx(0, abs=1e-15)
+    for component in range(4):  # counterclockwise from there: the components before it come last
+        low, _ = arc.states.ends[component]
+        turn = 4 + 2 * np.pi if component < before else 0
+        start = float(PinballMap(STADIUM).arclength.s(low, component) - PinballMap(STADIUM).arclength.s(at, index))
+        assert float(arc.s(low, component)) == pytest.approx(start + turn, abs=1e-14)
+
+
+def test_the_first_place_that_is_on_no_component_is_named():
+    with pytest.raises(ValueError, match=r"s = 7\.5 is not on the wall"):
+        PinballMap("cuspless").arclength.theta([0.0, 7.5, -8.5], 1)
+
+
+def test_on_the_unit_circle_and_along_the_wall_arc_length_is_the_parameter():
+    at = np.linspace(-0.4, 0.4, 9)
+
+    assert np.array_equal(PinballMap("circle").arclength.s(at), at)
+    assert np.array_equal(PinballMap("cuspless").arclength.s(at, 1), at)

@@ -136,6 +136,19 @@ def test_parameters_of_a_million_are_refused():
         PinballMap(far, lam=1)
 
 
+@pytest.mark.parametrize(("end", "fine"), [(2**20, True), (2**20 + 1, False), (50, True)])
+def test_a_parameter_may_run_to_a_million_and_no_further(end, fine):
+    for sign in (1, -1):
+        shift = sign * (end - 1)
+        bottom = tables.arc("bottom", theta - shift, -1, shift - 1, shift + 1)
+        table = tables.piecewise(*STADIUM.components[:3], bottom, name="far")
+        if fine:
+            assert PinballMap(table).states.ends[3] == (shift - 1, shift + 1)
+        else:
+            with pytest.raises(ValueError, match="the parameter of bottom runs to"):
+                PinballMap(table)
+
+
 def test_a_word_outside_the_vocabulary_is_an_error():
     from sympy import exp
 

@@ -1,9 +1,11 @@
 """The slap map of the cardioid in half angles: exact facts, second derivations, and constants that can fail."""
 
+import re
 from fractions import Fraction
 
 import mpmath
 import pytest
+from flint import arb
 from hypothesis import example, given
 from hypothesis import strategies as st
 from sympy import Rational, cos, simplify, sqrt
@@ -24,7 +26,7 @@ from symbolic.slap_angle import (
     quiet_near_the_cusp,
 )
 from symbolic.slap_cardioid import LAUNCH_COS2, q
-from verification.arithmetic import multiprecision
+from verification.arithmetic import balls, multiprecision
 
 FACTS = (lands_first, derived, expands, quiet_near_the_cusp, gentle_elsewhere)
 LANDINGS = st.fractions(Fraction(-156, 100), Fraction(78, 100), max_denominator=1000)
@@ -50,6 +52,30 @@ def test_a_wrong_constant_is_not_proved(fact, constant, wrong, monkeypatch):
     monkeypatch.setattr(slap_angle, constant, wrong)
 
     assert fact().outcome is not Outcome.PROVED
+
+
+@pytest.mark.parametrize(
+    ("fact", "ranges"),
+    [
+        (lands_first, ["(-1, 1)"]),
+        (expands, ["(-1, 1/3)", "[-1, 1/3]"]),
+        (quiet_near_the_cusp, ["[-1, -69/100]", "(-1, -69/100)"]),
+        (gentle_elsewhere, ["[-69/100, 1/3]"]),
+    ],
+)
+def test_a_fact_is_proved_on_the_whole_range_that_it_speaks_of(fact, ranges):
+    assert re.findall(r"for q in ([\[(].*?[\])])", fact().reason) == ranges
+
+
+def test_either_form_of_the_launching_point_is_finite_at_its_own_end():
+    arithmetic, width = balls(64), arb(0, 1e-6)
+    below, above = (load(branch(form), arithmetic) for form in (False, True))
+    cusp, upper = -arb.pi() / 2 + width, arb.pi() / 4 + width
+
+    assert below(cusp)[0].is_finite()
+    assert not above(cusp)[0].is_finite()
+    assert above(upper)[0].is_finite()
+    assert not below(upper)[0].is_finite()
 
 
 @given(LANDINGS)

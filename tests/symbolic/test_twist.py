@@ -3,9 +3,9 @@
 from itertools import product
 
 import pytest
-from sympy import Rational, S, diff, expand, sqrt, symbols
+from sympy import Rational, S, diff, expand, simplify, sqrt, symbols
 
-from symbolic.cycles import trace_and_determinant
+from symbolic.cycles import monodromy, trace_and_determinant
 from symbolic.named_cycles import egg_diameter as diameter
 from symbolic.symbols import alpha, lam
 from symbolic.twist import bounce, chord, composed, egg_diameter, plus, powers, put, times, twist_of_odd
@@ -134,3 +134,4 @@ def test_the_diameter_of_the_egg_has_the_trace_of_its_monodromy_and_that_of_the_
 
     assert expand((trace - trace_and_determinant(diameter(3))[0].subs(lam, 1)).together().as_numer_denom()[0]) == 0
     assert (B.subs(alpha, 0), trace.subs(alpha, 0), twist.subs(alpha, 0)) == (-4, 2, 0)
+    assert simplify(B * (1 + alpha) ** 2 - monodromy(diameter(3))[0, 1].subs(lam, 1)) == 0  # s = (1 + alpha)*theta

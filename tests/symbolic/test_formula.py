@@ -1,5 +1,6 @@
 """The formula parser: exact, total, and closed to everything that is not a formula."""
 
+import re
 import time
 
 import pytest
@@ -176,3 +177,10 @@ def test_a_number_is_exact(text, value):
 def test_what_is_no_real_number_is_named_with_its_label(text):
     with pytest.raises(ValueError, match=r"^alpha = "):
         number(text, "alpha")
+
+
+@pytest.mark.parametrize("text", ["log(0)", "tan(pi/2)"])
+def test_a_formula_without_a_value_is_refused_as_a_whole(text):
+    said = "the formula at column 1 cannot be used: the value is not finite; accepted: a formula without a pole"
+    with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):
+        parse(text)

@@ -285,3 +285,11 @@ def test_slap_maps_of_any_table_leave_along_the_unit_normal():
     tx, ty = map.states.tangent(np.zeros(30, dtype=int), at)
 
     assert np.max(np.abs([nx + ty, ny - tx])) <= 4 * 2.0**-52
+
+
+@pytest.mark.parametrize(("table", "status"), [(WAVY, "LOST"), (STADIUM, "JOIN")], ids=["closed", "pieces"])
+def test_a_ball_that_lands_nowhere_is_lost_or_slipped_through_a_join(table, status):
+    map = PinballMap(table, lam=0.5, kernels=False)
+    map.family.pieces = []
+
+    assert [found.name for found in map.step([0.1, 0.2], 0.3).status] == [status] * 2

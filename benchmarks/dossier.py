@@ -54,8 +54,10 @@ def bounce(bench):
         rivals = [times(own[name] / own[KERNEL]) if name in own else "" for name in (*RIVALS, PLAIN)]
         label = ", ".join([scene, *(f"{k} = {v}" for k, v in shape.items())])
         more = f"{own[f'{KERNEL}, exponents'] / own[KERNEL] - 1:+.0%}"
-        lines.append([label, pair(usual), f"{pair(hard)}: {hard['case']}", duration(own[KERNEL]), more, *rivals])
-    head = ["table", "random", "hardest case", "time", "exponents", *(f"{name}, times" for name in RIVALS.values())]
+        kept = duration(own[f"{KERNEL}, orbits as angles and points"])
+        lines.append([label, pair(usual), f"{pair(hard)}: {hard['case']}", duration(own[KERNEL]), more, kept, *rivals])
+    head = ["table", "random", "hardest case", "time", "exponents", "kept as angles and points"]
+    head += [f"{name}, times" for name in RIVALS.values()]
     return table([*head, "plain Python, times"], lines)
 
 

@@ -75,12 +75,13 @@ def summary(name: str, figures: dict[str, dict]) -> str:
     hits = sum(map(killed, figures.values()))
     alive = sum(len(entry["alive"]) for entry in figures.values())
     opened = sum(len(reasons(path, entry["alive"]).get(OPEN, [])) for path, entry in figures.items())
-    text = f"`{name}`: {hits} of {asked} mutants killed, {percent(hits / asked)}; {alive} survive, "
+    every = "all " if asked == total else ""
+    text = f"`{name}`: {hits} of {every}{asked} mutants killed, {percent(hits / asked)}; {alive} survive, "
     text += f"of which {alive - opened} are explained below" if opened else "each explained below"
     if asked < total:
         text += f". Asked was a random part of {total} mutants"
     fresh, fresh_hits = (sum(entry.get(key, 0) for entry in figures.values()) for key in ("fresh", "fresh_killed"))
-    if fresh:
+    if fresh and asked < total:
         from verification.dynamics.kinds import wilson  # here: no mutant is asked after the package was imported
 
         share = wilson(fresh_hits, fresh)

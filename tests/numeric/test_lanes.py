@@ -269,3 +269,18 @@ def test_blocks_are_named_as_the_count_of_operations_reads_them():
     assert [label.rstrip("0123456789") for label in labels] == ["head", "inside", "after", "inside", "after"]
     assert len(set(labels)) == 5
     assert (Lanes().width, ops.constant(7).value) == (32, 7.0)
+
+
+def test_what_is_written_when_a_scope_is_closed_belongs_to_the_one_around_it():
+    ops, seen = Lanes(8), []
+    for _ in range(3):
+        ops.open()
+        seen.append(ops.scope)
+    ops.close()
+
+    assert len({0, *seen}) == 4
+    assert ops.scope == seen[1]
+    ops.close()
+    assert ops.scope == seen[0]
+    ops.close()
+    assert ops.scope == 0

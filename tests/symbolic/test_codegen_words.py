@@ -24,7 +24,7 @@ WRITTEN = [
     (Mul(x, S(-2), evaluate=False), "(-2)*x"), (Add(x, S(-2), evaluate=False), "x - 2"),
     (sqrt(-2 * x), "sqrt(2)*sqrt(-x)"), (x * exp(-y / 3) - Rational(1, 2), "x*exp(-q(1, 3)*y) - q(1, 2)"),
     (Mul(x, S.Zero, evaluate=False), "0*x"), (Mul(x, Rational(-2, 3), y, evaluate=False), "(-q(2, 3))*x*y"),
-    (pi * x, "pi*x"), (1 / (y * tan(x)), "1/(y*(sin(x)/cos(x)))"),
+    (Mul(x, S(-1), evaluate=False), "(-1)*x"), (pi * x, "pi*x"), (1 / (y * tan(x)), "1/(y*(sin(x)/cos(x)))"),
 ]  # fmt: skip
 KEPT = [
     (x**4, [("c0", "x*x")], "c0*c0"),

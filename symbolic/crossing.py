@@ -1,7 +1,7 @@
 """Where a closed curve crosses itself: proved absent for finite Fourier sums, looked for on a polygon otherwise."""
 
 from fractions import Fraction
-from math import atan2, tau
+from math import atan2, fsum, tau
 
 from sympy import Dummy, Expr, I, Interval, Rational, S, Symbol, acos, atan, chebyshevu, expand, pi, sign
 
@@ -87,11 +87,10 @@ def _corners(table: Table) -> tuple[list[Corner], list[str]]:
 
 def _turns(corners: list[Corner]) -> int:
     """How often the polygon's direction turns round, either way: once where it is simple (Hopf)."""
-    total, n = 0.0, len(corners)
-    for i in range(n):
-        a, b, c = corners[i - 2], corners[i - 1], corners[i]
-        ahead = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
-        total += atan2(_side(a, b, c), ahead)
+    total = fsum(
+        atan2(_side(a, b, c), (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]))
+        for a, b, c in zip(corners[-2:] + corners[:-2], corners[-1:] + corners[:-1], corners, strict=True)
+    )
     return round(abs(total) / tau)
 
 

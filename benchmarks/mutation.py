@@ -1,6 +1,6 @@
 """Mutation testing: does a test notice when a line is wrong?
 
-    python benchmarks/mutation.py cover                     once: which test runs which line (tests/symbolic, symbolic)
+    python benchmarks/mutation.py cover                     once: which test runs which line of symbolic and numeric
     python benchmarks/mutation.py cover tests/symbolic/test_zero.py symbolic/zero.py        again, for what has changed
     python benchmarks/mutation.py run --only 'symbolic/*.py'                resumes; the smallest modules come first
     python benchmarks/mutation.py run --only 'symbolic/*.py' --near         a quick sieve: the module's own tests alone
@@ -201,7 +201,7 @@ def main() -> None:
     parser.add_argument("--again", default="", choices=["", "survived", "uncovered", "timeout", "all"])
     args = parser.parse_args()
     if args.verb == "cover":
-        covering(args.paths or ["tests/symbolic", "symbolic"])
+        covering(args.paths or ["tests/symbolic", "symbolic", "tests/numeric", "numeric"])
     elif args.verb == "run":
         running(args)
     elif args.verb == "list":

@@ -107,8 +107,10 @@ class States:
 
     # ---- fields of the kernels
 
-    def enter(self, component: NDArray[np.int64], theta: Array, phi: Array, law: str) -> list[Array]:
-        """The kernel's fields of a ball at `theta` that leaves at the exit angle `phi`."""
+    def enter(
+        self, component: NDArray[np.int64], theta: Array, phi: Array, law: str, frame: Frame | None = None
+    ) -> list[Array]:
+        """The kernel's fields of a ball at `theta` that leaves at the exit angle `phi`; its frame, if it is known."""
         name = self.family.name
         half = np.cos(theta / 2), np.sin(theta / 2)
         leaving = [np.cos(phi), np.sin(phi)]
@@ -120,10 +122,8 @@ class States:
             wall = component == 1
             fields = [wall.astype(float), np.where(wall, -theta, half[0]), np.where(wall, 0.0, half[1])]
         else:
-            tx, ty = self.tangent(component, theta)
             fields = [np.cos(theta), np.sin(theta)] if name != "general" else [component.astype(float), theta]
-            c, s = leaving
-            leaving = [s * tx - c * ty, s * ty + c * tx]
+            leaving = [*(frame or self.frame(component, theta)).direction(phi)]
         return [np.array(field, dtype=float) for field in (fields if law == SLAP else fields + leaving)]
 
     def place(self, rows: Any) -> tuple[NDArray[np.int64], Array]:
@@ -162,14 +162,15 @@ class States:
         x, y, *_ = rows[len(self.family.position) :]
         return x, y
 
-    def told(self, record: Array, start: tuple[Any, ...], own: list[Array], lam: Array, law: str) -> list[Any]:
+    def told(
+        self, record: Array, start: tuple[Any, ...], begun: Frame, own: list[Array], lam: Array, law: str
+    ) -> list[Any]:
         """Component, parameter, exit angle, incidence angle and point, at the start and after each recorded bounce.
 
         A tile at a time, so that what is worked on stays in the processor's cache.
         """
         where, theta, phi = start
         told: list[Any] = [np.empty((len(record) + 1, lam.size), dtype=kind) for kind in (np.int64, *[float] * 5)]
-        begun = self.frame(where, theta)
         for rows, first in zip(told, (where, theta, phi, np.nan, begun.x, begun.y), strict=True):
             rows[0] = first
         across = min(lam.size, TILE)

@@ -108,9 +108,9 @@ class Engine(NamedTuple):
 
 def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]]:
     """Consecutive ranges of blocks, one for each thread."""
-    wanted = (os.cpu_count() or 1) if threads is None else threads
-    if threads is None:
-        wanted = min(wanted, 1 + work // WORTH_A_THREAD)
+    wanted = 1 + work // WORTH_A_THREAD if threads is None else threads
+    if threads is None and wanted > 1:
+        wanted = min(wanted, os.cpu_count() or 1)
     wanted = max(1, min(wanted, blocks))
     cuts = [blocks * i // wanted for i in range(wanted + 1)]
     return list(itertools.pairwise(cuts))

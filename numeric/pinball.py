@@ -86,11 +86,12 @@ class PinballMap:
         where, theta, phi = self._start(theta, phi, component)
         bounces = counted("bounces", bounces)
         law = self._law(phi)
-        own = self.states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
-        lam = self._lams(theta)
+        start, lam = (where.ravel(), theta.ravel(), phi.ravel()), self._lams(theta)
+        frame = self.states.frame(*start[:2])
+        own = self.states.enter(*start, law, frame)
         result = self.engine.run(Question(law, record=True), own, lam, self.shape, bounces, threads=threads)
         assert result.record is not None
-        told = self.states.told(result.record, (where.ravel(), theta.ravel(), phi.ravel()), own, lam, law)
+        told = self.states.told(result.record, start, frame, own, lam, law)
         code = self._codes(result.rows, bounces, theta.size)
         told[3][code != 0] = np.nan
         shape = (bounces + 1, *theta.shape)

@@ -239,5 +239,9 @@ def test_blocks_are_shared_out_in_consecutive_pieces(monkeypatch):
     assert _pieces(5, 0, 0) == [(0, 5)]
     assert [len(_pieces(9, work, None)) for work in (0, worth - 1, worth, 2 * worth, 99 * worth)] == [1, 1, 2, 3, 4]
     assert len(_pieces(9, 0, 4)) == 4
-    monkeypatch.setattr("os.cpu_count", lambda: None)
-    assert _pieces(9, 99 * worth, None) == [(0, 9)]
+    for count in (None, 1):
+        monkeypatch.setattr("os.cpu_count", lambda count=count: count)
+        assert _pieces(9, 99 * worth, None) == _pieces(9, worth, None) == [(0, 9)]
+        assert len(_pieces(9, 0, 4)) == 4  # as many as were asked for
+    monkeypatch.delattr("os.cpu_count")  # is not asked for what is worth no second thread
+    assert _pieces(9, worth - 1, None) == [(0, 9)]

@@ -1,17 +1,16 @@
 """Cycles next to a bifurcation and very long ones: Newton's method on the chord system where it is nearly singular.
 
-The backward error is the residual of the collision rule, an angle at each bounce (root mean squares, as of the
-errors); the condition number is the norm of the inverse of the system's matrix. Where a multiplier is `1 + d` it is of
-the size of `1/d`. The truth is the solution with 100 digits.
+The backward error is the residual of the collision rule, the largest of the angles at the bounces, as the forward error
+is the largest of the errors; the condition number is the one that a `Solution` has, taken at the truth. Where a
+multiplier is `1 + d` it is of the size of `1/d`. The truth is the solution with 100 digits.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import log10
+from math import log10, ulp
 from typing import Any
 
 import mpmath
-import numpy as np
 from sympy import Expr, N, Rational, acos, pi, sqrt, tan
 
 from symbolic import polygons, tables
@@ -22,14 +21,12 @@ from verification.arithmetic import bits_of, multiprecision
 from verification.extremes.kernels import DOUBLE
 from verification.extremes.stability import WRONG, Finding, Measured
 from verification.ladder import rung
-from verification.shooting.condition import Conditioning
+from verification.shooting.condition import Conditioning, norm_of_inverse
 from verification.shooting.follow import doubled
 from verification.shooting.newton import Solution, UnsettledError, in_floats, refined
 from verification.shooting.problem import Kind, Problem
 
 DIGITS = 100
-WHOLE = 16  # unknowns up to which the inverse's norm is taken from all of its columns, else from a few vectors
-TRIED, SEED = 6, 5
 Sought = tuple[Problem, list[float]]
 
 
@@ -64,8 +61,8 @@ def folded(ulps: int | None) -> Sought:
     start = [turn + float(N(2 * pi / 3)) * k for k in range(3)]
     if ulps is None:
         return Problem(table, (0, 0, 0), Kind.FOLD, "lam"), [*start, exact]
-    lam = exact + ulps * float(np.spacing(exact))
-    aside = np.sqrt(ulps * float(np.spacing(exact)))
+    lam = exact + ulps * ulp(exact)
+    aside = (ulps * ulp(exact)) ** 0.5
     return Problem(table, (0, 0, 0), lam=Rational(lam)), [x + aside for x in start]
 
 
@@ -98,7 +95,7 @@ def findings(cycle: Cycle) -> list[Finding]:
     context = mpmath.MPContext()
     context.dps = DIGITS + 20
     wide = multiprecision(context)
-    condition = norm_of_inverse(problem, wide, truth, context)
+    condition = norm_of_inverse(problem, wide, truth)
     made = []
     for kernel, solve in ((FLOAT64, in_floats), (SIXTEEN, settled)):
         try:
@@ -108,9 +105,8 @@ def findings(cycle: Cycle) -> list[Finding]:
         said = found.conditioning
         status = [UNSETTLED] * stopped + ([] if said is Conditioning.SOUND else [said.name])
         z = [context.mpf(x) for x in found.z]
-        each = context.sqrt(len(z))
-        residual = context.norm(context.matrix(problem.value(wide, z))) / each
-        forward = context.norm(context.matrix([one - two for one, two in zip(z, truth, strict=True)])) / each
+        residual = max(abs(x) for x in problem.value(wide, z))
+        forward = max(abs(one - two) for one, two in zip(z, truth, strict=True))
         sizes = Measured(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
         measured = None if stopped else sizes if sizes.forward < 1 / DOUBLE else WRONG
         why = f"condition number {found.condition:.2g}, {found.digits_sure} digits sure" if found.advice else ""
@@ -141,17 +137,6 @@ def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
             break
         z, last = [x - d for x, d in zip(z, correction, strict=True)], size
     return Solution(problem, z, int((bits - 1) * log10(2)), ())
-
-
-def norm_of_inverse(problem: Problem, arithmetic: Any, z: list[Any], context: Any) -> Any:
-    """The norm of the inverse of the system's matrix: of all columns, or the largest growth of some random vectors."""
-    size = len(z)
-    if size <= WHOLE:
-        columns = [problem.solved(arithmetic, z, [context.mpf(i == j) for i in range(size)]) for j in range(size)]
-        return context.mnorm(context.matrix(columns), "f")
-    signs = np.random.default_rng(SEED).choice([-1, 1], (TRIED, size))
-    return max(context.norm(context.matrix(problem.solved(arithmetic, z, [context.mpf(int(x)) for x in row])))
-               for row in signs) / context.sqrt(size)  # fmt: skip
 
 
 ONE, MINUS, LONG = "Multipliers next to +1", "Multipliers next to -1", "Long cycles"

@@ -57,14 +57,22 @@ def lands_first() -> Finding:
     """
     u, cosine = Symbol("u"), sqrt(LAUNCH_COS2.subs(q, 0))
     cubic = u**3 + (2 + u) * u**2 + u * (2 * u + 1) * u + u**2  # the flight equation where it ends as it began
-    length = 2 * cosine**3 - 2 * (4 * cosine**3 - 3 * cosine)  # -Re((2 - z)*exp(-3*I*theta/2)), landing at z = 2
     facts = {
         "only the cusp lands on itself": expand(cubic - 4 * u**2 * (u + 1)) == 0,
         "the landing at q = 0 is theta = 0": COS2.subs(q, 0) == 1,
-        "ahead there": bool(length > 0),
+        "ahead there": bool(flown(cosine) > 0),
     }
     found = [Finding(Outcome.PROVED if true else Outcome.UNKNOWN, fact) for fact, true in facts.items()]
     return conjunction(positive(COS2, {q: Interval.open(-1, 1)}), *found)
+
+
+def flown(cosine: Expr) -> Expr:
+    """How far `z = 2` lies along the normal `-exp(3*I*theta/2)` from the launch with this `cos(theta/2)`.
+
+    >>> flown(Rational(1, 2))  # from theta = 2*pi/3, at x = -1/4, where the normal is the x axis
+    9/4
+    """
+    return 2 * cosine**3 - 2 * (4 * cosine**3 - 3 * cosine)
 
 
 def expands() -> Finding:

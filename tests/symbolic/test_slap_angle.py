@@ -1,5 +1,7 @@
 """The slap map of the cardioid in half angles: exact facts, second derivations, and constants that can fail."""
 
+import cmath
+import math
 import re
 from fractions import Fraction
 
@@ -20,6 +22,7 @@ from symbolic.slap_angle import (
     branch,
     derived,
     expands,
+    flown,
     gentle_elsewhere,
     lands_first,
     near_launch,
@@ -76,6 +79,13 @@ def test_either_form_of_the_launching_point_is_finite_at_its_own_end():
     assert not above(cusp)[0].is_finite()
     assert above(upper)[0].is_finite()
     assert not below(upper)[0].is_finite()
+
+
+@pytest.mark.parametrize("launch", [0.3, 1.0, 1.7, 2.4, 3.0])
+def test_a_landing_lies_as_far_along_the_normal_as_its_projection(launch):
+    z, normal = (1 + math.cos(launch)) * cmath.exp(1j * launch), -cmath.exp(1.5j * launch)
+
+    assert flown(math.cos(launch / 2)) == pytest.approx(((2 - z) * normal.conjugate()).real, abs=1e-14)
 
 
 @given(LANDINGS)

@@ -112,19 +112,22 @@ class States:
     ) -> list[Array]:
         """The kernel's fields of a ball at `theta` that leaves at the exit angle `phi`; its frame, if it is known."""
         name = self.family.name
-        half = np.cos(theta / 2), np.sin(theta / 2)
-        leaving = [np.cos(phi), np.sin(phi)]
         if name == "circle":
             fields, leaving = [theta], [phi]
-        elif name == "cardioid":
-            fields = [*half]
-        elif name == "cuspless":
-            wall = component == 1
-            fields = [wall.astype(float), np.where(wall, -theta, half[0]), np.where(wall, 0.0, half[1])]
+        elif name in ("cardioid", "cuspless"):
+            fields, leaving = [np.cos(theta / 2), np.sin(theta / 2)], [np.cos(phi), np.sin(phi)]
+            if name == "cuspless":
+                wall = component == 1
+                fields = [wall.astype(float), np.where(wall, -theta, fields[0]), np.where(wall, 0.0, fields[1])]
         else:
             fields = [np.cos(theta), np.sin(theta)] if name != "general" else [component.astype(float), theta]
             leaving = [*(frame or self.frame(component, theta)).direction(phi)]
         return [np.array(field, dtype=float) for field in (fields if law == SLAP else fields + leaving)]
+
+    def departure(self, own: list[Array], law: str) -> Array:
+        """`N0 = speed*cos(phi)` of balls that are about to leave, from their fields."""
+        with np.errstate(all="ignore"):
+            return np.asarray(self.family.rate(self.ops, self.shape, law, own) + np.zeros(own[0].size))
 
     def place(self, rows: Any) -> tuple[NDArray[np.int64], Array]:
         """Component and parameter of kernel fields."""
@@ -140,16 +143,18 @@ class States:
             return np.rint(rows[0]).astype(np.int64), rows[1]
         return np.zeros(rows[0].shape, dtype=np.int64), np.arctan2(rows[1], rows[0])
 
-    def exit(self, frame: Frame, rows: Any, law: str) -> Array:
-        """The exit angle of kernel fields in the frame of their place, in radians."""
+    def exit(
+        self, component: NDArray[np.int64], theta: Array, rows: Any, law: str, frame: Frame | None = None
+    ) -> Array:
+        """The exit angle of kernel fields, in radians; the frame of their place, if it is known."""
         if law == SLAP:
-            return np.zeros_like(frame.x)
+            return np.zeros_like(theta)
         if self.family.name == "circle":
             return np.asarray(rows[1])
         x, y = self.kept(rows)
         if self.family.name in ("cardioid", "cuspless"):
             return np.asarray(np.arctan2(y, x))
-        return frame.angle(x, y)
+        return (frame or self.frame(component, theta)).angle(x, y)
 
     def leaving(self, frame: Frame, phi: Array, rows: Any, law: str) -> tuple[Array, Array]:
         """The unit direction of the flight that begins: the one that the kernel keeps, if it keeps one."""
@@ -183,7 +188,8 @@ class States:
                 fields = list(record[top : top + down, :, ball].swapaxes(0, 1))
                 component, at = self.place(fields)
                 frame = self.frame(component, at)
-                exit = self.exit(frame, fields, law) * (lam[ball] != 0)  # the normal, whatever atan2 rounds to
+                exit = self.exit(component, at, fields, law, frame)
+                exit = exit * (lam[ball] != 0)  # the normal, whatever atan2 rounds to
                 leaving = self.leaving(frame, exit, fields, law)
                 vx, vy = (np.concatenate([v[None], later[:-1]]) for v, later in zip(flight, leaving, strict=True))
                 flight = leaving[0][-1], leaving[1][-1]

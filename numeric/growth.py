@@ -48,9 +48,7 @@ class Growth:
         """Starts the sums anew, with the generic vector."""
         self.speed, curvature = self.map.states.bending(self.component, self.theta)
         ds, dphi = (1.0, 0.0) if self.law == SLAP else GENERIC
-        with np.errstate(all="ignore"):
-            rate = self.map.family.rate(self.map.states.ops, self.map.shape, self.law, self.own)
-        self.n0 = rate + np.zeros(self.theta.size)
+        self.n0 = self.map.states.departure(self.own, self.law)
         omega = curvature * ds + dphi
         self.tangent: list[Any] = starting(self.n0 * (ds / self.speed), omega, self.n0)
         self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
@@ -85,7 +83,7 @@ class Growth:
         rows = map.engine.run(question, self.own, self.lam, map.shape, bounces, tangent, threads).rows
         self.own = [rows[name] for name in map.family.fields(self.law)]
         self.component, self.theta = map.states.place(self.own)
-        self.phi = map.states.exit(map.states.frame(self.component, self.theta), self.own, self.law)
+        self.phi = map.states.exit(self.component, self.theta, self.own, self.law)
         if "code" in rows:
             self.code = np.where(self.code == 0, rows["code"].astype(np.int64), self.code)
         return rows

@@ -106,18 +106,15 @@ class PinballMap:
         law, states, count = self._law(phi), self.states, theta.size
         law = PINBALL if law == SLAP else law
         own = states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
-        with np.errstate(all="ignore"):
-            n0 = self.family.rate(states.ops, self.shape, law, own) + np.zeros(count)
+        n0, lam = states.departure(own, law), self._lams(theta)
         rate, curvature = states.bending(where.ravel(), theta.ravel())
         q, omega = np.append(n0 / rate, np.zeros(count)), np.append(curvature, np.ones(count))  # of ds, then of dphi
-        balls, lam = [np.tile(field, 2) for field in own], np.tile(self._lams(theta), 2)
-        found = self.engine.run(
-            Question(law, exponents=True), balls, lam, self.shape, 1, starting(q, omega, np.tile(n0, 2))
-        )
+        balls, tangent = [np.tile(field, 2) for field in own], starting(q, omega, np.tile(n0, 2))
+        found = self.engine.run(Question(law, exponents=True), balls, np.tile(lam, 2), self.shape, 1, tangent)
         rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
         rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
         moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
-        turned = self._lams(theta) * (curvature * moved - omega.reshape(2, count))
+        turned = lam * (curvature * moved - omega.reshape(2, count))
         return np.moveaxis(np.array([moved, turned]), 2, 0).reshape(*theta.shape, 2, 2)
 
     def exponents(
@@ -202,7 +199,7 @@ class PinballMap:
     def _convex(self) -> bool:
         """No curvature of the wrong sign on a fine grid, up to rounding."""
         theta = np.linspace(-np.pi, np.pi, 4096)
-        _, curvature = self.states.bending(np.zeros(theta.size, dtype=np.int64), theta)
+        curvature = self.states.curvature(np.zeros(theta.size, dtype=np.int64), theta)
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
     def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:

@@ -134,7 +134,7 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
     """Seconds for one bounce of an orbit that is told in full."""
     component, theta = map.states.place(own)
-    phi = map.states.exit(map.states.frame(component, theta), own, map.law)
+    phi = map.states.exit(component, theta, own, map.law)
 
     def once() -> object:
         return map.orbit(theta, phi, bounces, component, threads=1)

@@ -86,7 +86,7 @@ class Bounced:
             fields = list(map.engine.run(Question(law, record=True), own, lams, map.shape, 1).record[0])
         self.fields, self.own = fields, own
         self.where, self.theta = map.states.place(fields)
-        self.phi = map.states.exit(map.states.frame(self.where, self.theta), fields, law)
+        self.phi = map.states.exit(self.where, self.theta, fields, law)
         there = boundary(name, self.where, self.theta, map.shape)
         (x, y), (tx, ty), self.curvature0, _ = here
         v = np.sin(phi) * tx - np.cos(phi) * ty, np.sin(phi) * ty + np.cos(phi) * tx

@@ -124,7 +124,7 @@ def test_a_ball_comes_back_from_the_fields_of_its_kernel(table, law):
     assert all(field.dtype == float for field in fields)
     assert np.array_equal(where, component)
     assert np.max(np.abs(at - theta)) <= 4 * EPS
-    assert np.max(np.abs(map.states.exit(map.states.frame(where, at), fields, law) - phi)) <= 16 * EPS
+    assert np.max(np.abs(map.states.exit(where, at, fields, law) - phi)) <= 16 * EPS
 
 
 def test_directions_and_exit_angles_are_each_others_inverse(table):

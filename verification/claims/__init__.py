@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from importlib import import_module
+from pkgutil import iter_modules
 
 from symbolic.signs import Finding, Outcome
 from verification.balls import decimal, real_ball
@@ -16,27 +17,6 @@ from verification.claims.claim import Claim, Judgement, Verdict, load
 from verification.claims.judges import JUDGES
 
 TABLES = ("map", "circle", "ellipse", "cardioid", "cuspless", "egg", "appendix")
-JUDGING = (
-    *TABLES,
-    "ellipse_stability",
-    "egg_period2",
-    "egg_period3",
-    "located",
-    "sets",
-    "stability",
-    "border",
-    "samples",
-    "crises",
-    "contraction",
-    "defocusing",
-    "cardioid_attractor",
-    "exponents",
-    "figures",
-    "elastic",
-    "parameter_space",
-    "attractors",
-    "basins",
-)
 
 
 @dataclass(frozen=True)
@@ -67,8 +47,9 @@ def catalogue() -> list[Claim]:
 
 def verify(only: str = "*", digits: int = 15) -> Iterator[Result]:
     """Judges the claims whose id matches the glob `only`, one at a time."""
-    for module in JUDGING:
-        import_module(f"verification.claims.on_{module}")
+    for module in iter_modules(__path__):
+        if module.name.startswith("on_"):
+            import_module(f"{__name__}.{module.name}")
     for claim in catalogue():
         if fnmatchcase(claim.id, only):
             yield judge(claim, digits)

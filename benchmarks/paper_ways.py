@@ -1,6 +1,6 @@
 """The paper's own ways to follow a ball, as a reader of its appendix would write them: floats, one ball, no tricks.
 
-Ellipse: the quadratic. Cardioid: the cubic of Baecker and Dullin. Cuspless: the same, cut off at the
+Ellipse: the quadratic. Cardioid: the cubic of [BackerDullin1997]. Cuspless: the same, cut off at the
 wall. Egg: Newton-Raphson along the ray. Each takes and returns `(component, theta, phi)`.
 """
 

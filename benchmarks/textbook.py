@@ -224,7 +224,7 @@ def corner_by_findroot(digits):
 
 
 def two_balls(step, ball, bounces, apart=1e-8):
-    """The largest exponent from a neighbour that is brought back to its distance after each bounce (Benettin)."""
+    """The largest exponent, of a neighbour put back to its distance after each bounce [BenettinGalganiStrelcyn1976]."""
     theta, phi = ball
     near_theta, near_phi, total = theta + apart, phi, 0.0
     for _ in range(bounces):

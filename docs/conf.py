@@ -1,8 +1,14 @@
 """Sphinx: `make docs` builds the pages into docs/_build."""
 
+import re
+
+from pybtex.plugin import register_plugin
+from pybtex.style.formatting.plain import Style
+from pybtex.style.labels import BaseLabelStyle
+
 project = "Pinball billiards"
 author = "The pinball-billiards authors"
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinxcontrib.bibtex"]
 source_suffix = {".md": "markdown"}
 html_theme = "furo"
 html_title = "Pinball billiards"
@@ -12,11 +18,30 @@ myst_heading_anchors = 3
 autodoc_typehints = "description"
 add_module_names = False
 default_role = "code"
+bibtex_bibfiles = ["references.bib"]
+bibtex_default_style = "keys"
+
+
+class Keys(BaseLabelStyle):
+    """Labels that are the keys, so that pages show what docstrings say."""
+
+    def format_labels(self, sorted_entries):
+        """Called by pybtex."""
+        return [entry.key for entry in sorted_entries]
+
+
+class Keyed(Style):
+    """Entries as pybtex writes them, labelled with their keys."""
+
+    default_label_style = Keys
+
+
+register_plugin("pybtex.style.formatting", "keys", Keyed)
 
 
 def plain(app, what, name, obj, options, lines):
-    """Docstrings are plain text: a bar is a modulus, no substitution."""
-    lines[:] = [line.replace("|", r"\|") for line in lines]
+    """Docstrings are plain text: a bar is a modulus, no substitution; `[Key]` names an entry of the bibliography."""
+    lines[:] = [re.sub(r"\[([A-Z][A-Za-z]+\d{4})\]", r":cite:p:`\1`", line.replace("|", r"\|")) for line in lines]
 
 
 def setup(app):

@@ -43,8 +43,7 @@ print("delta     =", nstr(end.ratio.value, 8), "+-", nstr(end.ratio.error, 2))
 
 # ## A check that can fail
 #
-# The first ratios of the gaps approach $\delta = 4.669201609\\ldots$ (M. J. Feigenbaum, J. Stat. Phys. 21, 669,
-# 1979).
+# The first ratios of the gaps approach $\delta = 4.669201609\ldots$ [Feigenbaum1979].
 
 values = [float(rungs[n].value) for n in (3, 4, 5, 6)]
 gaps = [b - a for a, b in pairwise(values)]

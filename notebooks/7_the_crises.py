@@ -46,7 +46,7 @@ for found in (merging, boundary):
 # ## What sampling sees
 #
 # Below the crisis no ball leaves the attractor; above it the mean stay falls like a power of the distance, and the
-# power follows from the multipliers of the saddle (Grebogi, Ott and Yorke 1987).
+# power follows from the multipliers of the saddle [GrebogiOttRomeirasYorke1987].
 
 print("predicted exponent of the stay:", boundary.exponent)
 

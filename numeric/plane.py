@@ -35,7 +35,7 @@ def cross(z: Pair, w: Pair) -> Any:
 
 
 def exact_cross(ops: Any, z: Pair, w: Pair) -> Any:
-    """`cross` to two units in the last place even where it almost vanishes (Kahan's difference of products)."""
+    """`cross` to two units in the last place even where it almost vanishes, by Kahan [JeannerodLouvetMuller2013]."""
     product = z[1] * w[0]
     lost = ops.fma(-z[1], w[0], product)
     return ops.fma(z[0], w[1], -product) + lost

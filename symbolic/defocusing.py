@@ -7,8 +7,8 @@ A tangent vector is a beam: `q = cos(phi)*ds` wide, turning by `omega = K*ds + d
 
 *The cone.* Beams that leave with a focus not beyond `D0 = cos(phi0)/|K0|`, that is `-(1 + lam)/D0 <= u <= -1/D0`,
 arrive with `0 < u' <= 1/d1` when `t >= D0 + d1`, and so leave in the same cone: `cos(eta1)/(cos(phi1)*d1) = 1/D1`.
-Their width in units of `D` grows at each bounce by the gain `(t - D0)/d1 >= 1` at least. This is Bunimovich's and
-Wojtkowski's defocusing; nothing in it needs the elastic law, since `t >= D0 + d1` speaks of a chord alone.
+Their width in units of `D` grows at each bounce by the gain `(t - D0)/d1 >= 1` at least. This is the defocusing of
+[Bunimovich1979] and [Wojtkowski1986]; it needs no elastic law, since `t >= D0 + d1` speaks of a chord alone.
 
 *The cardioid.* With `c = cos(theta/2)` at either end, `2*delta = theta1 - theta0` and `C = cos(delta)`,
 

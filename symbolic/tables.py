@@ -78,7 +78,7 @@ def _exact(given: Expr | int | str) -> Expr:
 
 
 def egg(K: int | Expr = 3) -> Table:
-    """The K-pointed egg `rho = 1 + alpha*cos(K*theta)`. Paper: section 6, with K = 3.
+    """The K-pointed egg `rho = 1 + alpha*cos(K*theta)`. Paper: section 6, with K = 3, after [Robnik1983].
 
     `K` may be a symbol, odd or even, for statements about every such egg.
 

@@ -3,7 +3,8 @@
 With elastic collisions the length `H(x, y)` of the chord between boundary parameters generates the map:
 `p = -dH/dx` leaves, `p' = dH/dy` lands, and `(x, p) -> (y, p')` preserves area. Around an elliptic point the
 map is a rotation whose angle changes with the square of the distance; when that coefficient, the twist, is not
-zero and the multiplier is no root of unity up to the fourth, invariant curves surround the point (Moser 1962).
+zero and the multiplier is no root of unity up to the fourth, invariant curves surround the point [Moser1962]
+[SiegelMoser1971].
 Everything here is truncated power series over whatever numbers are put in, exact or balls.
 """
 

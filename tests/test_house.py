@@ -15,6 +15,13 @@ import pytest
 ROOT = Path(__file__).parent.parent
 STOREYS = ("symbolic", "numeric", "verification")
 CODE = sorted(path for storey in STOREYS for path in (ROOT / storey).rglob("*.py"))
+FOLDERS = ("docs", "notebooks", "benchmarks", "tests", *STOREYS)
+WORDS = sorted(
+    path
+    for folder in FOLDERS
+    for path in (ROOT / folder).rglob("*")
+    if path.suffix in {".md", ".py", ".ipynb", ".toml", ".j2", ".html", ".bib", ".cff"} and "_build" not in path.parts
+)
 TESTS = sorted(path for path in (ROOT / "tests").rglob("*.py") if "golden" not in path.parts)
 READERS_OF_TEXT = {"eval", "sympify", "parse_expr", "__import__"}
 EXECUTES = {Path("symbolic/codegen.py")}  # compiles what it has written itself
@@ -60,6 +67,12 @@ def test_a_file_begins_with_what_it_is(path):
     text = path.read_text()
 
     assert not text.strip() or ast.get_docstring(ast.parse(text))
+
+
+@pytest.mark.parametrize("path", WORDS, ids=named)
+def test_nothing_speaks_of_how_the_work_was_shared_out(path):
+    """Readers know no tickets: a page says what is so, not who asked for it."""
+    assert re.findall(rf"\b{'iss' + 'ue'}s?\b", path.read_text(), re.IGNORECASE) == []
 
 
 def test_tests_are_no_packages():

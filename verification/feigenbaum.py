@@ -2,7 +2,7 @@
 
 Two schemes that share no assumption but geometric convergence: Wynn's epsilon algorithm on the
 sequence itself, and Aitken's process on what is left after the leading term has been removed with
-the universal constant of Feigenbaum. Their difference is the error that is stated.
+the universal constant of [Feigenbaum1979]. Their difference is the error that is stated.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from verification.balls import decimal
 from verification.ladder import rung
 from verification.locate import certify
 
-DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # Feigenbaum; from the literature
+DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # [Feigenbaum1979]; OEIS A006890
 DIGITS = 60
 RUNG_DIGITS = 50
 

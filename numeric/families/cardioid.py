@@ -5,7 +5,7 @@ root. With `k = sin(theta0/2 - phi)` the ball passes the cusp at the distance `2
 Seen from the cusp its polar angle falls (`k > 0`) or grows towards the direction `psi` of `v`, and it
 stays inside until it lands; the line behind the ball fills the angles beyond `psi - pi`. So of the
 zeros in `S = cos(theta0/2)*tan(theta1/2)` exactly one lies between `theta0` and `psi`: between two
-more the arc would have to bulge inwards. Paper: section 4; Baecker and Dullin 1997.
+more the arc would have to bulge inwards. Paper: section 4; [BackerDullin1997].
 """
 
 from collections.abc import Callable

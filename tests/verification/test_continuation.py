@@ -35,8 +35,8 @@ ALPHA = Rational(2, 25)
 TABLE = egg(3).at(alpha=ALPHA)
 TRIANGLE = pi / 3 * np.array([1.0, 3.0, 5.0])
 FOUR = np.array([0.09106847, -2.81341037, -0.09106847, 2.81341037])  # attracts at lam = 0.2
-LOGISTIC = [3.0, 1 + 6**0.5, 3.5440903595, 3.5644072661, 3.5687594195]  # May 1976; OEIS A086180, A086181, A091517
-HENON = [0.3675, 0.9125, 1.0258554, 1.0511257, 1.0565638]  # Derrida, Gervois, Pomeau 1979; checked twice below
+LOGISTIC = [3.0, 1 + 6**0.5, 3.5440903595, 3.5644072661, 3.5687594195]  # [May1976]; OEIS A086180, A086181, A091517
+HENON = [0.3675, 0.9125, 1.0258554, 1.0511257, 1.0565638]  # [DerridaGervoisPomeau1979]; checked twice below
 
 
 def cascade(one, interval, count):
@@ -140,7 +140,7 @@ def test_henons_later_doublings_agree_with_single_shooting():
 
 
 def test_the_window_of_period_three_opens_where_it_is_published():
-    """1 + sqrt(8): Myrberg 1958."""
+    """1 + sqrt(8) [Myrberg1958]."""
     one = branch(logistic(3), np.array([0.1494, 0.4880, 0.9594]), "r", 3.84, (3.5, 3.9))
     fold = next(event for event in one.events if event.what is What.FOLD)
 
@@ -148,7 +148,7 @@ def test_the_window_of_period_three_opens_where_it_is_published():
 
 
 def test_the_multipliers_of_henons_fixed_point():
-    """Henon 1976: at a = 1.4, b = 0.3 the fixed point 0.63135448 has slopes 0.15594632 and -1.92373886."""
+    """[Henon1976]: at a = 1.4, b = 0.3 the fixed point 0.63135448 has slopes 0.15594632 and -1.92373886."""
     one = branch(henon(1), np.array([0.63]), "a", 1.4, (1.0, 1.4), {"b": 0.3})
     last = max(one.points, key=lambda point: point.z[-1])
     multipliers = one.system.spectrum(last.z).multipliers
@@ -158,7 +158,7 @@ def test_the_multipliers_of_henons_fixed_point():
 
 
 def test_a_neimark_sacker_bifurcation_is_named_where_there_is_one():
-    """The delayed logistic map's fixed point: r = 2, multipliers exp(+-i*pi/3). Aronson, Chory, Hall, McGehee 1982."""
+    """The delayed logistic map's fixed point: r = 2, multipliers exp(+-i*pi/3). [AronsonChoryHallMcGehee1982]."""
     one = branch(delayed(1), np.array([0.4]), "r", 1.7, (1.2, 2.2))
     (torus,) = one.events
 

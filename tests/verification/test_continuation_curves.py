@@ -25,7 +25,7 @@ from verification.shooting.normal_form import normal_form
 from verification.shooting.problem import Kind, Linearised, Problem, Rows
 
 CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified rungs: `verification.feigenbaum.accumulation`
-AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps: Greene, MacKay, Vivaldi, Feigenbaum 1981
+AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]
 
 
 @pytest.fixture(scope="module")

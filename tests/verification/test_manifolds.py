@@ -32,8 +32,8 @@ CASES = [
     (EGG, Orbit("diameter", (0.0, 3.1416)), 0.5),
     (EGG, Orbit("parallel tangents", (0.3326,), -1, (2, 3)), 0.4434),
 ]
-# Arai and Mischaikow, SIAM J. Appl. Dyn. Syst. 5 (2006) 280-292: quadratic homoclinic tangencies proved in these
-# intervals. Grebogi, Ott and Yorke, Phys. Rev. A 36 (1987) 5365-5380: the boundary crisis of the Henon map.
+# [AraiMischaikow2006]: quadratic homoclinic tangencies proved in these
+# intervals. [GrebogiOttRomeirasYorke1987]: the boundary crisis of the Henon map.
 PUBLISHED = {
     "inner, homoclinic, b = 0.3": (
         Contact(INNER, INNER, 4, 1, -0.635006, -1.319803, 1.3924),

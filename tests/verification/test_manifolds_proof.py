@@ -161,8 +161,8 @@ def test_the_vector_along_a_tangency_is_the_tangent_of_the_orbits_on_the_manifol
 
 
 INNER, FAR = Orbit("inner fixed point", (0.63,)), Orbit("outer fixed point", (-1.13,))
-# Arai and Mischaikow, SIAM J. Appl. Dyn. Syst. 5 (2006) 280-292, proved the first two intervals in another way.
-# Grebogi, Ott and Yorke, Phys. Rev. A 36 (1987) 5365-5380: the boundary crisis, a heteroclinic tangency.
+# [AraiMischaikow2006] proved the first two intervals in another way.
+# [GrebogiOttRomeirasYorke1987]: the boundary crisis, a heteroclinic tangency.
 HENON = {
     "inner, homoclinic": (
         Contact(INNER, INNER, 4, 1, -0.635006, -1.319803, 1.3924),

@@ -5,8 +5,7 @@ proportional to `lam - lambda-star`, is thrown into its own interior by half the
 and there is a cone of directions that this map keeps and stretches by a factor above 1. So in the
 region no cycle is stable, and every orbit in it has a positive exponent. It is a proof about the map
 itself, in steps of `e`; that the attractor in the region is one piece is not proved.
-Paper: section 5.2. The two ideas are those of Glendinning and Simpson for the piecewise linear map
-(doi:10.3934/dcds.2020409).
+Paper: section 5.2. The two ideas are those of [GlendinningSimpson2021] for the piecewise linear map.
 """
 
 import math

@@ -2,7 +2,7 @@
 
 `x -> A x + b` with one `A` for `v < 0` and another for `v > 0`, that agree at `v = 0`, in units of the
 distance `e > 0` of the parameter; for `e < 0` the shift has the other sign. Proofs hold for the
-piecewise linear map. The kinds are those of Nusse and Yorke (1992) and Banerjee, Yorke and Grebogi (1998).
+piecewise linear map. The kinds are those of [NusseYorke1992] and [BanerjeeYorkeGrebogi1998].
 """
 
 import math

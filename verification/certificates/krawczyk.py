@@ -1,4 +1,4 @@
-"""Krawczyk's operator, for wide boxes around short cycles.
+"""Krawczyk's operator [Krawczyk1969], for wide boxes around short cycles.
 
 `K = m - Y F(m) + (1 - Y F'(X)) (X - m)` with `Y` near the inverse of the middle of `F'(X)`. The
 preconditioner is a full matrix, so the cost is cubic in the period; in return the balls of `F'(X)`

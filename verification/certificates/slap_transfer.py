@@ -14,7 +14,7 @@ second summand ends at `x = pi/4` with `f(pi/2) = 0`, so that nothing jumps. Its
 With `symbolic.slap_angle`: off the cusp `abs(rate') < STEEP*rate`, which adds `STEEP*||f||_1`. Near it, for launches
 below `y0`, the rate grows from 0 to `eta < SHRINKS/2`, which adds at most `eta*sup|f|`, and there
 `sup|f| <= Var f + (1/y0)*integral of |f|`. Launches near `y0` are so multiplied by `2*eta < SHRINKS`, others by
-`SHRINKS`, and altogether (Lasota and Yorke's inequality, norms in `L1`)
+`SHRINKS`, and altogether (the inequality of [LasotaYorke1973], norms in `L1`)
 
     Var(L f) <= SHRINKS*Var f + B*||f||,      B = max(STEEP, eta/y0).
 """

@@ -1,8 +1,8 @@
 """Islands: an elliptic cycle of the elastic map whose twist is proved not to vanish is surrounded by invariant curves.
 
-Moser's twist theorem (1962) asks of an area-preserving analytic map: a multiplier on the unit circle whose first
-four powers are not 1, and a normal form `w -> mu*w*(1 + i*twist*|w|^2 + ...)` with `twist` not 0. Both are decided
-by balls on an enclosed cycle. The theorem itself is taken from the literature.
+Moser's twist theorem [Moser1962] [SiegelMoser1971] asks of an area-preserving analytic map: a multiplier on the unit
+circle whose first four powers are not 1, and a normal form `w -> mu*w*(1 + i*twist*|w|^2 + ...)` with `twist` not 0.
+Both are decided by balls on an enclosed cycle. The theorem itself is taken from the literature.
 """
 
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ def twist(points: Table, components: Sequence[int], bounces: Sequence[arb], bits
 
 
 def normal_form(map: Map) -> Twist:
-    """Trace and twist of a map that preserves area, at an elliptic fixed point. Kuznetsov's formula for `c1`."""
+    """Trace and twist of a map that preserves area, at an elliptic fixed point. `c1` as in [Kuznetsov2004]."""
     x, p = map
     A, B, D = x[1, 0], x[0, 1], p[0, 1]
     trace = A + D

@@ -1,4 +1,4 @@
-"""How well the transfer operator, averaged over cells, can be inverted: Ulam's matrix, with a proof.
+"""How well the transfer operator, averaged over cells, can be inverted: Ulam's matrix [Ulam1960], with a proof.
 
 `N` equal cells, `P` the average over each, `Q = P L P`: a matrix of the shares of a cell that are carried to
 another. On vectors of sum 0, in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X` proves such a `K`: from

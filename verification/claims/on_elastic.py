@@ -70,9 +70,9 @@ def no_full_chaos(claim: Claim) -> Judgement:
     return Judgement(
         by(
             "for 0 <= alpha < 1/10 the boundary is analytic and its curvature nowhere 0, so invariant curves fill a "
-            "part of phase space, of positive measure, near |phi| = pi/2 (Lazutkin 1973); at alpha = 1/10 a triangle, "
+            "part of phase space, of positive measure, near |phi| = pi/2 [Lazutkin1973]; at alpha = 1/10 a triangle, "
             "isosceles and not equilateral, is elliptic with a twist that is not 0, and invariant curves surround it "
-            "(Moser 1962)",
+            "[Moser1962]",
             bent,
             island,
         ),

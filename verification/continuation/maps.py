@@ -1,7 +1,7 @@
 """Maps whose bifurcations are published: the engine that follows billiards must find them too.
 
-Logistic, `x -> r*x*(1 - x)`: May 1976. Henon, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three
-successive `x`: Henon 1976. Delayed logistic, `x -> r*x*(1 - y)`, `y -> x`: Maynard Smith 1968, for its torus.
+Logistic, `x -> r*x*(1 - x)` [May1976]. Henon, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three
+successive `x` [Henon1976]. Delayed logistic, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
 """
 
 from sympy import Symbol

@@ -2,7 +2,8 @@
 
 Balls first run until they are where they end: those that a cycle attracts within its reach. Then growth is counted
 in blocks. Balls are sorted by the attractor they reach, before the count and once more after it; nothing is
-averaged across attractors. A run can be interrupted: what was counted stays.
+averaged across attractors. A run can be interrupted: what was counted stays. The paper (appendix A.2) counts with two
+vectors, after [DellagoPoschHoover1996]; here one vector and the determinant do.
 """
 
 from collections.abc import Callable, Iterator

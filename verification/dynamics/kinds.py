@@ -54,7 +54,7 @@ class Attractor:
 
 
 def wilson(count: int, of: int, z: float = 1.96) -> Share:
-    """The share with Wilson's interval, which never leaves 0 to 1 and is not empty at either.
+    """The share with Wilson's interval [Wilson1927], which never leaves 0 to 1 and is not empty at either.
 
     >>> share = wilson(0, 100)
     >>> share.low, round(share.high, 4)

@@ -1,8 +1,8 @@
 """The angle between the two directions of an orbit: the one its past expands, the one its future contracts.
 
-Dominated splitting keeps the two apart: on a compact set their angle has a positive lower bound. Where orbits
-come near a tangency of a stable with an unstable manifold the angle has no such bound, and the share of points
-with an angle below `x` falls like `x`. Paper: section 1.
+Dominated splitting [PujalsSambarino2009] keeps the two apart: on a compact set their angle has a positive lower
+bound. Where orbits come near a tangency of a stable with an unstable manifold the angle has no such bound, and the
+share of points with an angle below `x` falls like `x`. Paper: section 1.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Error bars of time averages: batch means over orbits and blocks, with batches long enough to forget.
 
 Blocks of an orbit depend on each other, so their standard deviation over the square root of their number is wrong,
-by a factor that can be anything. Neighbouring blocks are merged two by two (Flyvbjerg and Petersen 1989) until
+by a factor that can be anything. Neighbouring blocks are merged two by two [FlyvbjergPetersen1989] until
 only as many batches are left as an error bar needs, and further while neighbours are seen to be correlated; what
 their ends still share is put right with the autocorrelation time. The last level has one batch for each orbit: orbits
 start independently, so that level is right however long the memory.

@@ -1,7 +1,7 @@
 """The dimension of a basin boundary, by the uncertainty exponent.
 
 Two starts at a distance `eps` have different fates with probability `f(eps) ~ eps**a`, and the boundary has
-dimension `2 - a` (McDonald, Grebogi, Ott and Yorke 1985). The same starts serve all distances, so the error
+dimension `2 - a` [McDonaldGrebogiOttYorke1985]. The same starts serve all distances, so the error
 comes from resampling starts, not from a fit that takes distances for independent.
 """
 

@@ -3,8 +3,9 @@
 An invariant of the elastic ellipse, to which each bounce adds one rounding: `n` of them that know nothing of one
 another amount to `sqrt(n)`, and a drift would be of order `n`. The elastic circle, where `theta` after `n` bounces is
 known, with the `2*n` roundings of `phi` that it adds up. A cycle that attracts, enclosed in balls. Chaotic orbits: two
-that start as mirror images and must stay so to the last bit, and means over the invariant measure, which is known for
-the elastic cardioid (Wojtkowski 1986: it is ergodic), up to their standard errors.
+that start as mirror images and must stay so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to
+which time averages tend because the elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard
+errors. (That its exponents are not 0 was known before [Wojtkowski1986].)
 """
 
 from collections.abc import Callable

@@ -2,7 +2,7 @@
 
 With data `x`, truth `f(x)` and answer `y`, the *forward error* is `|y - f(x)|`. The *backward error* is the smallest
 `(dx, dy)` with `y + dy = f(x + dx)`, to first order: what the data and the result would have to be off by for the
-answer to be right (Higham, Accuracy and Stability of Numerical Algorithms, section 1.5, calls this the mixed error).
+answer to be right ([Higham2002], section 1.5, calls this the mixed error).
 The *condition number* is the largest factor between the two. Errors are absolute, in units of rounding of one.
 """
 

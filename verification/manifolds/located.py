@@ -47,7 +47,7 @@ class Crisis:
 
     @property
     def exponent(self) -> float:
-        """Of the mean transient above a homoclinic crisis (Grebogi, Ott and Yorke 1987)."""
+        """Of the mean transient above a homoclinic crisis [GrebogiOttRomeirasYorke1987]."""
         return homoclinic_exponent(self.touch.multipliers[0], self.touch.multipliers[1])
 
 

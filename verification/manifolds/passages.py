@@ -1,6 +1,6 @@
 """How long a ball stays above a homoclinic crisis, at a finite distance: one term for each passage of the saddle.
 
-Grebogi, Ott and Yorke (Phys. Rev. A 36, 5365, 1987) find the power that holds in the limit. Their argument, kept at a
+[GrebogiOttRomeirasYorke1987] find the power that holds in the limit. Their argument, kept at a
 finite distance: the unstable manifold reaches beyond the stable one by `e`, the distance above the crisis, over a
 length `sqrt(e)`, and what lands there leaves. Followed back for `n` rounds along the saddle that region has become as
 high as the attractor is, `e*stable**-n = 1`, and as near to the stable manifold as `unstable**-n`. So a ball must first

@@ -3,7 +3,7 @@
 The condition number is the largest row sum of the inverse of the system's matrix: no unknown moves farther when no
 equation is off by more than one. Next to a fold, where a multiplier is `1 + d`, it is of the size of `1/d`. Of a
 cycle it is estimated from a few solutions of the factored system: from below, and rarely off by more than a factor
-of 3 (Higham, Accuracy and Stability of Numerical Algorithms, section 15.3). A system of a handful is inverted.
+of 3 ([Higham2002], section 15.3). A system of a handful is inverted.
 """
 
 from collections.abc import Callable

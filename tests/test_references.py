@@ -1,0 +1,161 @@
+"""Citations have entries in docs/references.bib, entries are complete and cited, quotations are where pages say."""
+
+import re
+import tomllib
+import unicodedata
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+BIBLIOGRAPHY = ROOT / "docs" / "references.bib"
+FOLDERS = ("docs", "symbolic", "numeric", "verification", "notebooks", "benchmarks", "tests")
+READ = {".md", ".py", ".ipynb", ".j2", ".html", ".toml"}
+APART = {ROOT / "docs" / "references.md", Path(__file__)}
+PRINTED = ROOT / "verification" / "claims" / "printed"  # the paper's own words, with its own citations
+TEXTS = sorted(
+    path
+    for folder in FOLDERS
+    for path in (ROOT / folder).rglob("*")
+    if path.suffix in READ and "_build" not in path.parts and PRINTED not in path.parents and path not in APART
+)
+YEAR = r"(?:1[6-9]|20)\d\d"
+KEY = re.compile(rf"\[([A-Z][A-Za-z]+{YEAR}[a-z]?)\]")
+ROLE = re.compile(r"\{cite:[a-z]+\}`([^`]+)`")
+NAME = r"[A-ZÀ-Ý][A-Za-zÀ-ÿ'-]+"
+WORDS = re.compile(  # Author and Author (1998), over the end of a line too
+    rf"({NAME}(?:(?:,| and|, and)?\s(?:# )?{NAME})*(?:,? et al\.?)?),?\s(?:# )?\(?({YEAR})\b"
+)
+BRACKETED = re.compile(rf"\(({YEAR})[a-z]?\)")
+JOURNALS = re.compile(r"Phys\. Rev|Rev\. Mod|Math\. Phys|J\. Stat|Physica D|SIAM J|Trans\. A|\bdoi:|arXiv:")
+NEEDED = {
+    "article": {"author", "title", "journal", "volume", "pages", "year"},
+    "book": {"author", "title", "publisher", "year"},
+}
+
+
+def named(path):
+    return str(path.relative_to(ROOT))
+
+
+def ascii_only(text):
+    """Letters without accents, LaTeX's or Unicode's: the `a` of both ways to write an umlaut.
+
+    >>> ascii_only(r"Sz{\\'a}sz"), ascii_only("Bäcker")
+    ('Szasz', 'Backer')
+    """
+    bare = re.sub(r"\\['\"`^~cvHn=.]\s*|[{}]", "", text.replace(r"\'{\i}", "i"))
+    return unicodedata.normalize("NFKD", bare).encode("ascii", "ignore").decode()
+
+
+def entries(text):
+    """Kind and fields of each entry, by key."""
+    found = {}
+    for kind, key, body in re.findall(r"^@(\w+)\{(\w+),\n(.*?)^\}", text, re.MULTILINE | re.DOTALL):
+        assert key not in found, f"{key} is there twice"
+        found[key] = kind, dict(re.findall(r"^ *(\w+) *= \{(.*)\},$", body, re.MULTILINE))
+    return found
+
+
+ENTRIES = entries(BIBLIOGRAPHY.read_text())
+
+
+def surnames(key):
+    return [ascii_only(author.split(",")[0]) for author in ENTRIES[key][1]["author"].split(" and ")]
+
+
+def keys(text):
+    """The keys that a text cites."""
+    return set(KEY.findall(text)) | {key.strip() for some in ROLE.findall(text) for key in some.split(",")}
+
+
+def by_an_author(name, year):
+    """Is there an entry of that year with an author of that name?"""
+    bare = ascii_only(name.removesuffix("'s"))
+    return any(entry[1]["year"] == year and bare in surnames(key) for key, entry in ENTRIES.items())
+
+
+def by_these_authors(words, year):
+    """Is there an entry of that year with these authors, all of them, or its first and *et al.*?"""
+    names = re.findall(NAME, ascii_only(words))
+    keys = {key for key, entry in ENTRIES.items() if entry[1]["year"] == year}
+    return "".join(names) + year in keys or ("et al" in words and any(surnames(key)[0] == names[0] for key in keys))
+
+
+def unknown(text):
+    """Citations in words that have no entry: names with a year, and years in brackets after no author of theirs."""
+    words = [found.group() for found in WORDS.finditer(text) if not by_these_authors(*found.groups())]
+    before = {found: text[max(0, found.start() - 60) : found.start()] for found in BRACKETED.finditer(text)}
+    alone = [
+        here + found.group()
+        for found, here in before.items()
+        if not any(by_an_author(name, found[1]) for name in re.findall(NAME, here))
+    ]
+    return words + alone
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=named)
+def test_every_citation_has_an_entry(path):
+    text = path.read_text()
+
+    assert keys(text) <= set(ENTRIES)
+    assert unknown(text) == []
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=named)
+def test_volumes_and_pages_stand_in_the_bibliography_alone(path):
+    assert JOURNALS.findall(path.read_text()) == []
+
+
+@pytest.mark.parametrize("key", ENTRIES)
+def test_every_entry_is_complete_and_named_after_its_authors(key):
+    kind, fields = ENTRIES[key]
+
+    assert NEEDED[kind] <= set(fields)
+    assert key == "".join(surnames(key)).replace(" ", "") + fields["year"]
+
+
+def test_every_entry_is_cited():
+    assert set(ENTRIES) - set().union(*(keys(path.read_text()) for path in TEXTS)) == set()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "as Palis and Takens (1993) show",
+        "Palis 1993",
+        "Lyubich et al. 1997",
+        "Moser's theorem (1961)",
+        "Ott and Yorke 1987",
+    ],
+)
+def test_a_citation_without_an_entry_is_noticed(text):
+    assert unknown(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["Moser 1962", "Grebogi, Ott, Romeiras and Yorke (1987)", "Grebogi et al. 1987", "Moser's theorem (1962)"]
+)
+def test_a_citation_with_an_entry_passes(text):
+    assert not unknown(text)
+
+
+def plain(text):
+    """Letters and digits only, without TeX, so that a quotation can be looked for."""
+    return " ".join(re.findall(r"[a-z0-9]+", re.sub(r"\\[a-z]+|[`$]", " ", text.lower())))
+
+
+def quotations():
+    """Quotations of the paper on pages that give its section: `"..." (section 6.5, caption)`."""
+    for page in sorted((ROOT / "docs").rglob("*.md")):
+        for words, section in re.findall(r'"([^"]+)"\s+\(section ([\d.]+|[A-C]\.\d)', page.read_text()):
+            yield pytest.param(words, section, id=f"{page.stem}-{section}")
+
+
+@pytest.mark.parametrize(("words", "section"), list(quotations()))
+def test_a_quotation_is_from_the_section_that_the_page_names(words, section):
+    claims = [claim for file in PRINTED.glob("*.toml") for claim in tomllib.loads(file.read_text())["claim"]]
+    start = plain(words)[:30]
+    sections = {claim["section"].split()[0] for claim in claims if start in plain(claim["quote"])}
+
+    assert sections == {section}

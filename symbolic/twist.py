@@ -51,15 +51,21 @@ def powers(f: Series, order: int) -> list[Series]:
     return found
 
 
-def chord(start: Sequence[Sequence[Any]], end: Sequence[Sequence[Any]], root: Callable[[Any], Any]) -> Series:
+def chord(
+    start: Sequence[Sequence[Any]],
+    end: Sequence[Sequence[Any]],
+    root: Callable[[Any], Any],
+    weights: Sequence[Any] = (1, 1),
+) -> Series:
     """The length of the chord, second to fourth order; the ends are Taylor coefficients of `x` and `y` there.
 
-    At a cycle the first order cancels against the neighbouring chord, so it is left out.
+    At a cycle the first order cancels against the neighbouring chord, so it is left out. `weights` are factors of the
+    squares of the two coordinates, for coordinates of different units.
     """
     square: Series = {}
-    for from_here, to_there in zip(start, end, strict=True):
+    for from_here, to_there, weight in zip(start, end, weights, strict=True):
         leg = plus({(0, k): c for k, c in enumerate(to_there)}, {(k, 0): c for k, c in enumerate(from_here)}, -1)
-        square = plus(square, times(leg, leg, QUARTIC))
+        square = plus(square, times(leg, leg, QUARTIC), weight)
     whole = square[0, 0]
     u = {at: c / whole for at, c in square.items() if at != (0, 0)}
     length: Series = {}

@@ -7,7 +7,7 @@ judged by the same rule, one variable fewer, so ends of ranges are never lost an
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from sympy import Dummy, Expr, Interval, Poly, Rational, S, Symbol, expand, factor_list, oo, together
@@ -28,10 +28,11 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """An outcome with its reason in one sentence; a refutation names its witness there."""
+    """An outcome with its reason in one sentence; a refutation holds its witness in `at`, a value for each letter."""
 
     outcome: Outcome
     reason: str
+    at: tuple[tuple[Symbol, Expr], ...] = ()
 
     def __bool__(self) -> bool:
         return self.outcome is Outcome.PROVED
@@ -73,7 +74,7 @@ def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
             raise ValueError(f"positive: the range of {x} is {box[x]}; it must be an interval of more than one point")
     finding = _positive(expand(numerator), dict(box), depth)
     if finding is not None:
-        return finding
+        return finding if finding else placed(finding, box)
     return Finding(Outcome.UNKNOWN, f"no certificate for {expression} > 0 within {depth} halvings")
 
 
@@ -101,6 +102,18 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
     return finding
 
 
+def placed(finding: Finding, box: Box) -> Finding:
+    """A refutation whose witness has a value for every letter of the box: where a letter plays no part, any value.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> positive(x, {x: Interval(-1, 1), y: Interval(3, 4)}).at
+    ((x, -1), (y, 3))
+    """
+    rest = {x: _samples(r)[0] for x, r in box.items() if isinstance(r, Interval)}
+    point = rest | dict(finding.at)
+    return replace(finding, at=tuple(sorted(point.items(), key=str)))
+
+
 def _factors(expression: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
     numerator, denominator = together(expression).as_numer_denom()
     constant, factors = factor_list(numerator * denominator)
@@ -126,10 +139,16 @@ def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | Non
         return _halved(p, box, depth)
     if interior is None:
         return None
-    faces = [_positive(expand(p.subs(x, end)), box, depth) for x in used for end in _ends(box[x])]
+    faces = [_face(p, x, end, box, depth) for x in used for end in _ends(box[x])]
     if any(face is None for face in faces):
         return None
     return conjunction(interior, *(face for face in faces if face is not None))
+
+
+def _face(p: Expr, x: Symbol, end: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+    """The finding on one face of the box; a witness there has the value `end` of `x`."""
+    face = _positive(expand(p.subs(x, end)), box, depth)
+    return face if face is None or face else replace(face, at=(*face.at, (x, end)))
 
 
 def _ends(interval: Interval) -> list[Expr]:
@@ -156,7 +175,8 @@ def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Fi
         value = p.subs(point)
         if value.is_negative or (value.is_nonpositive and not strictly):
             where = ", ".join(f"{x} = {v}" for x, v in point.items())
-            return Finding(Outcome.REFUTED, f"at {where} the value is {value}" if where else f"the value is {value}")
+            reason = f"at {where} the value is {value}" if where else f"the value is {value}"
+            return Finding(Outcome.REFUTED, reason, tuple(point.items()))
     return None
 
 
@@ -175,7 +195,8 @@ def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
         return None
     if roots == 0:
         return Finding(Outcome.PROVED, f"Sturm: {poly.as_expr()} has no root for {where}")
-    return Finding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}")
+    root = next(r for r in poly.real_roots() if r in interval)
+    return Finding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}", ((x, root),))
 
 
 def _orthant(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:

@@ -97,9 +97,13 @@ def aitken(values: Sequence[Any]) -> Any:
 
 @dataclass(frozen=True)
 class Accumulation:
-    """The certified rungs of a ladder as decimals, and the estimates of where and how it ends."""
+    """The certified rungs of a ladder as decimals, and the estimates of where and how it ends.
+
+    `supercritical`: every rung bears a stable cycle, by the sign of its normal form in balls.
+    """
 
     rungs: tuple[str, ...]
+    supercritical: bool
     limit: Estimate
     ratio: Estimate
 
@@ -112,11 +116,12 @@ def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
     >>> mpmath.nstr(found.limit.value, 8), found.limit.error < 1e-7
     ('0.39352047', True)
     """
-    rungs = []
+    rungs, stable = [], True
     for n in range(3, highest + 1):
         here = rung(alpha, n)
         proof = certify(here.problem, here.start, RUNG_DIGITS)
         if not proof.certified:
             raise ValueError(f"ladder: lambda_{n} at alpha = {alpha} is not certified: {proof.checks}")
         rungs.append(decimal(proof.value, RUNG_DIGITS)[0])
-    return Accumulation(tuple(rungs), limit(rungs), ratio(rungs))
+        stable = stable and proof.supercritical is True
+    return Accumulation(tuple(rungs), stable, limit(rungs), ratio(rungs))

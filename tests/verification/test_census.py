@@ -75,11 +75,10 @@ def test_a_row_accounts_for_every_start():
     assert found.attractors == 2
 
 
-def test_a_witness_that_is_not_proved_refutes_nothing(monkeypatch):
+def test_without_attractors_nothing_is_said_of_them(monkeypatch):
     monkeypatch.setattr(on_attractors, "proved_at", lambda *_, **__: Finding(Outcome.UNKNOWN, "no proof"))
-    monkeypatch.setattr(on_basins, "proved_at", lambda *_, **__: Finding(Outcome.UNKNOWN, "no proof"))
     monkeypatch.setattr(on_attractors, "egg", lambda *_: ())
-    monkeypatch.setattr(on_basins, "scene", lambda *_: (None, ()))
+    monkeypatch.setattr(on_basins, "found", lambda *_, **__: ())
 
     assert on_attractors.three(CLAIMS["egg.three_attractors"]).verdict is Verdict.OPEN
     assert on_attractors.higher_periods(CLAIMS["egg.higher_period_attractors"]).verdict is Verdict.OPEN

@@ -37,6 +37,8 @@ CONTRACT = {
     "egg.boundary_crisis",
 }
 
+FAIL_AT_A_WITNESS = ("egg.period4_created", "egg.period3_found", "egg.figure_attractors", "egg.no_period3_caption")
+
 NUMERAL = re.compile(r"(?<![A-Za-z_0-9.])\d+(?:\.\d+)?(?![A-Za-z_0-9.])")
 
 
@@ -120,6 +122,28 @@ def test_whatever_is_corrected_or_refuted_says_which_symbol_is_wrong():
     assert wrong
     assert all(result.erratum for result in wrong)
     assert not any(result.erratum for result in results().values() if result.verdict is Verdict.CONFIRMED)
+
+
+def stray(claim: Claim, result: Result) -> list[str]:
+    """The letters of a claim at whose printed range a refutation names no witness, or one outside."""
+    given = {x: parse(result.witness[x.name], {}) for x in claim.box if x.name in result.witness}
+    return [f"{x} = {given.get(x)} for {x} in {r}" for x, r in claim.box.items() if x not in given or given[x] not in r]
+
+
+def test_a_refuted_sentence_fails_at_a_witness_inside_the_range_that_is_printed():
+    wrong = [c for c in claims("identity", "relation", "property") if results()[c.id].erratum]
+
+    assert {c.id: stray(c, results()[c.id]) for c in wrong if stray(c, results()[c.id])} == {}
+    assert not any(r.witness for r in results().values() if not r.erratum)
+
+
+@pytest.mark.parametrize("name", FAIL_AT_A_WITNESS)
+def test_a_refuted_observation_fails_at_a_witness_inside_the_range_that_is_printed(name):
+    (result,) = verify(name)
+    (claim,) = (claim for claim in catalogue() if claim.id == name)
+
+    assert result.verdict in (Verdict.CORRECTED, Verdict.REFUTED)
+    assert stray(claim, result) == []
 
 
 def test_the_known_misprints_come_out_corrected():

@@ -1,11 +1,23 @@
 """Canaries: each judge is driven to each of its verdicts."""
 
-from sympy import Interval, S, log, pi, sqrt
+from sympy import Interval, S, log, pi, sqrt, symbols
 
 from symbolic.signs import Finding, Outcome, positive
-from symbolic.symbols import lam
+from symbolic.symbols import alpha, lam
 from verification.claims.claim import Claim, Judgement, Verdict
-from verification.claims.judges import by, counterexample, digits, equal, greater, identity, on_range, rounded, zero
+from verification.claims.judges import (
+    answer,
+    by,
+    counterexample,
+    digits,
+    equal,
+    greater,
+    identity,
+    implied,
+    on_range,
+    rounded,
+    zero,
+)
 
 PROVED = Finding(Outcome.PROVED, "yes")
 REFUTED = Finding(Outcome.REFUTED, "no")
@@ -79,3 +91,28 @@ def test_a_comparison_of_balls_has_three_answers():
 def test_zero_is_not_proved_of_what_is_not_zero():
     assert zero("", lam - lam).outcome is Outcome.PROVED
     assert zero("", lam).outcome is Outcome.REFUTED
+
+
+def test_a_step_of_logic_is_proved_or_refuted_by_an_assignment():
+    place, angle = symbols("place angle")
+
+    assert implied("", ~place >> ~(place & angle)).outcome is Outcome.PROVED
+    assert implied("", place >> (place & angle)).outcome is Outcome.REFUTED
+
+
+def test_a_proof_that_fails_refutes_nothing():
+    assert [answer(holds, "").outcome for holds in (True, False, None)] == [
+        Outcome.PROVED,
+        Outcome.UNKNOWN,
+        Outcome.UNKNOWN,
+    ]
+
+
+def test_a_refutation_names_its_witness_and_a_proof_none():
+    box = (("lam", "[0, 1]"), ("alpha", "1/10"))
+    wrong = identity(claim("lam + 1/2", box), lam)
+
+    assert wrong.witness(claim("", box)).keys() == {lam, alpha}
+    assert identity(claim("lam", box), lam).witness(claim("", box)) == {}
+    assert on_range(claim("", box), lambda b: positive(lam, b), "").witness(claim("", box))[lam] == 0
+    assert Judgement(counterexample("", PROVED, at={lam: S.One}), "").witness(claim("")) == {lam: 1}

@@ -5,8 +5,8 @@ stand between the two; so a misprint cannot leak into the mathematics.
 """
 
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from importlib import import_module
 from pkgutil import iter_modules
@@ -34,10 +34,12 @@ class Result:
     method: str
     seconds: float
     erratum: str = ""
+    witness: Mapping[str, str] = field(default_factory=dict)
 
     def to_dict(self) -> dict[str, object]:
         """The keys of the JSON schema, in order."""
-        return {**self.__dict__, "verdict": self.verdict.value, "seconds": round(self.seconds, 4)}
+        rounded = {"verdict": self.verdict.value, "seconds": round(self.seconds, 4), "witness": dict(self.witness)}
+        return {**self.__dict__, **rounded}
 
 
 def catalogue() -> list[Claim]:
@@ -77,6 +79,7 @@ def judge(claim: Claim, digits: int = 15) -> Result:
         method(judgement),
         time.perf_counter() - start,
         judgement.erratum if judgement.verdict in (Verdict.CORRECTED, Verdict.REFUTED) else "",
+        {str(letter): str(value) for letter, value in judgement.witness(claim).items()},
     )
 
 

@@ -61,7 +61,7 @@ class Claim:
 
     @cached_property
     def box(self) -> dict[Symbol, Interval]:
-        """The range that the paper states, for the letters whose range is a plain interval."""
+        """The range that the paper states, for the letters whose range is a plain interval or a point."""
         found = {}
         for name, text in self.over:
             interval = parse_interval(text)
@@ -93,6 +93,16 @@ class Judgement:
         if self.printed.outcome is Outcome.REFUTED:
             return Verdict.CORRECTED if self.mended is not None and self.mended else Verdict.REFUTED
         return Verdict.SUPPORTED if self.evidence else Verdict.OPEN
+
+    def witness(self, claim: Claim) -> dict[Symbol, Expr]:
+        """Where a claim that is corrected or refuted fails: a value for each of its letters; else nothing.
+
+        A letter whose printed range is one point has that value, and needs no other mention.
+        """
+        if self.verdict not in (Verdict.CORRECTED, Verdict.REFUTED):
+            return {}
+        fixed = {x: next(iter(r)) for x, r in claim.box.items() if not isinstance(r, Interval)}
+        return fixed | dict(self.printed.at)
 
 
 def parse_interval(text: str) -> Interval | None:

@@ -10,8 +10,10 @@ from fractions import Fraction
 
 from flint import fmpq
 from sympy import Expr, Interval, Matrix, Rational, S, Symbol, oo
+from sympy.logic.boolalg import Boolean
+from sympy.logic.inference import satisfiable
 
-from symbolic.signs import Box, Finding, Outcome, conjunction
+from symbolic.signs import Box, Finding, Outcome, conjunction, placed
 from symbolic.zero import vanishes
 from verification.balls import enclose, real_ball
 from verification.claims.claim import Claim, Judgement, Number
@@ -82,7 +84,8 @@ def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
         ball = enclose(difference, point)
         if ball.is_finite() and not ball.contains(0):
             where = ", ".join(f"{x} = {v}" for x, v in point.items()) or "this number"
-            return Finding(Outcome.REFUTED, f"at {where} the two differ by {ball.str(6, radius=False)}")
+            reason = f"at {where} the two differ by {ball.str(6, radius=False)}"
+            return placed(Finding(Outcome.REFUTED, reason, tuple(point.items())), box)
     return Finding(Outcome.UNKNOWN, "neither reduced to 0 nor told apart at a witness")
 
 
@@ -149,10 +152,14 @@ def by(argument: str, *findings: Finding) -> Finding:
     return Finding(whole.outcome, f"{argument} [{whole.reason}]" if whole else whole.reason)
 
 
-def counterexample(argument: str, *findings: Finding) -> Finding:
-    """What is printed is refuted when every finding on the counterexample is proved."""
+def counterexample(argument: str, *findings: Finding, at: Mapping[Symbol, Expr] | None = None) -> Finding:
+    """What is printed is refuted when every finding on the counterexample is proved.
+
+    `at` is where it fails, a value for each letter whose printed range is more than a point.
+    """
     whole = conjunction(*findings)
-    return Finding(Outcome.REFUTED if whole else Outcome.UNKNOWN, f"{argument} [{whole.reason}]")
+    witness = tuple((at or {}).items())
+    return Finding(Outcome.REFUTED if whole else Outcome.UNKNOWN, f"{argument} [{whole.reason}]", witness)
 
 
 def greater(left: Expr, right: Expr) -> Finding:
@@ -174,6 +181,28 @@ def shown(argument: str, holds: bool | None) -> Finding:
     """An exact decision of SymPy (`True`, `False`, or `None` for undecided) as a finding."""
     outcome = {True: Outcome.PROVED, False: Outcome.REFUTED}.get(holds, Outcome.UNKNOWN)  # type: ignore[arg-type]
     return Finding(outcome, argument)
+
+
+def answer(holds: bool | None, reason: str) -> Finding:
+    """A proof in balls as a finding: one that fails refutes nothing.
+
+    >>> answer(True, "").outcome.name, answer(False, "").outcome.name
+    ('PROVED', 'UNKNOWN')
+    """
+    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+
+
+def implied(argument: str, proposition: Boolean) -> Finding:
+    """A step of logic alone: proved when no assignment of truth values makes `proposition` false, refuted by one.
+
+    >>> from sympy.abc import p, q
+    >>> implied("", (p & q) >> p).outcome.name, implied("", p >> (p & q)).outcome.name
+    ('PROVED', 'REFUTED')
+    """
+    false_at = satisfiable(~proposition)
+    if not false_at:
+        return Finding(Outcome.PROVED, argument)
+    return Finding(Outcome.REFUTED, f"it fails where {', '.join(f'{x} is {v}' for x, v in false_at.items())}")
 
 
 def zero(argument: str, *expressions: Expr) -> Finding:

@@ -10,6 +10,7 @@ import numpy as np
 
 from numeric import PinballMap
 from symbolic.signs import Finding, Outcome
+from symbolic.symbols import lam as letter
 from symbolic.thresholds import lambda_c
 from verification.balls import enclose
 from verification.border import Attractor, border, measured, strips_of_the_map
@@ -20,7 +21,7 @@ from verification.certificates.kink import kink_falls, minimum_at_kink
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, judges
 from verification.claims.on_cuspless import attracting_below
-from verification.claims.on_located import certified, kind_of, located
+from verification.claims.on_located import certified, located, subcritical
 from verification.progress import telling
 
 PROVED_TO, NEAR = 0.1, 1e-6  # a contraction, and a distance from lambda-star
@@ -127,10 +128,15 @@ def chaotic_above_star(claim: Claim) -> Judgement:
 @judges("cuspless.coexistence")
 def coexistence(claim: Claim) -> Judgement:
     """Both ends of the printed range are left out: at `lambda_c` the orbit repels, by the sign of its flip."""
-    repels = kind_of("lambda-c", "subcritical")
+    repels = subcritical("lambda-c")
     end = answer(bool(enclose(lambda_c()).real < PROVED_TO), f"lambda_c < {PROVED_TO}")
     return Judgement(
-        counterexample("at lam = lambda_c the period-2 orbit attracts no more", certified("lambda-c"), repels),
+        counterexample(
+            "at lam = lambda_c the period-2 orbit attracts no more",
+            certified("lambda-c"),
+            repels,
+            at={letter: lambda_c()},
+        ),
         "they coexist for lambda* < lam < lambda_c",
         by("both attract", chaos(), end, attracting_below()),
         "The range is open: at lambda_c the period-2 orbit has the multiplier -1 and, the flip being subcritical, "

@@ -1,6 +1,6 @@
 """Claims on the cardioid. Paper: section 4."""
 
-from sympy import Expr, Function, Interval, Matrix, Rational, S, Symbol, cos, pi, simplify, sin
+from sympy import Expr, Function, Interval, Matrix, Rational, S, Symbol, cos, pi, simplify, sin, sqrt
 
 from symbolic.collision import determinant
 from symbolic.cycles import is_double_normal
@@ -10,14 +10,16 @@ from symbolic.length import arc_length
 from symbolic.named_cycles import cardioid_vertical
 from symbolic.signs import Finding, Outcome, positive
 from symbolic.slap_cardioid import (
+    LAUNCH_COS2,
     expands_by,
     expansion_infimum,
     forward_once,
     parametrised,
+    q,
     slope_squared,
     slow_region,
 )
-from symbolic.symbols import theta
+from symbolic.symbols import s, theta
 from symbolic.table import Component
 from symbolic.tables import cardioid
 from verification.claims.claim import LETTERS, Claim, Judgement
@@ -163,7 +165,12 @@ def expanding_caption(claim: Claim) -> Judgement:
     """The caption has `T0'` for `(T0^2)'`."""
     slow = positive(1 - slope_squared(Rational(-3, 5)), {})
     return Judgement(
-        counterexample("T0' < 1 at the landing point q = -3/5", *slap_facts(), slow),
+        counterexample(
+            "T0' < 1 at the landing point q = -3/5",
+            *slap_facts(),
+            slow,
+            at={s: 4 * sqrt(1 - LAUNCH_COS2.subs(q, Rational(-3, 5)))},
+        ),
         "|(T0^2)'(s)| > 1 everywhere",
         expansion(),
         "The caption's |T_0'(s)| > 1 should read |(T_0^2)'(s)| > 1; T_0' itself is below 1 in places.",

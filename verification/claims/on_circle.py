@@ -1,13 +1,16 @@
 """Claims on the circular table. Paper: section 3.1."""
 
-from sympy import Interval, Matrix, cos, pi, sin
+from sympy import Expr, Interval, Matrix, S, Symbol, cos, expand, limit, oo, pi, powsimp, simplify, sin
 
 from symbolic.circle import flight, iterate, limit_position
 from symbolic.collision import derivative_matrix, exit_angle
-from symbolic.signs import Finding, positive
+from symbolic.signs import Finding, conjunction, positive
 from symbolic.symbols import eta, lam, phi, s
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, identity, judges, zero
+
+n = Symbol("n", integer=True, nonnegative=True)
+more = Symbol("more", positive=True)  # 1/lam - 1
 
 
 def explicit_map() -> Finding:
@@ -19,17 +22,27 @@ def explicit_map() -> Finding:
 
 
 def settles() -> Finding:
-    """`phi_n = lam**n*phi`, and `s_2n` is off its limit by `2*phi_2n/(1 - lam)` after whole turns."""
-    for n in (1, 2, 3):
-        position, angle = iterate(2 * n)
-        finding = zero(
-            "phi_n = lam^n*phi and s_2n - limit = 2*lam^(2n)*phi/(1 - lam)",
-            angle - lam ** (2 * n) * phi,
-            position - 2 * pi * n - limit_position() - 2 * angle / (1 - lam),
-        )
-        if not finding:
-            return finding
-    return finding
+    """By induction: the closed form of the state after `n` bounces, and how far an even bounce is off its limit."""
+    position, angle = after(n)
+    even, small = after(2 * n)
+    return conjunction(
+        zero("the closed form holds at n = 0", after(S.Zero)[0] - s, after(S.Zero)[1] - phi),
+        zero(
+            "and one bounce takes it from n to n + 1: phi_n = lam^n*phi",
+            expand(simplify(flight(position, angle)[0] - after(n + 1)[0])),
+            powsimp(flight(position, angle)[1] - after(n + 1)[1]),
+        ),
+        zero(
+            "s_2n - 2*pi*n - limit = 2*phi_2n/(1 - lam)",
+            simplify(even - 2 * pi * n - limit_position() - 2 * small / (1 - lam)),
+        ),
+        zero("lam^n tends to 0 for 0 <= lam < 1", limit((1 / (1 + more)) ** n, n, oo)),
+    )
+
+
+def after(bounces: Expr) -> tuple[Expr, Expr]:
+    """The state after `bounces` bounces: `s + pi*n - 2*phi*(1 + lam + ... + lam**(n-1))` and `lam**n*phi`."""
+    return s + pi * bounces - 2 * phi * (1 - lam**bounces) / (1 - lam), lam**bounces * phi
 
 
 @judges("circle.elastic_angles", "circle.elastic_integrable")

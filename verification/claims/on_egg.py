@@ -82,6 +82,7 @@ def convex(claim: Claim) -> Judgement:
         counterexample(
             "at alpha = 1/10 the curvature of the flat points is 0, and a focusing component has none",
             zero("", flat_end),
+            at={alpha: Rational(1, 10)},
         ),
         "convex for alpha in [0, 1/10], focusing for alpha in [0, 1/10)",
         by("x'y'' - y'x'' > 0 below 1/10 and >= 0 at it", focusing, convexity(egg(3))),
@@ -120,7 +121,9 @@ def extrema(claim: Claim) -> Judgement:
     slope = curvature_slope_polynomial()
     return Judgement(
         counterexample(
-            "at alpha = 0 the table is a circle and every point is extremal", zero("", slope.subs(alpha, 0))
+            "at alpha = 0 the table is a circle and every point is extremal",
+            zero("", slope.subs(alpha, 0)),
+            at={alpha: S.Zero},
         ),
         "|kappa| grows strictly with cos(3*theta): least at pi/3, pi, -pi/3, largest at 0, 2*pi/3, "
         "-2*pi/3, for alpha in (0, 1/10]",

@@ -79,6 +79,7 @@ def critical_points(claim: Claim) -> Judgement:
             "at alpha = 0.08 T0' < 0 at the three flat points and > 0 at the three vertices between them",
             positive(-slap_slope(False).subs(shape), {}),
             positive(slap_slope(True).subs(shape), {}),
+            at=shape,
         ),
         "six critical points, one on each side of each flat point, for alpha > sqrt(82) - 9",
         by(
@@ -262,6 +263,7 @@ def stable_below(claim: Claim) -> Judgement:
         counterexample(
             "at alpha = 0 one eigenvalue is 1, and at lam = 1 the product of the eigenvalues is 1",
             zero("", (1 - trace + det).subs(alpha, 0), det.subs(lam, 1) - 1),
+            at={alpha: S.Zero, lam: S.Zero},
         ),
         "|mu| < 1 for 0 < alpha < alpha-tilde(lam) and 0 <= lam < 1",
         by(

@@ -4,12 +4,14 @@ from sympy import (
     Expr,
     Interval,
     Matrix,
+    Not,
     Rational,
     S,
     cos,
     pi,
     simplify,
     sin,
+    symbols,
     tan,
 )
 
@@ -28,10 +30,13 @@ from verification.claims.judges import (
     digits,
     greater,
     identity,
+    implied,
     judges,
     shown,
     zero,
 )
+
+PLACE_RETURNS, ANGLE_RETURNS = symbols("place_returns angle_returns")  # theta_3 = theta_0 and phi_3 = phi_0
 
 
 def exit_sines(at_flat: bool) -> Matrix:
@@ -91,7 +96,9 @@ def two_period3(claim: Claim) -> Judgement:
     """The flat triangle, both ways round."""
     return Judgement(
         counterexample(
-            "at alpha = 0 every equilateral triangle is an orbit", zero("", flight(s, pi / 6)[0] - s - 2 * pi / 3)
+            "at alpha = 0 every equilateral triangle is an orbit",
+            zero("", flight(s, pi / 6)[0] - s - 2 * pi / 3),
+            at={alpha: S.Zero},
         ),
         "for 0 < alpha <= 1/10 the triangle of the flat points, run in both directions, with "
         "eigenvalues on the unit circle",
@@ -209,9 +216,13 @@ def fold_digits(claim: Claim) -> Judgement:
 
 @judges("egg.projection_argument")
 def projection(claim: Claim) -> Judgement:
-    """The contrapositive: a cycle of period 3 gives a point of the diagonal."""
+    """A cycle of period 3 returns in place and in angle: in place alone it gives a point of the diagonal."""
     return Judgement(
-        shown("if T^3(theta, phi) = (theta, phi) then (theta, theta) lies on the graph; contraposition", True),
+        implied(
+            "T^3(theta, phi) = (theta, phi) says that the place returns and that the angle does; so where no place "
+            "returns there is no such point, and no cycle of period 3",
+            Not(PLACE_RETURNS) >> Not(PLACE_RETURNS & ANGLE_RETURNS),
+        ),
         "a necessary condition",
     )
 
@@ -288,7 +299,11 @@ def vertex_unstable(claim: Claim) -> Judgement:
     """A multiplier above 1 all along the branch; at `alpha = 0` the branches coincide."""
     at_one = turn_trace(False)
     return Judgement(
-        counterexample("at alpha = 0 the triangle is parabolic", zero("", at_one.subs(alpha, 0) - 2)),
+        counterexample(
+            "at alpha = 0 the triangle is parabolic",
+            zero("", at_one.subs(alpha, 0) - 2),
+            at={alpha: S.Zero, lam: S.One},
+        ),
         "unstable for alpha in (0, 1/10] and lambda_c(alpha) < lam <= 1",
         by(
             "1 - trace + det < 0 on the vertices' side of the fold, so one multiplier exceeds 1",

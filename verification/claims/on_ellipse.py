@@ -127,7 +127,9 @@ def basin(claim: Claim) -> Judgement:
     open_box = {**BEYOND, lam: Interval.open(0, 1)}
     is_saddle = saddle(*major(), open_box)
     return Judgement(
-        counterexample("0 < mu_- < 1 on the major axis, so a curve of other points converges to it", is_saddle),
+        counterexample(
+            "0 < mu_- < 1 on the major axis, so a curve of other points converges to it", is_saddle, at={lam: S.Half}
+        ),
         "every trajectory off the stable manifold (a curve) of the major axis is attracted by the minor axis",
         by(LIMIT, *lyapunov(), is_saddle),
         "The unstable orbit is a saddle; the points of its stable manifold, not only its own, converge to it.",

@@ -79,7 +79,7 @@ def complex_near_one(claim: Claim) -> Judgement:
     circle = 1 - trace.subs(a, 1) + det
     near = 4 * det - trace**2
     return Judgement(
-        counterexample("at a = 1 one multiplier is 1 for every lam", zero("", circle)),
+        counterexample("at a = 1 one multiplier is 1 for every lam", zero("", circle), at={a: S.One}),
         "complex with |mu| = lam < 1 for lam in (lambda_-(a), 1), for every a > 1 except a = sqrt(2)",
         by(
             "the discriminant is negative at lam = 1, hence near it, and |mu|^2 = det = lam^2",
@@ -108,7 +108,9 @@ def elastic_elliptic(claim: Claim) -> Judgement:
     trace = minor()[0].subs(lam, 1)
     return Judgement(
         counterexample(
-            "at a = 1 and a = sqrt(2), |trace| = 2", zero("", trace.subs(a, 1) - 2, trace.subs(a, sqrt(2)) + 2)
+            "at a = 1 and a = sqrt(2), |trace| = 2",
+            zero("", trace.subs(a, 1) - 2, trace.subs(a, sqrt(2)) + 2),
+            at={a: S.One},
         ),
         "elliptic at lam = 1 for every a > 1 except a = sqrt(2)",
         both_sides_of_sqrt2(lambda box: positive(in_w(4 - trace**2), box), {}),
@@ -136,6 +138,7 @@ def touching(claim: Claim) -> Judgement:
             "P_2 = (1 + lam)^2*(a^2 - 2)^2*Q keeps the sign of Q at a = sqrt(2)",
             equal(rest, critical_factor(), {}),
             positive(-critical_factor().subs(a, sqrt(2)), same_side),
+            at={a: sqrt(2), lam: S.Half},
         ),
         "P_2 touches 0 at a = sqrt(2) without changing sign: Q = -16*lam there",
         by("Q < 0 on both sides of a = sqrt(2)", zero("", critical_factor().subs(a, sqrt(2)) + 16 * lam)),
@@ -162,7 +165,7 @@ def upper_outside(claim: Claim) -> Judgement:
     """`(w+1)**2 - (w-1)**2 = 4*w`, zero only at the circle."""
     above = (w + 1) ** 2 - (w - 1) ** 2
     return Judgement(
-        counterexample("at a = 1, lambda_+ = 1", zero("", lambda_plus().subs(a, 1) - 1)),
+        counterexample("at a = 1, lambda_+ = 1", zero("", lambda_plus().subs(a, 1) - 1), at={a: S.One}),
         "lambda_+(a) > 1 for every a > 1, and lambda_+(1) = 1",
         by("lambda_+ > 1 as (w + 1)^2 > (w - 1)^2", positive(above, {w: Interval.open(0, oo)})),
         "At a = 1 lambda_+ = 1 belongs to the region; it is outside for every a > 1.",
@@ -197,7 +200,9 @@ def stable_node(claim: Claim) -> Judgement:
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())
     inside = stable_while_nonnegative(stability_number(minor_axis()), {**BEYOND, lam: Interval.Ropen(0, 1)})
     return Judgement(
-        counterexample("at a = 1 one multiplier is 1 for every lam", zero("", (1 - trace + det).subs(a, 1))),
+        counterexample(
+            "at a = 1 one multiplier is 1 for every lam", zero("", (1 - trace + det).subs(a, 1)), at={a: S.One}
+        ),
         "a stable node for a > 1 and lam < lambda_-(a)",
         by("P_2 > 0 below both roots, and |mu| < 1 for every a > 1", equal(critical_factor(), roots, {}), inside),
         "At a = 1 the orbit is not a node: one eigenvalue is 1 for every lambda (a line of diameters).",
@@ -213,7 +218,7 @@ def complex_above(claim: Claim) -> Judgement:
     low = ((w - 1) / (w + 1)) ** 2
     inside = in_w(4 * det - trace**2).subs(lam, low + share * (1 - low)).together()
     return Judgement(
-        counterexample(SQRT2, zero("", discriminant(trace, det).subs(a, sqrt(2)))),
+        counterexample(SQRT2, zero("", discriminant(trace, det).subs(a, sqrt(2))), at={a: sqrt(2)}),
         "complex for lambda_-(a) < lam <= 1, a > 1, a != sqrt(2)",
         by(
             "P_2 < 0 between its roots",
@@ -274,6 +279,7 @@ def dominated_splitting(claim: Claim) -> Judgement:
             "at lam = lambda_-(a) the multipliers coincide in a Jordan block: only one direction is invariant",
             zero("", critical_factor().subs(lam, lambda_minus())),
             off,
+            at={a: S(3), lam: lambda_minus().subs(a, 3)},
         ),
         "dominated splitting for lam in (0, lambda_-(a)), none for lam in [lambda_-(a), 1); at a = sqrt(2) for no lam",
         by(

@@ -6,9 +6,10 @@ from functools import cache
 from flint import arb
 from sympy import Expr, Integer, Rational
 
-from symbolic.signs import Finding, Outcome, conjunction
+from symbolic.signs import Finding, conjunction
+from verification.certificates.bifurcation import Proof
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import by, digits, judges
+from verification.claims.judges import answer, by, digits, judges
 from verification.locate import Located, locate
 
 SHAPE = Rational(2, 25)
@@ -29,15 +30,19 @@ def certified(name: str, **given: Expr) -> Finding:
     """The whole checklist of a certificate."""
     found = located(name, **given)
     missing = [check for check, holds in found.checks.items() if holds is not True]
-    if missing:
-        return Finding(Outcome.UNKNOWN, f"{name}: not proved: {', '.join(missing)}")
-    return Finding(Outcome.PROVED, f"{name} certified: {', '.join(found.checks)}")
+    reason = f"{name}: not proved: {', '.join(missing)}" if missing else f"{name} certified: {', '.join(found.checks)}"
+    return answer(found.certified, reason)
 
 
-def kind_of(name: str, wanted: str, **given: Expr) -> Finding:
-    """The sign of the normal-form coefficient, as its certificate states it."""
-    said = located(name, **given).notes.get("kind", "unknown")
-    return Finding(Outcome.PROVED if said.startswith(wanted) else Outcome.UNKNOWN, said)
+def supercritical(name: str, **given: Expr) -> bool | None:
+    """Does a flip bear a stable cycle? The sign of its normal form in balls; None when they do not decide it."""
+    found = located(name, **given)
+    return found.proof.supercritical if found.certified and isinstance(found.proof, Proof) else None
+
+
+def subcritical(name: str, **given: Expr) -> Finding:
+    """Is the cycle that a flip bears unstable? So is the old one at the flip itself."""
+    return answer(supercritical(name, **given) is False, f"{name}: the normal form bears an unstable cycle")
 
 
 def settled(claim: Claim, name: str, mend: tuple[str, str] | None = None, **given: Expr) -> Judgement:
@@ -85,8 +90,10 @@ def corner_orbit(claim: Claim) -> Judgement:
 @judges("cuspless.unstable_period4", "cuspless.no_stable_period4")
 def unstable_period4(claim: Claim) -> Judgement:
     """The sign of the flip's normal-form coefficient."""
-    subcritical = kind_of("lambda-c", "subcritical")
-    return Judgement(by("the flip at lambda_c is subcritical", certified("lambda-c"), subcritical), subcritical.reason)
+    return Judgement(
+        by("the flip at lambda_c is subcritical", certified("lambda-c"), subcritical("lambda-c")),
+        "an unstable cycle of twice the period is born, on the side where the period-2 orbit is stable",
+    )
 
 
 @judges("egg.doubling.3")

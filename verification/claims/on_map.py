@@ -29,7 +29,9 @@ def dissipative(claim: Claim) -> Judgement:
     area = determinant().subs(here)
     birkhoff = birkhoff_matrix(derivative_matrix(), cos_phi0, cos(contraction * acos(cos_in))).det().subs(here)
     return Judgement(
-        counterexample("both areas grow on that flight", greater(area, S.One), greater(birkhoff, S.One)),
+        counterexample(
+            "both areas grow on that flight", greater(area, S.One), greater(birkhoff, S.One), at={lam: Rational(9, 10)}
+        ),
         "T maps phase space into |phi| <= lam*pi/2; pointwise det DT = lam*cos(phi0)/cos(eta1)",
         by("|phi1| = lam*|eta1| <= lam*pi/2, a strip of lam times the area", zero(MIRROR, exit_angle() + lam * eta)),
         "Contraction holds for phase space as a whole, not at every point: from (2, 0) to (0, 1) in the ellipse "

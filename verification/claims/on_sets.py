@@ -1,17 +1,23 @@
 """Claims that something exists nowhere, settled by exclusion over sets. Paper: sections 5.4, 6.2 and 6.4."""
 
 from functools import cache
+from math import tau
 
 from sympy import Expr, Rational
 
-from symbolic.polygons import saddle_node
-from symbolic.signs import Finding, Outcome
-from symbolic.symbols import alpha
+from symbolic.cycles import is_double_normal
+from symbolic.named_cycles import cuspless_horizontal, cuspless_vertical
+from symbolic.polygons import near_flat, saddle_node
+from symbolic.signs import Finding
+from symbolic.symbols import alpha, lam
+from symbolic.tables import egg
 from verification.certificates.exclusion import no_triangles
 from verification.certificates.projection import PRODUCED, SLAP, witness
 from verification.certificates.slap import PeriodicPoints, periodic_points
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import by, counterexample, greater, judges
+from verification.claims.judges import answer, by, counterexample, greater, judges, shown
+from verification.dynamics.certified import certificate
+from verification.dynamics.places import places
 from verification.progress import telling
 
 SHAPE = Rational(2, 25)
@@ -22,11 +28,9 @@ BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
 def without_triangles(shape: Expr, most: Expr) -> Finding:
     """No cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
     found = no_triangles(shape, most, tick=telling(f"triangles excluded at alpha = {shape}"))
-    if found.excluded is True:
-        return Finding(
-            Outcome.PROVED, f"no period 3 at alpha = {shape} for lam <= {most}: {found.boxes} boxes excluded"
-        )
-    return Finding(Outcome.UNKNOWN, f"{found.share:.0%} of the triangles excluded")
+    if not found.excluded:
+        return answer(None, f"{found.share:.0%} of the triangles excluded")
+    return answer(found.excluded, f"no period 3 at alpha = {shape} for lam <= {most}: {found.boxes} boxes excluded")
 
 
 @judges("egg.slap_no_period3")
@@ -38,13 +42,23 @@ def slap_no_period3(claim: Claim) -> Judgement:
     )
 
 
+def triangle_at(contraction: Rational) -> Finding:
+    """A cycle of period 3 at `alpha = 0.08`, by interval Newton."""
+    bounce = float(near_flat().subs({alpha: SHAPE, lam: contraction}))
+    near = places(0, [bounce + k * tau / 3 for k in range(3)], 0.0)
+    proof = certificate(egg(3).at(alpha=SHAPE), contraction, near)
+    return answer(proof.proved, f"an attracting cycle of period 3 is proved at lam = {contraction}")
+
+
 @judges("egg.no_period3_caption")
 def no_period3_caption(claim: Claim) -> Judgement:
     """The fold lies below 0.4."""
     fold = saddle_node().subs(alpha, SHAPE)
     return Judgement(
         counterexample(
-            "equilateral orbits exist for every lam >= lambda_c(0.08) = 0.37812...", greater(Rational(2, 5), fold)
+            "a triangle at lam = 0.39; equilateral ones exist for every lam >= lambda_c(0.08) = 0.37812...",
+            triangle_at(Rational(39, 100)),
+            at={lam: Rational(39, 100)},
         ),
         "no orbit of period 3 for lam <= 0.378; two pairs of equilateral ones for lam > 0.37812...",
         by("every triangle is excluded up to 0.378", without_triangles(SHAPE, BELOW), greater(fold, BELOW)),
@@ -58,12 +72,13 @@ def projection_misses(claim: Claim) -> Judgement:
     """Witnesses: orbits that come back to their first position after three bounces."""
     free, produced = witness(SHAPE, Rational(0), *SLAP), witness(SHAPE, Rational(3, 10), *PRODUCED)
     proved = bool(free.exists and produced.exists and produced.produced)
-    met = Finding(Outcome.PROVED if proved else Outcome.UNKNOWN, "both orbits proved by interval Newton")
+    met = answer(proved, "both orbits proved by interval Newton")
     return Judgement(
         counterexample(
             "at lam = 0 with a free first angle, and at lam = 3/10 with an angle that a collision can produce, "
             "an orbit is back at its first position after three bounces",
             met,
+            at={lam: Rational(3, 10)},
         ),
         "the projected graph meets the diagonal at lam = 0 and at lam = 0.3; there is no period 3 up "
         "to 0.378 all the same",
@@ -83,11 +98,16 @@ def points_of_period_4() -> PeriodicPoints:
 def slap_no_period4(claim: Claim) -> Judgement:
     """Four stretches hold at most one point each of period dividing 4, and the two orbits of period 2 take them."""
     found = points_of_period_4()
-    four = found.stretches is not None and len(found.stretches) == 4
-    outcome = Outcome.PROVED if four else Outcome.UNKNOWN
+    known = [cuspless_horizontal(), cuspless_vertical()]
     return Judgement(
-        Finding(
-            outcome, f"T0^4(x) = x has at most four solutions ({found.boxes} boxes), which the two period-2 orbits are"
+        by(
+            "the two period-2 orbits are four solutions of T0^4(x) = x, and there are no more",
+            answer(
+                found.stretches is not None and len(found.stretches) == 4,
+                f"T0^4(x) = x has at most four solutions ({found.boxes} boxes)",
+            ),
+            shown("both orbits are normal to the boundary at both ends", all(is_double_normal(c) for c in known)),
+            shown("their four ends are different points", len({end for c in known for end in c.bounces}) == 4),
         ),
         "the points of the horizontal and the vertical orbit, and no other",
     )

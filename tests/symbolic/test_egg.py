@@ -10,6 +10,8 @@ from sympy import cos as cosine
 
 from symbolic.egg import (
     COSINE,
+    centre_beyond_boundary,
+    centre_far_inside,
     curvature_slope_polynomial,
     in_cosine,
     slap_critical_cosines,
@@ -58,7 +60,7 @@ def test_a_multiple_angle_becomes_a_chebyshev_polynomial_of_a_real_cosine():
     assert symbols("C", real=True) == COSINE
 
 
-@pytest.mark.parametrize("shape", ["11/200", "14/250", "2/25"])
+@pytest.mark.parametrize("shape", ["11/200", "111/2000", "14/250", "2/25"])
 def test_critical_points_of_the_slap_map_are_where_the_centre_of_curvature_crosses_the_boundary(shape):
     """On `0 < theta < pi/3`, where `sin(3*theta) > 0`; the first appears at `alpha = 0.0553854`."""
     shape, count = Rational(shape), 300
@@ -72,3 +74,16 @@ def test_critical_points_of_the_slap_map_are_where_the_centre_of_curvature_cross
         at = acos(root) / 3
         assert beyond_the_boundary(float(shape), at - 1e-9) * beyond_the_boundary(float(shape), at + 1e-9) < 0
         assert abs(beyond_the_boundary(float(shape), at)) < 64 * ulp(1.0)
+
+
+@pytest.mark.parametrize("shape", ["1/50", "111/2000", "2/25"])
+def test_the_centre_of_curvature_lies_beyond_the_boundary_where_the_definition_says(shape):
+    """`|e| - rho` times `N`, and `|e|**4 - |e|**3 - alpha*Re(e**3)`, which is `|e|**3` times that distance."""
+    values = {alpha: Rational(shape)}
+    far, beyond = (f().subs(values) for f in (centre_far_inside, centre_beyond_boundary))
+    for k in range(1, 12):
+        at = k * pi / 36
+        here = {COSINE: cos(3 * at)}
+        expected = beyond_the_boundary(float(Rational(shape)), at)
+        assert far.subs(here) > 0 or (beyond.subs(here) > 0) == (expected > 0)
+        assert not (far.subs(here) > 0 and expected > 0)

@@ -8,8 +8,19 @@ import pytest
 from sympy import Rational
 
 from symbolic.signs import Finding, Outcome
+from verification.certificates import slap_critical
 from verification.certificates.slap import PeriodicPoints
-from verification.claims import catalogue, on_attractors, on_basins, on_circle, on_elastic, on_located, on_sets
+from verification.certificates.slap_critical import one_zero
+from verification.claims import (
+    catalogue,
+    on_attractors,
+    on_basins,
+    on_circle,
+    on_egg_period2,
+    on_elastic,
+    on_located,
+    on_sets,
+)
 from verification.claims import on_stability as judged
 from verification.claims.claim import Verdict
 from verification.locate import locate
@@ -62,12 +73,6 @@ def test_a_cascade_with_a_rung_that_bears_no_stable_cycle_is_not_supported(monke
     assert judged.cascade(CLAIMS["egg.cascade"]).verdict is Verdict.OPEN
 
 
-def test_the_error_of_the_accumulation_point_covers_what_more_doublings_give():
-    few, more = (judged.accumulation(Rational(2, 25), n).limit for n in (7, 9))
-
-    assert abs(few.value - more.value) < few.error
-
-
 def test_beyond_the_crisis_a_third_attractor_leaves_it_open(monkeypatch):
     claim = CLAIMS["egg.after_crisis"]
     monkeypatch.setattr(on_basins, "BEYOND", ("0.67", "0.7"))
@@ -115,6 +120,22 @@ def test_no_period_4_needs_as_many_stretches_as_the_two_orbits_of_period_2_have_
     monkeypatch.setattr(on_sets, "points_of_period_4", lambda: PeriodicPoints([(0, 0.0, 1.0)] * count, 9))
 
     assert on_sets.slap_no_period4(CLAIMS["cuspless.slap_no_period4"]).verdict is wanted
+
+
+def test_six_critical_points_need_the_proof_that_the_slope_vanishes_once(monkeypatch):
+    claim = CLAIMS["egg.slap_critical_points"]
+    assert on_egg_period2.critical_points(claim).verdict is Verdict.CORRECTED
+
+    monkeypatch.setattr(on_egg_period2, "crossings", lambda: one_zero(budget=10))
+    assert on_egg_period2.critical_points(claim).verdict is Verdict.REFUTED
+
+
+def test_a_centre_of_curvature_that_crossed_the_other_way_would_not_pass(monkeypatch):
+    assert one_zero().proved
+
+    wrong = -slap_critical.centre_beyond_boundary()
+    monkeypatch.setattr(slap_critical, "centre_beyond_boundary", lambda: wrong)
+    assert one_zero(budget=2000).proved is None
 
 
 def test_the_vertices_that_an_attractor_comes_near_are_counted_modulo_a_turn():

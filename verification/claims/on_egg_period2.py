@@ -1,5 +1,7 @@
 """Claims on the egg's slap map and period-2 orbits. Paper: sections 6.1 to 6.3."""
 
+from functools import cache
+
 from sympy import (
     Expr,
     Interval,
@@ -12,14 +14,15 @@ from sympy import (
 from symbolic.collision import slap_derivative
 from symbolic.cycles import is_double_normal, monodromy, trace_and_determinant
 from symbolic.double_normal import stability_number, trace_of
-from symbolic.egg import slap_critical_points
 from symbolic.named_cycles import c, egg_diameter, egg_parallel, parallel_shape
 from symbolic.signs import Finding, conjunction, nonnegative, positive
 from symbolic.symbols import alpha, lam
 from symbolic.thresholds import alpha_hat, alpha_tilde, complex_up_to, tilt
+from verification.certificates.slap_critical import OneZero, one_zero
 from verification.claims.claim import Claim, Judgement
 from verification.claims.egg_ranges import ROUND, SHAPES, at
 from verification.claims.judges import (
+    answer,
     by,
     counterexample,
     digits,
@@ -30,6 +33,7 @@ from verification.claims.judges import (
     shown,
     zero,
 )
+from verification.progress import telling
 
 W2 = tilt() ** 2  # 1 - P on the diameters
 
@@ -68,12 +72,17 @@ def slap_slope(at_vertex: bool) -> Expr:
     return slap_derivative(K0=start.curvature, t=cycle.length(0), cos_eta1=S.One)
 
 
+@cache
+def crossings() -> OneZero:
+    """The certificate that `T0'` vanishes at most once between a flat point and a vertex."""
+    return one_zero(tick=telling("shapes and cosines"))
+
+
 @judges("egg.slap_critical_points")
 def critical_points(claim: Claim) -> Judgement:
-    """`T0'` is even about each flat point, negative there and positive at the vertices."""
-    shape = {alpha: at("0.08")}
-    past = {alpha: Interval.Lopen(Rational(1, 18), Rational(1, 10))}
-    six = shown("exactly six at alpha = 0.08, by Sturm", slap_critical_points(at("0.08")) == 6)
+    """`T0'` is even about each flat point and positive at the vertices; its sign at the flat points decides."""
+    shape, birth = {alpha: at("0.08")}, sqrt(82) - 9
+    cover = crossings()
     return Judgement(
         counterexample(
             "at alpha = 0.08 T0' < 0 at the three flat points and > 0 at the three vertices between them",
@@ -81,13 +90,19 @@ def critical_points(claim: Claim) -> Judgement:
             positive(slap_slope(True).subs(shape), {}),
             at=shape,
         ),
-        "six critical points, one on each side of each flat point, for alpha > sqrt(82) - 9",
+        "none for alpha < sqrt(82) - 9 = 0.05538..., three at it (the flat points), six for every larger alpha up to "
+        "1/10, one on each side of each flat point",
         by(
-            "T0' < 0 at the flat points and > 0 at the vertices, so at least six",
-            positive(-slap_slope(False), past),
-            positive(slap_slope(True), past),
-            zero("T0' = 0 at the flat points for alpha = sqrt(82) - 9", slap_slope(False).subs(alpha, sqrt(82) - 9)),
-            six,
+            "between a flat point and a vertex T0' has one zero if it is negative at the flat points, none if positive",
+            answer(
+                cover.proved,
+                f"T0' vanishes at most once between them, growing, for every alpha in [0, 1/10] ({cover.boxes} boxes)",
+            ),
+            positive(slap_slope(True), {alpha: SHAPES}),
+            positive(-slap_slope(False).diff(alpha), {alpha: SHAPES}),
+            zero(
+                "at the flat points T0' falls with alpha and is 0 at sqrt(82) - 9", slap_slope(False).subs(alpha, birth)
+            ),
         ),
         "Six critical points arise, one on each side of each flat point; three only at the critical value itself.",
     )

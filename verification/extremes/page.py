@@ -190,18 +190,18 @@ definition of the map in mpmath. `python benchmarks/extremes.py --longer` measur
 `tests/verification/test_extremes.py` holds every verdict to its record.
 
 With data `x`, truth `f(x)` and answer `y`: the **forward error** is `|y - f(x)|`; the **backward error** is the
-smallest `(dx, dy)` with `y + dy = f(x + dx)`, to first order (Higham's mixed error); the **condition number** is
-the largest factor between them, from difference quotients of the truth. Errors are absolute, in units of 2^-52
-(80-bit floats: 2^-63), of the landing's parameter and the direction of flight. A method is called stable when no
-backward error is above {SMALL}, sensitive when such an error costs half of 15 digits besides: from a condition number
+smallest `(dx, dy)` with `y + dy = f(x + dx)`, to first order (the mixed error of {{cite:p}}`Higham2002`); the
+**condition number** is the largest factor between them, from difference quotients of the truth. Errors are absolute,
+in units of 2^-52 (80-bit floats: 2^-63), of the landing's parameter and the direction of flight. A method is
+called stable when no backward error is above {SMALL}, sensitive when such an error costs half of 15 digits besides: from a condition number
 of 9e+06 on. Each line shows the worst start of its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run
 the same step; `textbook discriminant` is the quadratic formula with nothing divided out.
 
-**What kernels say of themselves.** A ball that stops is named by the kernel (`PinballMap.step(...).status`). A cycle
-found by Newton's method is a `Solution` with its `condition` number (Higham's estimate of the largest row sum of the
-inverse, from the factors, in 0.2 ms when it is asked for), the `digits_sure` that it leaves and a `conditioning`:
-SOUND, SENSITIVE next to a fold or a flip, REPEATED for a shorter cycle run through several times; where float64 does
-not settle the error carries the same. `pinball cycles` prints it. The verdicts of cycles below are read from there; a
+**What kernels say of themselves.** Where a flight cannot go on, the kernel names the reason (`PinballMap.step(...).status`).
+A cycle found by Newton's method is a `Solution` with its `condition` number (an estimate of the largest row sum of the
+inverse {{cite:p}}`Higham2002`, from the factors, in 0.2 ms when it is asked for), the `digits_sure` that it leaves
+and a `conditioning`: SOUND, SENSITIVE next to a fold or a flip, REPEATED for a shorter cycle run through
+several times; where float64 does not settle the error carries the same. `pinball cycles` prints it. The verdicts of cycles below are read from there; a
 test holds them to what 100 digits measure. `pinball follow` needs no such word: it goes by arc length, in a system
 that is regular at a fold. A contraction that is a double comes no nearer to the triangle's fold than a few 1e-8 in the
 multiplier; nearer ones are reached by the shape, given exactly.
@@ -211,7 +211,7 @@ the parameter, or of the height times the start's `cos(theta/2)`, that is 2 or u
 landing has the errors of any landing, so next to that border kernels may disagree, and the verdict column says how far
 off the true flight passes the join: both answers are right for data that are off by a rounding.
 
-**80 bits.** The step on 80-bit floats used to be called unstable at 24 cases. Which words of the reader were to blame
+**80 bits.** The step on 80-bit floats used to be called unstable at 24 cases. Which of its operations were to blame
 was found by exchanging them one by one: 20 were due to sines and arctangents that are polynomials for 53 bits, 3 to
 zeros that end at a correction below 2^-27, 1 to a shape (`sqrt(2)`) that reached it as a double. With the C library's
 functions, zeros sharpened to the last bit (`verification/extremes/wide.py`) and the shape rounded to 80 bits its worst
@@ -219,12 +219,13 @@ backward error is the one in the table. It judges `benchmarks/adversarial.py` to
 moves when its state is rounded once more: less than 0.2 units of a double, but 390 for balls aimed at the cusp, of
 which 80 bits cannot judge the last bits; there 50 digits say at most 4 and 8.
 
-**Exponents** are held against the product of the matrices along the engine's own orbit. Along another orbit from the
+**Exponents** are held against the product of the matrices along the kernel's own orbit. Along another orbit from the
 same start the product is another number: on the cardioid at lam = 1e-2 the orbits in float64 and in 50 digits are 5e-10
 apart after 40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many bounces differ by 2e-12, 6e-6 and 6e-3.
 
 **Long orbits** end the page: invariants, closed forms, an attracting cycle proved in balls, mirror images, and means
-over an ergodic map. Nothing drifts: the root mean square change of the ellipse's invariant is 0.48, 0.48 and 0.47 units
+over the elastic cardioid, which is ergodic {{cite:p}}`Szasz1992,Markarian1993`. Nothing drifts: the root mean square
+change of the ellipse's invariant is 0.48, 0.48 and 0.47 units
 times the root of the number of bounces, after 10^4, 4*10^6 and 10^9 of them.
-Orbits of 10^9 collisions on every table are in `docs/kernels.md` (`benchmarks/soak.py`).
+Orbits of 10^9 collisions on every table are in [kernels](kernels.md) (`benchmarks/soak.py`).
 """

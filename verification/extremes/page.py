@@ -191,20 +191,22 @@ definition of the map in mpmath. `python benchmarks/extremes.py --longer` measur
 
 With data `x`, truth `f(x)` and answer `y`: the **forward error** is `|y - f(x)|`; the **backward error** is the
 smallest `(dx, dy)` with `y + dy = f(x + dx)`, to first order (the mixed error of {{cite:p}}`Higham2002`); the
-**condition number** is the largest factor between them, from difference quotients of the truth. Errors are absolute,
-in units of 2^-52 (80-bit floats: 2^-63), of the landing's parameter and the direction of flight. A method is
-called stable when no backward error is above {SMALL}, sensitive when such an error costs half of 15 digits besides: from a condition number
-of 9e+06 on. Each line shows the worst start of its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run
-the same step; `textbook discriminant` is the quadratic formula with nothing divided out.
+**condition number** is the largest factor between them, from difference quotients of the truth. Errors are
+absolute, in units of 2^-52 (80-bit floats: 2^-63), of the landing's parameter and the direction of flight. A
+method is called stable when no backward error is above {SMALL}, sensitive when such an error costs half of 15 digits
+besides: from a condition number of 9e+06 on. Each line shows the worst start of its case. `llvm`, `numpy`,
+`longdouble` and `mpmath, 16 digits` run the same step; `textbook discriminant` is the quadratic formula with
+nothing divided out.
 
-**What kernels say of themselves.** Where a flight cannot go on, the kernel names the reason (`PinballMap.step(...).status`).
-A cycle found by Newton's method is a `Solution` with its `condition` number (an estimate of the largest row sum of the
-inverse {{cite:p}}`Higham2002`, from the factors, in 0.2 ms when it is asked for), the `digits_sure` that it leaves
-and a `conditioning`: SOUND, SENSITIVE next to a fold or a flip, REPEATED for a shorter cycle run through
-several times; where float64 does not settle the error carries the same. `pinball cycles` prints it. The verdicts of cycles below are read from there; a
-test holds them to what 100 digits measure. `pinball follow` needs no such word: it goes by arc length, in a system
-that is regular at a fold. A contraction that is a double comes no nearer to the triangle's fold than a few 1e-8 in the
-multiplier; nearer ones are reached by the shape, given exactly.
+**What kernels say of themselves.** Where a flight cannot go on, the kernel names the reason
+(`PinballMap.step(...).status`). A cycle found by Newton's method is a `Solution` with its `condition` number (an
+estimate of the largest row sum of the inverse {{cite:p}}`Higham2002`, from the factors, in 0.2 ms when it is asked
+for), the `digits_sure` that it leaves and a `conditioning`: SOUND, SENSITIVE next to a fold or a flip, REPEATED
+for a shorter cycle run through several times; where float64 does not settle the error carries the same. `pinball
+cycles` prints it. The verdicts of cycles below are read from there; a test holds them to what 100 digits measure.
+`pinball follow` needs no such word: it goes by arc length, in a system that is regular at a fold. A contraction
+that is a double comes no nearer to the triangle's fold than a few 1e-8 in the multiplier; nearer ones are reached
+by the shape, given exactly.
 
 **JOIN, CUSP and GRAZING are decided on the landing that a kernel computes**: JOIN within 2^-50 of the tangent of half
 the parameter, or of the height times the start's `cos(theta/2)`, that is 2 or up to 4 units of position. The computed

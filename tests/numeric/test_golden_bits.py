@@ -1,0 +1,105 @@
+"""The last bits of the kernels, written down once: starts, bounces and tangent vectors as hexadecimal floats.
+
+Kernels set no fast-math flag, so their bits depend on no processor; the starts are stored as kernel fields, because
+NumPy's own sine may round differently elsewhere. After a change that is meant to move bits, write the file anew:
+`python tests/numeric/test_golden_bits.py`, from the repository's root.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sympy import Rational, cos, pi, sin
+
+from numeric import PinballMap
+from numeric.question import Question, starting
+from numeric.sampling import phase_starts
+from symbolic import tables
+from symbolic.symbols import theta
+
+FILE = Path(__file__).parent / "golden_bits.json"
+STADIUM = tables.piecewise(
+    tables.arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
+    tables.arc("top", -theta, 1, -1, 1),
+    tables.arc("left", -1 - cos(theta), -sin(theta), -pi / 2, pi / 2),
+    tables.arc("bottom", theta, -1, -1, 1),
+    name="stadium",
+)
+SCENES = {
+    "circle": ("circle", {}),
+    "ellipse": ("ellipse", {"a": "3/2"}),
+    "cardioid": ("cardioid", {}),
+    "cuspless": ("cuspless", {}),
+    "egg": ("egg", {"alpha": "2/25"}),
+    "limacon, not convex": (tables.polar(1 + Rational(3, 5) * cos(theta), name="limacon"), {}),
+    "stadium": (STADIUM, {}),
+}
+LAMS = {"slap": 0, "pinball": 0.7, "elastic": 1}
+COUNT, BOUNCES = 6, 40
+LAWS = {name: [*LAMS] if isinstance(table, str) else ["pinball"] for name, (table, _) in SCENES.items()}
+CASES = [(scene, law) for scene, laws in LAWS.items() for law in laws]
+
+
+def hexed(rows):
+    return [[float(x).hex() for x in row] for row in rows]
+
+
+def unhexed(rows):
+    return [np.array([float.fromhex(x) for x in row]) for row in rows]
+
+
+def begun(scene, law):
+    """The fields of particles that start anywhere, and the `N0` of their departures."""
+    table, shape = SCENES[scene]
+    map = PinballMap(table, lam=LAMS[law], **shape)
+    starts = phase_starts(map, COUNT, seed=11)
+    own = map.states.enter(starts.component, starts.theta, starts.phi * (law != "slap"), law)
+    return {"own": hexed(own), "n0": hexed([map.states.departure(own, law)])}
+
+
+def ended(scene, law, start):
+    """One bounce, many bounces, and many bounces with a tangent vector: every row, by name."""
+    table, shape = SCENES[scene]
+    map = PinballMap(table, lam=LAMS[law], **shape)
+    own, (n0,) = unhexed(start["own"]), unhexed(start["n0"])
+    lam = np.full(COUNT, float(LAMS[law]))
+    vector = starting(0.8 * n0, np.full(COUNT, 0.6), n0)
+    step = map.engine.run(Question(law, record=True), own, lam, map.shape, 1)
+    orbit = map.engine.run(Question(law, record=True), own, lam, map.shape, BOUNCES)
+    growth = map.engine.run(Question(law, exponents=True), own, lam, map.shape, BOUNCES, vector)
+    assert np.array_equal(orbit.record[0], step.record[0])
+    return {
+        "step": hexed(step.record[0]),
+        "orbit": hexed(orbit.record[-1]),
+        "exponents": dict(zip(growth.rows, hexed(growth.rows.values()), strict=True)),
+    }
+
+
+@pytest.fixture(scope="module")
+def golden():
+    """What was written down."""
+    return json.loads(FILE.read_text())
+
+
+@pytest.mark.parametrize(("scene", "law"), CASES)
+def test_no_bit_of_a_kernel_has_moved(golden, scene, law):
+    entry = golden[f"{scene}, {law}"]
+
+    assert ended(scene, law, entry["start"]) == entry["end"]
+
+
+@pytest.mark.parametrize(("scene", "law"), CASES)
+def test_fields_of_a_start_are_those_written_down_up_to_rounding(golden, scene, law):
+    now, then = begun(scene, law), golden[f"{scene}, {law}"]["start"]
+
+    for key in ("own", "n0"):
+        assert np.allclose(unhexed(now[key]), unhexed(then[key]), rtol=0, atol=8 * 2.0**-52)
+
+
+if __name__ == "__main__":
+    written = {}
+    for scene, law in CASES:
+        start = begun(scene, law)
+        written[f"{scene}, {law}"] = {"start": start, "end": ended(scene, law, start)}
+    FILE.write_text(json.dumps(written, indent=1) + "\n")

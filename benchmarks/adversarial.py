@@ -3,9 +3,9 @@
 The two columns `/condition` divide by one plus the row sums of the derivative matrix, the condition numbers; `beyond`
 and `from` say how many points go beyond 4 (position) or 8 (direction), and the smallest condition number among them.
 The reference is the same step on 80-bit floats, with elementary functions and zeros to their own last bits
-(`verification/extremes/wide.py`); that the step itself is right is what tests/numeric/test_accuracy.py shows at 50
-digits. `judge` is how far the reference moves when the state is rounded once more in 80 bits: what it can tell. A
-point is beyond only where that does not explain it.
+(`verification/extremes/wide.py`); that the step itself is right is what tests/numeric/flights/test_accuracy.py shows,
+with 50 digits. `judge` is how far the reference moves when the state is rounded once more in 80 bits: what it can
+tell. A point is beyond only where that does not explain it.
 
     python benchmarks/adversarial.py [POINTS [WORD]]        only the cases whose label has the word
 """

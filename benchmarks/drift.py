@@ -11,7 +11,7 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.question import Question
+from numeric.kernels.spec import Question
 
 BALLS = 2048
 

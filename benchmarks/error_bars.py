@@ -11,8 +11,8 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import interior_starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import interior_starts
 from verification.dynamics.exponents import Count
 from verification.dynamics.statistics import estimate
 

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.question import Question, starting
+from numeric.kernels.spec import Question, starting
 from verification.bench import BALLS, LAWS, SCENES, attracted, best
 
 BOUNCES = 1000

@@ -17,8 +17,8 @@ import time
 from pathlib import Path
 
 from numeric import PinballMap
-from numeric.kernel import kernel_text, operations
-from numeric.question import Question, fields
+from numeric.kernels.spec import Question, fields
+from numeric.kernels.text import kernel_text, operations
 from verification.bench import LAWS
 from verification.labelled import SCENES
 
@@ -35,7 +35,7 @@ import json, pathlib, sys, time
 import numpy
 began = time.process_time()
 from numeric import PinballMap
-from numeric.growth import Growth
+from numeric.pinball.growth import Growth
 map = PinballMap({name!r}, lam={lam!r}{shape})
 {asked}
 tops = sorted({{module.partition(".")[0] for module in sys.modules}} - set(sys.stdlib_module_names))

@@ -15,8 +15,8 @@ import llvmlite.binding as llvm
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernel import kernel_text, operations
-from numeric.question import Question
+from numeric.kernels.spec import Question
+from numeric.kernels.text import kernel_text, operations
 from verification.bench import BALLS, LAWS, attracted
 from verification.labelled import SCENES
 

@@ -53,7 +53,7 @@ def mirrors(path: str, nodes: Iterable[str]) -> set[str]:
 
 def forget_kernels() -> None:
     """Kernels in memory and on disk, which an earlier test may have compiled: who uses one runs what writes it."""
-    machine, folder = sys.modules.get("numeric.machine"), os.environ.get("PINBALL_CACHE")
+    machine, folder = sys.modules.get("numeric.kernels.machine"), os.environ.get("PINBALL_CACHE")
     if machine is not None and folder:
         machine._loaded.clear()
         for kept in Path(folder).glob("kernel-*"):

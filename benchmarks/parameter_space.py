@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from verification.sweeps.parameter_space import egg, parameter_space
 from verification.sweeps.run import run
 from verification.sweeps.scenes import map_of

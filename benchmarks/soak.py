@@ -9,8 +9,8 @@ import time
 import numpy as np
 
 from numeric import PinballMap
-from numeric.question import Question
-from numeric.sampling import phase_starts
+from numeric.kernels.spec import Question
+from numeric.pinball.sampling import phase_starts
 from verification.bench import SCENES
 
 BALLS, PART = 8192, 2000

@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from numeric.question import Question, starting
+from numeric.kernels.spec import Question, starting
 from verification.commands.scene import Scene
 from verification.dynamics.basins import starts_at
 from verification.sweeps.basins import basins

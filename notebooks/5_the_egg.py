@@ -69,7 +69,7 @@ for item, answer in found.checks.items():
 import numpy as np
 
 from numeric import PinballMap
-from numeric.sampling import phase_starts
+from numeric.pinball.sampling import phase_starts
 
 closed = N(fold.subs(alpha, Rational(2, 25)), 50)
 assert found.certified

@@ -15,10 +15,11 @@ import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
-from numeric import PinballMap, machine
-from numeric.kernel import kernel_text, operations
-from numeric.question import Question, starting
-from numeric.sampling import phase_starts
+from numeric import PinballMap
+from numeric.kernels import machine
+from numeric.kernels.spec import Question, starting
+from numeric.kernels.text import kernel_text, operations
+from numeric.pinball.sampling import phase_starts
 from verification.arithmetic import bits_of, working
 from verification.enclosed_map import EnclosedMap
 from verification.exact_map import ExactMap

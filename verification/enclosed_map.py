@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb, fmpq
 
 from numeric import PinballMap
-from numeric.readers.scalars import Scalars
+from numeric.backends.scalars import Scalars
 from verification.arithmetic import working
 from verification.balls import enclose
 from verification.certificates.first_hit import BITS, Boundary, Frame, free

@@ -1,6 +1,6 @@
 """The map to any number of digits, by its definition: the truth that float64 kernels are held against.
 
-Flights are found by `numeric.families.general` on mpmath numbers, that is on the flight function as
+Flights are found by `numeric.flights.general` on mpmath numbers, that is on the flight function as
 the paper has it, with every zero bracketed and the first hit taken. Nothing is shared with the
 closed forms and the deflated polynomials of the kernels but the exact table itself. Beyond 50 digits
 the first hit is found with 50 and sharpened by Newton's method on the same flight function.
@@ -14,9 +14,9 @@ from typing import Any
 import mpmath
 
 from numeric import PinballMap, Status
-from numeric.families.family import NEAR, law_of
-from numeric.families.general import General
-from numeric.readers.scalars import Scalars
+from numeric.backends.scalars import Scalars
+from numeric.flights.family import NEAR, law_of
+from numeric.flights.general import General
 
 GUARD = 30  # digits more than asked for: a grazing flight loses as many as its angle has zeros
 COARSE = 50  # digits of the search for the first hit, when more are asked for

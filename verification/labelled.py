@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.question import Question
+from numeric.kernels.spec import Question
 from verification.exact_map import ExactMap
 from verification.truth import errors
 

@@ -12,10 +12,10 @@ import pytest
 os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
-from numeric.kernel import kernel_text, operations
-from numeric.question import Question
-from numeric.readers.arrays import Arrays
-from numeric.readers.scalars import Scalars
+from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Scalars
+from numeric.kernels.spec import Question
+from numeric.kernels.text import kernel_text, operations
 
 SHAPES = {
     "circle": {},

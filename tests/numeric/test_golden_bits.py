@@ -13,8 +13,8 @@ import pytest
 from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap
-from numeric.question import Question, starting
-from numeric.sampling import phase_starts
+from numeric.kernels.spec import Question, starting
+from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.symbols import theta
 

@@ -8,7 +8,7 @@ import pytest
 from sympy import Rational
 
 from numeric import PinballMap, Status
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from symbolic.symmetry import group
 from symbolic.tables import cardioid, cuspless, egg, ellipse
 from verification.cli import main

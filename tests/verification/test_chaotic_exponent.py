@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import interior_starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import interior_starts
 from symbolic.codegen import load
 from symbolic.slap_angle import branch
 from verification.arithmetic import ARRAYS, bits_of, working

@@ -6,8 +6,8 @@ from flint import arb
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import Starts, interior_starts, phase_starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import Starts, interior_starts, phase_starts
 from symbolic import tables
 from verification.dynamics.account import account
 from verification.dynamics.certified_exponents import certified_exponents, exponents

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from numeric.readers.arrays import Arrays
+from numeric.backends.arrays import Arrays
 from verification.extremes import kernels
 from verification.extremes.cases import CASES
 from verification.extremes.flights import Asked, Truth

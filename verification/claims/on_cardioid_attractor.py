@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import interior_starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import interior_starts
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import judges
 from verification.claims.on_samples import sampled

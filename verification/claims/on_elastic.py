@@ -7,7 +7,7 @@ from flint import arb
 from sympy import Interval, Rational, S, cancel
 
 from numeric import PinballMap
-from numeric.sampling import phase_starts
+from numeric.pinball.sampling import phase_starts
 from symbolic.circle import flight
 from symbolic.convexity import convexity
 from symbolic.signs import Finding, Outcome, positive

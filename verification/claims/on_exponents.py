@@ -13,7 +13,7 @@ from flint import arb
 from sympy import Expr, Rational, S, log, pi, sqrt
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from symbolic import tables
 from symbolic.contraction import area_factor, weak_dissipation
 from symbolic.named_cycles import major_axis

@@ -6,7 +6,7 @@ import numpy as np
 from sympy import Interval, Rational, Symbol, cos, diff
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts, phase_starts
+from numeric.pinball.sampling import interior_starts, phase_starts
 from symbolic import tables
 from symbolic.polygons import required_tilt
 from symbolic.signs import positive

@@ -10,7 +10,7 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import judges
 from verification.claims.on_samples import sampled

@@ -6,7 +6,7 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.sampling import phase_starts
+from numeric.pinball.sampling import phase_starts
 from symbolic.polygons import saddle_node
 from symbolic.signs import Finding, Outcome
 from symbolic.symbols import alpha

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import interior_starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import interior_starts
 
 SEED, BALLS, BOUNCES, EARLY = 1, 48, 2000, 500
 CELLS = 24  # along each side of phase space, in (s, sin(phi))

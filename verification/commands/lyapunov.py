@@ -56,7 +56,7 @@ def command(
     """
     if until_error is not None and not until_error > 0:
         raise ValueError(f"--until-error = {until_error} is no error; give a positive number such as 1e-4")
-    from numeric import sampling
+    from numeric.pinball import sampling
     from verification.dynamics.account import account
     from verification.dynamics.exponents import surveyed
 

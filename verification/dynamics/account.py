@@ -21,7 +21,7 @@ CHECKED_BALLS, CHECKED_BOUNCES = 32, 500
 def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
     """The document of `pinball lyapunov`. At the top stands the one attractor's result; null where there are several.
 
-    >>> from numeric.sampling import phase_starts
+    >>> from numeric.pinball.sampling import phase_starts
     >>> from verification.dynamics.exponents import surveyed
     >>> circle = PinballMap("circle", lam="0.25")
     >>> document = account(circle, surveyed(circle, phase_starts(circle, 10, seed=1), 200, 100))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap, Status
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from symbolic.symmetry import group
 from symbolic.table import Table
 from verification.dynamics.clouds import gathered

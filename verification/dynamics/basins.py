@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
-from numeric.sampling import boundary
+from numeric.pinball.sampling import boundary
 from verification.dynamics.attractors import classify
 from verification.dynamics.kinds import Attractor
 from verification.dynamics.places import Array, Places, places

@@ -11,7 +11,7 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from symbolic.tables import egg
 from verification.locate import certify
 from verification.shooting.follow import FEIGENBAUM, doubled, next_critical

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import Starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import Starts
 from verification.dynamics.attractors import Attractor, Classified, classify
 from verification.dynamics.kinds import Kind
 from verification.dynamics.places import Places
@@ -152,7 +152,7 @@ def surveyed(
     With `until` the count goes on, twice as long each time, until every error is at most that, or until `budget`
     bounces, of all balls together, are spent. `say` hears the part of the work that is done.
 
-    >>> from numeric.sampling import interior_starts
+    >>> from numeric.pinball.sampling import interior_starts
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
     >>> found = surveyed(ellipse, interior_starts(ellipse, 20, seed=1), 1000, 1000)
     >>> [(group.attractor.period, round(group.measured.total.mean, 12)) for group in found.groups]  # log(1/2)

@@ -8,7 +8,7 @@ share of points with an angle below `x` falls like `x`. Paper: section 1.
 import numpy as np
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from verification.dynamics.places import Array, Places, advanced
 
 ALIGNED = 60  # bounces in which a vector turns to its direction

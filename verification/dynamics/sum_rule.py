@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.growth import Growth
+from numeric.pinball.growth import Growth
 from verification.dynamics.places import Places
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ def volume(map: PinballMap, balls: Places, bounces: int) -> Array:
 def checked(map: PinballMap, balls: Places, bounces: int) -> Check:
     """The rule against the kernel, on the same orbits: both come bit for bit along the same bounces.
 
-    >>> from numeric.sampling import phase_starts
+    >>> from numeric.pinball.sampling import phase_starts
     >>> table = PinballMap("cuspless", lam="0.5")
     >>> bool(checked(table, Places(*phase_starts(table, 8, seed=1)[:3]), 200).difference < 1e-11)
     True

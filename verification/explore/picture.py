@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from numeric import Orbit, PinballMap
-from numeric.sampling import boundary, interior_starts
+from numeric.pinball.sampling import boundary, interior_starts
 from verification.dynamics.cycles import Cycle, polished, shortest
 from verification.dynamics.places import places
 from verification.figures.panel import Curve

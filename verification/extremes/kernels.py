@@ -1,6 +1,6 @@
 """The kernels that bounce one ball from one rounded state: LLVM, NumPy, 80-bit floats, mpmath with 16 digits.
 
-All four run the step of `numeric/families`; `TEXTBOOK` is the quadratic formula that one would write first, kept to
+All four run the step of `numeric/flights`; `TEXTBOOK` is the quadratic formula that one would write first, kept to
 show that the measure tells it apart.
 """
 
@@ -14,10 +14,10 @@ import numpy as np
 from sympy import N
 
 from numeric import PinballMap
-from numeric.families.harmonic import Ellipse
-from numeric.question import Question
-from numeric.readers.scalars import Scalars
-from numeric.status import Status
+from numeric.backends.scalars import Scalars
+from numeric.flights.harmonic import Ellipse
+from numeric.flights.status import Status
+from numeric.kernels.spec import Question
 from verification.extremes.wide import WIDE, Wide, made_unit
 
 DOUBLE = 2.0**-52  # the unit of rounding

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.question import Question
+from numeric.kernels.spec import Question
 from symbolic.tables import egg
 from verification.dynamics.certified import certificate
 from verification.dynamics.places import places

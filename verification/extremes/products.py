@@ -13,7 +13,7 @@ import numpy as np
 from sympy import N, Rational
 
 from numeric import PinballMap
-from numeric.growth import GENERIC, Growth
+from numeric.pinball.growth import GENERIC, Growth
 from symbolic.codegen import kernel, load
 from symbolic.collision import derivative_matrix
 from symbolic.cycles import trace_and_determinant
@@ -141,7 +141,7 @@ def _entries(arithmetic: Arithmetic) -> Any:
 
 def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
     """The paper's matrix of every bounce of a recorded orbit, whose doubles are taken exactly."""
-    from numeric.readers.scalars import Scalars
+    from numeric.backends.scalars import Scalars
 
     ops, of, contraction = Scalars(context), _entries(multiprecision(context)), context.mpf(float(map.lam))
     shape, before = [context.mpf(value) for value in map.shape], None
@@ -155,7 +155,7 @@ def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
 
 def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = None) -> Any:
     """The same in float64, from an orbit whose numbers are off by so much at random."""
-    from numeric.readers.arrays import Arrays
+    from numeric.backends.arrays import Arrays
 
     theta, phi, eta = (field + (strength * rng.choice([-1, 1], field.shape) if rng is not None else 0)
                        for field in (orbit.theta, orbit.phi, orbit.eta))  # fmt: skip

@@ -1,6 +1,6 @@
-"""The step of `numeric/families` on 80-bit arrays: 64 bits of mantissa, a judge of doubles with 11 bits to spare.
+"""The step of `numeric/flights` on 80-bit arrays: 64 bits of mantissa, a judge of doubles with 11 bits to spare.
 
-What `numeric.readers.arrays` has for 53 bits is put aside here, word by word, as `numeric.readers.scalars` does it:
+What `numeric.backends.arrays` has for 53 bits is put aside here, word by word, as `numeric.backends.scalars` does it:
 sines and arctangents are the C library's, and a zero is sharpened until its correction is below the unit or ceases to
 shrink. Splitting for exact products, and the outcomes that stop a ball, remain as they are.
 """
@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from numeric import roots
-from numeric.readers.arrays import Arrays
+from numeric.backends import roots
+from numeric.backends.arrays import Arrays
 
 WIDE = 2.0**-63  # the unit of rounding
 PI = np.longdouble("3.14159265358979323846264338327950288")

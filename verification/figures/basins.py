@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from numeric import PinballMap
-from numeric.sampling import phase_grid
+from numeric.pinball.sampling import phase_grid
 from verification.dynamics.attractors import classify
 from verification.dynamics.kinds import Kind
 from verification.figures.attracting import cycle_points, orbit_on

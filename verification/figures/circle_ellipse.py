@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from symbolic.cycles import discriminant
 from symbolic.double_normal import stability_number, trace_of
 from symbolic.named_cycles import minor_axis

@@ -6,7 +6,7 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.sampling import phase_starts
+from numeric.pinball.sampling import phase_starts
 from symbolic.polygons import near_flat
 from symbolic.symbols import alpha as alpha_letter
 from symbolic.symbols import lam as lam_letter

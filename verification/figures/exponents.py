@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from verification.figures.panel import Array, Curve, Panel
 from verification.figures.phase import SEED, TRANSIENT, facts
 from verification.sweeps.signs import floor_of

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from numeric import PinballMap
-from numeric.sampling import boundary
+from numeric.pinball.sampling import boundary
 from verification.figures.panel import Array, Curve
 from verification.figures.phase import arc_length, polar
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import Orbit, PinballMap
-from numeric.sampling import interior_starts
+from numeric.pinball.sampling import interior_starts
 from verification.figures.panel import Array, Curve, Fact
 
 SEED = 1

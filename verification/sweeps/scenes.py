@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.sampling import Starts, interior_starts
+from numeric.pinball.sampling import Starts, interior_starts
 from verification.commands.mapped import pinball_map
 from verification.commands.scene import Scene
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import Starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import Starts
 
 BLOCKS = 4  # too few for a fine error, and enough to see a transient end
 SIGMAS = 2.0  # standard errors by which an exponent is beyond the floor
@@ -60,7 +60,7 @@ def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, thre
     """The exponents of balls over `bounces` bounces in `BLOCKS` blocks, after `transient` that do not count.
 
     >>> circle = PinballMap("circle", lam=1)
-    >>> from numeric.sampling import phase_starts
+    >>> from numeric.pinball.sampling import phase_starts
     >>> found = measured(circle, phase_starts(circle, 8, seed=0), 2000, 0)
     >>> bool(found.chaotic.any()), bool(found.regular.all())
     (False, True)

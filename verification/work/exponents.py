@@ -7,8 +7,8 @@ import numpy as np
 from flint import arb
 
 from numeric import PinballMap
-from numeric.growth import Growth
-from numeric.sampling import interior_starts
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import interior_starts
 from verification.arithmetic import Arithmetic, balls, bits_of, working
 from verification.baselines import module
 from verification.certificates.chaotic_exponent import slap_exponent

@@ -12,8 +12,8 @@ from flint import arb
 from sympy import Expr, Rational, sqrt
 
 from numeric import PinballMap
-from numeric.question import Question as Run
-from numeric.sampling import phase_starts
+from numeric.kernels.spec import Question as Run
+from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.chords import chord_angle, chord_kernel, theta0, theta1
 from symbolic.codegen import Kernel, kernel, load

@@ -11,7 +11,7 @@ from decimal import Decimal, InvalidOperation
 import numpy as np
 
 from numeric import PinballMap
-from numeric.growth import Growth
+from numeric.pinball.growth import Growth
 from verification.work.choice import Choice, cheapest, table
 
 WAYS = ("compiled kernel", "arb, certified")  # that say how many digits an orbit has left: mpmath's does not

@@ -1,0 +1,350 @@
+"""LLVM vectors as an arithmetic: running a step on these values writes its instructions.
+
+A product that is only added to something becomes a fused multiply-add, by this file's rule and not
+by the compiler's leave: no fast-math flag is ever set, so the bits of a result depend neither on
+the number of lanes, nor on what else the kernel computes, nor on the version of LLVM.
+"""
+
+import math
+import struct
+from collections.abc import Callable
+from typing import Any
+
+from numeric.backends import functions
+from numeric.backends.roots import bracketed_zero, polynomial_zero
+
+Fold = float | None
+
+
+class Mask:
+    """A vector of truth values."""
+
+    def __init__(self, trace: "Lanes", text: str) -> None:
+        self.trace, self.text = trace, text
+
+    def __and__(self, other: "Mask") -> "Mask":
+        return self.trace.mask("and", self.text, other.text)
+
+    def __or__(self, other: "Mask") -> "Mask":
+        return self.trace.mask("or", self.text, other.text)
+
+
+class Lane:
+    """A vector of doubles: a known constant, a value already written, or a product not yet needed."""
+
+    def __init__(
+        self, trace: "Lanes", text: str = "", value: Fold = None, factors: tuple["Lane", "Lane"] | None = None
+    ):
+        self.trace, self._text, self.value, self.factors = trace, text, value, factors
+        self._scope = trace.scope
+
+    @property
+    def text(self) -> str:
+        """The operand's name; asking for it writes a product that was waiting."""
+        if self.value is not None:
+            return self.trace.literal(self.value)
+        if self.factors is not None and (not self._text or self._scope not in self.trace.scopes):
+            x, y = self.factors
+            self._text, self._scope = self.trace.line("fmul", x, y)._text, self.trace.scope
+        return self._text
+
+    def __add__(self, other: "Lane") -> "Lane":
+        if self.value is not None and other.value is not None:
+            return self.trace.number(self.value + other.value)
+        if self.value == 0.0:
+            return other
+        if other.value == 0.0:
+            return self
+        if self.factors is not None:
+            return self.trace.fma(*self.factors, other)
+        if other.factors is not None:
+            return self.trace.fma(*other.factors, self)
+        return self.trace.line("fadd", self, other)
+
+    def __sub__(self, other: "Lane") -> "Lane":
+        if self.value == 0.0:
+            return -other
+        if other.value is not None or self.factors is not None:
+            return self + -other
+        if other.factors is not None:
+            return self.trace.fma(-other.factors[0], other.factors[1], self)
+        return self.trace.line("fsub", self, other)
+
+    def __mul__(self, other: "Lane") -> "Lane":
+        x, y = (other, self) if other.value is not None else (self, other)
+        if x.value is None:
+            return Lane(self.trace, factors=(x, y))
+        if y.value is not None:
+            return self.trace.number(x.value * y.value)
+        if x.value in (0.0, 1.0, -1.0):
+            return {0.0: x, 1.0: y}.get(x.value) or -y
+        return Lane(self.trace, factors=(x, y))
+
+    def __truediv__(self, other: "Lane") -> "Lane":
+        if self.value is not None and other.value is not None:
+            return self.trace.number(self.value / other.value)
+        return self if other.value == 1.0 else self.trace.line("fdiv", self, other)
+
+    def __neg__(self) -> "Lane":
+        if self.value is not None:
+            return self.trace.number(-self.value)
+        if self.factors is not None:
+            return Lane(self.trace, factors=(-self.factors[0], self.factors[1]))
+        return self.trace.line("fneg", self)
+
+    def __abs__(self) -> "Lane":
+        if self.value is not None:
+            return self.trace.number(abs(self.value))
+        return self.trace.call("fabs", self)
+
+    def __lt__(self, other: "Lane") -> Mask:
+        return self.trace.compare("olt", self, other)
+
+    def __le__(self, other: "Lane") -> Mask:
+        return self.trace.compare("ole", self, other)
+
+    def __eq__(self, other: object) -> Any:
+        assert isinstance(other, Lane)
+        return self.trace.compare("oeq", self, other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+class Lanes:
+    """Writes LLVM instructions on vectors of `width` doubles."""
+
+    zero = bracketed_zero
+    polynomial_zero = polynomial_zero
+
+    def __init__(self, width: int = 32) -> None:
+        self.width, self.type = width, f"<{width} x double>"
+        self.masks, self.integers = f"<{width} x i1>", f"<{width} x i64>"
+        self.lines: list[str] = []
+        self.known: list[dict[Any, Any]] = [{}]
+        self.scopes, self.scope, self.opened = [0], 0, 0
+        self.block, self.count = "entry", 0
+        self.called: set[str] = set()
+
+    # ---- writing
+
+    def fresh(self, stem: str = "v") -> str:
+        """A name that is not in use."""
+        self.count += 1
+        return f"%{stem}{self.count}"
+
+    def emit(self, text: str, key: Any = None) -> str:
+        """Write `name = text`, once per scope for equal keys."""
+        key = key if key is not None else text
+        for known in reversed(self.known):
+            if key in known:
+                return str(known[key])
+        name = self.fresh()
+        self.lines.append(f"  {name} = {text}")
+        self.known[-1][key] = name
+        return name
+
+    def line(self, word: str, *operands: Lane) -> Lane:
+        """An arithmetic instruction."""
+        return Lane(self, self.emit(f"{word} {self.type} " + ", ".join(x.text for x in operands)))
+
+    def call(self, name: str, *operands: Lane) -> Lane:
+        """An intrinsic function of vectors."""
+        self.called.add(f"declare {self.type} @llvm.{name}.v{self.width}f64({', '.join([self.type] * len(operands))})")
+        inside = ", ".join(f"{self.type} {x.text}" for x in operands)
+        return Lane(self, self.emit(f"call {self.type} @llvm.{name}.v{self.width}f64({inside})"))
+
+    def compare(self, word: str, x: Lane, y: Lane) -> Mask:
+        """A comparison; false where an operand is no number."""
+        return Mask(self, self.emit(f"fcmp {word} {self.type} {x.text}, {y.text}"))
+
+    def mask(self, word: str, x: str, y: str) -> Mask:
+        """A logical instruction."""
+        return Mask(self, self.emit(f"{word} {self.masks} {x}, {y}"))
+
+    def literal(self, x: float) -> str:
+        """A constant in every lane, exactly."""
+        return f"splat (double 0x{struct.unpack('<Q', struct.pack('<d', x))[0]:016X})"
+
+    def label(self, name: str) -> None:
+        """Start a basic block."""
+        self.lines.append(f"{name}:")
+        self.block = name
+
+    def open(self) -> None:
+        """Values written from here on are known only until `close`."""
+        self.opened += 1
+        self.scope = self.opened
+        self.scopes.append(self.scope)
+        self.known.append({})
+
+    def close(self) -> None:
+        """Forget what was written since `open`."""
+        self.scopes.pop()
+        self.known.pop()
+        self.scope = self.scopes[-1]
+
+    # ---- arithmetic
+
+    def constant(self, p: int, q: int = 1) -> Lane:
+        """The double nearest to `p/q`."""
+        return self.number(p / q)
+
+    def number(self, x: float) -> Lane:
+        """A double."""
+        return Lane(self, value=float(x))
+
+    def pi(self) -> Lane:
+        """The double nearest to pi."""
+        return self.number(2 * functions.HALF_PI)
+
+    def pi_low(self) -> Lane:
+        """What that double lacks."""
+        return self.number(2 * functions.HALF_PI_LOW)
+
+    def sqrt(self, x: Lane) -> Lane:
+        """The square root."""
+        return self.number(math.sqrt(x.value)) if x.value is not None else self.call("sqrt", x)
+
+    def fma(self, x: Lane, y: Lane, z: Lane) -> Lane:
+        """`x*y + z`, rounded once."""
+        if z.value == 0.0 or 0.0 in (x.value, y.value) or {x.value, y.value} & {1.0, -1.0}:
+            product = x * y
+            return product + z if product.factors is None else product
+        return self.call("fma", x, y, z)
+
+    def product(self, x: Lane, y: Lane) -> Lane:
+        """`x*y` rounded by itself, which no sum takes up."""
+        return self.line("fmul", x, y)
+
+    def maximum(self, x: Lane, y: Lane) -> Lane:
+        """The larger one; `y` where `x` is no number."""
+        return self.select(y < x, x, y)
+
+    def select(self, mask: Mask, x: Lane, y: Lane) -> Lane:
+        """`x` where the mask holds, else `y`."""
+        if x is y:
+            return x
+        return Lane(self, self.emit(f"select {self.masks} {mask.text}, {self.type} {x.text}, {self.type} {y.text}"))
+
+    def negated(self, mask: Mask) -> Mask:
+        """The opposite of a mask."""
+        return self.mask("xor", mask.text, "splat (i1 true)")
+
+    def rounded(self, x: Lane) -> Lane:
+        """The nearest integer, for `|x| < 2**51`."""
+        magic = self.number(1.5 * 2.0**52)
+        return (x + magic) - magic
+
+    def with_sign(self, x: Lane, y: Lane) -> Lane:
+        """`|x|` with the sign of `y`."""
+        return self.call("copysign", x, y)
+
+    def times_sign(self, x: Lane, y: Lane) -> Lane:
+        """`x` with its sign flipped where `y` is negative."""
+        sign = self._bits("and", self._integer(y), f"splat (i64 {-(2**63)})")
+        return self._double(self._bits("xor", self._integer(x), sign))
+
+    def power_of_two(self, x: Lane) -> tuple[Lane, Lane]:
+        """`(2**-e, e)` with `2**e <= x < 2**(e + 1)`, for positive normal `x`."""
+        field = self._bits("and", self._integer(x), f"splat (i64 {0x7FF << 52})")
+        inverse = self._double(self._bits("sub", f"splat (i64 {0x7FE << 52})", field))
+        magic = self._bits("or", self._bits("lshr", field, "splat (i64 52)"), f"splat (i64 {0x433 << 52})")
+        return inverse, self._double(magic) - self.number(2.0**52 + 1023)
+
+    def sin(self, x: Lane) -> Lane:
+        """The sine, of angles up to 2**30."""
+        return self.turn(self._within_a_turn(x))[1]
+
+    def cos(self, x: Lane) -> Lane:
+        """The cosine, of angles up to 2**30."""
+        return self.turn(self._within_a_turn(x))[0]
+
+    def _within_a_turn(self, x: Lane) -> Lane:
+        """`x` less whole turns: the turn has 107 bits and each subtraction is rounded once, so nothing is lost."""
+        turns = self.rounded(x * self.number(0.25 / functions.HALF_PI))
+        for part in (functions.HALF_PI, functions.HALF_PI_LOW):
+            x = self.fma(-turns, self.number(4 * part), x)
+        return x
+
+    def settle(self, *values: Lane) -> None:
+        """Write these values here, where what they are made of is at hand, and not where they are needed."""
+        for x in values:
+            assert x.text
+
+    def angle(self, y: Lane, x: Lane) -> Lane:
+        """`atan2(y, x)` for `x >= 0`."""
+        return functions.angle(self, y, x)  # type: ignore[no-any-return]
+
+    def turn(self, x: Lane, quarters: int = 2) -> tuple[Lane, Lane]:
+        """`(cos x, sin x)`."""
+        return functions.turn(self, x, quarters)
+
+    def _integer(self, x: Lane) -> str:
+        return self.emit(f"bitcast {self.type} {x.text} to {self.integers}")
+
+    def _double(self, x: str) -> Lane:
+        return Lane(self, self.emit(f"bitcast {self.integers} {x} to {self.type}"))
+
+    def _bits(self, word: str, x: str, y: str) -> str:
+        return self.emit(f"{word} {self.integers} {x}, {y}")
+
+    # ---- control flow
+
+    def anywhere(self, mask: Mask) -> str:
+        """A single bit: does the mask hold in some lane?"""
+        packed = self.emit(f"bitcast {self.masks} {mask.text} to i{self.width}")
+        return self.emit(f"icmp ne i{self.width} {packed}, 0")
+
+    def repeat(
+        self,
+        condition: Callable[[list[Lane]], Mask],
+        body: Callable[[list[Lane]], list[Lane]],
+        state: list[Lane],
+        limit: int,
+    ) -> list[Lane]:
+        """Apply `body` to the lanes for which `condition` holds, until it holds for none."""
+        head, inside, after = (self.fresh(stem)[1:] for stem in ("head", "inside", "after"))
+        starts, before = [x.text for x in state], self.block
+        names = [self.fresh() for _ in state]
+        index, following = self.fresh("pass"), self.fresh("pass")
+        self.lines.append(f"  br label %{head}")
+        self.label(head)
+        slot = len(self.lines)
+        self.open()
+        now = [Lane(self, name) for name in names]
+        active = condition(now)
+        more = self.emit(f"and i1 {self.anywhere(active)}, {self.emit(f'icmp ult i32 {index}, {limit}')}")
+        self.lines.append(f"  br i1 {more}, label %{inside}, label %{after}")
+        self.label(inside)
+        new = [self.select(active, x, y).text for x, y in zip(body(now), now, strict=True)]
+        self.lines += [f"  {following} = add i32 {index}, 1", f"  br label %{head}"]
+        phis = [
+            f"  {name} = phi {self.type} [{start}, %{before}], [{end}, %{self.block}]"
+            for name, start, end in zip(names, starts, new, strict=True)
+        ]
+        self.lines[slot:slot] = [*phis, f"  {index} = phi i32 [0, %{before}], [{following}, %{self.block}]"]
+        self.close()
+        self.label(after)
+        return [Lane(self, name) for name in names]
+
+    def when(self, mask: Mask, values: list[Lane], changed: Callable[[], list[Lane]]) -> list[Lane]:
+        """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
+        return self.branch(self.anywhere(mask), values, changed)
+
+    def branch(self, bit: str, values: list[Lane], changed: Callable[[], list[Lane]]) -> list[Lane]:
+        """`changed()` where the single bit is set, else `values`."""
+        inside, after = self.fresh("inside")[1:], self.fresh("after")[1:]
+        otherwise, before = [x.text for x in values], self.block
+        self.lines.append(f"  br i1 {bit}, label %{inside}, label %{after}")
+        self.label(inside)
+        self.open()
+        then = [x.text for x in changed()]
+        self.lines.append(f"  br label %{after}")
+        last = self.block
+        self.close()
+        self.label(after)
+        names = [y if x == y else self.fresh() for x, y in zip(then, otherwise, strict=True)]
+        for name, x, y in zip(names, then, otherwise, strict=True):
+            if x != y:
+                self.lines.append(f"  {name} = phi {self.type} [{x}, %{last}], [{y}, %{before}]")
+        return [Lane(self, name) for name in names]

@@ -1,0 +1,5 @@
+"""Where does a flight end? One module for each way to find the next bounce, and one registry of them.
+
+Each is a plain function over a number system of `numeric.backends`, so that LLVM, NumPy and numbers of any precision
+run the same text.
+"""

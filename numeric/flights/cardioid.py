@@ -1,0 +1,99 @@
+"""The cardioid: one cubic for the far end of a flight, its interval known from one sign.
+
+State: `sigma = exp(i*theta/2)` and `exp(i*phi)`; the tangent is `i*sigma**3`, so no frame needs a
+root. With `k = sin(theta0/2 - phi)` the ball passes the cusp at the distance `2*cos(theta0/2)**2*|k|`.
+Seen from the cusp its polar angle falls (`k > 0`) or grows towards the direction `psi` of `v`, and it
+stays inside until it lands; the line behind the ball fills the angles beyond `psi - pi`. So of the
+zeros in `S = cos(theta0/2)*tan(theta1/2)` exactly one lies between `theta0` and `psi`: between two
+more the arc would have to bulge inwards. Paper: section 4; [BackerDullin1997].
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from numeric.backends import plane
+from numeric.backends.plane import Pair
+from numeric.flights.family import ELASTIC, NEAR, SLAP, Family, Landing, grazing
+
+
+class Cardioid(Family):
+    """Paper: section 4."""
+
+    name = "cardioid"
+    position: tuple[str, ...] = ("p", "q")  # cos and sin of theta/2
+    exit = ("cos_phi", "sin_phi")
+    steps = 4, 1
+
+    def cubic(self, ops: Any, sigma: Pair, exit: Pair) -> tuple[list[Any], Any, Any, Pair]:
+        """The flight equation in `S`, mirrored so that `k >= 0`; then `sin(theta0/2)` so mirrored, `k`, and `-v`."""
+        p, q = sigma
+        k = plane.exact_cross(ops, (q, p), (exit[1], exit[0]))
+        back = plane.times(plane.squared(sigma), (plane.dot(sigma, exit), k))
+        one, two = ops.number(1.0), ops.number(2.0)
+        p2 = p * p
+        twice = two * p2 + one
+        first = back[1] * p * twice - two * q * back[0] * (p2 + one)
+        last = back[1] * q * twice + two * back[0] * p * p2
+        size, Q = abs(k), ops.times_sign(q, k)
+        return [p2 * last, ops.times_sign(p * first, k), size * Q, size], Q, k, back
+
+    def interval(
+        self, ops: Any, cubic: list[Any], Q: Any, c: Any, ahead: Pair
+    ) -> tuple[Any, Callable[[], Any], Callable[[Any], Any]]:
+        """A start for the zero below `Q`, a bound below it, and a test of being above that bound.
+
+        The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless the ball would have to cross the negative
+        axis to get there. In `z = Q - S > 0` the cubic is `2*c - D*z + 4*k*Q*z**2 - k*z**3`, `D` its slope at `Q`
+        and `c = cos(phi)`: where `D > 0` the zero lies near `z = c`, as for a circle, otherwise `z**2` is about
+        `-D/k`, and for `z >= 8` with `z**2 >= 4*(c + |D|)/k` the cubic is negative.
+        """
+        D = ops.number(5.0) * cubic[2] * Q + cubic[1]
+        far = ops.sqrt(ops.maximum((c - D) / cubic[3], ops.number(0.0)))
+        free = Q * ahead[0] <= ahead[1]
+
+        def low() -> Any:
+            bound = Q - ops.number(8.0) - ops.number(2.0) * ops.sqrt((c + abs(D)) / cubic[3])
+            return ops.select(free, bound, ahead[1] / ahead[0])
+
+        return Q - ops.maximum(far, c), low, lambda S: free | (ahead[1] <= S * ahead[0])
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        sigma, leaving = (position[0], position[1]), (exit[0], exit[1])
+        coefficients, Q, k, back = self.cubic(ops, sigma, leaving)
+        ahead = ops.number(1.0) - back[0], -sigma[0] * ops.times_sign(back[1], k)
+        start, low, accepts = self.interval(ops, coefficients, Q, leaving[0], ahead)
+        S = ops.polynomial_zero(coefficients, start, low, Q, sigma[0], self.steps, None, accepts)
+        landing = plane.normalised(ops, (sigma[0], ops.times_sign(S, k)))
+        w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
+        code = ops.number(0.0)
+        if law != SLAP:
+            code = ops.select(grazing(ops, w[1], -w[0]), ops.number(3.0), code)
+        aside = ops.number(0.0) < coefficients[3]  # else the flight meets the cusp itself, and there the map jumps
+        code = ops.select(aside & (ops.number(NEAR) < landing[0]), code, ops.number(2.0))
+        return Landing(list(landing), w[1], -w[0], code, {"back": back})
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        if law == ELASTIC:
+            return list(plane.unit(ops, (landing.along, landing.across)))
+        return list(ops.turn(lam * ops.angle(landing.across, landing.along), 1))
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return [ops.number(1.0), ops.number(0.0)]
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        return exit[0]
+
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return list(self.point(ops, position))
+
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        return plane.dot((start[0] - end[0], start[1] - end[1]), landing.more["back"])
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        return ops.number(-0.75), landing.position[0]
+
+    def point(self, ops: Any, position: list[Any]) -> Pair:
+        """The boundary point `2*cos(theta/2)**2*exp(i*theta)`."""
+        radius = ops.number(2.0) * position[0] * position[0]
+        x, y = plane.squared((position[0], position[1]))
+        return radius * x, radius * y

@@ -1,0 +1,37 @@
+"""The unit circle: angles are the state, and a bounce is `theta + pi - 2*phi`, `lam*phi`."""
+
+from typing import Any
+
+from numeric.flights.family import SLAP, Family, Landing
+
+
+class Circle(Family):
+    """Paper: section 3.1."""
+
+    name = "circle"
+    stops = False
+    often = 128  # a bounce grows no vector more than eightfold
+    position = ("theta",)
+    exit = ("phi",)
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        (theta,), (phi,) = position, exit
+        turned = theta - (phi + phi) if law != SLAP else theta
+        half_turn = ops.with_sign(ops.pi(), turned)
+        rest = ops.with_sign(ops.pi_low(), turned)
+        return Landing([(turned - half_turn) - rest], phi, ops.number(1.0))
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        return [lam * landing.across]
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return [ops.number(0.0)]
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        return ops.number(1.0)
+
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        return ops.number(2.0)  # times cos(phi), which `departure` and `along` leave out as well
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
+        return ops.number(-1.0), ops.number(1.0)

@@ -1,0 +1,95 @@
+"""The cardioid cut off by the wall `x = -1/4`: cubic from the arc, straight onto the wall, quartic from it.
+
+The table is convex, so a line leaves it at one further point, and where the line passes the two
+joins says on which component. State: the component (0 arc, 1 wall), `sigma = exp(i*theta/2)` on the
+arc or `(y, .)` on the wall, and `exp(i*phi)`. Paper: section 5 and the appendix, where it is the cut-off.
+"""
+
+from typing import Any
+
+from numeric.backends import plane
+from numeric.backends.plane import Pair
+from numeric.flights.cardioid import Cardioid
+from numeric.flights.family import NEAR, SLAP, Landing, grazing
+from numeric.flights.near_grazing import sharpened
+
+QUARTER = 0.25
+FLAT_WALL = 0.125  # cosines of the incidence below which a flight is sharpened: on the wall,
+FLAT_ARC = 0.875  # and on the arc past the other join, there with cos(theta/2) added, which is 1/2 at the join
+TINY = 2.0**-30  # landings from the wall are found relatively, down to this distance from a join
+
+
+class Cuspless(Cardioid):
+    """Paper: section 5."""
+
+    name = "cuspless"
+    position = ("wall", "p", "q")
+    steps = 3, 1
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        nought, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
+        root3 = ops.sqrt(ops.number(3.0))  # tan(theta/2) at the join
+        from_wall = ops.number(0.5) < position[0]
+        (c, s), (p, q) = exit, position[1:]
+        # from the arc: the cardioid's cubic, and on which side the line passes the joins
+        cubic, Q, k, back = self.cubic(ops, (p, q), (c, s))
+        reach = root3 * p
+        ahead, behind = (((cubic[3] * x + cubic[2]) * x + cubic[1]) * x + cubic[0] for x in (-reach, reach))
+        onwards, across = ahead < nought, behind < nought
+        to_wall = ops.negated(onwards | across | from_wall)
+        # from the wall, at height y after a mirroring that lets it fly upwards: a quartic in tan(theta1/2), or, where
+        # the flight skims the wall, or the arc next to the join, in sqrt(3) - tan(theta1/2), so that nothing cancels
+        y, up, four = -ops.times_sign(p, s), abs(s), ops.number(4.0)
+        L, below = ops.fma(c, y, ops.number(QUARTER) * up), ops.number(QUARTER) * root3 - y
+        skims = (c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
+        plain = [-two * up - L, four * c, two * (up - L), nought, -L]
+        turned = [ops.number(16.0) * c * below, four * c * (four * root3 * y - one)]
+        turned += [-ops.number(3.0) * up - ops.number(20.0) * c * y, four * root3 * L, -L]
+        quartic = [ops.select(skims, -a, b) for a, b in zip(turned, plain, strict=True)]
+        # one polynomial for both, negative at low and positive at high
+        cubic = [ops.select(across, -b, b) for b in cubic] + [nought]
+        poly = [ops.select(from_wall, a, b) for a, b in zip(quartic, cubic, strict=True)]
+        low = ops.select(from_wall, ops.select(skims, nought, -root3), ops.select(across, Q, -reach))
+        high = ops.select(from_wall, ops.select(skims, two * root3, root3), ops.select(across, reach, Q))
+        start = ops.select(from_wall, nought, ops.select(across, reach, Q - c))
+        base = ops.select(from_wall, one, p)
+        scale = ops.select(from_wall, ops.select(skims, ops.number(TINY), one), p)
+        S = ops.polynomial_zero(poly, start, low, high, scale, self.steps, ops.negated(to_wall))
+        tangent = ops.select(from_wall, -ops.times_sign(ops.select(skims, root3 - S, S), s), ops.times_sign(S, k))
+        back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
+        landing = plane.normalised(ops, (base, tangent))
+        # on the wall the angular momentum about the origin tells the height: no term is larger than the result needs
+        height = -(two * p * p * k + ops.number(QUARTER) * back[1]) / back[0]
+        w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
+        sine, cosine = ops.select(to_wall, back[1], w[1]), ops.select(to_wall, back[0], -w[0])
+        small = ops.select(to_wall, ops.number(FLAT_WALL), ops.number(FLAT_ARC) - landing[0])
+        flat = (to_wall | (q * landing[1] < nought)) & (cosine < small)
+        rough = [back[0], height, *landing, sine, cosine]
+
+        def sharp() -> list[Any]:
+            real, high, moved = sharpened(ops, (p, q), (c, s), back[1], landing, -w[0])
+            turned = plane.times(plane.times(moved, plane.squared(moved)), (real, -back[1]))
+            angle = ops.select(to_wall, back[1], turned[1]), ops.select(to_wall, real, -turned[0])
+            return [ops.select(flat, a, b) for a, b in zip([real, high, *moved, *angle], rough, strict=True)]
+
+        real, height, *found, sine, cosine = ops.when(flat, rough, sharp)
+        back, landing = (real, back[1]), (found[0], found[1])
+        join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(tangent) - root3 * base))
+        code = ops.select(ops.number(NEAR) * base < join, nought, one)
+        if law != SLAP:
+            code = ops.select(grazing(ops, sine, cosine), ops.number(3.0), code)
+        wall = ops.select(to_wall, one, nought)
+        landed = [wall, ops.select(to_wall, height, landing[0]), ops.select(to_wall, nought, landing[1])]
+        return Landing(landed, sine, cosine, code, {"back": back})
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        wall = ops.number(0.5) < landing.position[0]
+        return ops.select(wall, ops.number(0.0), ops.number(-0.75)), ops.select(
+            wall, ops.number(1.0), landing.position[1]
+        )
+
+    def point(self, ops: Any, position: list[Any]) -> Pair:
+        """The boundary point on the arc or on the wall."""
+        wall = ops.number(0.5) < position[0]
+        x, y = super().point(ops, position[1:])
+        return ops.select(wall, ops.number(-QUARTER), x), ops.select(wall, position[1], y)

@@ -1,0 +1,155 @@
+"""What a family of tables is: fields of state, a flight, a reflection, and the tangent map.
+
+Everything here runs on any arithmetic of `numeric.backends`. A *law* is `slap` (lam = 0, the exit
+is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.
+
+Tangent vectors are carried as `(q, omega)`: a shift across the flight, `q = N0*ds/speed` with
+`N0 = speed*cos(phi0)`, and a change of direction, `omega = K*ds + dphi`. A flight of length `t` turns `q`
+into `q + t*omega`. With `K*speed = above/below` at the landing, `N1 = speed*cos(eta1)` and `N0` the next
+departure's, the paper's derivative matrix then needs no division when the vector may grow by `below*N1` a bounce:
+
+    below*N1*q1 = -(q + t*omega)*N0*below,    below*N1*omega1 = -(1 + lam)*above*(q + t*omega) - lam*below*N1*omega.
+
+The determinant is `lam*N0/N1` of the next departure and this landing.
+"""
+
+from typing import Any
+
+from numeric.backends import plane
+
+SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"
+GRAZE = 2.0**-50  # cos(eta) below this is a tangency
+NEAR = 2.0**-50  # a landing closer than this to a join or a cusp is one
+
+
+def law_of(lam_low: float, lam_high: float) -> str:
+    """The law that serves every contraction between the two."""
+    if lam_low == lam_high == 0:
+        return SLAP
+    return ELASTIC if lam_low == lam_high == 1 else PINBALL
+
+
+class Landing:
+    """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
+
+    `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an
+    outcome that stops the ball (0 none, else `Status`), or is None where a family has none.
+    """
+
+    def __init__(
+        self, position: list[Any], across: Any, along: Any, code: Any = None, more: dict[str, Any] | None = None
+    ) -> None:
+        self.position, self.across, self.along, self.code = position, across, along, code
+        self.more = more if more is not None else {}
+
+
+class Family:
+    """Common ground. A subclass names its fields and defines the methods that raise here."""
+
+    name = ""
+    stops = True  # some landings are outcomes that stop the ball
+    often = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
+    width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
+    position: tuple[str, ...] = ()
+    exit: tuple[str, ...] = ()
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        """The landing of the ball that leaves `position` along `exit`."""
+        raise NotImplementedError
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        """The exit fields after the reflection."""
+        raise NotImplementedError
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        """The exit fields of a ball that leaves along the normal."""
+        raise NotImplementedError
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        """`N0 = speed*cos(phi0)`."""
+        raise NotImplementedError
+
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        """What `length` needs of either end of a flight, kept from one bounce to the next: often nothing."""
+        return []
+
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        """The length `t` of a flight, from `N0` and what was `kept` at its ends."""
+        return plane.dot((end[0] - start[0], end[1] - start[1]), landing.more["v"])
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
+        """`K*speed` at the landing as a quotient, negative where the boundary focuses; `below` is positive."""
+        raise NotImplementedError
+
+    def fields(self, law: str) -> tuple[str, ...]:
+        """The names of a ball's state."""
+        return self.position if law == SLAP else self.position + self.exit
+
+    def bounce(self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any]) -> tuple[list[Any], Any]:
+        """One flight and one reflection: the new state, and the code of the outcome or None."""
+        position, exit = self._split(ops, shape, law, state)
+        landing = self.fly(ops, shape, law, position, exit)
+        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
+        return landing.position + leaving, landing.code
+
+    def rate(self, ops: Any, shape: list[Any], law: str, state: list[Any]) -> Any:
+        """`N0` of a ball that is about to leave."""
+        return self.departure(ops, shape, *self._split(ops, shape, law, state, whole=True))
+
+    def bounce_with_tangent(
+        self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any], tangent: list[Any], kept: list[Any]
+    ) -> tuple[list[Any], Any, list[Any], list[Any]]:
+        """As `bounce`, with the rows of `Question` for a tangent vector, and what is kept for the next flight.
+
+        The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`.
+        """
+        position, exit = self._split(ops, shape, law, state, whole=True)
+        landing = self.fly(ops, shape, law, position, exit)
+        q, omega, growth, up, down, volume, n0 = tangent
+        end = self.kept(ops, shape, landing.position)
+        moved = self.length(ops, shape, n0, kept, end, landing) * omega + q
+        above, below = self.bend(ops, shape, landing)
+        fall = landing.along * below
+        turned = (ops.number(1.0) + lam) * above * moved + lam * omega * fall
+        down = down * fall
+        ops.settle(moved, turned, down, below)
+        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
+        n0 = self.leaving_rate(ops, shape, landing, leaving)
+        rise = n0 * below
+        rows = [moved * rise, turned, growth, up * rise, down, volume, n0]
+        return landing.position + leaving, landing.code, rows, end
+
+    def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
+        """`departure` at a landing, whose frame is known already."""
+        exit = leaving or self.slapped_with_unit(ops, shape, landing.position)
+        return self.departure(ops, shape, landing.position, exit)
+
+    def _split(
+        self, ops: Any, shape: list[Any], law: str, state: list[Any], whole: bool = False
+    ) -> tuple[list[Any], list[Any]]:
+        count = len(self.position)
+        position = state[:count]
+        if law != SLAP:
+            return position, state[count:]
+        return position, self.slapped_with_unit(ops, shape, position) if whole else self.slapped(ops, shape, position)
+
+    def slapped_with_unit(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        """As `slapped`, of length one; a flight alone may get along with any length."""
+        return self.slapped(ops, shape, position)
+
+
+def grazing(ops: Any, across: Any, along: Any) -> Any:
+    """The mask of landings that are tangent, or no landings at all."""
+    return ops.negated(ops.number(GRAZE) * abs(across) < along)
+
+
+def reflected(ops: Any, law: str, lam: Any, landing: Landing) -> list[Any]:
+    """The unit direction after a reflection, from the flight's direction `v` and the boundary's velocity `d`."""
+    v, d = landing.more["v"], landing.more["d"]
+    if law == ELASTIC:
+        inverse = ops.number(1.0) / plane.dot(d, d)
+        x, y = plane.times(plane.squared(d), plane.conjugate(v))
+        return list(plane.unit(ops, (x * inverse, y * inverse)))
+    incidence = ops.angle(landing.across, landing.along)
+    c, s = ops.turn(lam * incidence + incidence)
+    return list(plane.unit(ops, plane.times((-v[0], -v[1]), (c, -s))))

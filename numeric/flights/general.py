@@ -1,0 +1,184 @@
+"""Any table: every zero of the flight function on every piece is bracketed, and the first hit wins.
+
+A component is cut where its tangent has turned by a quarter of a turn and where the turning changes
+sign, so on a piece the tangent is parallel to a flight at most once, and the flight function
+`F(theta) = v x (z(theta) - z0)` has at most one extremum and two zeros. Finding the extremum first
+brackets both zeros. State: the component, the parameter `theta`, and the direction `v`.
+"""
+
+import itertools
+from typing import Any
+
+import numpy as np
+
+from numeric.backends import plane
+from numeric.backends.plane import Pair
+from numeric.flights.family import NEAR, Family, Landing, grazing, reflected
+from numeric.lowering.table_ir import Blueprint
+
+GRID = 4096  # points on which a component's turning is examined
+OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
+LONG = 2.0**20  # a parameter, whose rounding moves the point
+FAR = 2.0**100  # as far as nothing was met
+TURN = np.pi / 2  # of the tangent on one piece, at most
+
+
+class General(Family):
+    """Paper: section 2, the definition of the map, as it stands."""
+
+    name = "general"
+    position = ("component", "theta")
+    exit = ("vx", "vy")
+    width = 8  # one register for each value: there are many, and as much text to compile for each piece
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        self.parts = blueprint.parts
+        self.closed = len(blueprint.parts) == 1
+        self.pieces: list[tuple[int, float, float]] = []
+        self.identity = ""
+
+    def prepared(self, states: Any) -> None:
+        """Find the pieces of the table with its shape; they are constants of its kernels."""
+        self.ends = states.ends
+        self.closing = states.ends[0]
+        for index, (low, high) in enumerate(states.ends):
+            if max(abs(low), abs(high)) > LONG:
+                name, part = states.blueprint.table, self.parts[index].name
+                runs = f"the parameter of {part} runs to {max(abs(low), abs(high)):.6g}"
+                raise ValueError(f"{name}: {runs}, where its rounding shows; start it within {LONG:.6g}")
+            theta = np.linspace(low, high, GRID + 1)
+            _, _, dx, dy, ax, ay = states.curve(np.full(theta.shape, index), theta)
+            turning = dx * ay - dy * ax
+            angle = np.unwrap(np.arctan2(dy, dx))
+            cuts, start = [low], angle[0]
+            for i in range(1, GRID):
+                flips = turning[i - 1] * turning[i] < 0
+                if flips or abs(angle[i + 1] - start) > TURN:
+                    cuts.append(_inflection(states, index, theta[i - 1], theta[i]) if flips else float(theta[i]))
+                    start = angle[i]
+            cuts.append(high + OVERLAP if self.closed else high)
+            self.pieces += [(index, a, b) for a, b in itertools.pairwise(cuts)]
+        self.identity = repr(self.pieces)
+
+    def curve(self, ops: Any, shape: list[Any], component: Any, theta: Any) -> list[Any]:
+        """Point, velocity and acceleration, chosen lane by lane among the components."""
+        values = self.parts[0].curve(ops, theta, *shape)
+        for index, part in enumerate(self.parts[1:], start=1):
+            here = ops.number(index - 0.5) < component
+            values = [
+                ops.select(here, new, old) for new, old in zip(part.curve(ops, theta, *shape), values, strict=True)
+            ]
+        return values
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        component, theta = position
+        v = exit[0], exit[1]
+        x0, y0, *_ = self.curve(ops, shape, component, theta)
+        far = ops.number(FAR)
+        best = [far, component, theta]
+        for index, low, high in self.pieces:
+            best = self._hits(ops, shape, (index, low, high), (component, theta), (x0, y0), v, best)
+        t, where, at = best
+        _x, _y, dx, dy, _, _ = self.curve(ops, shape, where, at)
+        across, along = dx * v[0] + dy * v[1], dy * v[0] - dx * v[1]
+        nought, one = ops.number(0.0), ops.number(1.0)
+        code = ops.select(grazing(ops, across, along), ops.number(3.0), nought)
+        speed = ops.sqrt(dx * dx + dy * dy)
+        for index, (low, high) in enumerate(self.ends):
+            if not self.closed:
+                here = ops.number(0.25) < abs(where - ops.number(float(index)))
+                gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
+                gap = ops.select(here, one, gap * speed)
+                code = ops.select(gap < ops.number(NEAR), one, code)
+        nowhere = ops.number(4.0 if self.closed else 1.0)  # what is lost between two components is at a join
+        code = ops.select(t < far, code, nowhere)
+        return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy), "t": t})
+
+    def _hits(
+        self,
+        ops: Any,
+        shape: list[Any],
+        piece: tuple[int, float, float],
+        start: Pair,
+        z0: Pair,
+        v: Pair,
+        best: list[Any],
+    ) -> list[Any]:
+        """The nearest of `best` and the landings on one piece."""
+        index, low, high = piece
+        curve = self.parts[index].curve
+        component, theta = start
+        a, b, nought = ops.number(low), ops.number(high), ops.number(0.0)
+
+        def flight(at: Any) -> tuple[Any, Any]:
+            x, y, dx, dy, _, _ = curve(ops, at, *shape)
+            return plane.cross(v, (x - z0[0], y - z0[1])), plane.cross(v, (dx, dy))
+
+        def slope(at: Any) -> tuple[Any, Any]:
+            _, _, dx, dy, ax, ay = curve(ops, at, *shape)
+            return plane.cross(v, (dx, dy)), plane.cross(v, (ax, ay))
+
+        def each(x: Any) -> Any:
+            return x + theta * nought  # one for each ball
+
+        at_low, at_high = each(slope(a)[0]), each(slope(b)[0])
+        turns = at_low * at_high < nought
+        sign = ops.times_sign(ops.number(1.0), at_high)
+        middle = ops.zero(
+            lambda x: tuple(sign * f for f in slope(x)), each(ops.number(0.5) * (a + b)), a, b,
+            ops.number(high - low), 2, turns,
+        )  # fmt: skip
+        middle = ops.select(turns, middle, b)
+        here = abs(component - ops.number(float(index))) < ops.number(0.25)
+        own = here & (a <= theta) & (theta <= b)
+        for first, last in ((a, middle), (middle, b)):
+            f0, f1 = flight(first)[0], flight(last)[0]
+            departs = own & (first <= theta) & (theta <= last)
+            if self.closed:  # the two ends of the parameter are one point
+                (begin, end) = (ops.number(float(x)) for x in self.closing)
+                departs = departs | ((theta <= begin) & (end <= last)) | ((end <= theta) & (first <= begin))
+            crosses = ops.negated((nought < f0 * f1) | (f0 == f1) | departs) & (first < last)
+            up = ops.times_sign(ops.number(1.0), f1 - f0)
+            at = ops.zero(
+                lambda x, up=up: tuple(up * f for f in flight(x)), each(ops.number(0.5) * (first + last)),
+                each(first), each(last), ops.number(high - low), 3, crosses,
+            )  # fmt: skip
+            x, y, *_ = curve(ops, at, *shape)
+            t = plane.dot(v, (x - z0[0], y - z0[1]))
+            better = crosses & (nought < t) & (t < best[0])
+            best = [
+                ops.select(better, new, old) for new, old in zip([t, ops.number(float(index)), at], best, strict=True)
+            ]
+        return best
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        return reflected(ops, law, lam, landing)
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        _, _, dx, dy, _, _ = self.curve(ops, shape, *position)
+        return list(plane.normalised(ops, (-dy, dx)))
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        _, _, dx, dy, _, _ = self.curve(ops, shape, *position)
+        return plane.cross((dx, dy), (exit[0], exit[1]))
+
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        return landing.more["t"]
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        _, _, dx, dy, ax, ay = self.curve(ops, shape, *landing.position)
+        return plane.cross((ax, ay), (dx, dy)), plane.dot((dx, dy), (dx, dy))
+
+
+def _inflection(states: Any, index: int, low: float, high: float) -> float:
+    """Where the turning changes sign, by bisection."""
+
+    def turning(theta: float) -> float:
+        _, _, dx, dy, ax, ay = states.curve(np.array([index]), np.array([theta]))
+        return float((dx * ay - dy * ax)[0])
+
+    sign = np.sign(turning(low))
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if np.sign(turning(middle)) == sign else (low, middle)
+    return 0.5 * (low + high)

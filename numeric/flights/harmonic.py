@@ -1,0 +1,127 @@
+"""Tables whose boundary is a finite Fourier sum: the ellipse in closed form, any convex one by its chord polynomial.
+
+State: the unit numbers `u = exp(i*theta)` and `v`, the ball's direction. The programs that a flight
+needs come from `symbolic.flight` through the blueprint.
+"""
+
+from typing import Any
+
+from numeric.backends import plane
+from numeric.backends.plane import Pair
+from numeric.flights.family import SLAP, Family, Landing, grazing, reflected
+from numeric.lowering.table_ir import Blueprint
+
+FAR = 2.0**30  # tan(delta) of any chord lies within
+
+
+class Harmonic(Family):
+    """What the ellipse and the others have in common: the reflection and the tangent map."""
+
+    position = ("ux", "uy")
+    exit = ("vx", "vy")
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        self.name = blueprint.family
+        self.point = blueprint.program("point")
+        self.velocity = blueprint.program("velocity")
+        self.acceleration = blueprint.program("acceleration")
+
+    def landed(self, ops: Any, shape: list[Any], law: str, u: Pair, v: Pair) -> Landing:
+        """The landing at `u` of a ball that flies along `v`."""
+        dx, dy = self.velocity(ops, *u, *shape)
+        across = plane.exact_dot(ops, (dx, dy), v)
+        along = -plane.exact_cross(ops, (dx, dy), v)
+        code = None  # a convex table has no tangent normals
+        if law != SLAP:
+            code = ops.select(grazing(ops, across, along), ops.number(3.0), ops.number(0.0))
+        return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
+
+    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+        return reflected(ops, law, lam, landing)
+
+    def slapped_with_unit(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        dx, dy = self.velocity(ops, *position, *shape)
+        return list(plane.normalised(ops, (-dy, dx)))
+
+    slapped = slapped_with_unit
+
+    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+        dx, dy = self.velocity(ops, *position, *shape)
+        return plane.cross((dx, dy), (exit[0], exit[1]))
+
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return self.point(ops, *position, *shape)
+
+    def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
+        d = landing.more["d"]
+        if not leaving:
+            return ops.sqrt(plane.dot(d, d))
+        return plane.cross(d, (leaving[0], leaving[1]))
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        d = landing.more["d"]
+        ax, ay = self.acceleration(ops, *landing.position, *shape)
+        return plane.cross((ax, ay), d), plane.dot(d, d)
+
+
+class Ellipse(Harmonic):
+    """One harmonic: the middle of the chord lies along `support`, so nothing is to be solved."""
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        super().__init__(blueprint)
+        self.support = blueprint.program("support")
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        v = exit[0], exit[1]
+        M = self.support(ops, v[1], -v[0], *shape)
+        inverse = ops.number(1.0) / plane.dot((M[0], M[1]), (M[0], M[1]))
+        x, y = plane.times(plane.squared((M[0], M[1])), (position[0], -position[1]))
+        landing = self.landed(ops, shape, law, plane.unit(ops, (x * inverse, y * inverse)), v)
+        landing.more["inverse"] = inverse
+        return landing
+
+    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        return []
+
+    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+        return ops.number(-2.0) * self.turning(ops, shape) * (n0 * landing.more["inverse"])
+
+    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+        d = landing.more["d"]
+        return self.turning(ops, shape), plane.dot(d, d)
+
+    def turning(self, ops: Any, shape: list[Any]) -> Any:
+        """Acceleration times velocity, minus the determinant of the map from the circle: the same everywhere."""
+        start = ops.number(1.0), ops.number(0.0)
+        ax, ay = self.acceleration(ops, *start, *shape)
+        dx, dy = self.velocity(ops, *start, *shape)
+        return plane.cross((ax, ay), (dx, dy))
+
+    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+        dx, dy = self.velocity(ops, *position, *shape)
+        return [-dy, dx]
+
+
+class Fourier(Harmonic):
+    """Any convex sum of harmonics: the one real zero of the chord polynomial, from the circle's chord."""
+
+    steps = 1, 1
+
+    def __init__(self, blueprint: Blueprint) -> None:
+        super().__init__(blueprint)
+        self.chord = blueprint.program("chord")
+
+    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+        v = exit[0], exit[1]
+        E = v[1], -v[0]
+        # the rounding of B moves the zero most where the boundary is flat, and is its own to the last bit here
+        u = position[0], position[1]
+        B = plane.unit(ops, (plane.exact_dot(ops, E, u), plane.exact_cross(ops, u, E)))
+        p = self.chord(ops, *E, *B, *shape)
+        one, two = ops.number(1.0), ops.number(2.0)
+        start = -(p[0] * p[1]) / (p[1] * p[1] - p[0] * p[2])  # Halley's step from T = 0
+        T = ops.polynomial_zero(p, start, ops.number(-FAR), ops.number(FAR), one, self.steps)
+        s = two * T / (T * T + one)
+        c = one - T * s
+        u = plane.unit(ops, plane.times(plane.times(B, E), (c, s)))
+        return self.landed(ops, shape, law, u, v)

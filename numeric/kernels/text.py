@@ -1,0 +1,190 @@
+"""The text of a kernel: blocks of lanes, each bounced many times, for one family, one law and one question.
+
+    void run(double *state, const double *lam, const double *shape, double *record,
+             int64 width, int64 first, int64 last, int64 bounces)
+
+`state` holds one row of `width` doubles for each field: the ball's own, then `code` and `lost` when the
+family has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
+worked on. `record`, when orbits are asked for, receives the ball's own rows after every bounce.
+"""
+
+import re
+from collections.abc import Sequence
+
+from numeric.backends.llvm import Lane, Lanes
+from numeric.flights.family import ELASTIC, SLAP, Family
+from numeric.kernels.spec import TANGENT, Question, fields, rescaled
+
+NAME = re.compile(r"%[A-Za-z0-9_]+")
+HEAD = (
+    "define void @run(ptr noalias %state, ptr noalias %lam, ptr noalias %shape, ptr noalias %record, "
+    "i64 %width, i64 %first, i64 %last, i64 %bounces) #0 {"
+)
+TAIL = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
+
+
+def kernel_text(family: Family, shape: Sequence[str], question: Question, width: int = 0) -> str:
+    """The module in LLVM's language."""
+    ops = Lanes(width or family.width)
+    names = fields(family, question)
+    own = len(family.fields(question.law))
+    ops.label("entry")
+    parameters = [_broadcast(ops, i, name) for i, name in enumerate(shape)]
+    ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
+    ops.lines += ["  %busy = icmp slt i64 %at, %last", "  br i1 %busy, label %start, label %exit"]
+    ops.label("start")
+    ops.open()
+    addresses = [_address(ops, "state", ops.emit(f"mul i64 %width, {i}")) for i in range(len(names))]
+    loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
+    lam = _contraction(ops, question.law)
+    ball = [Lane(ops, name) for name in loaded[:own]]
+    place = ball[: len(family.position)]
+    carried = [x.text for x in family.kept(ops, parameters, place)] if question.exponents else []
+    before = ops.block
+    outer = [ops.fresh() for _ in [*names, *carried]]
+    ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %stretch, label %done"]
+    ops.label("stretch")
+    far = len(ops.lines)
+    ops.open()
+    stretch = f"add i64 %begun, {family.often}" if question.exponents else "add i64 %bounces, 0"
+    ops.lines += [f"  %full = {stretch}", "  %short = icmp slt i64 %full, %bounces"]
+    ops.lines += ["  %until = select i1 %short, i64 %full, i64 %bounces", "  br label %bounce"]
+    ops.label("bounce")
+    slot = len(ops.lines)
+    ops.open()
+    state = [ops.fresh() for _ in [*names, *carried]]
+    new = _bounced(ops, family, question, parameters, lam, [Lane(ops, name) for name in state])
+    texts = [x.text for x in new]
+    if question.record:
+        _record(ops, texts[:own])
+    ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %until"]
+    ops.lines.append("  br i1 %more, label %bounce, label %measured")
+    ops.lines[slot:slot] = _joined(ops, "i", state, ("stretch", "%begun", outer), (ops.block, "%following", texts))
+    ops.close()
+    ops.label("measured")
+    if question.exponents:
+        at = own + (2 if family.stops else 0)
+        rows = [Lane(ops, name) for name in texts[at : at + len(TANGENT)]]
+        texts[at : at + len(TANGENT)] = [x.text for x in rescaled(ops, rows)]
+    ops.lines += ["  %again = icmp slt i64 %following, %bounces", "  br i1 %again, label %stretch, label %done"]
+    last = ops.block
+    origin = loaded + carried
+    ops.lines[far:far] = _joined(ops, "begun", outer, (before, "0", origin), (last, "%following", texts))
+    ops.close()
+    ops.label("done")
+    finals = [ops.fresh() for _ in names]
+    for name, begin, end in zip(finals, loaded, texts[: len(names)], strict=True):
+        ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
+    for name, address in zip(finals, addresses, strict=True):
+        ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
+    ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
+    title = f"; {family.name}, {question.text}: written by numeric.kernels.text from numeric.flights"
+    return "\n".join([title, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
+
+
+def _joined(
+    ops: Lanes, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
+) -> list[str]:
+    """The head of a loop: what its index and its rows are on entry from a block, and after a pass from another."""
+    (before, zero, begins), (last, following, ends) = first, again
+    phis = [f"  %{index} = phi i64 [{zero}, %{before}], [{following}, %{last}]"]
+    for name, begin, end in zip(names, begins, ends, strict=True):
+        phis.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
+    return phis
+
+
+def _broadcast(ops: Lanes, i: int, name: str) -> Lane:
+    """A shape parameter in every lane."""
+    address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
+    scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
+    one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
+    everywhere = f"<{ops.width} x i32> zeroinitializer"
+    return Lane(ops, ops.emit(f"shufflevector {ops.type} {one}, {ops.type} poison, {everywhere}"))
+
+
+def _address(ops: Lanes, base: str, row: str) -> str:
+    """Where this column's block of a row begins; `row` counts doubles."""
+    return ops.emit(f"getelementptr double, ptr %{base}, i64 {ops.emit(f'add i64 {row}, %at')}")
+
+
+def _record(ops: Lanes, texts: list[str]) -> None:
+    """Store the ball's own rows of bounce `%i`."""
+    page = ops.emit(f"mul i64 %i, {len(texts)}")
+    for i, text in enumerate(texts):
+        row = ops.emit(f"mul i64 {ops.emit(f'add i64 {page}, {i}')}, %width")
+        ops.lines.append(f"  store {ops.type} {text}, ptr {_address(ops, 'record', row)}, align 8")
+
+
+def alive(lines: list[str]) -> list[str]:
+    """The lines that a store or a branch depends on.
+
+    >>> alive(["  %a = fadd double 1.0, 2.0", "  %b = fadd double 3.0, 4.0", "  store double %b, ptr %p"])
+    ['  %b = fadd double 3.0, 4.0', '  store double %b, ptr %p']
+    """
+    uses = {}
+    needed: list[str] = []
+    for line in lines:
+        name, found, text = line.strip().partition(" = ")
+        if found and name.startswith("%"):
+            uses[name] = NAME.findall(text)
+        else:
+            needed += NAME.findall(line)
+    kept: set[str] = set()
+    while needed:
+        name = needed.pop()
+        if name not in kept:
+            kept.add(name)
+            needed += uses.get(name, [])
+    return [line for line in lines if (line.strip().partition(" = ")[0] in kept) or " = " not in line]
+
+
+def operations(text: str) -> dict[str, int]:
+    """How many vector instructions of each kind one bounce takes, branches that are rarely taken left out."""
+    counts = dict.fromkeys(("fma", "add", "mul", "div", "sqrt", "compare", "select"), 0)
+    words = {"fadd": "add", "fsub": "add", "fmul": "mul", "fdiv": "div", "fcmp": "compare", "select": "select"}
+    rare = True
+    for line in text.splitlines():
+        if line.endswith(":"):
+            rare = line.startswith(("entry", "start", "stretch", "measured", "inside", "head"))
+        elif not rare and " = " in line:
+            word = line.partition(" = ")[2].split()[0]
+            if word in words:
+                counts[words[word]] += 1
+            for name in ("fma", "sqrt"):
+                counts[name] += f"@llvm.{name}." in line
+    return counts
+
+
+def _contraction(ops: Lanes, law: str) -> Lane:
+    if law in (SLAP, ELASTIC):
+        return ops.number(0.0 if law == SLAP else 1.0)
+    address = ops.emit("getelementptr double, ptr %lam, i64 %at")
+    return Lane(ops, ops.emit(f"load {ops.type}, ptr {address}, align 8"))
+
+
+def _bounced(
+    ops: Lanes, family: Family, question: Question, shape: list[Lane], lam: Lane, state: list[Lane]
+) -> list[Lane]:
+    """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost."""
+    count = len(family.fields(question.law))
+    own, rest = state[:count], state[count:]
+    outcome, rest = (rest[:2], rest[2:]) if family.stops else ([], rest)
+    if question.exponents:
+        vector, kept = rest[: len(TANGENT)], rest[len(TANGENT) :]
+        ball, code, rows, kept = family.bounce_with_tangent(ops, question.law, shape, lam, own, vector, kept)
+        rest_new = rows + kept
+    else:
+        ball, code = family.bounce(ops, question.law, shape, lam, own)
+        rest_new = []
+    new = [*ball, *rest_new]
+    if code is None or not family.stops:
+        return [*ball, *outcome, *rest_new]
+    stopped = ops.number(0.5) < code
+
+    def frozen() -> list[Lane]:
+        kept = [ops.select(stopped, x, y) for x, y in zip([*own, *rest], new, strict=True)]
+        first = ops.select(stopped, code, outcome[0])
+        return [first, outcome[1] + ops.select(stopped, ops.number(1.0), ops.number(0.0)), *kept]
+
+    code_row, lost_row, *new = ops.when(stopped, [*outcome, *new], frozen)
+    return [*new[:count], code_row, lost_row, *new[count:]]

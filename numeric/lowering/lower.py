@@ -1,0 +1,181 @@
+"""The one door from the symbolic storey: an exact table comes in, a blueprint goes out.
+
+This is the only module of `numeric` that imports SymPy; it is imported when a blueprint is not on
+disk, and never while a map runs.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+from sympy import Expr, Float, Pow, Symbol, cos, pi, sin
+from sympy import sympify as exact
+
+from numeric.lowering.program import Builder, Node, Program
+from numeric.lowering.table_ir import Blueprint, Part, ShapeRange
+from symbolic import flight, tables
+from symbolic.geometry import velocity
+from symbolic.symbols import theta
+from symbolic.table import Component, Table
+from symbolic.validity import closed_and_finite
+
+
+def named(name: str, K: int = 3) -> Blueprint:
+    """The blueprint of one of the paper's tables."""
+    return drawn(tables.named(name, K))
+
+
+def drawn(table: Table) -> Blueprint:
+    """The blueprint of a table; shape parameters that have no value yet stay open.
+
+    A table may have been written down without a check, so that it is closed is seen to here.
+    """
+    table = closed_and_finite(table)
+    names = tuple(shape.symbol.name for shape in table.shapes)
+    symbols = [shape.symbol for shape in table.shapes]
+    parts = tuple(_part(component, symbols) for component in table.components)
+    family, programs = _family(table, symbols)
+    index, start = table.origin
+    return Blueprint(
+        table.name,
+        family,
+        tuple(
+            ShapeRange(name, _bound(shape.range.start), _bound(shape.range.end), shape.otherwise)
+            for name, shape in zip(names, table.shapes, strict=True)
+        ),
+        parts,
+        tuple(programs.items()),
+        (index, _program(symbols, lambda nodes: [nodes(start)])),
+    )
+
+
+def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
+    """A SymPy expression in the closed vocabulary; anything outside it is an error, never a rounding."""
+    if expression.has(Float):
+        raise ValueError(f"{expression} contains a rounded float; write its numbers exactly, as Rational(2, 25)")
+    if expression in nodes:
+        return nodes[expression]
+    if expression.is_Rational:
+        return builder.exact(0) + builder.exact(exact(expression).p) / builder.exact(exact(expression).q)
+    if expression is pi:
+        return builder.node("pi")
+    values = [converted(builder, x, nodes) for x in expression.args] if expression.is_Add or expression.is_Mul else []
+    if expression.is_Add:
+        return sum(values[1:], start=values[0])
+    if expression.is_Mul:
+        product = values[0]
+        for value in values[1:]:
+            product = product * value
+        return product
+    if isinstance(expression, Pow) and (2 * expression.exp).is_Integer:
+        return _power(builder, converted(builder, expression.base, nodes), int(2 * expression.exp))
+    if isinstance(expression, cos | sin):
+        return _circular(builder, expression, nodes)
+    raise ValueError(
+        f"{expression} is beyond the kernels' words: + - * /, whole powers, square roots, sin, cos, pi, rationals"
+    )
+
+
+def _power(builder: Builder, base: Node, halves: int) -> Node:
+    root = builder.node("sqrt", base.number()) if halves % 2 else None
+    n = abs(halves) // 2
+    result = flight.powers((base, 0), max(n, 1))[n][0] if n else builder.exact(1)
+    result = builder.exact(result)
+    if root is not None:
+        result = result * root
+    return builder.exact(1) / result if halves < 0 else result
+
+
+def _circular(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
+    """Cosine or sine; of a whole multiple of `theta` by multiplication, so that one call serves all."""
+    (argument,) = expression.args
+    multiple = argument / theta
+    index = 0 if isinstance(expression, cos) else 1
+    if multiple.is_Integer and multiple != 0:
+        at = nodes[theta].number()
+        u = builder.node("cos", at), builder.node("sin", at)
+        value = builder.exact(flight.powers(u, abs(int(multiple)))[abs(int(multiple))][index])
+        return -value if index and multiple < 0 else value
+    return builder.node("sin" if index else "cos", converted(builder, argument, nodes).number())
+
+
+def _program(symbols: list[Symbol], formula: Callable[[Any], list[Any]], *first: str) -> Program:
+    """The program whose outputs `formula` gives, when handed a converter of expressions."""
+    builder = Builder(*first, *(symbol.name for symbol in symbols))
+    nodes = dict(zip([theta] if first == ("theta",) else [], builder.nodes, strict=False))
+    nodes |= dict(zip(symbols, builder.nodes[len(first) :], strict=True))
+
+    def convert(expression: Any) -> Node:
+        return converted(builder, exact(expression), nodes)
+
+    convert.inputs = builder.nodes[: len(first)]  # type: ignore[attr-defined]
+    return builder.program(*formula(convert))
+
+
+def _part(component: Component, symbols: list[Symbol]) -> Part:
+    first = velocity(component)
+    second = first.diff(theta)
+    curve = [*component.point, *first, *second]
+    return Part(
+        component.name,
+        _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)]),
+        _program(symbols, lambda nodes: [nodes(expression) for expression in curve], "theta"),
+    )
+
+
+def _family(table: Table, symbols: list[Symbol]) -> tuple[str, dict[str, Program]]:
+    if table.components == tables.cuspless.components:
+        return "cuspless", {}
+    if table.components[0].point == tables.cardioid.components[0].point and len(table.components) == 1:
+        return "cardioid", {}
+    if table.components[0].point == tables.circle.components[0].point and len(table.components) == 1:
+        return "circle", {}
+    whole = len(table.components) == 1 and table.components[0].end - table.components[0].start == 2 * pi
+    h = flight.harmonics(table.components[0]) if whole else None
+    if h is None:
+        return "general", {}
+    degree = max(h)
+
+    def in_nodes(nodes: Any, harmonics: flight.Harmonics) -> flight.Harmonics:
+        return {k: tuple((nodes(x), nodes(y)) for x, y in vectors) for k, vectors in harmonics.items()}  # type: ignore[misc]
+
+    def at_point(harmonics: flight.Harmonics) -> Program:
+        return _program(
+            symbols, lambda nodes: list(flight.point_at(in_nodes(nodes, harmonics), tuple(nodes.inputs))), "c", "s"
+        )
+
+    once = flight.differentiated(h)
+    programs = {"point": at_point(h), "velocity": at_point(once), "acceleration": at_point(flight.differentiated(once))}
+    if degree == 1:
+        programs["support"] = _program(
+            symbols, lambda nodes: list(flight.support(in_nodes(nodes, h), 1, tuple(nodes.inputs))), "ex", "ey"
+        )
+        return "ellipse", programs
+
+    def chord(nodes: Any) -> list[Any]:
+        ex, ey, bx, by = nodes.inputs
+        ahead = {k: seen_ahead(k, *vectors, (ex, ey)) for k, vectors in in_nodes(nodes, h).items() if k}
+        return flight.chord_polynomial(ahead, flight.ONE, (bx, by))
+
+    programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
+    return "fourier", programs
+
+
+def seen_ahead(
+    k: int, C: flight.Complex, S: flight.Complex, E: flight.Complex
+) -> tuple[flight.Complex, flight.Complex]:
+    """A harmonic in the frame of the flight, where `E = 1`; of the two vectors only the parts that a chord sees.
+
+    `exp(i*k*m)*conj(M_k)` is a number times `E**(k + 1)` and one times `E**(k - 1)`. With `|E| = 1` used here, a
+    circle's part of a table adds no rounding to the chord polynomial: its products `E*conj(E)` are one.
+    """
+    half = Fraction(1, 2)
+    up = flight.powers(E, k + 1)
+    above = (C[0] - S[1]) * half, (S[0] + C[1]) * -half
+    below = (C[0] + S[1]) * half, (C[1] - S[0]) * half
+    g = [x + y for x, y in zip(flight.times(above, up[k + 1]), flight.times(below, up[k - 1]), strict=True)]
+    return (g[0], 0), (-g[1], 0)
+
+
+def _bound(value: Expr) -> str | None:
+    return str(value) if value.is_Rational else None

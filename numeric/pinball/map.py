@@ -1,0 +1,241 @@
+"""`PinballMap`: a table with its shape and contraction, asked for steps, orbits, derivatives and exponents."""
+
+from copy import copy
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from numeric.flights.family import NEAR, PINBALL, SLAP, law_of
+from numeric.flights.registry import PATHS, family_of
+from numeric.kernels.engine import Engine
+from numeric.kernels.spec import Question, starting
+from numeric.lowering.cache import key_of
+from numeric.lowering.table_ir import Blueprint, blueprint
+from numeric.pinball.coordinates import States
+from numeric.pinball.growth import Growth
+from numeric.pinball.inputs import angles, components, contraction, counted, real, shape_value
+from numeric.pinball.results import Exponents, Orbit, Slap
+
+if TYPE_CHECKING:
+    from numeric.pinball.arclength import ArcLength
+
+Array = NDArray[np.float64]
+
+
+class PinballMap:
+    """The map `T_lambda` of a table. Paper: section 2.
+
+    `table` is an exact table or the name of one of the paper's; shape parameters are keywords, exact or
+    decimal, and a decimal means the decimal it shows. `lam` is one number or one for each ball. With
+    `kernels=False` the same steps run on NumPy arrays.
+
+    >>> ellipse = PinballMap("ellipse", lam=1, a=2)
+    >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
+    >>> round(float(step.x), 12), round(float(step.phi), 12) + 0.0
+    (-2.0, 0.0)
+    """
+
+    def __init__(self, table: Any, lam: Any = 1, K: int = 3, kernels: bool = True, **shape: Any) -> None:
+        self.blueprint: Blueprint = blueprint(table, K)
+        self.lam = contraction(lam)
+        self.exact_shape = self._shape(shape)
+        self.shape = [float(value) for value in self.exact_shape]
+        names = [entry.name for entry in self.blueprint.shape]
+        family = family_of(self.blueprint)
+        self.states = States(self.blueprint, family, self.shape)
+        if family.name == "fourier" and not self._convex():
+            family = family_of(self.blueprint, convex=False)
+            self.states = States(self.blueprint, family, self.shape)
+        prepare = getattr(family, "prepared", None)
+        if prepare is not None:
+            prepare(self.states)
+        self.family = family
+        self.engine = Engine(family, key_of(self.blueprint.as_text(), getattr(family, "identity", "")), names, kernels)
+
+    @property
+    def path(self) -> str:
+        """How flights are computed for this table, in words."""
+        return PATHS[self.family.name]
+
+    @property
+    def law(self) -> str:
+        """`slap`, `elastic` or `pinball`: the reflection for which kernels are made."""
+        return law_of(float(np.min(self.lam)), float(np.max(self.lam)))
+
+    @cached_property
+    def arclength(self) -> "ArcLength":
+        """Arc length and its inverse, on every component."""
+        from numeric.pinball.arclength import ArcLength
+
+        return ArcLength(self.states)
+
+    # ---- questions
+
+    def step(self, theta: ArrayLike, phi: ArrayLike = 0.0, component: ArrayLike = 0) -> Orbit:
+        """One bounce; all fields have the shape of the arguments."""
+        whole = self.orbit(theta, phi, 1, component)
+        return Orbit(*(rows[-1] for rows in whole))
+
+    def orbit(
+        self, theta: ArrayLike, phi: ArrayLike, bounces: int, component: ArrayLike = 0, threads: int | None = None
+    ) -> Orbit:
+        """The start and `bounces` bounces after it."""
+        where, theta, phi = self._start(theta, phi, component)
+        bounces = counted("bounces", bounces)
+        law = self._law(phi)
+        start, lam = (where.ravel(), theta.ravel(), phi.ravel()), self._lams(theta)
+        frame = self.states.frame(*start[:2])
+        own = self.states.enter(*start, law, frame)
+        result = self.engine.run(Question(law, record=True), own, lam, self.shape, bounces, threads=threads)
+        assert result.record is not None
+        told = self.states.told(result.record, start, frame, own, lam, law)
+        code = self._codes(result.rows, bounces, theta.size)
+        told[3][code != 0] = np.nan
+        shape = (bounces + 1, *theta.shape)
+        return Orbit(*(a.reshape(shape) for a in (*told, code)))
+
+    def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
+        """`d(s1, phi1)/d(s0, phi0)`, a matrix for each ball. Paper: eq. (derivative_of_map).
+
+        The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is.
+        """
+        where, theta, phi = self._start(theta, phi, component)
+        law, states, count = self._law(phi), self.states, theta.size
+        law = PINBALL if law == SLAP else law
+        own = states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
+        n0, lam = states.departure(own, law), self._lams(theta)
+        rate, curvature = states.bending(where.ravel(), theta.ravel())
+        q, omega = np.append(n0 / rate, np.zeros(count)), np.append(curvature, np.ones(count))  # of ds, then of dphi
+        balls, tangent = [np.tile(field, 2) for field in own], starting(q, omega, np.tile(n0, 2))
+        found = self.engine.run(Question(law, exponents=True), balls, np.tile(lam, 2), self.shape, 1, tangent)
+        rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
+        rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
+        moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
+        turned = lam * (curvature * moved - omega.reshape(2, count))
+        return np.moveaxis(np.array([moved, turned]), 2, 0).reshape(*theta.shape, 2, 2)
+
+    def exponents(
+        self,
+        theta: ArrayLike,
+        phi: ArrayLike,
+        bounces: int,
+        transient: int = 0,
+        component: ArrayLike = 0,
+        threads: int | None = None,
+    ) -> Exponents:
+        """Both Lyapunov exponents of every ball over `bounces` bounces, after `transient` that do not count.
+
+        `nu_plus` is the growth of one vector, which starts in a fixed generic direction; `nu_minus` comes from
+        the determinant. At `lam = 0` the map is one-dimensional and `nu_minus` is minus infinity.
+        """
+        bounces, transient = counted("bounces", bounces), counted("transient", transient, least=0)
+        growth = Growth(self, component, theta, phi)
+        growth.skip(transient, threads)
+        growth.advance(bounces, threads)
+        made = np.maximum(growth.bounces, 1)
+        with np.errstate(divide="ignore"):
+            plus = growth.stretch / made
+            minus = growth.volume / made + np.log(growth.lam) - plus
+        upper, lower = np.maximum(plus, minus), np.minimum(plus, minus)
+        shape = np.broadcast_shapes(*(np.shape(given) for given in (theta, phi, component)))
+        found = upper, lower, growth.bounces, growth.component, growth.theta, growth.phi, growth.code
+        return Exponents(*(np.asarray(field).reshape(shape) for field in found))
+
+    def slap(self, theta: ArrayLike, iterates: int = 1, component: ArrayLike = 0) -> Slap:
+        """The slap map `T_0` and its iterates, whatever this map's `lam`; the start comes first. Paper: section 2.2.
+
+        `slope` is `T_0'(s)` at the start, the derivative with respect to arc length.
+
+        >>> abs(float(PinballMap("ellipse", a=2).slap(0.0).theta[1]))
+        3.141592653589793
+        """
+        slapping = self if self.law == SLAP else self.at(lam=0)
+        orbit = slapping.orbit(theta, 0.0, iterates, component)
+        slope = slapping.derivative(theta, 0.0, component)[..., 0, 0]
+        return Slap(orbit.component, orbit.theta, slope, orbit.code)
+
+    def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[NDArray[np.int64], Array]:
+        """Component and parameter of boundary points given in Cartesian coordinates.
+
+        >>> component, theta = PinballMap("ellipse", a=2).locate(0.0, 1.0)
+        >>> int(component), float(theta)
+        (0, 1.5707963267948966)
+        """
+        from numeric.pinball.location import located
+
+        return located(self.states, real("x", x), real("y", y))
+
+    def at(self, lam: Any) -> "PinballMap":
+        """The same table with another contraction."""
+        other = copy(self)
+        other.lam = contraction(lam)
+        return other
+
+    # ---- within
+
+    def _law(self, phi: Array) -> str:
+        """The law of a run; the slap kernel can only start along the normal."""
+        return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
+
+    def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
+        name = self.blueprint.table
+        ranges = {entry.name: entry for entry in self.blueprint.shape}
+        for key in given:
+            if key not in ranges:
+                accepted = ", ".join(ranges) or "none"
+                raise ValueError(f"{name}: no shape parameter {key}; it has: {accepted}")
+        values: list[Fraction | float] = []
+        for key, entry in ranges.items():
+            if key not in given:
+                raise ValueError(f"{name}: the shape parameter {key} needs a value, as in PinballMap(..., {key}=...)")
+            value = shape_value(f"{name}: {key}", given[key])
+            entry.check(name, Fraction(value))
+            values.append(value)
+        return values
+
+    def _convex(self) -> bool:
+        """No curvature of the wrong sign on a fine grid, up to rounding."""
+        theta = np.linspace(-np.pi, np.pi, 4096)
+        curvature = self.states.curvature(np.zeros(theta.size, dtype=np.int64), theta)
+        return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
+
+    def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:
+        theta, phi = angles("theta", theta), angles("phi", phi)
+        where = components(component, [part.name for part in self.blueprint.parts])
+        theta, phi, where = np.broadcast_arrays(theta, phi, where)
+        if theta.size == 0:
+            raise ValueError("theta and phi are empty; give at least one ball")
+        steep = np.abs(phi) >= np.pi / 2
+        if np.any(steep):
+            raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
+        at_cusp = np.cos(theta / 2) < NEAR if self.family.name == "cardioid" else np.zeros(theta.shape, dtype=bool)
+        if np.any(at_cusp):
+            raise ValueError(f"theta = {theta[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
+        if self.lam.size > 1 and self.lam.shape != theta.shape:
+            raise ValueError(
+                f"lam has shape {self.lam.shape} and the balls {theta.shape}; give one lam for each ball, or one"
+            )
+        for index, (low, high) in enumerate(self.states.ends):
+            off = (where == index) & ~((low <= theta) & (theta <= high))
+            if np.any(off):
+                if len(self.blueprint.parts) == 1 and abs(high - low - 2 * np.pi) < 1e-12:
+                    theta = np.where(off, np.remainder(theta - low, 2 * np.pi) + low, theta)
+                else:
+                    name = self.blueprint.parts[index].name
+                    lies = f"there theta lies in [{low:.17g}, {high:.17g}]"
+                    raise ValueError(f"theta = {theta[off].flat[0]} is not on the {name}; {lies}")
+        return where, np.array(theta), np.array(phi)
+
+    def _lams(self, theta: Array) -> Array:
+        return np.broadcast_to(self.lam, theta.shape).ravel().astype(float)
+
+    def _codes(self, rows: dict[str, Array], bounces: int, count: int) -> NDArray[np.int64]:
+        codes = np.zeros((bounces + 1, count), dtype=np.int64)
+        if "code" in rows:
+            first = bounces + 1 - rows["lost"].astype(np.int64)
+            stopped = np.arange(bounces + 1)[:, None] >= first[None]
+            codes[stopped] = np.broadcast_to(rows["code"].astype(np.int64), codes.shape)[stopped]
+        return codes

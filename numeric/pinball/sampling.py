@@ -1,0 +1,144 @@
+"""Where orbits start: random points of phase space, random points of the table, and a grid for pictures.
+
+A start in the interior is the paper's: a point uniform in the table with a uniform direction, mapped to the first
+collision, which is elastic. It needs no ray from an interior point. The elastic map's measure `ds d(sin(phi))` counts
+chords, and a chord holds points in proportion to its length `t`; so a chord drawn from that measure and kept with
+probability `t/diameter` carries, uniformly along it, points uniform in the table with uniform directions (Santalo).
+Its other end is the first collision. This holds on every table, with the flights of the table's own kernel.
+
+All draws come from one seeded generator in one order: they depend neither on threads nor on batches.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric.pinball.inputs import counted
+
+if TYPE_CHECKING:
+    from numeric.pinball.map import PinballMap
+
+Array = NDArray[np.float64]
+BATCH = 1 << 14  # chords drawn at a time
+INSIDE = 1 - 1e-12  # of a component or of the angles: never at an end
+RULER = 512  # boundary points between which the diameter is measured
+
+
+class Starts(NamedTuple):
+    """Balls about to leave the boundary; `x, y` is the interior point they came from, or else their own place."""
+
+    component: NDArray[np.int64]
+    theta: Array
+    phi: Array
+    x: Array
+    y: Array
+
+
+class Grid(NamedTuple):
+    """Cell centres: `s` along the columns, `sin_phi` along the rows, and the balls there, row after row."""
+
+    s: Array
+    sin_phi: Array
+    starts: Starts
+
+
+def phase_starts(map: "PinballMap", count: int, seed: int) -> Starts:
+    """Random balls, uniform in arc length and `sin(phi)`: the elastic map's own measure.
+
+    >>> from numeric import PinballMap
+    >>> starts = phase_starts(PinballMap("circle", lam=1), 3, seed=0)
+    >>> bool(np.all(np.abs(starts.phi) < np.pi / 2)), starts.component.tolist()
+    (True, [0, 0, 0])
+    """
+    return _uniform(map, counted("count", count), np.random.default_rng(seed))
+
+
+def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
+    """Random balls after their first collision: points uniform in the table, directions uniform.
+
+    Paper: appendix. That collision is elastic whatever `lam` is, so that every exit angle occurs, also at
+    `lam = 0`. The first balls of a longer list are those of a shorter one.
+
+    >>> from numeric import PinballMap
+    >>> starts = interior_starts(PinballMap("circle", lam=0), 1000, seed=0)
+    >>> bool(np.all(np.hypot(starts.x, starts.y) < 1))
+    True
+    """
+    rng, elastic = np.random.default_rng(seed), map.at(lam=1)
+    missing, diameter = counted("count", count), longest(map)
+    batches: list[Starts] = []
+    while missing > 0:
+        leaving = _uniform(map, BATCH, rng)
+        landing = elastic.step(leaving.theta, leaving.phi, leaving.component)
+        t = np.hypot(landing.x - leaving.x, landing.y - leaving.y)
+        kept = (rng.uniform(0, diameter, BATCH) < t) & (landing.code == 0)
+        part = rng.uniform(0, 1, BATCH)
+        x, y = leaving.x + part * (landing.x - leaving.x), leaving.y + part * (landing.y - leaving.y)
+        batch = Starts(landing.component, landing.theta, landing.phi, x, y)
+        batches.append(Starts(*(field[kept][:missing] for field in batch)))
+        missing -= batches[-1].theta.size
+        if not np.any(kept):
+            raise ValueError(f"{map.blueprint.table}: no chord lands on its boundary; the table must be closed")
+    return Starts(*(np.concatenate(fields) for fields in zip(*batches, strict=True)))
+
+
+def phase_grid(map: "PinballMap", columns: int, rows: int) -> Grid:
+    """A ball at the centre of each cell of phase space, in `s` from `-L/2` to `L/2` and `sin(phi)` from -1 to 1.
+
+    `L` is the perimeter; `s` is the paper's arc length. The first row is the lowest.
+
+    >>> from numeric import PinballMap
+    >>> grid = phase_grid(PinballMap("cardioid", lam=1), 4, 2)
+    >>> grid.s.tolist(), grid.sin_phi.tolist(), grid.starts.theta.size
+    ([-3.0, -1.0, 1.0, 3.0], [-0.5, 0.5], 8)
+    """
+    columns, rows = counted("columns", columns), counted("rows", rows)
+    s = (np.arange(columns, dtype=np.float64) + 0.5 - columns / 2) * (map.arclength.perimeter / columns)
+    sin_phi = (2 * np.arange(rows, dtype=np.float64) + 1 - rows) / rows
+    component, theta = boundary(map, s)
+    x, y = map.states.point(component, theta)
+    across = (np.tile(field, rows) for field in (x, y))
+    phi = np.repeat(np.arcsin(sin_phi), columns)
+    return Grid(s, sin_phi, Starts(np.tile(component, rows), np.tile(theta, rows), phi, *across))
+
+
+def boundary(map: "PinballMap", s: Array) -> tuple[NDArray[np.int64], Array]:
+    """Component and parameter at arc length `s`, taken modulo the perimeter.
+
+    >>> from numeric import PinballMap
+    >>> component, theta = boundary(PinballMap("cuspless"), np.array([0.0, 9 * 3**0.5 / 4]))
+    >>> component.tolist(), (abs(theta.round(12)) + 0.0).tolist()
+    ([1, 0], [0.0, 0.0])
+    """
+    low, high = _spans(map)
+    first = float(np.min(low))
+    turned = first + np.mod(s - first, map.arclength.perimeter)
+    order = np.argsort(low)
+    component = order[np.searchsorted(low[order], turned, side="right") - 1]
+    inside = np.clip(turned, low[component], high[component])
+    return component, map.arclength.theta(inside, component)
+
+
+def longest(map: "PinballMap") -> float:
+    """An upper bound for the table's diameter: every boundary point is near one of the `RULER`."""
+    s = np.arange(RULER, dtype=np.float64) * (map.arclength.perimeter / RULER)
+    x, y = map.states.point(*boundary(map, s))
+    measured = np.max(np.hypot(x[:, None] - x, y[:, None] - y))
+    return float(measured) + map.arclength.perimeter / RULER
+
+
+def _uniform(map: "PinballMap", count: int, rng: np.random.Generator) -> Starts:
+    low, high = _spans(map)
+    component = rng.choice(np.arange(low.size), size=count, p=(high - low) / np.sum(high - low))
+    s = low[component] + (high - low)[component] * rng.uniform(1 - INSIDE, INSIDE, count)
+    phi = np.arcsin(rng.uniform(-1, 1, count) * INSIDE)
+    theta = map.arclength.theta(s, component)
+    return Starts(component, theta, phi, *map.states.point(component, theta))
+
+
+def _spans(map: "PinballMap") -> tuple[Array, Array]:
+    """Arc length at both ends of every component."""
+    ends = np.array(map.states.ends)
+    index = np.arange(len(ends))
+    return map.arclength.s(ends[:, 0], index), map.arclength.s(ends[:, 1], index)

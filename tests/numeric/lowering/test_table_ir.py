@@ -1,0 +1,73 @@
+"""Blueprints: shapes are held to their ranges, and a table comes back from its text as it was."""
+
+from fractions import Fraction
+
+import pytest
+
+from numeric.lowering import table_ir as blueprints
+from numeric.lowering.lower import drawn
+from numeric.lowering.table_ir import Blueprint, ShapeRange, blueprint
+from symbolic import tables
+
+
+@pytest.mark.parametrize("name", ["circle", "ellipse", "cardioid", "cuspless", "egg"])
+def test_a_blueprint_comes_back_from_its_text(name):
+    made = blueprint(name)
+
+    assert Blueprint.from_text(made.as_text()) == made
+    assert made.table == name
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (Fraction(-1, 10**9), r"flat: b = -1e-09 is odd; b must lie in \[0, 1/10\]"),
+        (Fraction(1, 3), r"flat: b = 1/3 is odd; b must lie in \[0, 1/10\]"),
+        (Fraction(999_998, 999_999), "b = 999998/999999 is odd"),
+        (Fraction(10**6 + 1, 10**6), "b = 1.000001 is odd"),
+    ],
+)
+def test_a_shape_outside_its_range_is_shown(value, words):
+    with pytest.raises(ValueError, match=words):
+        ShapeRange("b", "0", "1/10", "is odd").check("flat", value)
+
+
+@pytest.mark.parametrize(("low", "high"), [("0", "1/10"), (None, "1/10"), ("0", None), (None, None)])
+def test_a_range_is_closed_and_an_open_end_has_no_bound(low, high):
+    entry = ShapeRange("b", low, high, "is odd")
+    for value in (Fraction(0), Fraction(1, 10)):
+        entry.check("flat", value)
+    for value, bound in ((Fraction(-1), low), (Fraction(1), high)):
+        if bound is None:
+            entry.check("flat", value)
+        else:
+            with pytest.raises(ValueError, match="b must lie in"):
+                entry.check("flat", value)
+
+
+def test_open_ends_are_shown_as_such():
+    with pytest.raises(ValueError, match=r"must lie in \(-oo, 2\]"):
+        ShapeRange("b", None, "2", "is odd").check("flat", Fraction(3))
+    with pytest.raises(ValueError, match=r"must lie in \[2, oo\)"):
+        ShapeRange("b", "2", None, "is odd").check("flat", Fraction(1))
+
+
+def test_eggs_are_kept_apart_by_their_number_of_points(tmp_path, monkeypatch):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
+    two, three = blueprint("egg", 2), blueprint("egg")
+
+    assert three == drawn(tables.named("egg", 3))
+    assert two == drawn(tables.named("egg", 2)) != three
+    assert len(list(tmp_path.iterdir())) == 2
+    assert (blueprint("egg", 2), blueprint("egg", 3)) == (two, three)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{}", "[]", '{"table": 3}', '{"table": "circle", "family": "circle", "shape": 1}']
+)
+def test_a_file_that_is_no_blueprint_is_written_again(text, tmp_path, monkeypatch):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
+    monkeypatch.setattr(blueprints.cache, "read", lambda *_: text.encode())
+
+    assert blueprint("circle") == drawn(tables.circle)
+    assert len(list(tmp_path.iterdir())) == 1

@@ -77,6 +77,9 @@ class Located:
             "seconds": self.seconds,
         }
 
+    def __str__(self) -> str:
+        return f"{self.name} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
+
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><td>{item}</td><td>{WORDS[value]}</td></tr>" for item, value in self.checks.items())
         said = "certified" if self.certified else "not certified"

@@ -10,9 +10,36 @@ radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lan
 The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
 """
 
-from sympy import Expr, Rational, asin, atan, cos, diff, pi, simplify, sin, sqrt, tan
+from sympy import (
+    Expr,
+    Function,
+    Matrix,
+    Rational,
+    S,
+    Symbol,
+    asin,
+    atan,
+    cos,
+    diff,
+    expand,
+    expand_trig,
+    factor,
+    log,
+    pi,
+    simplify,
+    sin,
+    sqrt,
+    symbols,
+    tan,
+)
 
+from symbolic.collision import derivative_matrix
+from symbolic.cycles import frame
+from symbolic.geometry import curvature, tangent
+from symbolic.ranges import parameter_box
 from symbolic.symbols import alpha, lam, theta
+from symbolic.table import Component
+from symbolic.tables import egg
 
 
 def half_turn(p: int = 1, q: int = 3) -> Expr:
@@ -75,10 +102,78 @@ def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
 
 def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: Expr) -> tuple[Expr, Expr]:
     """Trace and determinant of one bounce of a polygon, in the frame that turns with it."""
-    from symbolic.collision import derivative_matrix
-
     matrix = derivative_matrix(K0, K0, t, cos(exit_angle), cos(incidence))
     return simplify(matrix.trace()), simplify(matrix.det())
+
+
+def polygon_identities() -> dict[str, Expr]:
+    """What every polygon in a polar curve `rho(theta)` obeys, as expressions that vanish identically.
+
+    With `tan(delta) = rho'/rho`, and the turn `pi - 2*gamma` from bounce to bounce. The last one says on which side
+    of the fold a bounce lies: `1 - trace + det` is the product of the multipliers' distances from 1.
+
+    >>> from symbolic.zero import vanishes
+    >>> [vanishes(difference) for difference in polygon_identities().values()]
+    [True, True, True, True]
+    """
+    gamma, delta = symbols("gamma delta", real=True)
+    radius = Symbol("rho", positive=True)
+    slope, bend = symbols("rho1 rho2", real=True)  # rho' and rho'' at the bounce
+    rho = Function("rho", positive=True)(theta)
+    curve = Component("polar", (rho * cos(theta), rho * sin(theta)), -pi, pi)
+    here, unit, kappa = (
+        value.subs(diff(rho, theta, 2), bend).subs(diff(rho, theta), slope).subs(rho, radius)
+        for value in (Matrix(curve.point), tangent(curve), curvature(curve))
+    )
+    turn = Matrix([[-cos(2 * gamma), -sin(2 * gamma)], [sin(2 * gamma), -cos(2 * gamma)]])
+    leaving, arriving = turn * here - here, here - turn.T * here
+    length, speed = 2 * radius * cos(gamma), sqrt(radius**2 + slope**2)
+    trace, det = turn_trace_and_determinant(kappa, length, gamma - delta, gamma + delta)
+    at_one = (1 - trace + det) * cos(gamma + delta)
+    sided = 2 * (1 + lam) * radius * cos(gamma) * (radius * bend - slope**2) / speed**3
+    tilted = {cos(delta): radius / speed, sin(delta): slope / speed}
+    facts = {
+        "a chord is 2*rho*cos(gamma) long": leaving.dot(leaving) - length**2,
+        "it leaves at gamma - delta": leaving.dot(unit) - length * sin(gamma - delta),
+        "it lands at gamma + delta": arriving.dot(unit) - length * sin(gamma + delta),
+        "(1 - trace + det)*cos(eta) = 2*(1 + lam)*cos(gamma)*rho*(rho*rho'' - rho'^2)/(rho^2 + rho'^2)^(3/2)": at_one
+        - sided,
+    }
+    return {fact: expand_trig(expand(difference)).subs(tilted) for fact, difference in facts.items()}
+
+
+def fold_margin(K: int | Expr = 3) -> Expr:
+    """`rho*rho'' - rho'**2` of the K-pointed egg, which changes sign where the tilt is largest.
+
+    >>> simplify(fold_margin() + 9 * alpha * (cos(3 * theta) + alpha))
+    0
+    """
+    rho = 1 + alpha * cos(K * theta)
+    return rho * diff(rho, theta, 2) - diff(rho, theta) ** 2
+
+
+def elastic_trace(at_flat: bool, K: int = 3, p: int = 1, q: int = 3) -> Expr:
+    """The trace of one elastic bounce of the polygon at the flat points, or at the vertices; the determinant is 1.
+
+    >>> elastic_trace(True)
+    2*(19*alpha - 1)/(alpha - 1)
+    """
+    bounce, gamma = pi / K if at_flat else S.Zero, half_turn(p, q)
+    length = 2 * (1 + alpha * cos(K * bounce)) * cos(gamma)
+    kappa = frame(egg(K), 0, bounce, parameter_box(egg(K))).curvature
+    trace, _ = turn_trace_and_determinant(kappa, length, gamma, gamma)
+    return factor(simplify(trace.subs(lam, 1)))
+
+
+def contraction_slope(p: int = 1, q: int = 3) -> Expr:
+    """`d(log det)/d lam` of one bounce at `lam = 1`: positive where weak dissipation contracts areas.
+
+    >>> contraction_slope()
+    -sqrt(3)*pi/18 + 1
+    """
+    gamma, delta = half_turn(p, q), required_tilt(p, q)
+    _, det = turn_trace_and_determinant(Symbol("K0"), Symbol("t"), gamma - delta, gamma + delta)
+    return simplify(diff(log(det), lam).subs(lam, 1))
 
 
 def characteristic_on_branch(x: Expr, at: Expr, K: int = 3, p: int = 1, q: int = 3) -> Expr:

@@ -4,12 +4,17 @@ import mpmath
 import pytest
 from sympy import Expr, Matrix, Rational, Symbol, acos, atan, cos, diff, pi, simplify, tan
 
-from symbolic.geometry import curvature, normal
+from symbolic import polygons
+from symbolic.geometry import curvature, normal, tangent
 from symbolic.polygons import (
     characteristic_on_branch,
+    contraction_slope,
+    elastic_trace,
+    fold_margin,
     half_turn,
     largest_tilt,
     near_flat,
+    polygon_identities,
     required_tilt,
     saddle_node,
     tilt_tangent,
@@ -17,6 +22,7 @@ from symbolic.polygons import (
 )
 from symbolic.symbols import K0, alpha, lam, t, theta
 from symbolic.tables import egg
+from symbolic.zero import vanishes
 
 mp = mpmath.MPContext()
 mp.dps = 60
@@ -178,3 +184,55 @@ def test_the_characteristic_polynomial_on_the_branch_is_that_of_the_bounce_it_ha
     expected = cos(gamma + delta) * (at**2 - at * trace.subs(values) + det.subs(values))
 
     assert abs(number(characteristic_on_branch(x, at, K, p, q).subs(alpha, SHAPE) - expected)) < NOTHING
+
+
+def test_the_identities_of_a_polygon_hold_and_a_wrong_sign_of_a_curvature_or_a_tangent_breaks_them(monkeypatch):
+    def holding() -> list[bool]:
+        return [vanishes(difference) for difference in polygon_identities().values()]
+
+    assert holding() == [True] * 4
+    monkeypatch.setattr(polygons, "curvature", lambda component: -curvature(component))
+    assert holding() == [True, True, True, False]
+    monkeypatch.setattr(polygons, "tangent", lambda component: -tangent(component))
+    assert holding() == [True, False, False, False]
+
+
+@pytest.mark.parametrize("K", [3, 4, 5])
+def test_the_margin_of_the_fold_is_positive_towards_the_flat_points_and_negative_towards_the_vertices(K):
+    margin = fold_margin(K)
+
+    assert simplify(margin + K**2 * alpha * (cos(K * theta) + alpha)) == 0
+    assert margin.subs({theta: pi / K, alpha: SHAPE}) > 0 > margin.subs({theta: 0, alpha: SHAPE})
+
+
+@pytest.mark.parametrize(("K", "p", "q"), POLYGONS)
+def test_a_bounce_towards_the_flat_points_has_both_multipliers_on_one_side_of_one(K, p, q):
+    """`1 - trace + det` from the derivative matrix on chords of the table has the sign of the margin."""
+    gamma = half_turn(p, q)
+    for bounce in (pi / K - Rational(1, 50), Rational(1, 50)):
+        here = {theta: bounce, alpha: SHAPE}
+        delta = atan(-tilt_tangent(K).subs(here))
+        trace, det = turn_trace_and_determinant(K0, t, gamma - delta, gamma + delta)
+        values = {K0: curvature(egg(K).at(alpha=SHAPE).components[0]).subs(theta, bounce)}
+        values |= {t: 2 * (1 + SHAPE * cos(K * bounce)) * cos(gamma), lam: (gamma - delta) / (gamma + delta)}
+
+        assert mp.sign(number((1 - trace + det).subs(values))) == mp.sign(number(fold_margin(K).subs(here)))
+
+
+def test_an_elastic_triangle_turns_by_less_than_a_half_at_the_flat_points_and_stretches_at_the_vertices():
+    flat, vertex = (elastic_trace(at_flat) for at_flat in (True, False))
+
+    assert simplify(flat - (2 - 38 * alpha) / (1 - alpha)) == 0
+    assert simplify(vertex - (2 + 38 * alpha) / (1 + alpha)) == 0
+
+
+@pytest.mark.parametrize(("p", "q"), [(1, 3), (1, 4), (2, 5)])
+def test_weak_dissipation_contracts_a_polygon_at_the_rate_that_differences_give(p, q):
+    gamma, step = number(half_turn(p, q)), mp.mpf(10) ** -25
+
+    def log_det(contraction):
+        delta = gamma * (1 - contraction) / (1 + contraction)
+        return mp.log(contraction * mp.cos(gamma - delta) / mp.cos(gamma + delta))
+
+    difference = (log_det(1 + step) - log_det(1 - step)) / (2 * step)
+    assert abs(number(contraction_slope(p, q)) - difference) < mp.mpf(10) ** -30

@@ -17,6 +17,7 @@ from verification.claims import (
     on_basins,
     on_circle,
     on_egg_period2,
+    on_egg_period3,
     on_elastic,
     on_located,
     on_sets,
@@ -136,6 +137,23 @@ def test_a_centre_of_curvature_that_crossed_the_other_way_would_not_pass(monkeyp
     wrong = -slap_critical.centre_beyond_boundary()
     monkeypatch.setattr(slap_critical, "centre_beyond_boundary", lambda: wrong)
     assert one_zero(budget=2000).proved is None
+
+
+def test_the_side_of_the_fold_is_not_proved_of_a_margin_with_the_wrong_sign(monkeypatch):
+    assert all(on_egg_period3.side_of_fold())
+
+    wrong = -on_egg_period3.fold_margin()
+    monkeypatch.setattr(on_egg_period3, "fold_margin", lambda: wrong)
+    assert not all(on_egg_period3.side_of_fold.__wrapped__())
+
+
+def test_a_triangle_that_is_not_elliptic_at_lambda_one_is_not_said_to_attract_below_it(monkeypatch):
+    claim = CLAIMS["egg.period3_attracting"]
+    assert on_egg_period3.attracting(claim).verdict is Verdict.CONFIRMED
+
+    at_vertices = on_egg_period3.elastic_trace(False)
+    monkeypatch.setattr(on_egg_period3, "elastic_trace", lambda _: at_vertices)
+    assert on_egg_period3.attracting(claim).verdict is not Verdict.CONFIRMED
 
 
 def test_the_vertices_that_an_attractor_comes_near_are_counted_modulo_a_turn():

@@ -22,7 +22,7 @@ def test_elliptic_and_hyperbolic_points_alternate_and_islands_surround_the_ellip
 
 
 def test_a_vertex_triangle_that_were_elliptic_would_not_alternate(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(on_elastic_cycles, "turn_trace", lambda at_flat: Integer(1))
+    monkeypatch.setattr(on_elastic_cycles, "elastic_trace", lambda at_flat: Integer(1))
 
     assert verdict(on_elastic_cycles.alternating, "egg.alternating_points") is Verdict.REFUTED
 

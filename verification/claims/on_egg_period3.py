@@ -1,7 +1,8 @@
 """Claims on the egg's period-3 orbits. Paper: sections 6.1 and 6.4."""
 
+from functools import cache
+
 from sympy import (
-    Expr,
     Interval,
     Matrix,
     Not,
@@ -15,15 +16,25 @@ from sympy import (
     tan,
 )
 
-from symbolic.circle import flight
+from symbolic.circle import flight, iterate
 from symbolic.cycles import is_elastic, trace_and_determinant
 from symbolic.egg import COSINE
 from symbolic.named_cycles import egg_triangle
-from symbolic.polygons import half_turn, largest_tilt, required_tilt, saddle_node, tilt_tangent
+from symbolic.polygons import (
+    contraction_slope,
+    elastic_trace,
+    fold_margin,
+    half_turn,
+    largest_tilt,
+    polygon_identities,
+    required_tilt,
+    saddle_node,
+    tilt_tangent,
+)
 from symbolic.signs import Finding, conjunction, nonnegative, positive
 from symbolic.symbols import alpha, lam, phi, s, theta
 from verification.claims.claim import Claim, Judgement
-from verification.claims.egg_ranges import ROUND, SHAPES, at
+from verification.claims.egg_ranges import FULL, ROUND, SHAPES, at
 from verification.claims.judges import (
     by,
     counterexample,
@@ -65,27 +76,25 @@ def limit_positive() -> Finding:
 
 @judges("egg.period3_created", "egg.period3_cease")
 def created(claim: Claim) -> Judgement:
-    """The closed form of the fold."""
+    """The closed form of the fold, for the orbits that section 6.4 follows from `lam = 1`: equilateral triangles."""
     return Judgement(
         by(
-            "the equilateral orbits need |rho'/rho| = tan(pi/6*(1-lam)/(1+lam)), which no point "
-            "reaches for lam < lambda_c",
+            "the equilateral orbits need |rho'/rho| = tan(pi/6*(1-lam)/(1+lam)), which no point reaches for lam < "
+            "lambda_c; in the circle lambda_c = 1, and below it every orbit tends to a diameter",
             *polygon_facts(),
             limit_positive(),
+            zero("lambda_c(0) = 1", saddle_node().subs(alpha, 0) - 1),
+            zero("in the circle phi_3 = lam^3*phi", iterate(3)[1] - lam**3 * phi),
         ),
-        f"lambda_c(alpha) = {saddle_node()}",
+        "the equilateral orbits, which those of lam = 1 through the flat points and the vertices are, exist for lam >= "
+        f"lambda_c alone, lambda_c(alpha) = {saddle_node()}; of others this says nothing (that there are none below "
+        "0.378 at alpha = 0.08 is egg.no_period3_caption)",
     )
-
-
-def turn_trace(at_flat: bool) -> Expr:
-    """The trace of one elastic flight of a triangle, in the turning frame: `-(2 + 2*t*K/cos(phi))`."""
-    cycle = egg_triangle(at_flat)
-    return simplify(-(2 + 2 * cycle.length(0) * cycle.frames[0].curvature / cycle.cos_exit(0)))
 
 
 def third_power(at_flat: bool) -> Finding:
     """The trace over the period is that of the cube of a matrix of determinant 1."""
-    single = turn_trace(at_flat)
+    single = elastic_trace(at_flat)
     return zero(
         "the monodromy is a cube", single**3 - 3 * single - trace_and_determinant(egg_triangle(at_flat), S.One)[0]
     )
@@ -109,7 +118,7 @@ def two_period3(claim: Claim) -> Judgement:
 
 def flat_triangle() -> list[Finding]:
     """The triangle obeys the elastic law and its multipliers lie on the unit circle."""
-    single = turn_trace(True)
+    single = elastic_trace(True)
     return [
         shown("the law phi = -eta holds", is_elastic(egg_triangle(True))),
         third_power(True),
@@ -138,7 +147,7 @@ def equilateral(claim: Claim) -> Judgement:
 @judges("egg.period3_elliptic")
 def period3_elliptic(claim: Claim) -> Judgement:
     """`|trace| <= 2` on the closed range, with equality only at the ends."""
-    single = turn_trace(True)
+    single = elastic_trace(True)
     return Judgement(
         by(
             "one flight has determinant 1 and trace (2 - 38*alpha)/(1 - alpha), of modulus at most 2; "
@@ -169,14 +178,17 @@ def polygon_facts() -> list[Finding]:
 
 @judges("egg.period3_attracting")
 def attracting(claim: Claim) -> Judgement:
-    """`det = lam*cos(gamma - delta)/cos(gamma + delta)` has logarithmic derivative `1 - gamma*tan(gamma) > 0` at 1."""
-    gamma = half_turn()
+    """Complex multipliers of modulus `det**(1/2)` near `lam = 1`, and `det` grows to 1 there."""
+    gamma, single = half_turn(), elastic_trace(True)
     return Judgement(
         by(
-            "complex multipliers of modulus det^(1/2), and d(log det)/d lam = 1 - gamma*tan(gamma) > "
-            "0 at lam = 1 with gamma = pi/6",
+            "at lam = 1 one bounce has the determinant 1 and a trace of modulus below 2, so near lam = 1 its "
+            "multipliers are complex, of modulus det^(1/2), and det grows up to lam = 1",
             *polygon_facts(),
-            greater(S.One, gamma * tan(gamma)),
+            positive(4 - single**2, {alpha: Interval.open(0, Rational(1, 10))}),
+            third_power(True),
+            zero("d(log det)/d lam = 1 - gamma*tan(gamma) at lam = 1", contraction_slope() - 1 + gamma * tan(gamma)),
+            greater(contraction_slope(), S.Zero),
         ),
         "attracting for lam slightly below 1, for 0 < alpha < 1/10",
     )
@@ -269,20 +281,23 @@ def multiplier_at_fold(claim: Claim) -> Judgement:
     )
 
 
-def side_of_fold() -> list[Finding]:
-    """`1 - trace + det` of one bounce has the sign of `-(cos(3*theta) + alpha)`.
-
-    It is `(1+lam)*(cos(phi) + cos(eta) + t*K)/cos(eta)`, and with `t = 2*rho*cos(gamma)`, `cos(phi) + cos(eta) =
-    2*cos(gamma)*cos(delta)` that has the sign of `rho*rho'' - rho'**2 = -9*alpha*(cos(3*theta) + alpha)`.
-    """
-    rho = 1 + alpha * COSINE
-    second, first_squared = -9 * alpha * COSINE, 9 * alpha**2 * (1 - COSINE**2)
-    return [
+@cache
+def side_of_fold() -> tuple[Finding, ...]:
+    """`1 - trace + det` of one bounce has the sign of `-(cos(3*theta) + alpha)`, on either branch."""
+    ring = 1 + alpha * COSINE
+    return (
+        *(zero(fact, difference) for fact, difference in polygon_identities().items()),
         zero(
-            "1 - trace + det has the sign of -(cos(3*theta) + alpha)",
-            rho * second - first_squared + 9 * alpha * (COSINE + alpha),
-        )
-    ]
+            "rho*rho'' - rho'^2 = -9*alpha*(cos(3*theta) + alpha)",
+            fold_margin() + 9 * alpha * (cos(3 * theta) + alpha),
+        ),
+        positive(ring, {COSINE: FULL, alpha: SHAPES}),
+        greater(cos(half_turn()), S.Zero),
+        by(
+            "cos(eta) > 0, as gamma = pi/6 and tan(delta)^2 < 1/3",
+            positive(Rational(1, 3) - simplify(largest_tilt() ** 2), {alpha: SHAPES}),
+        ),
+    )
 
 
 @judges("egg.vertex_period3")
@@ -297,7 +312,7 @@ def vertex_period3(claim: Claim) -> Judgement:
 @judges("egg.vertex_period3_unstable")
 def vertex_unstable(claim: Claim) -> Judgement:
     """A multiplier above 1 all along the branch; at `alpha = 0` the branches coincide."""
-    at_one = turn_trace(False)
+    at_one = elastic_trace(False)
     return Judgement(
         counterexample(
             "at alpha = 0 the triangle is parabolic",

@@ -6,13 +6,13 @@ from sympy import Interval, Poly, Rational, Symbol, cancel, cos, cyclotomic_poly
 
 from symbolic.double_normal import stability_number
 from symbolic.named_cycles import c, egg_diameter, egg_parallel, parallel_shape
+from symbolic.polygons import elastic_trace
 from symbolic.resonance import flat_triangle
 from symbolic.signs import Finding, positive
 from symbolic.symbols import alpha
 from verification.claims.claim import Claim, Judgement
 from verification.claims.egg_ranges import ROUND, at
 from verification.claims.judges import by, greater, judges, shown, zero
-from verification.claims.on_egg_period3 import turn_trace
 from verification.claims.on_elastic import chaotic_shares
 from verification.claims.on_samples import sampled
 
@@ -39,7 +39,7 @@ def alternating(claim: Claim) -> Judgement:
             "degrees) are elliptic up to alpha = 0.055, 0 < P < 1, and the six points between them hyperbolic, P > 1: "
             "they are +-theta, turned by 120 degrees, with cos(theta) in (-2/9, 0), so theta in (90, 103) degrees",
             *(elliptic(shape) for shape in PANELS),
-            positive(turn_trace(False) - 2, {alpha: ROUND}),
+            positive(elastic_trace(False) - 2, {alpha: ROUND}),
             positive(P, low),
             positive(1 - P, low),
             positive(stability_number(egg_parallel()) - 1, between),

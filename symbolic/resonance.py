@@ -49,7 +49,7 @@ class Pair:
     __radd__, __rmul__ = __add__, __mul__
 
     def __bool__(self) -> bool:
-        return self.a != 0 or self.b != 0
+        return bool(self.a != 0 or self.b != 0)
 
     @property
     def conjugate(self) -> "Pair":

@@ -16,7 +16,7 @@ a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends
   in `1 - lam`, expansion and contraction cancel there.
 """
 
-from sympy import Expr, Symbol, cos, diff, integrate, log, pi, simplify, sin, symbols, tan, trigsimp
+from sympy import Expr, Matrix, Symbol, cos, diff, integrate, log, pi, simplify, sin, sqrt, symbols, tan, trigsimp
 
 from symbolic.collision import birkhoff_matrix, derivative_matrix, determinant
 from symbolic.symbols import cos_eta1, cos_phi0, eta, lam
@@ -73,6 +73,40 @@ def elastic_mean(f: Expr) -> Expr:
     """
     density = simplify((f * cos(eta)).subs(tan(eta), sin(eta) / cos(eta)))
     return simplify(integrate(density, (eta, -pi / 2, pi / 2)) / 2)
+
+
+def log_cosine_mean() -> Expr:
+    """The mean of `log(cos(eta))` with the elastic map's own measure: finite, though the logarithm is not bounded.
+
+    With `y = sin(eta)`, uniform on (-1, 1), it is half the mean of `log(1 - y**2)`. The mean of `log(cos(theta/2))`
+    along the cardioid is the same, because its arc length is `4*sin(theta/2)`.
+
+    >>> log_cosine_mean()
+    -1 + log(2)
+    """
+    y = Symbol("y", real=True)
+    return simplify(integrate(log(1 - y) + log(1 + y), (y, -1, 1)) / 4)
+
+
+def growth_defects() -> list[Expr]:
+    """The growth rates of the Gram-Schmidt method add up to that of areas: zeros.
+
+    In turn: the square of the product of both normalising factors of a matrix, minus that of its determinant; its first
+    factor squared, minus the squared length of its first column; and the determinant of a product, minus the product.
+
+    >>> growth_defects()
+    [0, 0, 0]
+    """
+    first, second = Matrix(symbols("a c", real=True)), Matrix(symbols("b d", real=True))
+    unit = first / sqrt(first.dot(first))
+    rest = second - second.dot(unit) * unit
+    factors = first.dot(unit) ** 2, rest.dot(rest)
+    matrix, other = Matrix.hstack(first, second), Matrix(2, 2, symbols("e f g h", real=True))
+    return [
+        simplify(factors[0] * factors[1] - matrix.det() ** 2),
+        simplify(factors[0] - first.dot(first)),
+        simplify((other * matrix).det() - other.det() * matrix.det()),
+    ]
 
 
 def image_share() -> Expr:

@@ -4,7 +4,7 @@ The characteristic polynomial is `mu**2 - trace*mu + det`; its values at 1 and -
 `det` decide everything (Jury's criterion), so no root is ever extracted.
 """
 
-from sympy import Expr
+from sympy import Expr, Interval, Matrix, eye, solve, symbols
 
 from symbolic.signs import Box, Finding, conjunction, positive
 
@@ -37,3 +37,22 @@ def real_and_distinct(trace: Expr, det: Expr, box: Box) -> Finding:
 def complex_pair(trace: Expr, det: Expr, box: Box) -> Finding:
     """Are the multipliers complex conjugates off the real line? Their modulus is then `sqrt(det)`."""
     return positive(4 * det - trace**2, box)
+
+
+def contracting_norm() -> Finding:
+    """Is there for every attracting monodromy matrix a quadratic norm in which it contracts?
+
+    For the companion matrix `M` of any trace and determinant inside Jury's triangle, `N - M.T*N*M = 1` has a positive
+    definite solution `N`; a matrix that is no multiple of the identity is similar to its companion matrix, and a
+    multiple contracts as it is. So near an attracting cycle, where `DT` is continuous, it contracts too.
+
+    >>> contracting_norm().outcome.name
+    'PROVED'
+    """
+    det, share = symbols("det share", real=True)  # trace = share*(1 + det)
+    inside = {det: Interval.open(-1, 1), share: Interval.open(-1, 1)}
+    first, mixed, last = symbols("first mixed last")
+    companion, norm = Matrix([[0, 1], [-det, share * (1 + det)]]), Matrix([[first, mixed], [mixed, last]])
+    (found,) = solve(list(norm - companion.T * norm * companion - eye(2)), [first, mixed, last], dict=True)
+    solution = norm.subs(found)
+    return conjunction(positive(solution[0, 0], inside), positive(solution.det().factor(), inside))

@@ -13,7 +13,7 @@ which has the expansion from a plot.
 
 from functools import cache
 
-from sympy import CRootOf, Expr, I, Interval, Poly, Rational, S, Symbol, cancel, expand, factor_list, sqrt, together
+from sympy import Expr, I, Interval, Poly, Rational, Symbol, cancel, expand, sqrt, together
 
 from symbolic.signs import Finding, Outcome, conjunction, positive
 
@@ -29,7 +29,7 @@ LAUNCH_Q2 = (1 + q) ** 3 / (5 - 25 * q + 63 * q**2 - 35 * q**3)  # the launching
 def slope_squared(q: Expr = q) -> Expr:
     """`T0'(s)**2` as a function of the landing point `q`.
 
-    >>> slope_squared(S.Zero)
+    >>> slope_squared(Rational(0))
     108/25
     """
     return 4 * (3 - q) ** 3 / ((1 - 3 * q) ** 2 * (1 + q) * (5 - 7 * q) ** 2)
@@ -98,14 +98,26 @@ def slow_region() -> tuple[Expr, Expr]:
     return first, last
 
 
+def _expanding_by(bound: Expr) -> Expr:
+    """A polynomial in `q` and `y` that vanishes where `|(T0**2)'| = bound`."""
+    (top, bottom), (top_y, bottom_y) = slope_squared(q).as_numer_denom(), slope_squared(y).as_numer_denom()
+    return top * top_y - bound**2 * bottom * bottom_y
+
+
+def _critical() -> Expr:
+    """A polynomial in `q` and `y` that vanishes where the slope of `(T0**2)'` does along a branch."""
+    log_slope = cancel(slope_squared().diff(q) / slope_squared())
+    chained = log_slope + log_slope.subs(q, y) * LAUNCH_Q2.diff(q) / (2 * y)
+    return together(chained).as_numer_denom()[0]
+
+
 @cache
 def expansion_polynomial(bound: Expr) -> Expr:
     """A polynomial in the final `q` without a root where `|(T0**2)'| = bound` nowhere on the table.
 
     The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; both signs are multiplied.
     """
-    (top, bottom), (top_y, bottom_y) = slope_squared(q).as_numer_denom(), slope_squared(y).as_numer_denom()
-    return _norm(top * top_y - bound**2 * bottom * bottom_y)
+    return _norm(*_split(_expanding_by(bound))).as_expr()
 
 
 def expands_by(bound: Expr) -> Finding:
@@ -117,39 +129,132 @@ def expands_by(bound: Expr) -> Finding:
     polynomial = Poly(expansion_polynomial(bound), q).sqf_part()
     roots = polynomial.count_roots(UPPER.start, UPPER.end)
     if roots == 0:
-        return Finding(Outcome.PROVED, f"Sturm: |(T0^2)'| = {bound} has no solution on either branch")
+        return conjunction(
+            unbounded(), Finding(Outcome.PROVED, f"Sturm: |(T0^2)'| = {bound} has no solution on either branch")
+        )
     return Finding(Outcome.UNKNOWN, f"|(T0^2)'| = {bound} has {roots} formal solution(s)")
+
+
+def unbounded() -> Finding:
+    """Is `|(T0**2)'|` infinite at the ends of both branches of `T0**2`?
+
+    On one, `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other from 0 to 1/3, as `q` runs from -1.
+
+    >>> unbounded().outcome.name
+    'PROVED'
+    """
+    inverse = cancel(1 / slope_squared())
+    ends = [inverse.subs(q, end) for end in (UPPER.start, UPPER.end)] + [
+        LAUNCH_Q2.subs(q, -1),
+        LAUNCH_Q2.subs(q, UPPER.end) - 1,
+    ]
+    whole = conjunction(
+        positive(inverse, {q: UPPER}), *(Finding(_zero(end), "T0' is infinite at the ends") for end in ends)
+    )
+    return Finding(whole.outcome, "(T0^2)' is infinite at the ends of its branches") if whole else whole
 
 
 @cache
 def expansion_infimum() -> Expr:
     """The least value of `|(T0**2)'|`, an algebraic number; reached where the first flight crosses the axis.
 
-    The logarithmic derivative along the branch that changes halves has one zero between two ends
-    where the product is infinite.
+    `infimum_attained` proves that it is the least.
 
     >>> expansion_infimum().n(12)
     1.50626223937
     """
-    log_slope = -3 / (3 - q) + 6 / (1 - 3 * q) - 1 / (1 + q) + 14 / (5 - 7 * q)
-    chained = log_slope + log_slope.subs(q, y) * LAUNCH_Q2.diff(q) / (2 * y)
-    critical = _norm(together(chained).as_numer_denom()[0])
-    candidates = []
-    for factor, _ in factor_list(critical)[1]:
-        for root in Poly(factor, q).real_roots():
-            if isinstance(root, CRootOf) and root > UPPER.start and root < UPPER.end:
-                back = -sqrt(LAUNCH_Q2.subs(q, root))
-                if abs(chained.subs({q: root, y: back}).evalf(15)) < Rational(1, 10**6):
-                    candidates.append(sqrt(slope_squared(root) * slope_squared(back)))
-    (least,) = candidates
-    return least
+    critical = _critical()
+    ((low, high),) = [ends for ends, side in zeros(critical) if side < 0]
+    (root,) = [r for r in _norm(*_split(critical)).real_roots() if r >= low and r <= high]
+    return sqrt(slope_squared(root) * slope_squared(-sqrt(LAUNCH_Q2.subs(q, root))))
 
 
-def _norm(expression: Expr) -> Expr:
-    """The product of a polynomial in `q`, `y` over `y = +-sqrt(LAUNCH_Q2)`, without denominators."""
-    top, bottom = LAUNCH_Q2.as_numer_denom()
-    terms = Poly(expand(expression), y).terms()
+@cache
+def infimum_attained() -> Finding:
+    """Is `expansion_infimum` the least value of `|(T0**2)'|` on the table? In exact arithmetic, by counting.
+
+    On the branch that changes halves, `y < 0`, it is infinite at both ends and has one critical point: its minimum.
+    It takes the value `ABOVE` twice there, so the minimum is smaller; and nowhere on the other branch, where it is
+    infinite at both ends too, and so larger than `ABOVE`.
+
+    >>> infimum_attained().outcome.name
+    'PROVED'
+    """
+    critical = [side for _, side in zeros(_critical())]
+    level = [side for _, side in zeros(_expanding_by(ABOVE))]
+    if not unbounded() or critical.count(-1) != 1 or sorted(level) != [-1, -1]:
+        said = f"critical points {critical}, solutions of |(T0^2)'| = {ABOVE} {level} by the sign of y"
+        return Finding(Outcome.UNKNOWN, said)
+    said = f"Sturm: (T0^2)' has one critical point on the branch that changes halves, and is {ABOVE} twice, there alone"
+    return Finding(Outcome.PROVED, said)
+
+
+@cache
+def fixed_points() -> list[tuple[Expr, Expr]]:
+    """Bounds on the last landing point `q` of each fixed point of `T0**2`, one of each mirror pair.
+
+    From `x > 0` to `y` and back: for `y < 0` the second flight is mirrored and lands at `q = -x`, else at `q = x`; so
+    `LAUNCH_Q2(y) = q**2` at a `q` of the sign of `y`. There is one pair, the vertical orbit.
+
+    >>> fixed_points()
+    [(-1/5, -1/5)]
+    """
+    found = zeros(together(LAUNCH_Q2.subs(q, y) - q**2).as_numer_denom()[0])
+    return [ends for ends, side in found if sum(ends) * side > 0]
+
+
+ABOVE = Rational(151, 100)  # between the least values of (T0**2)' on its two branches, 1.506... and 1.656...
+
+
+def zeros(expression: Expr) -> list[tuple[tuple[Expr, Expr], int]]:
+    """The zeros of a polynomial in `q`, `y` where `y**2 = LAUNCH_Q2`, over `UPPER`: bounds on `q`, and the sign of `y`.
+
+    With `even + y*odd`, a zero of the norm is one at the `y` whose sign is that of `-even*odd`; at a common zero of
+    both, at either. Points with `y >= 1/3`, where no particle that leaves the upper half lands, are left out.
+
+    >>> zeros(q + y)  # LAUNCH_Q2 is 1/25 at q = -1/5
+    [((-1/5, -1/5), 1)]
+    """
+    even, odd = _split(expression)
+    common = even.gcd(odd)
+    even, odd = even.quo(common), odd.quo(common)
+    edge = Poly(together(LAUNCH_Q2 - UPPER.end**2).as_numer_denom()[0], q)  # y = 1/3
+    found = []
+    for low, high in _isolated(_norm(even, odd), (even, odd, edge)):
+        middle = (low + high) / 2
+        found.append(((low, high), 1 if even.eval(middle) * odd.eval(middle) < 0 else -1))
+    found += [(ends, side) for ends in _isolated(common, (edge,)) for side in (-1, 1)]
+    return [(ends, side) for ends, side in found if side < 0 or LAUNCH_Q2.subs(q, sum(ends) / 2) < UPPER.end**2]
+
+
+def _isolated(polynomial: Poly, others: tuple[Poly, ...]) -> list[tuple[Expr, Expr]]:
+    """Intervals in `UPPER`, each with one root of `polynomial` and none of the `others`.
+
+    Roots at the ends of `UPPER`, and those that are also roots of the last of the `others`, are left out.
+    """
+    squarefree = polynomial.sqf_part()
+    for known in (Poly(q - UPPER.start, q), Poly(q - UPPER.end, q), others[-1]):
+        squarefree = squarefree.quo(squarefree.gcd(known))
+    found = []
+    for (low, high), _ in squarefree.intervals(inf=UPPER.start, sup=UPPER.end):
+        while any(other.count_roots(low, high) for other in others):
+            low, high = squarefree.refine_root(low, high, steps=4)
+        found.append((low, high))
+    return found
+
+
+def _split(expression: Expr) -> tuple[Poly, Poly]:
+    """`even` and `odd`, polynomials in `q`, so that `expression` is `even + y*odd` over a power of a denominator."""
+    top, bottom = (Poly(part, q) for part in LAUNCH_Q2.as_numer_denom())
+    terms = Poly(expression, y).terms()
     half = max(k for (k,), _ in terms) // 2
-    even = sum((c * top ** (k // 2) * bottom ** (half - k // 2) for (k,), c in terms if k % 2 == 0), S.Zero)
-    odd = sum((c * top ** (k // 2) * bottom ** (half - k // 2) for (k,), c in terms if k % 2 == 1), S.Zero)
-    return expand(even**2 * bottom - odd**2 * top)
+    parts = [Poly(0, q), Poly(0, q)]
+    for (k,), coefficient in terms:
+        parts[k % 2] += Poly(coefficient, q) * top ** (k // 2) * bottom ** (half - k // 2)
+    return parts[0], parts[1]
+
+
+def _norm(even: Poly, odd: Poly) -> Poly:
+    """The product of `even + y*odd` over `y = +-sqrt(LAUNCH_Q2)`, without denominators."""
+    top, bottom = (Poly(part, q) for part in LAUNCH_Q2.as_numer_denom())
+    return even**2 * bottom - odd**2 * top

@@ -10,6 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, S, cos, sin, sqrt
 
+from symbolic import slap_cardioid
 from symbolic.geometry import curvature, normal
 from symbolic.signs import Outcome
 from symbolic.slap_cardioid import (
@@ -19,10 +20,14 @@ from symbolic.slap_cardioid import (
     expands_by,
     expansion_infimum,
     forward_once,
+    infimum_attained,
     parametrised,
     q,
     slope_squared,
     slow_region,
+    unbounded,
+    y,
+    zeros,
 )  # fmt: skip
 from symbolic.symbols import theta
 from symbolic.tables import cardioid
@@ -131,6 +136,39 @@ def test_the_infimum_is_attained_and_lies_between_the_proved_bounds():
         for x, y in zip(firsts, seconds, strict=True)
     ]
     assert 0 <= min(found) - infimum() < 0.05
+
+
+def test_the_infimum_is_proved_to_be_the_least_value_and_not_only_a_critical_one():
+    assert unbounded().outcome is Outcome.PROVED
+    assert infimum_attained().outcome is Outcome.PROVED
+
+
+@pytest.mark.parametrize("level", [Rational(3, 2), Rational(2)])
+def test_a_level_below_the_infimum_or_above_both_minima_proves_nothing(level, monkeypatch):
+    """On the branch that stays in its half the least value is 1.89, by the sampled critical points."""
+    monkeypatch.setattr(slap_cardioid, "ABOVE", level)
+
+    assert infimum_attained.__wrapped__().outcome is Outcome.UNKNOWN
+
+
+@pytest.mark.parametrize("level", [Rational(19, 10), Rational(3), Rational(50)])
+def test_the_slope_takes_a_level_above_both_minima_twice_on_each_branch(level):
+    found = zeros(slap_cardioid._expanding_by(level))
+
+    assert sorted(side for _, side in found) == [-1, -1, 1, 1]
+    for (low, high), side in found:
+        at = mp.mpf(low.p) / low.q, mp.mpf(high.p) / high.q
+        both = [value(slope_squared(), x) * value(slope_squared(), side * mp.sqrt(value(LAUNCH_Q2, x))) for x in at]
+        assert (
+            low == high or (both[0] - mp.mpf(level.p / level.q) ** 2) * (both[1] - mp.mpf(level.p / level.q) ** 2) < 0
+        )
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_zero_is_on_the_branch_where_the_polynomial_vanishes(side):
+    """At q = -1/5 the launching point is y = +-1/5, since 5 + 5 + 63/25 + 35/125 is 25*(4/5)**3."""
+    assert zeros(q + side * y) == [((Rational(-1, 5), Rational(-1, 5)), side)]
+    assert zeros((5 * q + 1) * (y + 2)) == [((Rational(-1, 5), Rational(-1, 5)), sign) for sign in (-1, 1)]
 
 
 def test_one_bounce_contracts_exactly_in_the_slow_region():

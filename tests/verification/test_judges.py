@@ -1,9 +1,14 @@
 """Canaries: each judge is driven to each of its verdicts."""
 
+import ast
+from pathlib import Path
+
+import pytest
 from sympy import Interval, S, log, pi, sqrt, symbols
 
 from symbolic.signs import Finding, Outcome, positive
 from symbolic.symbols import alpha, lam
+from verification.claims import catalogue, on_appendix, on_cardioid, on_ellipse_stability, on_map
 from verification.claims.claim import Claim, Judgement, Verdict
 from verification.claims.judges import (
     answer,
@@ -116,3 +121,76 @@ def test_a_refutation_names_its_witness_and_a_proof_none():
     assert identity(claim("lam", box), lam).witness(claim("", box)) == {}
     assert on_range(claim("", box), lambda b: positive(lam, b), "").witness(claim("", box))[lam] == 0
     assert Judgement(counterexample("", PROVED, at={lam: S.One}), "").witness(claim("")) == {lam: 1}
+
+
+JUDGES = sorted((Path(__file__).parents[2] / "verification" / "claims").glob("on_*.py"))
+
+
+@pytest.mark.parametrize("path", JUDGES, ids=lambda path: path.stem)
+def test_no_judge_calls_a_sentence_proved_that_nothing_has_computed(path):
+    """`Finding(Outcome.PROVED, "...")` and `shown("...", True)` are assertions; a finding is computed."""
+    calls = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+    flat = [
+        call.lineno
+        for call in calls
+        if any(ast.unparse(given) in ("Outcome.PROVED", "Outcome.REFUTED") for given in call.args[:1])
+        or any(isinstance(given, ast.Constant) and given.value is True for given in call.args)
+    ]
+
+    assert flat == []
+
+
+COMPUTED = {
+    "cardioid.lyapunov_sum_area": (on_cardioid.exponent_sum, on_cardioid, Verdict.CONFIRMED),
+    "appendix.exponents_growth": (on_appendix.growth, on_appendix, Verdict.CONFIRMED),
+    "appendix.exponents_sum": (on_appendix.exponents_sum, on_appendix, Verdict.CORRECTED),
+}
+
+
+@pytest.mark.parametrize("name", COMPUTED)
+def test_growth_rates_that_do_not_add_up_prove_nothing(name, monkeypatch):
+    judge, module, before = COMPUTED[name]
+    (one,) = [claim for claim in catalogue() if claim.id == name]
+    assert judge(one).verdict is before
+
+    monkeypatch.setattr(module, "growth_defects", lambda: [lam])
+    assert judge(one).verdict is Verdict.REFUTED
+
+
+def test_a_second_pair_of_fixed_points_leaves_the_vertical_orbit_open(monkeypatch):
+    (one,) = [claim for claim in catalogue() if claim.id == "cardioid.vertical_orbit"]
+    assert on_cardioid.vertical_orbit(one).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_cardioid, "fixed_points", lambda: [(-S.One / 5, -S.One / 5)] * 2)
+    assert on_cardioid.vertical_orbit(one).verdict is Verdict.OPEN
+
+
+def test_an_infimum_that_is_not_proved_to_be_the_least_confirms_nothing(monkeypatch):
+    (one,) = [claim for claim in catalogue() if claim.id == "cardioid.slap_expanding"]
+    monkeypatch.setattr(on_cardioid, "infimum_attained", lambda: UNKNOWN)
+
+    assert on_cardioid.expanding(one).verdict is Verdict.OPEN
+
+
+def test_a_table_whose_boundary_does_not_close_is_no_circle_for_the_slap_map(monkeypatch):
+    from symbolic import tables
+
+    (one,) = [claim for claim in catalogue() if claim.id == "map.slap_circle_map"]
+    assert {table.name for table in on_map.ALL} == {"circle", "ellipse", "cardioid", "cuspless", "egg"}
+    assert on_map.slap_circle_map(one).verdict is Verdict.CONFIRMED
+
+    gone = type(tables.cuspless)("half", tables.cuspless.components[:1])
+    monkeypatch.setattr(on_map, "ALL", (tables.circle, gone))
+    assert on_map.slap_circle_map(one).verdict is Verdict.REFUTED
+
+
+def test_an_evolute_is_claimed_of_curved_components_alone(monkeypatch):
+    (one,) = [claim for claim in catalogue() if claim.id == "map.slap_evolute"]
+    assert on_map.slap_evolute(one).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_map, "curved", lambda: [UNKNOWN])
+    assert on_map.slap_evolute(one).verdict is Verdict.OPEN
+
+
+def test_eigenlines_go_to_eigenlines_along_a_cycle():
+    assert all(zero("", defect) for defect in on_ellipse_stability.eigenline_defects())

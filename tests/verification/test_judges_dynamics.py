@@ -1,12 +1,25 @@
 """Canaries: the judges of exponents, driven to other verdicts by claims that are printed otherwise."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
+from flint import arb
+from sympy import Rational
 
+from symbolic.defocusing import away, least_stretch
 from symbolic.signs import Finding, Outcome
-from verification.claims import catalogue, on_contraction, on_defocusing, on_exponents
+from symbolic.symbols import lam
+from verification.certificates.chaotic_exponent import slap_exponent
+from verification.claims import (
+    catalogue,
+    on_attractors,
+    on_cardioid_attractor,
+    on_contraction,
+    on_defocusing,
+    on_exponents,
+)
 from verification.claims.claim import Verdict
 from verification.claims.spectra import Spectrum, spectrum, uneven, visited
 
@@ -36,13 +49,88 @@ def test_an_exponent_with_the_other_sign_is_not_supported(monkeypatch):
     assert verdict(on_contraction.sum_negative, "cardioid.lyapunov_sum_negative") is Verdict.OPEN
 
 
-def test_a_cone_that_is_not_proved_confirms_nothing(monkeypatch):
-    assert verdict(on_defocusing.signs, "cardioid.lyapunov_signs") is Verdict.CONFIRMED
-    monkeypatch.setattr(on_defocusing, "expands", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+ON_THE_CONE = {
+    "cardioid.lyapunov_exist": (on_defocusing.existence, Verdict.SUPPORTED),
+    "cardioid.lyapunov_signs": (on_defocusing.signs, Verdict.CONFIRMED),
+    "cardioid.exponents_bounded_away": (on_defocusing.bounded_away, Verdict.SUPPORTED),
+    "cardioid.nonuniformly_hyperbolic": (on_defocusing.nonuniformly_hyperbolic, Verdict.SUPPORTED),
+    "cardioid.chaotic_attractor": (on_defocusing.chaotic, Verdict.SUPPORTED),
+    "cardioid.attractor_near_cusp": (on_defocusing.near_cusp, Verdict.CONFIRMED),
+}
 
-    assert verdict(on_defocusing.signs, "cardioid.lyapunov_signs") is Verdict.OPEN
+
+@pytest.mark.parametrize("name", ON_THE_CONE)
+def test_a_cone_that_is_not_proved_confirms_and_supports_nothing(name, monkeypatch):
+    judge, before = ON_THE_CONE[name]
+    monkeypatch.setattr(on_defocusing, "slap_proof", quick_proof)
+    assert verdict(judge, name) is before
+
+    monkeypatch.setattr(on_defocusing, "expands", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+    assert verdict(judge, name) is Verdict.OPEN
+
+
+@cache
+def quick_proof():
+    """The natural measure of the slap map, to few digits."""
+    return slap_exponent(6)
+
+
+def test_every_orbit_of_the_cardioid_stretches_as_much_as_is_proved_and_keeps_off_the_cusp_every_second_bounce():
+    """On 200 orbits in float64, of which none may fall below: `|ds_n|` from the derivative matrices."""
+    from numeric import PinballMap
+    from numeric.sampling import phase_starts
+
+    for share in (Rational(0), Rational(1, 2), Rational(9, 10)):
+        map = PinballMap("cardioid", lam=str(share))
+        start = phase_starts(map, 200, 3)
+        orbit = map.orbit(start.theta, 0 * start.phi if share == 0 else start.phi, 40)
+        vector = np.stack([np.ones(200), np.zeros(200)])
+        corner = np.cos(orbit.theta / 2)
+        assert np.all(np.maximum(corner[1:-1], corner[2:]) >= float(away().subs(lam, share)))
+        for n in range(1, 21):
+            step = map.derivative(orbit.theta[n - 1], orbit.phi[n - 1])
+            vector = np.einsum("...ij,j...->i...", step, vector)
+            if n >= 2:
+                assert np.all(np.abs(vector[0]) >= float(least_stretch(n).subs(lam, share).n()))
+
+
+def test_a_natural_measure_that_is_not_proved_leaves_its_claims_open(monkeypatch):
+    monkeypatch.setattr(on_cardioid_attractor, "slap_proof", quick_proof)
+    assert verdict(on_cardioid_attractor.slap_ergodic, "cardioid.slap_ergodic") is Verdict.CONFIRMED
+
+    unproved = replace(quick_proof(), checks={**quick_proof().checks, "symmetric": None})
+    monkeypatch.setattr(on_cardioid_attractor, "slap_proof", lambda: unproved)
+    monkeypatch.setattr(on_defocusing, "slap_proof", lambda: unproved)
+    assert verdict(on_cardioid_attractor.slap_ergodic, "cardioid.slap_ergodic") is Verdict.OPEN
+    assert verdict(on_cardioid_attractor.transitive, "cardioid.transitive") is Verdict.OPEN
     assert verdict(on_defocusing.chaotic, "cardioid.chaotic_attractor") is Verdict.OPEN
-    assert verdict(on_defocusing.near_cusp, "cardioid.attractor_near_cusp") is Verdict.OPEN
+
+
+def test_ellipses_whose_limit_set_is_not_proved_do_not_support_that_the_egg_is_alone(monkeypatch):
+    assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.SUPPORTED
+    monkeypatch.setattr(on_attractors, "two_cycles", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+
+    assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.OPEN
+
+
+def test_the_exponent_of_a_cycle_that_is_not_proved_neither_confirms_nor_refutes(monkeypatch):
+    monkeypatch.setattr(on_exponents, "proved", lambda proof: False)
+
+    assert verdict(on_exponents.period3, "egg.exponent_period3") is Verdict.OPEN
+    assert verdict(on_exponents.weak_dissipation_attracts, "egg.weak_dissipation_attracts") is Verdict.OPEN
+
+
+def test_an_attracting_cycle_without_a_contracting_norm_corrects_nothing(monkeypatch):
+    assert verdict(on_exponents.chaotic_sign, "appendix.chaotic_sign") is Verdict.CORRECTED
+    monkeypatch.setattr(on_exponents, "contracting_norm", lambda: Finding(Outcome.UNKNOWN, "not positive"))
+
+    assert verdict(on_exponents.chaotic_sign, "appendix.chaotic_sign") is Verdict.REFUTED
+
+
+def test_balls_for_one_number_agree_disagree_or_are_too_wide():
+    assert on_exponents.agree(arb("0.5"), arb("0.5")).outcome is Outcome.PROVED
+    assert on_exponents.agree(arb("0.5"), arb("0.6")).outcome is Outcome.REFUTED
+    assert on_exponents.agree(arb("0.5", 1), arb("0.6")).outcome is Outcome.UNKNOWN
 
 
 def test_an_expanding_cycle_that_is_not_proved_refutes_nothing(monkeypatch):

@@ -1,16 +1,34 @@
 """Claims on the numerical methods. Paper: appendix."""
 
-from sympy import Interval, Matrix, Poly, Rational, S, Symbol, cos, expand, pi, sin, sqrt, symbols, together
+from sympy import (
+    Integer,
+    Interval,
+    Matrix,
+    Poly,
+    Rational,
+    S,
+    Symbol,
+    cos,
+    expand,
+    oo,
+    pi,
+    sin,
+    sqrt,
+    symbols,
+    together,
+)
 
 from symbolic.circle import iterate
 from symbolic.collision import determinant, exit_angle
-from symbolic.signs import Finding, Outcome, positive
+from symbolic.contraction import growth_defects
+from symbolic.signs import positive
 from symbolic.symbols import a, eta, lam, phi, s
 from symbolic.tables import ellipse
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import by, counterexample, equal, greater, judges, shown, zero
+from verification.claims.judges import by, counterexample, equal, greater, judges, zero
 
 omega = Symbol("omega", real=True)  # direction of the flight
+C = Symbol("C", real=True)  # cos(omega)
 
 
 @judges("appendix.ellipse_quadratic")
@@ -24,7 +42,10 @@ def quadratic(claim: Claim) -> Judgement:
         by(
             "a quadratic in the flight length whose constant term vanishes on the boundary",
             zero("", constant),
-            shown("degree 2", met.degree() == 2),
+            zero("degree 2", Integer(met.degree() - 2)),
+            positive(
+                met.LC().subs(sin(omega), sqrt(1 - C**2)).subs(cos(omega), C), {C: Interval(-1, 1), a: Interval(1, oo)}
+            ),
         ),
         "t = -2*<A q, v>/<A v, v>",
     )
@@ -40,7 +61,8 @@ def cubic(claim: Claim) -> Judgement:
         by(
             "the flight equation is (U - u) times a cubic in U = exp(i*theta1)",
             zero("", together(imaginary - (U - u) * rest / (v * u**2 * U**2))),
-            shown("degree 3", Poly(rest, U).degree() == 3),
+            zero("degree 3, with the leading coefficient u^2", Poly(rest, U).coeff_monomial(U**3) - u**2),
+            zero("no higher degree", Integer(Poly(rest, U).degree() - 3)),
         ),
         str(expand(rest)),
     )
@@ -93,13 +115,19 @@ def outgoing_angle(claim: Claim) -> Judgement:
 @judges("appendix.outgoing_velocity", "appendix.tangential_sign")
 def outgoing_velocity(claim: Claim) -> Judgement:
     """A unit vector at the angle `phi` from the normal, on the side of the incoming tangential component."""
-    angle = Symbol("angle", positive=True)
-    v_out = Matrix([sin(lam * angle), cos(lam * angle)])  # d = 1, in the frame (t, n)
+    side, t, n = Symbol("d", real=True), Matrix([1, 0]), Matrix([0, 1])
+    arriving = Matrix([side * sin(eta), -cos(eta)])  # eta in [0, pi/2), on either side
+    leaving = n * cos(lam * eta) + t * side * sin(lam * eta)
+    squares = {side**2: 1}
     return Judgement(
         by(
-            "v' has length 1 and makes the angle lam*eta with n; its tangential part has the sign d "
-            "of v.t since lam*eta is in [0, pi/2]",
-            zero("", v_out.dot(v_out) - 1),
+            "v' has length 1 and makes the angle lam*eta with n; its tangential part has the sign d of v.t, since both "
+            "are d times the sine of an angle in [0, pi/2]",
+            zero(
+                "", leaving.dot(leaving).expand().subs(squares) - 1, arriving.dot(arriving).expand().subs(squares) - 1
+            ),
+            zero("", leaving.dot(n) - cos(lam * eta), arriving.dot(n) + cos(eta)),
+            zero("", leaving.dot(t) - side * sin(lam * eta), arriving.dot(t) - side * sin(eta)),
         ),
         "v' = n*cos(lam*eta) + d*t*sin(lam*eta), d = sign(v.t)",
     )
@@ -120,13 +148,14 @@ def elastic_cartesian(claim: Claim) -> Judgement:
 def trigonometry(claim: Claim) -> Judgement:
     """For `lam = 1/2` the half-angle formula does it; for `lam = p/q` an algebraic equation."""
     half = cos(eta / 2) ** 2 - (1 + cos(eta)) / 2
-    thirds = cos(3 * eta) - cos(eta) * (4 * cos(eta) ** 2 - 3)
+    order = Symbol("n", real=True)
+    next_one = cos((order + 1) * eta) - 2 * cos(eta) * cos(order * eta) + cos((order - 1) * eta)
     return Judgement(
         counterexample("at lam = 1/2, cos(phi) = sqrt((1 + cos(eta))/2)", zero("", half.subs(eta, 2 * eta))),
         "for rational lam = p/q, cos(phi) is algebraic: T_q(cos(phi)) = T_p(cos(eta)) with Chebyshev polynomials",
         by(
-            "T_q(cos(p*x)) = cos(p*q*x) = T_p(cos(q*x)), shown for q = 2 and 3",
-            zero("", half.subs(eta, 2 * eta), thirds),
+            "T_q(cos(p*x)) = cos(p*q*x) = T_p(cos(q*x)), since cos(n*x) obeys the recurrence of T_n(cos(x)) in n",
+            zero("", half.subs(eta, 2 * eta), next_one),
         ),
         "Avoidable for rational lambda (square roots do it at lambda = 1/2); unavoidable only for a general one.",
     )
@@ -136,10 +165,11 @@ def trigonometry(claim: Claim) -> Judgement:
 def growth(claim: Claim) -> Judgement:
     """QR factors: the diagonal entries are the normalising factors."""
     return Judgement(
-        Finding(
-            Outcome.PROVED,
-            "D(T^n) = Q_n R_n...R_1 with the normalising factors on the diagonals; Oseledets: their "
-            "mean logarithms are the exponents",
+        by(
+            "the first factors multiply to |D(T^n) v| and all of them to |det D(T^n)|; where Oseledets' theorem gives "
+            "exponents, the first rate is nu_+ unless v is contracted, when it is nu_-, and both rates add up to "
+            "nu_+ + nu_-",
+            zero("", *growth_defects()),
         ),
         "nu_i = lim (1/n) sum log R_ii",
     )
@@ -156,7 +186,7 @@ def exponents_sum(claim: Claim) -> Judgement:
             positive(gap, {}),
         ),
         f"nu_1 + nu_2 is the mean of log({determinant()}), the logarithm of the geometric mean",
-        Finding(Outcome.PROVED, "determinants multiply, so their logarithms add along the orbit"),
+        by("determinants multiply, so their logarithms add along the orbit", zero("", *growth_defects())),
         "The sum is the mean of the logarithm of the contraction rate (the log of its geometric "
         "mean), not the logarithm of its mean.",
     )

@@ -3,17 +3,20 @@
 from sympy import Expr, Function, Interval, Matrix, Rational, S, Symbol, cos, pi, simplify, sin, sqrt
 
 from symbolic.collision import determinant
-from symbolic.cycles import is_double_normal
+from symbolic.contraction import growth_defects, telescoped
+from symbolic.cycles import Cycle, is_double_normal
 from symbolic.double_normal import stability_number
 from symbolic.geometry import curvature, evolute, velocity
 from symbolic.length import arc_length
 from symbolic.named_cycles import cardioid_vertical
-from symbolic.signs import Finding, Outcome, positive
+from symbolic.signs import Finding, conjunction, positive
 from symbolic.slap_cardioid import (
     LAUNCH_COS2,
     expands_by,
     expansion_infimum,
+    fixed_points,
     forward_once,
+    infimum_attained,
     parametrised,
     q,
     slope_squared,
@@ -23,7 +26,7 @@ from symbolic.symbols import s, theta
 from symbolic.table import Component
 from symbolic.tables import cardioid
 from verification.claims.claim import LETTERS, Claim, Judgement
-from verification.claims.judges import by, counterexample, equal, identity, judges, shown, zero
+from verification.claims.judges import answer, by, counterexample, equal, identity, judges, zero
 
 BOUNDARY = cardioid.components[0]
 C = Symbol("C", real=True)  # cos(theta)
@@ -113,10 +116,11 @@ def cusp_undefined(claim: Claim) -> Judgement:
 def exponent_sum(claim: Claim) -> Judgement:
     """Determinants multiply, so their logarithms add along an orbit."""
     return Judgement(
-        Finding(
-            Outcome.PROVED,
-            "nu_+ + nu_- = lim log|det D(T^n)|/n, the mean of log|det DT| along the orbit, because "
-            "determinants multiply",
+        by(
+            "the growth rates of both normalising factors of D(T^n) add up to that of |det D(T^n)|, which is the mean "
+            "of log|det DT| along the orbit, because determinants multiply",
+            zero("", *growth_defects()),
+            zero("the sum over a flight", telescoped(1) - 1),
         ),
         f"the mean of log({determinant()})",
     )
@@ -156,8 +160,13 @@ def slow_caption(claim: Claim) -> Judgement:
 
 
 def expansion() -> Finding:
-    """`|(T0**2)'| > 3/2` on the whole table."""
-    return by("(T0^2)' >= 3/2 at every point whose two flights are defined", *slap_facts(), expands_by(Rational(3, 2)))
+    """`|(T0**2)'| > 3/2` on the whole table, and `expansion_infimum` is its least value."""
+    return by(
+        "(T0^2)' > 3/2 at every point whose two flights are defined, and its infimum is attained",
+        *slap_facts(),
+        expands_by(Rational(3, 2)),
+        infimum_attained(),
+    )
 
 
 @judges("cardioid.slap_expanding_caption")
@@ -184,16 +193,31 @@ def expanding(claim: Claim) -> Judgement:
     return Judgement(expansion(), "inf (T0^2)' = 1.506262..., on orbits that cross the axis", value=expansion_infimum())
 
 
+def q_landing(cycle: Cycle) -> Expr:
+    """The coordinate `q` of the second bounce of a cycle."""
+    half = cycle.bounces[1][1] / 2
+    return sin(half) / sqrt(1 + 7 * cos(half) ** 2)
+
+
+def alone(landing: Expr) -> tuple[Finding, Finding]:
+    """Has `T0^2` one mirror pair of fixed points, the one that lands at `q = landing`?"""
+    found = fixed_points()
+    here = [zero("it is the one that was counted", end - landing) for ends in found for end in ends]
+    return answer(len(found) == 1, "Sturm: T0^2 has one mirror pair of fixed points"), conjunction(*here)
+
+
 @judges("cardioid.vertical_orbit")
 def vertical_orbit(claim: Claim) -> Judgement:
-    """A double normal with `P > 1`, and the only fixed points of `T0^2`."""
+    """A double normal with `P > 1`, and the only fixed points of `T0^2`, by counting."""
     cycle = cardioid_vertical()
     P = stability_number(cycle)
     return Judgement(
         by(
-            f"the chord is normal at both ends and (T0^2)' = P = {P} > 1",
-            shown("normal at both ends", is_double_normal(cycle)),
+            f"the chord is normal at both ends and (T0^2)' = P = {P} > 1; T0^2 has no other fixed point",
+            answer(is_double_normal(cycle), "normal at both ends"),
             positive(P - 1, {}),
+            *slap_facts(),
+            *alone(q_landing(cycle)),
         ),
         f"an orbit of period 2 through theta = +-pi/3 with (T0^2)' = {P}",
     )

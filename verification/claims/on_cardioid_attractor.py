@@ -1,4 +1,4 @@
-"""Claims on the cardioid's chaotic attractor, supported by sampling with its error. Paper: section 4.1."""
+"""Claims on the cardioid's chaotic attractor: sampled with an error, proved at `lam = 0`. Paper: sections 4.1, 4.2."""
 
 from functools import cache
 
@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from numeric.pinball.growth import Growth
 from numeric.pinball.sampling import interior_starts
+from verification.certificates.chaotic_exponent import ChaoticProof, slap_exponent
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import judges
+from verification.claims.judges import answer, by, judges
 from verification.claims.on_samples import sampled
 from verification.claims.spectra import CELLS, EARLY, SEED, uneven, visited
 
@@ -17,6 +18,28 @@ FIFTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
 LONG = 12_000  # bounces: 20 to a cell, if every cell is visited
 DUE = 15  # visits of one orbit to a cell, below which it may miss it by chance
 Array = NDArray[np.float64]
+
+
+@cache
+def slap_proof() -> ChaoticProof:
+    """The natural measure at `lam = 0` and its exponent, proved."""
+    return slap_exponent()
+
+
+@judges("cardioid.slap_ergodic")
+def slap_ergodic(claim: Claim) -> Judgement:
+    """One invariant measure has a density: it is ergodic, and natural."""
+    proof = slap_proof()
+    missing = [name for name, holds in proof.checks.items() if holds is not True]
+    return Judgement(
+        by(
+            "the transfer operator of the slap map has exactly one invariant density on the boundary; so its measure "
+            "of an invariant set is 0 or 1, and the time averages of almost every start are its means",
+            answer(proof.certified, f"not proved: {', '.join(missing)}" if missing else ", ".join(proof.checks)),
+        ),
+        "ergodic: one invariant measure with a density, and almost every start follows it, with the exponent "
+        f"{proof.value.str(15, radius=False)}; mixing is not shown",
+    )
 
 
 @cache
@@ -47,11 +70,14 @@ def transitive(claim: Claim) -> Judgement:
     for counts in coverage("cardioid"):
         often = counts.sum(axis=0) > len(counts) * DUE
         worst = min(worst, float(np.mean(counts[:, often] > 0)))
+    proof = slap_proof()
     said = (
         f"16 orbits each at lam = 0.2, ..., 1 together visit at least {worst:.2%} of the pairs of an orbit and a cell "
-        f"where {DUE} visits are due"
+        f"where {DUE} visits are due; at lam = 0 it is {'' if proof.certified else 'not '}proved that almost every "
+        "start has one distribution; not of any orbit: unstable cycles lie on the attractor"
     )
-    return sampled("every sampled orbit visits the whole attractor", said, worst > 0.999)
+    derived = "almost every start, not any: proved at lam = 0, sampled for lam > 0"
+    return sampled(derived, said, worst > 0.999 and proof.certified)
 
 
 @cache

@@ -1,54 +1,151 @@
-"""Claims on the cardioid's positive exponent, conjectured in section 4.1 and proved in `symbolic.defocusing`."""
+"""Claims on the cardioid's exponents: what `symbolic.defocusing` proves, and what it does not. Paper: section 4.1.
+
+`g = 1 + tan((1 - lam)*pi/8)**2/2`. Shown for every `lam < 1`: on every orbit off the cusp the lower limit of
+`log|D(T**n) (1, 0)|/n` is at least `log(g)`; for almost every start the upper limit of the rate of the smallest
+singular value is at most `-log(g)`. Not shown for `0 < lam < 1`: that the limits exist, a negative exponent for every
+invariant measure, a natural (SRB) measure, transitivity. At `lam = 1` the exponents exist for almost every start.
+"""
 
 import numpy as np
+from sympy import log, sin
 
+from symbolic.contraction import log_cosine_mean
 from symbolic.defocusing import expands, least_exponent
+from symbolic.length import arc_length
 from symbolic.signs import Finding
+from symbolic.symbols import theta
+from symbolic.tables import cardioid
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import by, judges
-from verification.claims.on_cardioid_attractor import nearing
+from verification.claims.judges import answer, by, equal, judges, zero
+from verification.claims.on_cardioid_attractor import nearing, slap_proof
 from verification.claims.on_contraction import TENTHS, at_most_zero
-from verification.claims.spectra import spectrum
+from verification.claims.on_samples import sampled
+from verification.claims.spectra import BALLS, BOUNCES, spectrum
+
+NOT_SHOWN = (
+    "not shown for 0 < lam < 1: that the limits exist, nu_- < 0 for every invariant measure, a natural (SRB) measure, "
+    "transitivity"
+)
 
 
-def positive_exponent() -> Finding:
-    """`nu_plus > 0`, by a cone of beams that every bounce maps into itself and widens."""
+def stretching() -> Finding:
+    """Every orbit off the cusp stretches exponentially, by a cone of beams that each bounce maps into itself."""
     return by(
         "beams that focus before D = cos(phi)/|K| form a cone that every bounce maps into itself at any lam, since "
-        "t >= D0 + d1 on every chord; their width in units of D grows by (t - D0)/d1 >= 1 + tan(delta/2)^2/2 or 3/2, "
-        "and delta >= (1 - lam)*pi/4 from the first bounce on; at lam = 1 the gain exceeds 1 everywhere, so its mean "
-        "logarithm is positive for almost every start (Birkhoff)",
+        "t*(t - D0 - d1) = (4/3)*sin(delta)^4 >= 0 on every chord; their width in units of D grows by (t - D0)/d1 >= 1 "
+        "and by g = 1 + tan((1 - lam)*pi/8)^2/2 at least from the second bounce on, when delta >= (1 - lam)*pi/4; so "
+        "|D(T^n) (1, 0)| >= sin((1 - lam)*pi/4)^4/4*g^(n - 2) for n >= 2, on every orbit off the cusp",
         expands(),
+    )
+
+
+def elastic() -> Finding:
+    """At `lam = 1` the exponents exist and are not 0, for almost every start."""
+    return by(
+        "at lam = 1 the gain exceeds 1 on every chord, so its mean logarithm is positive for almost every start "
+        "(Birkhoff); log(cos(phi)) and log|K| have finite means in the measure that the map keeps, so the exponents "
+        "exist for almost every start (Oseledets), and their sum, the mean of log(cos(phi0)/cos(phi1)), is 0",
+        expands(),
+        answer(log_cosine_mean().is_finite, "the mean of log(cos) is log(2) - 1"),
+        equal(arc_length(cardioid.components[0]), 4 * sin(theta / 2), {}),
+        zero("", log_cosine_mean() - log(2) + 1),
+    )
+
+
+def both_signs() -> Finding:
+    """The largest singular value grows on every orbit, and the smallest falls for almost every start."""
+    return by(
+        "the smallest singular value is |det| over the largest, and log|det D(T^n)|/n has an upper limit <= 0 for "
+        "almost every start",
+        stretching(),
+        at_most_zero(),
+        elastic(),
     )
 
 
 def measured() -> str:
     """The sampled range of both exponents, for comparison."""
+    (low, high), (least, most) = ranges()
+    return f"sampled at lam = 0.1, ..., 1: nu_+ from {low:.3f} to {high:.3f}, nu_- from {least:.2f} to {most:.3f}"
+
+
+def ranges() -> tuple[tuple[float, float], tuple[float, float]]:
+    """The least and the largest `nu_plus` and `nu_minus` of single orbits at `lam = 0.1, ..., 1`."""
     found = spectrum("cardioid", TENTHS)
-    plus, minus = np.mean(found.plus, axis=1), np.mean(found.minus[1:], axis=1)
-    return f"sampled at lam = 0, 0.1, ..., 1: nu_+ from {plus.min():.3f} to {plus.max():.3f}, nu_- <= {minus.max():.3f}"
+    plus, minus = found.plus[1:], found.minus[1:]
+    return (float(plus.min()), float(plus.max())), (float(minus.min()), float(minus.max()))
 
 
-@judges("cardioid.lyapunov_signs", "cardioid.nonuniformly_hyperbolic")
+def settling() -> tuple[float, str]:
+    """By what factor the spread of `nu_plus` over single orbits falls when they are four times as long, and words."""
+    short, long = (spectrum("cardioid", TENTHS, BALLS, n).plus[1:] for n in (BOUNCES // 4, BOUNCES))
+    ratio = float(np.max(np.std(long, axis=1) / np.std(short, axis=1)))
+    return ratio, (
+        f"sampled at lam = 0.1, ..., 1, the spread of nu_+ over {BALLS} orbits falls by a factor of {1 / ratio:.1f} or "
+        f"more from {BOUNCES // 4} to {BOUNCES} bounces (2 is due if the limits exist and are the same)"
+    )
+
+
+@judges("cardioid.lyapunov_exist")
+def existence(claim: Claim) -> Judgement:
+    """Proved at `lam = 1` alone; sampled elsewhere."""
+    ratio, said = settling()
+    return sampled(
+        "they exist for almost every start at lam = 1; for 0 < lam < 1 that the limits exist is not shown",
+        f"proved at lam = 1 (Oseledets); {said}",
+        ratio < 0.8 and bool(elastic()),
+    )
+
+
+@judges("cardioid.lyapunov_signs")
 def signs(claim: Claim) -> Judgement:
-    """One exponent is positive on every orbit, and the sum is at most 0 for almost every start."""
+    """Signs of the lower limit of one rate and the upper limit of the other, whether or not the limits exist."""
     return Judgement(
-        by("where the exponents exist, nu_- <= -nu_+ for almost every start", positive_exponent(), at_most_zero()),
-        f"nu_+ >= {least_exponent()} on every orbit that has exponents and misses the cusp, at each lam < 1, and "
-        f"nu_- <= -nu_+ for almost every start; {measured()}",
+        both_signs(),
+        f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "
+        f"{least_exponent()} on every orbit off the cusp, and that of the smallest an upper limit of at most minus "
+        f"that for almost every start; at lam = 1 nu_+ = -nu_- > 0 for almost every start; {NOT_SHOWN}; {measured()}",
+    )
+
+
+@judges("cardioid.exponents_bounded_away")
+def bounded_away(claim: Claim) -> Judgement:
+    """At each `lam < 1` by a bound for all orbits, which tends to 0; one bound for all `lam` is sampled."""
+    (least, _), (_, most) = ranges()
+    return sampled(
+        f"proved at each lam < 1: {least_exponent()} bounds all orbits; it tends to 0 as lam tends to 1, so neither "
+        "one bound for all lam nor one for all orbits at lam = 1 is shown",
+        f"proved at each lam < 1, with a bound that tends to 0 as lam tends to 1; {measured()}",
+        bool(both_signs()) and least > 0.2 and most < -0.2,
+    )
+
+
+@judges("cardioid.nonuniformly_hyperbolic")
+def nonuniformly_hyperbolic(claim: Claim) -> Judgement:
+    """The rates keep off 0; that they converge is proved at `lam = 1` alone."""
+    ratio, said = settling()
+    return sampled(
+        "for almost every start no rate of growth has the limit 0: one has a lower limit above 0, the other an upper "
+        f"limit below 0; {NOT_SHOWN}",
+        f"proved for almost every start: the rates of both singular values keep off 0, from above and from below; at "
+        f"lam = 1 the limits exist; {said}",
+        bool(both_signs()) and ratio < 0.8,
     )
 
 
 @judges("cardioid.chaotic_attractor")
 def chaotic(claim: Claim) -> Judgement:
-    """No cycle attracts: a chaotic attractor in the paper's sense, one with a positive exponent (section 6.6)."""
-    return Judgement(
-        by(
-            "every orbit off the cusp stretches at a rate of at least log(1 + tan((1 - lam)*pi/8)^2/2) > 0: every "
-            "cycle is unstable, none attracts, and almost every start has a positive exponent",
-            positive_exponent(),
-        ),
-        f"nu_+ >= {least_exponent()} on every orbit; {measured()}",
+    """No cycle attracts and every orbit stretches; one transitive attractor is proved at `lam = 0` alone."""
+    (least, _), _ = ranges()
+    proof = slap_proof()
+    natural = "at lam = 0 one natural measure, whose exponent is proved" if proof.certified else "nothing at lam = 0"
+    return sampled(
+        f"every orbit off the cusp stretches at a rate of at least {least_exponent()}: no cycle attracts, and none "
+        f"converges to the cusp; {natural}; {NOT_SHOWN}",
+        f"proved for lam < 1: every orbit off the cusp stretches exponentially, so no cycle attracts; proved: "
+        f"{natural}; that there is one attractor with a natural measure for lam > 0 is sampled: every orbit at "
+        f"lam = 0.1, ..., 1 has nu_+ >= {least:.3f}",
+        bool(stretching()) and proof.certified and least > 0.2,
     )
 
 
@@ -57,11 +154,13 @@ def near_cusp(claim: Claim) -> Judgement:
     """A curve that no point leaves into the cusp would grow beyond the length of the boundary."""
     return Judgement(
         by(
-            "a curve along the cone is monotone in s, so it measures at most 3*pi in |K|*ds; it grows at each bounce "
-            "by a factor bounded away from 1 until one of its points hits the cusp, whose neighbours land arbitrarily "
-            "near it. So the starts that come as near to the cusp as wanted, as late as wanted, are dense (lam < 1), "
-            "and no compact set off the cusp attracts an open set",
-            positive_exponent(),
+            "a curve along the cone is monotone in s, so it measures at most 3*pi in |K|*ds; it grows by g at each "
+            "bounce but the first until one of its points hits the cusp, whose neighbours on one side land arbitrarily "
+            "near it. So the starts that come as near to the cusp as wanted, as late as wanted, are open and dense "
+            "(lam < 1) among those that miss it, and no compact set off the cusp attracts an open set",
+            stretching(),
         ),
-        f"generic orbits come arbitrarily near the cusp again and again; {nearing()}",
+        "for a dense set of starts (a countable intersection of open dense ones) the orbit comes arbitrarily near the "
+        "cusp again and again, so no compact set off the cusp holds the attractor; that almost every start does is not "
+        f"shown; {nearing()}",
     )

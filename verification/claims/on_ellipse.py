@@ -8,19 +8,19 @@ from symbolic.geometry import curvature, evolute, velocity
 from symbolic.invariants import gradient, joachimsthal_defect
 from symbolic.multipliers import saddle
 from symbolic.named_cycles import major_axis, minor_axis
-from symbolic.signs import Finding, nonnegative, positive
+from symbolic.signs import Box, Finding, nonnegative, positive
 from symbolic.symbols import a, lam, theta
 from symbolic.tables import ellipse
 from verification.claims.claim import Claim, Judgement
 from verification.claims.ellipse_axes import BEYOND, major
 from verification.claims.judges import (
+    answer,
     by,
     counterexample,
     equal,
     identity,
     judges,
     on_range,
-    shown,
     zero,
 )
 
@@ -52,6 +52,11 @@ def integrable(claim: Claim) -> Judgement:
 
 @judges("ellipse.two_period2")
 def two_period2(claim: Claim) -> Judgement:
+    """There are two double normals."""
+    return Judgement(axes_alone(claim.box), "the chords of the two axes, and no other")
+
+
+def axes_alone(box: Box) -> Finding:
     """A chord with ends at `m + B`, `m - B` that is normal at both lies on an axis."""
     m, B = symbols("m B", real=True)
     x, y = ellipse.components[0].point
@@ -63,14 +68,11 @@ def two_period2(claim: Claim) -> Judgement:
     axes = 4 * sin(B) ** 2 * (a**2 - 1) * sin(m) * cos(m)
     gaps = [(total - s1 * diameter, difference - s2 * axes) for s1 in (1, -1) for s2 in (1, -1)]
     factored = next((found for gap in gaps if (found := zero("", *gap))), zero("", *gaps[0]))
-    return Judgement(
-        by(
-            "normal at both ends means sin(B)*cos(B)*(a^2 sin(m)^2 + cos(m)^2) = 0 and "
-            "sin(B)^2*(a^2 - 1)*sin(m)*cos(m) = 0, so cos(B) = 0 and m is a multiple of pi/2",
-            factored,
-            positive(a**2 - 1, claim.box),
-        ),
-        "the chords of the two axes, and no other",
+    return by(
+        "normal at both ends means sin(B)*cos(B)*(a^2 sin(m)^2 + cos(m)^2) = 0 and "
+        "sin(B)^2*(a^2 - 1)*sin(m)*cos(m) = 0, so cos(B) = 0 and m is a multiple of pi/2",
+        factored,
+        positive(a**2 - 1, box),
     )
 
 
@@ -85,7 +87,7 @@ def minor_axis_stable(claim: Claim) -> Judgement:
 def major_axis_invariant(claim: Claim) -> Judgement:
     """The chord is normal at both ends."""
     return Judgement(
-        shown("the major axis is normal to the boundary at both ends", is_double_normal(major_axis())),
+        answer(is_double_normal(major_axis()), "the major axis is normal to the boundary at both ends"),
         "phi = 0 forever",
     )
 
@@ -97,6 +99,7 @@ def lyapunov() -> list[Finding]:
         zero("J survives the flight (Joachimsthal)", joachimsthal_defect()),
         positive(1 - lam, {lam: Interval.Ropen(0, 1)}),
         positive(ends[1] - ends[0], BEYOND),
+        axes_alone(BEYOND),
     ]
 
 
@@ -109,15 +112,17 @@ LIMIT = (
 @judges("ellipse.limit_set")
 def limit_set(claim: Claim) -> Judgement:
     """A Lyapunov function, and the two double normals."""
-    open_box = {**BEYOND, **claim.box}
-    return Judgement(
-        by(
-            LIMIT,
-            *lyapunov(),
-            stable_while_nonnegative(stability_number(minor_axis()), open_box),
-            saddle(*major(), open_box),
-        ),
-        "the stable minor and the unstable major axis, for every a > 1",
+    return Judgement(two_cycles(claim.box), "the stable minor and the unstable major axis, for every a > 1")
+
+
+def two_cycles(box: Box | None = None) -> Finding:
+    """Is every limit point of an orbit, for `a > 1` and `0 < lam < 1`, on the stable or the unstable axis?"""
+    open_box = {**BEYOND, **(box or {lam: Interval.open(0, 1)})}
+    return by(
+        LIMIT,
+        *lyapunov(),
+        stable_while_nonnegative(stability_number(minor_axis()), open_box),
+        saddle(*major(), open_box),
     )
 
 
@@ -207,7 +212,7 @@ def slap_stable(claim: Claim) -> Judgement:
     return Judgement(
         counterexample(
             "T0 exchanges the two ends of the minor axis: two points of one orbit",
-            shown("the minor axis is normal at both ends", is_double_normal(minor_axis())),
+            answer(is_double_normal(minor_axis()), "the minor axis is normal at both ends"),
         ),
         f"one stable period-2 orbit on the minor axis, through two points; (T0^2)' = {slope}",
         by(f"(T0^2)' = {slope}", stable),

@@ -21,7 +21,6 @@ from verification.claims.judges import (
     greater,
     identity,
     judges,
-    shown,
     zero,
 )
 
@@ -244,6 +243,15 @@ def splitting_nonreal(claim: Claim) -> Judgement:
     )
 
 
+def eigenline_defects() -> list[Expr]:
+    """With `B*A*v = mu*v`, the flight `A` takes `v` to an eigenvector of `A*B`: zeros. Written for `v = (1, 0)`."""
+    a11, a12, a21, a22, b12, b22, mu = symbols("a11 a12 a21 a22 b12 b22 mu", real=True)
+    A = Matrix([[a11, a12], [a21, a22]])
+    B = Matrix([[mu, b12], [0, b22]]) * A.inv()  # every B with B*A*(1, 0) = mu*(1, 0)
+    v = Matrix([1, 0])
+    return [(A * B * (A * v) - mu * A * v)[i].together().factor() for i in range(2)]
+
+
 @judges("ellipse.splitting_hyperbolic")
 def splitting_hyperbolic(claim: Claim) -> Judgement:
     """The minor axis at `lam = lambda_-(a)`: equal real multipliers, one eigenvector."""
@@ -256,12 +264,13 @@ def splitting_hyperbolic(claim: Claim) -> Judgement:
             "and the matrix is not diagonal: there is one invariant direction, not two",
             zero("", trace**2 - 4 * det),
             greater(S.One, det),
-            shown("the off-diagonal entry does not vanish", at_threshold[0, 1].equals(0) is False),
+            greater(at_threshold[0, 1] ** 2, S.Zero),
         ),
         "finitely many hyperbolic cycles with real multipliers of different modulus have dominated splitting",
         by(
-            "the eigenlines of the larger and of the smaller modulus are continuous on a finite set "
-            "and dominated by their ratio",
+            "the eigenlines of the larger and of the smaller modulus are continuous on a finite set, a flight takes "
+            "them to those at the next point with the same multipliers, and these dominate by their ratio",
+            zero("", *eigenline_defects()),
             saddle(*major(), open_box),
         ),
         "The real eigenvalues must also differ in modulus; a node with equal eigenvalues has no dominated splitting.",

@@ -15,7 +15,8 @@ from sympy import Expr, Rational, S, log, pi, sqrt
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
 from symbolic import tables
-from symbolic.contraction import area_factor, weak_dissipation
+from symbolic.contraction import area_factor, steepening, weak_dissipation
+from symbolic.multipliers import contracting_norm
 from symbolic.named_cycles import major_axis
 from symbolic.polygons import saddle_node
 from symbolic.signs import Finding, Outcome
@@ -24,7 +25,7 @@ from symbolic.thresholds import lambda_c
 from verification.arithmetic import working
 from verification.balls import enclose
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import by, counterexample, greater, judges, rounded, shown
+from verification.claims.judges import answer, by, counterexample, greater, judges, rounded, zero
 from verification.claims.on_samples import sampled
 from verification.claims.spectra import SEED, Spectrum, spectrum
 from verification.dynamics.certified import Certificate, certificate
@@ -114,6 +115,13 @@ def triangle_rate() -> Expr:
     return log(area_factor().subs(eta, pi / (3 * (1 + lam)))) / 2
 
 
+def agree(one: arb, other: arb) -> Finding:
+    """Do two balls for one number, of at most `1e-15`, meet? They refute each other when they do not."""
+    if not one.overlaps(other):
+        return Finding(Outcome.REFUTED, f"{one} and {other} are different")
+    return answer(max(one.rad(), other.rad()) < arb("1e-15"), "both agree to 1e-15")
+
+
 @judges("egg.exponent_period3")
 def period3(claim: Claim) -> Judgement:
     """A closed form, at the contraction where the paper compares it; it is 0 at birth and at `lam = 1`."""
@@ -123,11 +131,16 @@ def period3(claim: Claim) -> Judgement:
     table = tables.egg(3).at(alpha=SHAPE)
     proof = certificate(table, here, places(0, [-1.4541, 0.6403, 2.7347], 0.0), 20)
     with working(BITS):
-        same = proved(proof) and exponents(proof.trace, proof.determinant, 3)[0].overlaps(enclose(value, {}, BITS).real)
+        same = agree(exponents(proof.trace, proof.determinant, 3)[0], enclose(value, {}, BITS).real)
     finding = rounded(str(claim.printed), value)
     ranged = "; it rounds to -0.3 from soon after the birth at lam = " + born.str(5, radius=False) + " up to lam = 0.49"
     return Judgement(
-        by("at lam = 0.3937, from the certified cycle and in closed form", finding, shown("both agree", bool(same))),
+        by(
+            "at lam = 0.3937, from the certified cycle and in closed form",
+            finding,
+            answer(proved(proof), "proved"),
+            same,
+        ),
         "nu = log(lam*cos(lam*eta)/cos(eta))/2 with eta = pi/(3*(1 + lam)) while the multipliers are complex: -0.3314 "
         "at 0.3937, -0.2825 at 0.45, -0.1455 at 0.66" + ranged,
         value=value,
@@ -166,7 +179,7 @@ def period32(claim: Claim) -> Judgement:
     return Judgement(
         by(
             f"the certified cycle of period 32 at lam = {float(fits[1]):.7f} has nu_+ = {fits[2].str(6, radius=False)}",
-            shown("every one of five cycles along the window is proved", all(row[0] for row in rows)),
+            answer(all(row[0] for row in rows), "every one of five cycles along the window is proved"),
             rounded(str(claim.printed), lambda bits: fits[2]),
         ),
         f"it depends on lam: 0 at both ends of the window (lambda_5, lambda_6), and {told}",
@@ -202,16 +215,18 @@ def weak_dissipation_attracts(claim: Claim) -> Judgement:
         counterexample(
             "at alpha = 1/20 a cycle of period 6 is elliptic at lam = 1, and at lam = 99/100 a repeller with complex "
             f"multipliers, |mu|^2 = {size}",
-            shown("both cycles are proved", proved(damped) and proved(elastic)),
-            shown("complex multipliers at both", all(turning)),
-            shown("det > 1 at lam = 99/100", repels),
+            answer(proved(damped) and proved(elastic), "both cycles are proved"),
+            answer(all(turning), "complex multipliers at both"),
+            answer(repels, "det > 1 at lam = 99/100"),
         ),
         "an elliptic cycle becomes attracting for lam below 1 when the mean of eta*tan(eta) over it is below 1, and "
         "repelling when it is above",
         by(
             "its multipliers have the modulus sqrt(det), and d log(det)/d lam at lam = 1 is the sum of "
-            f"{weak_dissipation()}",
-            shown("eta*tan(eta) < 1 on the triangles", bool(greater(3 * sqrt(3), pi))),
+            f"{weak_dissipation()}, since log(g) does not depend on eta at lam = 1; eta = pi/6 on the triangles there",
+            zero("d log(g)/d eta is 0 at lam = 1", steepening().subs(lam, 1)),
+            zero("eta + lam*eta = pi/3", (eta + lam * eta).subs({eta: pi / 6, lam: 1}) - pi / 3),
+            greater(weak_dissipation().subs(eta, pi / 6), S.Zero),
         ),
         "True of the period-3 orbits; elliptic orbits with oblique bounces, where eta*tan(eta) exceeds 1 on average, "
         "become repelling, so weak dissipation does not show their islands.",
@@ -233,10 +248,11 @@ def chaotic_sign(claim: Claim) -> Judgement:
             greater(largest, S.One),
         ),
         "a positive maximal exponent excludes convergence to an attracting cycle, and no more",
-        Finding(
-            Outcome.PROVED,
-            "along an orbit that converges to an attracting cycle off joins and cusps DT converges to the cycle's, so "
-            "both exponents are the cycle's, which are negative",
+        by(
+            "near an attracting cycle off joins and cusps DT is continuous, so over a period it contracts there in the "
+            "quadratic norm in which the monodromy matrix does: on an orbit that converges to the cycle every vector "
+            "shrinks exponentially, and no exponent is positive",
+            contracting_norm(),
         ),
         "A positive exponent does not make a trajectory converge to a chaotic attractor (unstable cycles have one "
         "too); the criterion is meant for almost every initial condition.",

@@ -1,6 +1,6 @@
 """Claims on the pinball billiard map in general. Paper: abstract and sections 1, 2."""
 
-from sympy import Expr, Integer, Interval, Matrix, Rational, S, acos, cos, oo, sqrt
+from sympy import Expr, Function, Integer, Interval, Matrix, Rational, S, acos, cancel, cos, oo, sqrt
 
 from symbolic import tables
 from symbolic.circle import flight, iterate
@@ -12,12 +12,14 @@ from symbolic.collision import (
     slap_derivative,
 )
 from symbolic.egg import COSINE, in_cosine
-from symbolic.geometry import evolute, tangent, turning
+from symbolic.geometry import turning
 from symbolic.signs import Finding, nonnegative, positive
 from symbolic.symbols import K1, a, alpha, cos_eta1, cos_phi0, eta, lam, phi, s, theta
 from verification.claims.claim import Claim, Judgement
 from verification.claims.judges import by, counterexample, equal, greater, identity, judges, zero
 
+ALL = (tables.circle, tables.ellipse, tables.cardioid, tables.cuspless, tables.egg(3))
+ARCS = tables.cuspless.component("arc").point, tables.cardioid.components[0].point
 MIRROR = "the exit angle is -lam*eta"
 
 
@@ -127,12 +129,16 @@ def slap(claim: Claim) -> Judgement:
 
 @judges("map.slap_circle_map")
 def slap_circle_map(claim: Claim) -> Judgement:
-    """The boundary of each table is one closed curve."""
+    """The boundary of each table is one closed curve, of one component or more."""
     gaps = []
-    for table in (tables.circle, tables.ellipse, tables.cardioid, tables.egg(3)):
-        whole = table.components[0]
-        gaps += [p - q for p, q in zip(whole.at(whole.end), whole.at(whole.start), strict=True)]
-    return Judgement(by("the boundary closes up, so s is periodic", zero("", *gaps)), "s is taken modulo the perimeter")
+    for table in ALL:
+        chain = table.components
+        for before, after in zip(chain, chain[1:] + chain[:1], strict=True):
+            gaps += [p - q for p, q in zip(before.at(before.end), after.at(after.start), strict=True)]
+    return Judgement(
+        by("the boundary of each of the five tables closes up, so s is periodic", zero("", *gaps)),
+        "s is taken modulo the perimeter; the map has a jump, or no value, where a normal runs into a join or the cusp",
+    )
 
 
 def turnings() -> list[Finding]:
@@ -170,12 +176,34 @@ def zero_curvature(claim: Claim) -> Judgement:
 
 @judges("map.slap_evolute")
 def slap_evolute(claim: Claim) -> Judgement:
-    """The velocity of the centre of curvature is along the normal."""
-    across = []
-    for table in (tables.circle, tables.ellipse, tables.cardioid):
-        component = table.components[0]
-        across.append(evolute(component).diff(theta).dot(tangent(component)))
+    """The velocity of the centre of curvature is along the normal, on any curve; which curves have one."""
+    x, y = (Function(name, real=True)(theta) for name in "xy")
+    velocity = Matrix([x, y]).diff(theta)
+    bend = velocity[0] * y.diff(theta, 2) - velocity[1] * x.diff(theta, 2)
+    centre = Matrix([x, y]) + velocity.dot(velocity) / bend * Matrix([-velocity[1], velocity[0]])
+    wall = turning(tables.cuspless.component("wall"))
     return Judgement(
-        by("each normal touches the evolute at the centre of curvature", zero("", *across)),
-        "d(evolute)/d theta is parallel to the normal",
+        by(
+            "each normal touches the evolute at the centre of curvature, on any curve whose curvature is not 0; each "
+            "curved component of the five tables has that, but for three points of the egg with alpha = 1/10",
+            zero("", cancel(centre.diff(theta).dot(velocity))),
+            zero("phi = 0 at lam = 0", exit_angle().subs(lam, 0)),
+            zero("the wall's normals are parallel: it has no evolute", wall),
+            *curved(),
+        ),
+        "d(evolute)/d theta is parallel to the normal; the point of contact is at the distance 1/|K|, beyond the "
+        "landing where t*|K| < 1. The wall of the cuspless cardioid has no evolute",
     )
+
+
+def curved() -> list[Finding]:
+    """`turning > 0`, which is `kappa < 0`, on each component but the wall, off the cusp and for `alpha < 1/10`."""
+    egg = in_cosine(turning(tables.egg(3).components[0]))
+    rounds = turning(tables.cardioid.components[0]).subs(cos(theta), COSINE)
+    return [
+        positive(turning(tables.circle.components[0]), {}),
+        positive(turning(tables.ellipse.components[0]), {a: Interval(1, oo)}),
+        positive(rounds, {COSINE: Interval.Lopen(-1, 1)}),
+        zero("the arc is the cardioid's", *(p - q for p, q in zip(*ARCS, strict=True))),
+        positive(egg, {COSINE: Interval(-1, 1), alpha: Interval.Ropen(0, Rational(1, 10))}),
+    ]

@@ -1,4 +1,4 @@
-"""Claims supported by sampling, with its error: the sizes of basins, and time averages. Paper: sections 4.2, 6.4."""
+"""Claims supported by sampling, with its error: the sizes of basins. Paper: section 6.4."""
 
 from dataclasses import replace
 
@@ -36,18 +36,3 @@ def end_of_period_3(claim: Claim) -> Judgement:
     shares = ", ".join(f"{share_of_period_3(lam):.1%} at {lam}" for lam in ("0.3785", "0.38", "0.39", "0.42"))
     found = digits(claim, saddle_node().subs(alpha, SHAPE), ("0.39", "0.378"))
     return replace(found, derived=f"{found.derived}; random starts that reach period 3: {shares}, so plots see it late")
-
-
-@judges("cardioid.slap_ergodic")
-def slap_ergodic(claim: Claim) -> Judgement:
-    """Time averages along many orbits agree within their errors."""
-    map = PinballMap("cardioid", lam=0)
-    start = np.random.default_rng(SEED).uniform(-3, 3, 64)
-    orbit = map.orbit(start, np.zeros(64), 20_000)
-    values = np.sin(orbit.theta[1000:] / 2) ** 2  # s^2/16
-    blocks = values[: 19_000 // 500 * 500].reshape(-1, 500, 64).mean(axis=1)
-    means, errors = blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(blocks.shape[0])
-    chi = float(np.mean(((means - means.mean()) / errors) ** 2))
-    good = bool(np.all(orbit.code == 0)) and 0.5 < chi < 1.7
-    said = f"64 orbits of 19000 bounces: the averages of s^2/16 are {means.mean():.4f}, reduced chi^2 {chi:.2f}"
-    return sampled("one time average from every start", said, good)

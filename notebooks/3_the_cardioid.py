@@ -39,9 +39,14 @@ infimum = slap_cardioid.expansion_infimum()
 print("inf (T0^2)' =", N(infimum, 30))
 
 # ## The proof
+#
+# $|(T_0^2)'| = 3/2$ has no solution; and on the branch where the least value lies there is one critical point, on the
+# other $(T_0^2)'$ stays above $1.51$:
 
 proof = slap_cardioid.expands_by(Rational(3, 2))
-print(proof.outcome.value, "-", proof.reason[:200])
+least = slap_cardioid.infimum_attained()
+print(proof.outcome.value, "-", proof.reason)
+print(least.outcome.value, "-", least.reason)
 
 # ## A check that can fail
 #
@@ -57,6 +62,38 @@ slap = PinballMap("cardioid", lam=0)
 once = slap.slap(theta, 1)
 twice = once.slope * slap.slap(once.theta[1], 1).slope
 assert proof
+assert least
 assert np.min(np.abs(once.slope)) < 1
 assert np.min(twice) >= float(infimum) * (1 - 1e-12)
 assert np.min(twice) < float(infimum) * (1 + 1e-3)
+# -
+
+# ## Every contraction below 1
+#
+# A cone of beams that every bounce maps into itself and widens makes every orbit off the cusp stretch exponentially:
+# with $g = 1 + \tan^2((1 - \lambda)\pi/8)/2$,
+#
+# $$|D(T^n)\,(1, 0)| \geq \tfrac14 \sin^4((1 - \lambda)\pi/4)\; g^{\,n - 2} \qquad (n \geq 2,\ \lambda < 1).$$
+#
+# For almost every start the smaller singular value shrinks, at the rate $\log g$ at least. Not shown for
+# $0 < \lambda < 1$: that the exponents exist as limits, that $\nu_- < 0$ for every invariant measure, a natural measure,
+# transitivity.
+
+# +
+from symbolic import defocusing
+from symbolic.symbols import lam
+
+show(r"\liminf \tfrac1n \log|D(T^n)(1, 0)| \geq", defocusing.least_exponent())
+bound = [float(defocusing.least_stretch(n).subs(lam, Rational(1, 2))) for n in range(2, 30)]
+
+half = PinballMap("cardioid", lam="1/2")
+start = np.linspace(-3, 3, 501), np.linspace(-1.5, 1.4, 501)
+orbit = half.orbit(*start, 30)
+vector = np.stack([np.ones(501), np.zeros(501)])
+stretch = []
+for n in range(1, 30):
+    vector = np.einsum("...ij,j...->i...", half.derivative(orbit.theta[n - 1], orbit.phi[n - 1]), vector)
+    stretch.append(np.min(np.abs(vector[0])))
+assert defocusing.expands()
+assert np.all(np.array(stretch[1:]) >= bound)
+print("least stretch of 501 orbits after 29 bounces:", stretch[-1], "; proved:", bound[-1])

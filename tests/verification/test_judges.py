@@ -130,11 +130,11 @@ JUDGES = sorted((Path(__file__).parents[2] / "verification" / "claims").glob("on
 def test_no_judge_calls_a_sentence_proved_that_nothing_has_computed(path):
     """`Finding(Outcome.PROVED, "...")` and `shown("...", True)` are assertions; a finding is computed."""
     calls = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+    first = {call.lineno: (ast.unparse(call.func), [ast.unparse(given) for given in call.args]) for call in calls}
     flat = [
-        call.lineno
-        for call in calls
-        if any(ast.unparse(given) in ("Outcome.PROVED", "Outcome.REFUTED") for given in call.args[:1])
-        or any(isinstance(given, ast.Constant) and given.value is True for given in call.args)
+        line
+        for line, (name, given) in first.items()
+        if (name == "Finding" and given[0] == "Outcome.PROVED") or (name in ("shown", "answer") and "True" in given)
     ]
 
     assert flat == []

@@ -18,7 +18,7 @@ from symbolic.circle import flight
 from symbolic.signs import Finding, Outcome
 from symbolic.symbols import lam, phi
 from verification.claims.claim import Claim, Judgement
-from verification.claims.judges import answer, by, counterexample, equal, greater, judges, shown
+from verification.claims.judges import answer, by, counterexample, equal, greater, judges
 from verification.claims.on_circle import settles
 from verification.claims.on_ellipse import two_cycles
 from verification.claims.on_samples import sampled

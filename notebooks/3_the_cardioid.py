@@ -76,8 +76,8 @@ assert np.min(twice) < float(infimum) * (1 + 1e-3)
 # $$|D(T^n)\,(1, 0)| \geq \tfrac14 \sin^4((1 - \lambda)\pi/4)\; g^{\,n - 2} \qquad (n \geq 2,\ \lambda < 1).$$
 #
 # For almost every start the smaller singular value shrinks, at the rate $\log g$ at least. Not shown for
-# $0 < \lambda < 1$: that the exponents exist as limits, that $\nu_- < 0$ for every invariant measure, a natural measure,
-# transitivity.
+# $0 < \lambda < 1$: that the exponents exist as limits, that $\nu_- < 0$ for every invariant measure, a natural
+# measure, transitivity.
 
 # +
 from symbolic import defocusing

@@ -78,7 +78,7 @@ def quick_proof():
 def test_every_orbit_of_the_cardioid_stretches_as_much_as_is_proved_and_keeps_off_the_cusp_every_second_bounce():
     """On 200 orbits in float64, of which none may fall below: `|ds_n|` from the derivative matrices."""
     from numeric import PinballMap
-    from numeric.sampling import phase_starts
+    from numeric.pinball.sampling import phase_starts
 
     for share in (Rational(0), Rational(1, 2), Rational(9, 10)):
         map = PinballMap("cardioid", lam=str(share))

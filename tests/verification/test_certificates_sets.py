@@ -1,18 +1,26 @@
 """Proofs over sets: exclusion, periodic points of a slap map, the projection argument, the ladder's end."""
 
+import math
+from dataclasses import replace
+
 import mpmath
+import numpy as np
 import pytest
 from flint import arb
 from sympy import Rational, acos
 
+from numeric import PinballMap
 from symbolic.polygons import saddle_node
 from symbolic.signs import Outcome
 from symbolic.symbols import alpha as letter
+from verification.arithmetic import working
+from verification.certificates import slap
 from verification.certificates.birth import birth
 from verification.certificates.branch import flips_nowhere
 from verification.certificates.contraction import Status, contraction, exact_balls
 from verification.certificates.curve import doubling_curve
 from verification.certificates.exclusion import no_triangles
+from verification.certificates.flights import ARC, BITS, WALL, Flights, Piece
 from verification.certificates.fourth import fourth_on_wall
 from verification.certificates.kink import minimum_at_kink
 from verification.certificates.projection import PRODUCED, SLAP, witness
@@ -99,6 +107,65 @@ def test_the_cuspless_slap_map_has_no_cycle_of_period_4():
     for component, low, high in stretches:
         assert sum(c == component and low <= x <= high for c, x in ends_of_period_2) == 1
     assert periodic_points(1).stretches == []
+
+
+class Kinked:
+    """In the place of flights, a map of the arc with a kink at 0, where it is 0.002 below the diagonal."""
+
+    def __init__(self):
+        self.ends = {ARC: arb(1), WALL: arb(1)}
+
+    def iterated(self, pieces, n):
+        (piece,) = pieces
+        left = piece.theta.mid() < 0
+        slope = arb("0.5") if left else arb("1.5")
+        return [replace(piece, theta=slope * piece.theta - arb("0.002"), slope=slope)]
+
+
+def test_stretches_are_joined_only_where_the_slope_stays_on_one_side_of_the_diagonals(monkeypatch):
+    """On either side of the kink is a fixed point: -0.004 and 0.004, in stretches that touch at 0."""
+    monkeypatch.setattr(slap, "Flights", Kinked)
+    on_arc = [(low, high) for component, low, high in periodic_points(1).stretches if component == ARC]
+
+    for low, high in on_arc:
+        assert sum(low <= x <= high for x in (-0.004, 0.004)) <= 1
+    assert on_arc[0][0] <= -0.004 <= on_arc[0][1] <= 0 <= on_arc[-1][0] <= 0.004 <= on_arc[-1][1]
+
+
+def test_a_landing_is_on_any_part_of_the_boundary_that_the_ball_may_reach(monkeypatch):
+    """A wall whose both ends lie in the ball of the ray's crossing: upper arc, wall and lower arc."""
+    flights = Flights()
+    roots = {ARC: {1: arb(2.2, 0.3), -1: arb(-2.2, 0.3)}, WALL: {1: arb(0.01, 0.5), -1: arb(0.01, 0.5)}}
+
+    def enclosed(piece, target, low, high):
+        return Piece(target, roots[target][1 if low < math.pi / 2 else -1], arb(1), arb(0))
+
+    monkeypatch.setattr(flights, "_root", enclosed)
+    for at, to in ((0.3, 0.0), (0.3, 0.2), (-0.3, -0.2)):  # from here the middle of the ball is on the wall or an arc
+        found = flights.landing(Piece(ARC, arb(at), arb(1), arb(to, 0.3)))
+        assert {(p.component, bool(p.theta > 0.1), bool(p.theta < -0.1)) for p in found} == {
+            (ARC, True, False),
+            (WALL, False, False),
+            (ARC, False, True),
+        }
+
+
+def test_a_landing_that_may_be_on_either_side_of_a_join_is_told_as_both():
+    flights, random, both = Flights(), np.random.default_rng(2), 0
+    for _ in range(150):
+        theta, size, turn = random.uniform(-2, 2), *10 ** random.uniform(-6, -2.5, 2)
+        with working(BITS):
+            corner = flights.balls[ARC, ARC](arb(theta), random.choice([-1, 1]) * flights.ends[ARC])[0]
+            phi = float(corner.mid())
+            found = flights.landing(Piece(ARC, arb(theta, size), arb(1), arb(phi, turn)))
+        if found is None:
+            continue
+        both += len(found) > 1
+        starts, angles = theta + size * random.uniform(-1, 1, 20), phi + turn * random.uniform(-1, 1, 20)
+        orbit = PinballMap("cuspless", lam=0.0).orbit(starts, angles, 1, np.zeros(20, int))
+        for component, at in zip(orbit.component[1], orbit.theta[1], strict=True):
+            assert any(p.component == component and abs(p.theta - at).lower() < 1e-9 for p in found)
+    assert both > 50
 
 
 def test_the_projection_meets_the_diagonal_where_the_paper_says_that_it_misses():

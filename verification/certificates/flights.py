@@ -63,10 +63,13 @@ class Flights:
         return pieces
 
     def landing(self, piece: Piece) -> list[Piece] | None:
-        """The image of a piece: one piece, or two when it may straddle a join; None when not enclosed.
+        """The image of a piece: one piece, or up to three when it may straddle the joins; None when not enclosed.
 
         The table is convex, so a root of the chord angle that is proved to lie on the boundary is the
-        landing. Floats guess on which part: the wall when the ray passes between the corners.
+        landing. Floats guess on which part: the wall when the ray passes between the corners. When the root
+        there may lie beyond a corner, the place where the ray meets the line of the wall tells which parts
+        are possible: the upper arc unless that is below the upper corner, the lower one unless it is above the
+        lower corner, and each of them has to be enclosed.
         """
         if piece.component == WALL:
             return _all(self._root(piece, ARC, -1.05, 1.05))
@@ -82,9 +85,15 @@ class Flights:
             return None
         if abs(first.theta) < self.ends[first.component]:
             return [first]
-        if guess != "wall":
-            return _all(first, roots["wall"]())
-        return _all(first, roots["upper" if first.theta < 0 else "lower"]())
+        wall = first if guess == "wall" else roots["wall"]()
+        if wall is None:
+            return None
+        found: list[Piece | None] = [wall]
+        if not wall.theta > -self.ends[WALL]:  # the wall's parameter grows downwards
+            found.append(first if guess == "upper" else roots["upper"]())
+        if not wall.theta < self.ends[WALL]:
+            found.append(first if guess == "lower" else roots["lower"]())
+        return _all(*found)
 
     def _guess(self, start: float, phi: float, edge: float) -> str:
         near = self.floats[ARC, ARC]

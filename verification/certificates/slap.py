@@ -2,8 +2,9 @@
 
 The slap map is one-dimensional, so subdivision settles it: a piece of the boundary is followed in
 balls. A piece that does not meet its image holds no periodic point; where `(T0**n)' - 1` keeps its
-sign it holds at most one; and pieces that touch are joined, so that what is left are as many periodic
-points as are known already.
+sign it holds at most one; and pieces that touch are joined where that sign is the same, so that what is
+left are as many periodic points as are known already. Where it changes from one piece to the next, as it
+may at a kink of the map, each piece can hold one.
 Paper: section 5.4 (`the graph of the 4th iterate confirms that there are no period-4 orbits`).
 """
 
@@ -34,7 +35,7 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
     """
     with working(BITS):
         slap = Flights()
-        found: list[tuple[int, float, float]] = []
+        found: list[tuple[int, float, float, int]] = []
         queue = [(ARC, *_halves(slap.ends[ARC])), (WALL, *_halves(slap.ends[WALL]))]
         boxes = 0
         while queue:
@@ -45,10 +46,10 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
             box = arb(middle, half)
             images = slap.iterated([Piece(component, box, arb(1), arb(0))], n)
             apart = images is not None and not any(p.component == component and p.theta.overlaps(box) for p in images)
-            once = images is not None and len(images) == 1 and _monotone(images[0].slope) and half < 1e-2
-            if once and not apart:
-                found.append((component, middle - half, middle + half))
-            if apart or once:
+            sign = _sign(images[0].slope - 1) if images is not None and len(images) == 1 and half < 1e-2 else 0
+            if sign and not apart:
+                found.append((component, middle - half, middle + half, sign))
+            if apart or sign:
                 tick(half / sum(_halves(end)[1] for end in slap.ends.values()))
                 continue
             queue += [(component, middle - half / 2, half / 2), (component, middle + half / 2, half / 2)]
@@ -59,16 +60,17 @@ def _halves(end: arb) -> tuple[float, float]:
     return 0.0, float(end.upper()) * (1 + 2.0**-40)
 
 
-def _monotone(slope: arb) -> bool:
-    return bool(slope.is_finite() and (slope < 1 or slope > 1))
+def _sign(x: arb) -> int:
+    """1 or -1 when it is proved, else 0."""
+    return 0 if not x.is_finite() else 1 if x > 0 else -1 if x < 0 else 0
 
 
-def _joined(stretches: list[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
-    """Touching stretches as one."""
-    made: list[tuple[int, float, float]] = []
-    for component, low, high in stretches:
-        if made and made[-1][0] == component and low <= made[-1][2] + 1e-12:
-            made[-1] = component, made[-1][1], max(high, made[-1][2])
+def _joined(stretches: list[tuple[int, float, float, int]]) -> list[tuple[int, float, float]]:
+    """Touching stretches as one, where `(T0**n)' - 1` has one sign on both."""
+    made: list[tuple[int, float, float, int]] = []
+    for component, low, high, sign in stretches:
+        if made and (made[-1][0], made[-1][3]) == (component, sign) and low <= made[-1][2] + 1e-12:
+            made[-1] = component, made[-1][1], max(high, made[-1][2]), sign
         else:
-            made.append((component, low, high))
-    return made
+            made.append((component, low, high, sign))
+    return [(component, low, high) for component, low, high, _ in made]

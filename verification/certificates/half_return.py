@@ -2,13 +2,22 @@
 
 A ball that comes from the arc at `-theta1 + e*u` and meets the boundary the distance `e*v` beyond the
 upper corner flies to the arc again and to the lower corner; the mirror image of where it arrives is
-`(u1, v1)`. Here `e = lam - lambda-star`, and `H` is that map before it is divided by `e`. By the mean
-value theorem on the straight way from a base point on `v = 0`, which the corner divides nowhere,
+`(u1, v1)`. Here `e = lam - lambda-star > 0`. Let `H(U, V, e)` be this map between positions that are not
+divided by `e`, so that `(u1, v1) = H(e*u, e*v, e)/e`. By the mean value theorem on the straight way from a
+base point on `v = 0`, which stays on one side of the corner,
 
-    (u1, v1) = A ((u, v) - base) + H(base)/e,    A in the hull of DH over the region,
+    (u1, v1) = A ((u, v) - base) + H(e*base, 0, e)/e,    A in the hull of dH/d(U, V) at (e*u, e*v, e),
 
-with one hull for `v < 0` (the bounce is on the arc) and one for `v > 0` (on the wall). So the map itself,
-and not its linear part, lies in this family of piecewise affine maps.
+over `(u, v)` in that side of a convex region and `e` in the stretch that is asked for: one hull for `v < 0`
+(the bounce is on the arc) and one for `v > 0` (on the wall). So the map itself, and not its linear part,
+lies in this family of piecewise affine maps. The boxes that are followed are therefore products: a box of
+`(u, v)` times the ball of `e` that goes with it. The multiples of a region by a smaller `e` lie in its
+multiple by the largest one only where the region is star-shaped about the origin, and ours are not.
+
+Where the ball lands at the lower corner divides nothing: tangent and speed of the parameter agree there, so
+`H` is continuously differentiable across it. On `v = 0` the bounce is at the corner for every `e`, so that
+`H(e*base, 0, e)` has no part of either side in it, and as it is 0 at `e = 0`, divided by `e` it is a mean of
+`base*dH/dU + dH/de` at `(f*base, 0, f)` over all `f` from 0 to `e`, not over the stretch of `e` alone.
 """
 
 from flint import arb
@@ -28,7 +37,7 @@ from verification.certificates.trail import (
     parameter,
 )
 
-LONGEST_U, LONGEST_V, LONGEST_E, TINY = 1e-2, 2e-3, 1e-3, 1e-9  # sides of the boxes that are followed
+LONGEST_U, LONGEST_V, LONGEST_E, TINY = 1e-2, 2e-3, 5e-4, 1e-9  # sides of the boxes that are followed
 DEEPEST = 6  # halvings of a box that is not enclosed
 Image = tuple[Quantity, Quantity]
 
@@ -43,34 +52,37 @@ def limit() -> Pieces:
 
 
 def pieces(region: Polygon, e: tuple[float, float]) -> Pieces:
-    """The family over a convex region that meets `v = 0`, for all `e[0] <= lam - lambda-star <= e[1]`."""
+    """The family over a convex region that meets `v = 0`, for all `e[0] <= lam - lambda-star <= e[1]`, but 0."""
+    if not 0 <= e[0] <= e[1]:
+        raise ValueError(f"half return: e = {e} is no stretch of distances above lambda-star")
+    on_border = [u for u, _ in clipped(region, 0.0, 0.0)]
+    if not on_border:
+        raise ValueError("half return: the region does not meet v = 0, where the mean value theorem starts")
     with working(BITS):
-        middle = sorted(u for u, _ in clipped(region, 0.0, 0.0))
-        base = (middle[0] + middle[-1]) / 2
-        times = cuts(*e, LONGEST_E)
+        base = (min(on_border) + max(on_border)) / 2
         shift = _shift(base, cuts(0.0, e[1], LONGEST_E))
         found = {}
         for component in (ARC, WALL):
-            images = [i for box in _boxes(region, component, e[1]) for time in times for i in _followed(*box, time)]
+            boxes = (box for time in cuts(*e, LONGEST_E) for box in _boxes(region, component, time))
+            images = [image for box in boxes for image in _followed(component, *box)]
             hull = [joined([image[k].slopes[i] for image in images]) for k in (0, 1) for i in (0, 1)]
             found[component] = Piece(((hull[0], hull[1]), (hull[2], hull[3])), shift, (arb(base), arb(0)))
         return found
 
 
-def _boxes(region: Polygon, component: int, e: float) -> list[tuple[int, arb, arb]]:
-    """Boxes, of the unscaled `u` and `v`, that cover the part of the region on one side of the corner."""
-    ends = [v for _, v in region]
-    low, high = (min(ends), 0.0) if component == ARC else (0.0, max(ends))
+def _boxes(region: Polygon, component: int, e: arb) -> list[tuple[arb, arb, arb]]:
+    """Boxes of `(U, V, e)` that hold `(f*u, f*v, f)` for all `f` of a ball and `(u, v)` on one side of the region."""
+    heights, longest = [v for _, v in region], float(e.upper()) + TINY
+    low, high = (min(*heights, 0.0), 0.0) if component == ARC else (0.0, max(*heights, 0.0))
     found = []
-    for v in cuts(low, high, LONGEST_V / (e + TINY)):
+    for v in cuts(low, high, LONGEST_V / longest):
         width = [u for u, _ in clipped(region, float(v.lower()), float(v.upper()))]
-        for u in cuts(min(width), max(width), LONGEST_U / (e + TINY)):
-            found.append((component, u * e, v * e))
+        found += [(u * e, v * e, e) for u in cuts(min(width), max(width), LONGEST_U / longest)]
     return found
 
 
 def _shift(base: float, times: list[arb]) -> Row:
-    """`H(base)/e`: a mean of its derivative by `e` from 0 on, so within the hull of that."""
+    """`H(e*base, 0, e)/e` for every `e` up to the end of the last of these balls, which begin at 0."""
     images = [image for e in times for image in _followed(ARC, base * e, arb(0), e)]
     first, second = (joined([base * image[k].slopes[0] + image[k].slopes[2] for image in images]) for k in (0, 1))
     return first, second

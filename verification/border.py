@@ -117,7 +117,7 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
         for component, (u, v) in found.items():
             trace, determinant = family[component].trace, family[component].determinant
             within = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(region))
-            if not (within and v * SIGNS[component] > 0 and abs(trace) > 1 + determinant):
+            if not (within and v * SIGNS[component] > 0 and abs(trace) > abs(1 + determinant)):
                 return None
         return found
 

@@ -1,6 +1,7 @@
 """The border collision at the corner orbit: the proofs, the piecewise linear limit, and the map beside them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,14 @@ from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic import FLOAT64, working
 from verification.border import border, measured, saddles
 from verification.certificates.birth import birth
-from verification.certificates.border_collision import Kind, exponents, extent, fixed_point, kind, robust
+from verification.certificates.border_collision import (
+    Kind,
+    exponents,
+    extent,
+    fixed_point,
+    kind,
+    robust,
+)
 from verification.certificates.corner import ARC, WALL, at_corner, enclosed
 from verification.certificates.half_return import limit, pieces
 from verification.certificates.kink import exit_angle, kink, kink_falls, minimum_at_kink
@@ -69,6 +77,31 @@ def test_the_map_lies_in_the_family_that_encloses_it(e):
         assert all(x - 1e-9 < y < x + 1e-9 or x.contains(y) for x, y in zip(image, found, strict=True))
 
 
+def test_a_family_holds_the_map_at_every_e_of_its_stretch_though_the_polygon_is_off_the_origin():
+    """`e*region` for a small `e` does not lie in its multiple by the largest one: `H'` has other values there."""
+    last, off = 0.01, [(20.0, -0.5), (21.0, -0.5), (21.0, 0.5), (20.0, 0.5)]
+    family, random = pieces(off, (0.0, last)), np.random.default_rng(5)
+    for e in (1e-5, 1e-3, last):
+        for component, v in ((ARC, -0.5), (WALL, 0.5)):
+            ends = [(random.uniform(20, 21), v * random.uniform(0, 1)) for _ in range(2)]
+            p, q = (np.array(by_the_map(u, v, e)) for u, v in ends)
+            with working(BITS):
+                du, dv = (arb(x) - y for x, y in zip(*ends, strict=True))
+                moved = [a * du + b * dv + arb(0, 1e-9) for a, b in family[component].rows]
+
+            assert all(x.contains(float(y)) for x, y in zip(moved, p - q, strict=True))
+    for component, known in limit().items():  # e = 0 belongs to the stretch
+        rows = zip(family[component].rows, known.rows, strict=True)
+        assert all(x.overlaps(y) for row, other in rows for x, y in zip(row, other, strict=True))
+
+
+def test_a_region_must_meet_the_line_from_which_the_mean_value_theorem_starts():
+    with pytest.raises(ValueError, match="does not meet v = 0"):
+        pieces([(0.0, 1.0), (1.0, 1.0), (1.0, 2.0)], (0.0, 1e-3))
+    with pytest.raises(ValueError, match="above lambda-star"):
+        pieces(SQUARE, (-1e-3, 1e-3))
+
+
 def curved_flight(start: float, end: float, leaving: float, landing: float) -> np.ndarray:
     """The derivative matrix of one flight at `lambda-star`, from curvatures at its ends."""
     (x, y), (x1, y1) = _point(ARC, start), _point(ARC, end)
@@ -83,13 +116,14 @@ def curved_flight(start: float, end: float, leaving: float, landing: float) -> n
 def test_the_one_sided_half_returns_are_those_of_the_derivative_matrices():
     """Chords of the two components against the paper's matrix with either curvature; the mirror is -1."""
     sides, bend = at_corner(FLOAT64, THETA1, STAR), -1.5 / (2 * math.cos(THETA1 / 2))
-    for component, curvature, (trace, determinant) in ((ARC, -1.5, sides.arc), (WALL, 0.0, sides.wall)):
+    for component, curvature, side in ((ARC, -1.5, sides.arc), (WALL, 0.0, sides.wall)):
         half = curved_flight(THETA1, -CORNER, bend, curvature) @ curved_flight(CORNER, THETA1, curvature, bend)
+        near = limit()[component]
 
-        assert abs(np.trace(half) + trace) < 1e-12
-        assert abs(np.linalg.det(half) - determinant) < 1e-12
-        assert abs(limit()[component].trace - trace) < 1e-12
-        assert abs(limit()[component].determinant - determinant) < 1e-12
+        assert abs(np.trace(half) + side.trace) < 1e-12
+        assert abs(np.linalg.det(half) - side.determinant) < 1e-12
+        for known, own in zip((*near.rows, near.shift), (*side.rows, side.shift), strict=True):
+            assert all(abs(x - y) < 1e-12 for x, y in zip(known, own, strict=True))
 
 
 def test_two_unstable_orbits_of_period_4_are_born_with_the_attractor_and_none_is_there_before():
@@ -113,7 +147,7 @@ def test_the_two_orbits_of_period_4_exist_for_the_map_itself_as_soon_as_lambda_s
 def test_a_stable_side_is_no_robust_chaos_and_one_fixed_point_may_cross():
     crossing = {ARC: affine(0.5, 0, 0, 0.2, 0, 1), WALL: affine(0.5, 0, 0, -0.5, 0, 1)}
 
-    assert robust(crossing) is None
+    assert robust(crossing) is False
     assert kind(crossing) is Kind.PERSISTENCE
     assert extent(crossing) is None
 
@@ -208,6 +242,20 @@ def test_the_least_fourth_position_passes_the_corner_at_lambda_star_and_nowhere_
         assert kink_falls(0.0712, 0.0713)
         assert below.value > 0 > above.value
         assert abs(exit_angle(enclosed()[0]) + 0.0289794737869139599) < 1e-15
+
+
+def test_no_minimum_is_told_at_a_kink_that_lies_beyond_the_angles_asked_for():
+    assert minimum_at_kink(0.02, 0.0712, 0.0713) is None  # the kink is at -0.029
+    assert kink_falls(0.072, 0.073) is None  # where it is 0 lies outside
+
+
+def test_a_direction_that_changes_sides_shows_no_instability():
+    """Both sides have the multiplier -2 along their own direction; only a multiplier above 1 keeps to its side."""
+    kept, turned = affine(0.1, 0.2, 0.1, 1.4), affine(0.1, 0.2, 0.1, -2)
+    sides = replace(at_corner(FLOAT64, THETA1, STAR), wall=turned, arc=turned)
+
+    assert sides.unstable is None
+    assert replace(sides, wall=kept).unstable is True
 
 
 def test_the_least_fourth_position_agrees_with_orbits():

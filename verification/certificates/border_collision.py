@@ -2,7 +2,37 @@
 
 `x -> A x + b` with one `A` for `v < 0` and another for `v > 0`, that agree at `v = 0`, in units of the
 distance `e > 0` of the parameter; for `e < 0` the shift has the other sign. Proofs hold for the
-piecewise linear map. The kinds are those of [NusseYorke1992] and [BanerjeeYorkeGrebogi1998].
+piecewise linear map, and say nothing of the terms that a map itself has beyond it. The kinds are those of
+[NusseYorke1992] and [BanerjeeYorkeGrebogi1998].
+
+**Robust chaos.** Where the fixed points lie on their own sides for `e > 0`, let `x` be proportional to `v` and grow
+away from the piece with the larger trace, called the left one. A suitable `y` brings the map to
+
+    (x, y) -> (tL*x + y + 1, -dL*x) for x <= 0,   (tR*x + y + 1, -dR*x) for x >= 0,
+
+with the traces `t` and the determinants `d` of the pieces. (It needs that `u` acts on `v`, which the signs below
+imply.) Let `n < m` be the multipliers of the left piece, and
+
+    0 < dL < 1,  0 < dR < 1,  tL > 1 + dL,  tR < -(1 + dR),
+    phi > 0  with  phi = dR - (tR + dL + dR - (1 + tR)*m)*m.
+
+Then a triangle is mapped into itself and a slightly larger one into its interior, and every orbit in it has an
+exponent of at least `log min(m, abs(mR)) > 0`, `mR` the right multiplier beyond -1 (one-sided where it meets
+`x = 0`). So there is an attractor, and no cycle in the triangle is stable; and so it is for all pieces near these,
+as the hypotheses are strict. The region is that of [BanerjeeYorkeGrebogi1998], in the form that
+[GlendinningSimpson2021] give its last inequality, and the two steps of the proof are theirs. It does not say that
+the attractor is one piece, or that it is the only one.
+
+Why. `0 < n < 1 < m` by the third inequality; let `Y` be the left fixed point, `h = m*(x - xY) + (y - yY)` and
+`k = n*(x - xY) + (y - yY)`. On the left `h` is multiplied by `m` and `k` by `n`, so `h = 0` is the stable line of `Y`
+and `k = 0` the unstable one. This meets `x = 0` at a point whose image is `D = (1/(1 - n), 0)`, and
+`h(f(D)) = phi/((1 - n)*(m - 1))`: the last inequality says that `f(D)`, where the unstable manifold has folded, has
+not crossed the stable line. Then the triangle `h >= h(f(D))`, `k <= 0`, above the line from `D` to `f(D)`, is mapped
+into itself. Its left part goes to `h >= m*h(f(D))`, `k <= 0`, `y >= 0`, which is part of it. The corners of its right
+part go there too when they are on `x = 0`, to `f(D)`, or to the line from `D` to `f(D)`; and it is convex. With
+`phi < 0` orbits that start near `f(D)` run off beside the unstable line: `h < 0` grows in size, `k < 0` fades, and
+`x` falls for ever. A direction `y/x = s` goes to `-d/(t + s)`: those from `-n` to `-nR`, `nR` the smaller right
+multiplier, go to such, and `x` is multiplied by `t + s`, at least `m` on the left and at most `mR` on the right.
 """
 
 import math
@@ -12,6 +42,7 @@ from enum import Enum
 from flint import arb
 
 from verification.certificates.polygon import (
+    HAIR,
     SIGNS,
     Piece,
     Pieces,
@@ -55,12 +86,46 @@ def kind(pieces: Pieces) -> Kind:
     return Kind.PERSISTENCE if own[0] * own[1] < 0 else Kind.UNKNOWN
 
 
+def hypotheses(pieces: Pieces) -> dict[str, bool | None]:
+    """Those of the theorem on robust chaos for `e > 0`, each proved, refuted or open in balls."""
+    right, left = sorted(pieces, key=lambda component: float(pieces[component].trace.mid()))
+    low, high = pieces[right], pieces[left]
+    return {
+        "fixed_points_on_their_sides": less(arb(0), fixed_point(high)[1] * SIGNS[left]),
+        "determinants_between_0_and_1": both(
+            *(both(less(arb(0), piece.determinant), less(piece.determinant, arb(1))) for piece in (low, high))
+        ),
+        "left_trace_above_1_plus_det": less(1 + high.determinant, high.trace),
+        "right_trace_below_minus_1_minus_det": less(low.trace, -1 - low.determinant),
+        "unstable_manifold_short_of_the_stable_one": less(arb(0), homoclinic(high, low)),
+    }
+
+
 def robust(pieces: Pieces) -> bool | None:
-    """True in the region of robust chaos: one trace above `1 + det`, the other below `-(1 + det)`, `0 < det < 1`."""
-    low, high = sorted(pieces.values(), key=lambda piece: float(piece.trace.mid()))
-    dets = low.determinant, high.determinant
-    holds = all(0 < d < 1 for d in dets) and low.trace < -(1 + dets[0]) and high.trace > 1 + dets[1]
-    return True if holds else None
+    """Does the map lie in the region of robust chaos? False when a hypothesis is proved to fail, None when open."""
+    return both(*hypotheses(pieces).values())
+
+
+def homoclinic(left: Piece, right: Piece) -> arb:
+    """`phi` of the module's theorem: 0 where the unstable manifold of the left fixed point folds at its stable one.
+
+    >>> left, right = (Piece(((arb(0), arb(-d)), (arb(1), arb(t))), (arb(0), arb(1))) for t, d in ((2.5, 1), (-2, 0.5)))
+    >>> homoclinic(left, right)  # 0.5 - (-2 + 1 + 0.5 + 2)*2
+    -2.50000000000000
+    """
+    t, d = left.trace, left.determinant
+    m = (t + (t**2 - 4 * d).sqrt()) / 2
+    return right.determinant - (right.trace + d + right.determinant - (1 + right.trace) * m) * m
+
+
+def less(a: arb, b: arb) -> bool | None:
+    """`a < b` with its three answers."""
+    return True if a < b else False if a >= b else None
+
+
+def both(*answers: bool | None) -> bool | None:
+    """Do all hold? False as soon as one does not."""
+    return False if False in answers else None if None in answers else True
 
 
 @dataclass(frozen=True)
@@ -128,8 +193,8 @@ def _middle(x: Row) -> Point:
 
 
 def _image(piece: Piece, points: Polygon) -> Polygon:
-    """Points whose hull holds the image of the hull."""
-    images = [piece.of((arb(u), arb(v))) for u, v in points]
+    """Points whose hull holds the image of the hull, by a hair that covers the rounding of hulls in floats."""
+    images = [piece.of((arb(u) + arb(0, HAIR), arb(v) + arb(0, HAIR))) for u, v in points]
     return [(float(a), float(b)) for u, v in images for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
 
 

@@ -17,7 +17,9 @@ from symbolic.chords import chord_kernel
 from symbolic.codegen import kernel, load
 from symbolic.tables import cuspless
 from verification.arithmetic import Arithmetic, bits_of, working
+from verification.certificates.border_collision import robust
 from verification.certificates.contraction import Status, contraction, exact_balls
+from verification.certificates.polygon import Piece
 from verification.shooting.newton import refined
 from verification.shooting.small import corner
 
@@ -31,29 +33,34 @@ class Corner:
     """One-sided derivatives at the orbit that leaves the upper corner at `phi-star`.
 
     `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc;
-    `motion` is `d s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are
-    `(trace, determinant)` of the half return map, mirrored to the same corner. `descent` is the speed in
-    `lam` of the value of `s_4` at the kink: negative when the touching curve then dips below `s*`.
+    `motion` is `d s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are the half
+    return's linear parts, mirrored to the same corner, with `d/d lam` for the shift. `descent` is the speed
+    in `lam` of the value of `s_4` at the kink: negative when the touching curve then dips below `s*`.
     """
 
     slope_wall: arb
     slope_arc: arb
     motion: arb
-    wall: tuple[arb, arb]
-    arc: tuple[arb, arb]
+    wall: Piece
+    arc: Piece
     descent: arb
 
     @property
     def unstable(self) -> bool | None:
-        """True when the half return has a multiplier outside the unit circle on either side."""
-        both = all(abs(trace) > 1 + determinant for trace, determinant in (self.wall, self.arc))
-        return True if both else None
+        """True when a side has a multiplier above 1, the other one in (0, 1), and a direction off the border.
+
+        Then near that direction a cone of displacements on that side is mapped into itself and stretched, by the
+        half return itself near its fixed point too: orbits leave. A multiplier below -1 would not show it, as
+        its direction changes sides, and what is stretched on the one may shrink on the other.
+        """
+        sides = (self.wall, self.arc)
+        leaves = any(p.determinant > 0 and p.trace > 1 + p.determinant and not p.rows[1][0].contains(0) for p in sides)
+        return True if leaves else None
 
     @property
     def robust(self) -> bool | None:
-        """True in the region of robust chaos: one trace above `1 + det`, the other below `-(1 + det)`."""
-        (high, over), (low, under) = self.wall, self.arc
-        return True if high > 1 + over and low < -(1 + under) else None
+        """Is the piecewise linear half return in the region of robust chaos, for `lam` above `lambda-star`?"""
+        return robust({ARC: self.arc, WALL: self.wall})
 
     @property
     def minimum_at_kink(self) -> bool | None:
@@ -116,10 +123,14 @@ def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
     return Corner(slopes[WALL], slopes[ARC], motion / by_angle, halves[WALL], halves[ARC], descents[WALL])
 
 
-def _half(first: Rule, second: Rule) -> tuple[Any, Any]:
-    """Trace and determinant of half a return on two successive parameters; the mirror turns the trace around."""
-    third = [first.next(x, y, 0) for x, y in ((1, 0), (0, 1))]
-    return -(third[0] + second.next(1, third[1], 0)), first.lower * second.lower / (first.upper * second.upper)
+def _half(first: Rule, second: Rule) -> Piece:
+    """Half a return as a map of two successive displacements; the mirror turns the sign of what comes in around."""
+    columns = []
+    for before, here, lam in ((-1, 0, 0), (0, -1, 0), (0, 0, 1)):
+        third = first.next(before, here, lam)
+        columns.append((third, second.next(here, third, lam)))
+    by_u, by_v, by_lam = columns
+    return Piece(((by_u[0], by_v[0]), (by_u[1], by_v[1])), by_lam)
 
 
 @cache

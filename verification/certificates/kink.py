@@ -9,6 +9,7 @@ So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from flint import arb
 
@@ -30,6 +31,7 @@ from verification.certificates.trail import (
 from verification.progress import Tick, silent
 
 LONGEST_THETA, LONGEST_LAM = 2e-3, 5e-4  # sides of boxes
+MARGIN = 1e-6  # of the angles at the ends
 
 
 @dataclass(frozen=True)
@@ -58,16 +60,18 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
 def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = silent) -> bool | None:
     """For all `|phi| <= most` and contractions of the range: has `s4` one kink, and its minimum there?
 
-    Once all boxes turn as they should, the second bounce need only be on the wall at one end and on the arc
-    at the other.
+    Once all boxes turn as they should, the second bounce need only be on the wall at the one end and on the arc
+    at the other: at angles just within `most`, so that the kink is between.
 
     >>> minimum_at_kink(0.03, 0.0712, 0.0713)
     True
     """
     with working(BITS):
-        theta1 = float(enclosed()[0].mid())
-        left, right = theta1 - 2.2 * (most + 0.029), theta1 + 1.3 * max(most - 0.028, 0.002)
-        if not (exit_angle(arb(left)) > most and exit_angle(arb(right)) < -most):
+        left, right = (_towards(phi * (1 + MARGIN)) for phi in (most, -most))
+        inner = [_towards(phi * (1 - MARGIN)) for phi in (most, -most)]
+        if not (exit_angle(arb(left)) > most > abs(exit_angle(arb(inner[0])))):
+            return None
+        if not (exit_angle(arb(right)) < -most < -abs(exit_angle(arb(inner[1])))):
             return None
         strips, lams = cuts(left, right, LONGEST_THETA), cuts(lowest, highest, LONGEST_LAM)
         try:
@@ -75,10 +79,19 @@ def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = sil
                 if not all(_turns(course) for lam in lams for course in _followed(strip, lam)):
                     return None
                 tick(1 / len(strips))
-            ends = [{c.component for lam in lams for c in courses(arb(end), lam)} for end in (left, right)]
+            ends = [{c.component for lam in lams for c in courses(arb(end), lam)} for end in inner]
         except ArithmeticError:
             return None
     return True if ends == [{WALL}, {ARC}] else None
+
+
+def _towards(phi: float) -> float:
+    """About where a ball lands that leaves the upper corner at this exit angle, by halving."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if exit_angle(arb(middle)) > phi else (low, middle)
+    return (low + high) / 2
 
 
 def _followed(theta1: arb, lam: arb, depth: int = 0) -> list[Course]:
@@ -123,7 +136,9 @@ def kink(lam: arb) -> Kink:
         found = courses(box, lam)
         speeds = [c.fourth.slopes[1] - c.fourth.slopes[0] * c.second.slopes[1] / c.second.slopes[0] for c in found]
         middle = courses(arb(near), arb(lam.mid()))
-        room = arb(0, float(abs(middle[0].second.whole).upper()) * 4)  # the middle may miss the kink by rounding
+        steepest = max(abs(c.fourth.slopes[0] / c.second.slopes[0]).upper() for c in found)
+        missed = max(abs(c.second.whole).upper() for c in middle)  # how far from the corner, by rounding
+        room = arb(0, 1) * (steepest * missed)
         value, speed = joined([c.fourth.whole for c in middle]) + room, joined(speeds)
         return Kink(lam, box, value + speed * (lam - arb(lam.mid())), speed)
 
@@ -137,13 +152,19 @@ def _near(lam: arb) -> float:
 
 
 def kink_falls(lowest: float, highest: float) -> bool | None:
-    """Does `s4` at the kink fall with `lam` over the whole range?
+    """Is `s4` at the kink 0 at `lambda-star`, and does it fall with `lam` over the whole range, which holds that?
 
-    >>> kink_falls(0.071, 0.0713)
-    True
+    On each box the second bounce passes the corner once, and boxes that meet have one kink in common.
+
+    >>> kink_falls(0.071, 0.0713), kink_falls(0.072, 0.073)
+    (True, None)
     """
+    theta1, star = enclosed()
     try:
         with working(BITS):
-            return True if all(kink(lam).speed < 0 for lam in cuts(lowest, highest, LONGEST_LAM)) else None
+            found = [kink(lam) for lam in cuts(lowest, highest, LONGEST_LAM)]
     except ArithmeticError:
         return None
+    one = all(before.theta1.overlaps(after.theta1) for before, after in pairwise(found))
+    starts = any(at.lam.contains(star) and at.theta1.contains(theta1) for at in found)
+    return True if one and starts and all(at.speed < 0 for at in found) else None

@@ -9,6 +9,7 @@ from symbolic.tables import cuspless
 from verification.arithmetic import balls, working
 from verification.certificates.admissible import convex
 from verification.certificates.bifurcation import Checks
+from verification.certificates.border_collision import homoclinic
 from verification.certificates.contraction import Enclosure, Status, contraction
 from verification.certificates.corner import at_corner
 from verification.shooting.small import Small, corner, corner_angle, focus
@@ -89,12 +90,14 @@ def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb,
         "equations": "the collision rules at the upper corner and at theta1, for theta1 and lam; the mirror image "
         "of theta1 is the third bounce",
         "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
-        "half_return_traces": f"{sides.arc[0].str(8)} on the arc, {sides.wall[0].str(8)} on the wall",
-        "half_return_determinant": sides.wall[1].str(8),
+        "half_return_traces": f"{sides.arc.trace.str(8)} on the arc, {sides.wall.trace.str(8)} on the wall",
+        "half_return_determinant": sides.wall.determinant.str(8),
+        "homoclinic_inequality": f"{homoclinic(sides.wall, sides.arc).str(8)} > 0",
     }
     if sides.robust:
         notes["kind"] = (
-            "border collision, from no orbit to robust chaos: the traces lie beyond 1 + det on either side of 0, so "
-            "two unstable orbits of period 4 and a chaotic attractor are born"
+            "border collision: the piecewise linear half return meets every hypothesis of robust chaos above "
+            "lambda-star, where it has two saddles (orbits of period 4) and an attractor without a stable cycle, and "
+            "none of them below; what the map itself does just above is proved in certificates.birth"
         )
     return value, notes

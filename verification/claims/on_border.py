@@ -13,9 +13,10 @@ from symbolic.signs import Finding, Outcome
 from symbolic.symbols import lam as letter
 from symbolic.thresholds import lambda_c
 from verification.balls import enclose
-from verification.border import Attractor, border, measured, strips_of_the_map
+from verification.border import Attractor, border, measured, saddles, strips_of_the_map
 from verification.certificates.birth import Birth, birth
 from verification.certificates.border_collision import Kind
+from verification.certificates.corner import ARC
 from verification.certificates.fourth import fourth_on_wall
 from verification.certificates.kink import kink_falls, minimum_at_kink
 from verification.claims.claim import Claim, Judgement
@@ -64,10 +65,15 @@ def sizes() -> list[Attractor]:
 
 @judges("cuspless.corner_orbit_unstable")
 def corner_orbit_unstable(claim: Claim) -> Judgement:
-    """Half the orbit, mirrored, has a multiplier outside the unit circle on either side of the join."""
+    """On one side of the join a direction is stretched and kept on that side, so that orbits leave along it."""
+    arc = border().pieces[ARC]
     return Judgement(
-        by("on either side of the joins", corner("unstable", "a multiplier outside the unit circle")),
-        "unstable from both sides: one multiplier below -1 on the arc's side, one above 1 on the wall's",
+        by(
+            "the half return at the joins",
+            corner("unstable", "on the wall's side a multiplier above 1, off the border: orbits leave along it"),
+            answer(arc.trace < -(1 + arc.determinant), "on the arc's side a multiplier below -1"),
+        ),
+        "unstable: a multiplier above 1 on the wall's side, one below -1 on the arc's",
     )
 
 
@@ -160,11 +166,12 @@ def thin_at_birth(claim: Claim) -> Judgement:
             "concentrated there, and thin",
             chaos(),
             answer(bool(thin), f"up to lambda* + {NEAR} in two strips, {within} in units of lam - lambda*"),
-            answer(limit.kind is Kind.FOLD and limit.robust, "a border collision where two saddles appear"),
+            answer(bool(saddles()), "two unstable orbits of period 4 appear with it (arc only; arc and wall)"),
+            answer(limit.kind is Kind.FOLD and limit.robust, "a border collision: two saddles and robust chaos"),
         ),
-        "a border collision, from no fixed point of the half return to robust chaos: for lam > lambda* two unstable "
-        "orbits of period 4 (arc only; arc and wall) and the attractor are there, for lam < lambda* none of them; "
-        f"traces {float(arc.trace):.4f} and {float(wall.trace):.4f}, determinant {float(arc.determinant):.5f}. In "
+        "a border collision: in the piecewise linear limit the half return has no fixed point for lam < lambda*, and "
+        "for lam > lambda* two saddles (orbits of period 4: arc only; arc and wall) and robust chaos; traces "
+        f"{float(arc.trace):.4f} and {float(wall.trace):.4f}, determinant {float(arc.determinant):.5f}. In "
         f"units of lam - lambda* the attractor reaches from {float(low):.4f} (arc) to {float(high):.4f} (wall) along "
         f"the boundary, in strips {widths} wide, exponents within [{limit.exponent[0]:.3f}, {limit.exponent[1]:.3f}] "
         f"(proved for the limit); measured: {seen}",

@@ -29,7 +29,8 @@ and `k = 0` the unstable one. This meets `x = 0` at a point whose image is `D = 
 `h(f(D)) = phi/((1 - n)*(m - 1))`: the last inequality says that `f(D)`, where the unstable manifold has folded, has
 not crossed the stable line. Then the triangle `h >= h(f(D))`, `k <= 0`, above the line from `D` to `f(D)`, is mapped
 into itself. Its left part goes to `h >= m*h(f(D))`, `k <= 0`, `y >= 0`, which is part of it. The corners of its right
-part go there too when they are on `x = 0`, to `f(D)`, or to the line from `D` to `f(D)`; and it is convex. With
+part go there too when they are on `x = 0`, to `f(D)`, or to the line from `D` to `f(D)`; and it is convex.
+(Moved outwards a little, the end at `f(D)` of the line by far more than the rest, the sides go strictly inside.) With
 `phi < 0` orbits that start near `f(D)` run off beside the unstable line: `h < 0` grows in size, `k < 0` fades, and
 `x` falls for ever. A direction `y/x = s` goes to `-d/(t + s)`: those from `-n` to `-nR`, `nR` the smaller right
 multiplier, go to such, and `x` is multiplied by `t + s`, at least `m` on the left and at most `mR` on the right.

@@ -92,7 +92,7 @@ def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb,
         "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
         "half_return_traces": f"{sides.arc.trace.str(8)} on the arc, {sides.wall.trace.str(8)} on the wall",
         "half_return_determinant": sides.wall.determinant.str(8),
-        "homoclinic_inequality": f"{homoclinic(sides.wall, sides.arc).str(8)} > 0",
+        "robust_chaos_phi": homoclinic(sides.wall, sides.arc).str(8),
     }
     if sides.robust:
         notes["kind"] = (

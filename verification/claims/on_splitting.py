@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sympy import Matrix, Rational
 
 from numeric import PinballMap
-from numeric.sampling import phase_starts
+from numeric.pinball.sampling import phase_starts
 from symbolic.collision import derivative_matrix
 from symbolic.defocusing import expands
 from symbolic.signs import Finding

@@ -124,7 +124,12 @@ def whispering_gallery(claim: Claim) -> Judgement:
     rule = equal(exit, lam * phi, {})
     away = greater(Rational(3, 2) * Rational(3, 2), pi / 2)
     return Judgement(
-        counterexample("circle, lam = 3/2, phi = 3/2: the first exit angle, 9/4, leaves the table", rule, away),
+        counterexample(
+            "circle, lam = 3/2, phi = 3/2: the first exit angle, 9/4, leaves the table",
+            rule,
+            away,
+            at={lam: Rational(3, 2)},
+        ),
         "in the circle |phi| grows by the factor lam until the rule gives an exit angle above pi/2, which leaves the "
         "table: every orbit but the diameters ends after finitely many bounces",
         by(

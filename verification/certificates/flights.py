@@ -72,7 +72,8 @@ class Flights:
         lower corner, and each of them has to be enclosed.
         """
         if piece.component == WALL:
-            return _all(self._root(piece, ARC, -1.05, 1.05))
+            landed = self._root(piece, ARC, -1.05, 1.05)
+            return [landed] if landed and abs(landed.theta) < self.ends[ARC] else None
         start, edge = float(piece.theta.mid()), float(self.ends[ARC])
         roots = {
             "upper": lambda: self._root(piece, ARC, start, edge + 0.2),

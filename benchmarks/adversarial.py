@@ -62,7 +62,7 @@ def references(map, own):
     lam = np.full(own[0].size, np.longdouble(float(map.lam)))
     shape = [np.longdouble(x.numerator) / np.longdouble(x.denominator) for x in map.exact_shape]
     with np.errstate(all="ignore"):
-        state = made_unit(map.family.name, [row.astype(np.longdouble) for row in own])
+        state = made_unit(map.family, [row.astype(np.longdouble) for row in own])
         half = len(map.family.position)
         for some in ((), range(half), (half - 1, half)):  # never all alike: angles must move against each other
             moved = [

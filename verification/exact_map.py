@@ -15,6 +15,7 @@ import mpmath
 
 from numeric import PinballMap, Status
 from numeric.backends.scalars import Scalars
+from numeric.flights.boundary import Frame
 from numeric.flights.family import NEAR, law_of
 from numeric.flights.general import General
 
@@ -50,15 +51,14 @@ class ExactMap:
         self.context.dps = digits + GUARD
         self.digits = digits
         self.ops = Scalars(self.context)
-        self.general = General(map.blueprint)
-        self.general.prepared(map.states)
+        self.general = General(map.states.boundary)
         self.lam = self.exactly(map.lam.flat[0] if lam is None else lam)  # a float is the double it is
         self.law = law_of(float(map.lam.flat[0]), float(map.lam.flat[0]))
         self.shape = [self.exactly(value) for value in map.exact_shape]
         parts = map.blueprint.parts
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in parts]
         self.general.ends = self.ends
-        self.cusped = map.family.name == "cardioid"
+        self.cusped = map.family.cusped
         self.coarse = ExactMap(map, COARSE, lam) if digits > COARSE else None
 
     def ball(self, component: int, theta: Any, phi: Any) -> Ball:
@@ -132,6 +132,11 @@ class ExactMap:
                 break
             orbit.append(following)
         return orbit
+
+    def frame(self, component: int, theta: Any) -> Frame:
+        """Point and unit tangent."""
+        tx, ty, x, y = self._frame(component, theta)
+        return Frame(x, y, tx, ty)
 
     def _frame(self, component: int, theta: Any) -> tuple[Any, Any, Any, Any]:
         """Unit tangent and point."""

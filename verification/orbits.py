@@ -5,7 +5,7 @@ ball, and is the first hit (`EnclosedMap`). Where that cannot be proved the orbi
 `unproved`. How an orbit ends (a join, a cusp, a tangency) is what mpmath finds, and is not proved.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from flint import acb, arb, fmpq
@@ -108,12 +108,9 @@ def _text(number: arb, digits: int) -> str:
 
 def _enclosed_length(enclosed: EnclosedMap, component: int, theta: arb, digits: int) -> Any:
     """The paper's arc length, by rigorous integration of the speed where there is no closed form."""
-    name = enclosed.map.family.name
-    if name == "circle" or (name == "cuspless" and component == 1):
-        return theta
-    if name in ("cardioid", "cuspless"):
-        length = 4 * (theta / 2).sin()
-        return length + 9 * arb(3).sqrt() / 4 if name == "cuspless" else length
+    closed = _closed_length(enclosed.map, enclosed.ops, enclosed.shape, component, theta)
+    if closed is not None:
+        return closed
     if len(enclosed.parts) > 1:
         return None
     boxed = [acb(x) for x in enclosed.shape]
@@ -136,11 +133,10 @@ class _Complex(Balls):
 
 def _length(exact: ExactMap, map: PinballMap, component: int, theta: Any) -> Any:
     """The paper's arc length to mpmath's precision."""
-    mp, name = exact.context, map.family.name
-    if name == "circle" or (name == "cuspless" and component == 1):
-        return theta
-    if name in ("cardioid", "cuspless"):
-        return 4 * mp.sin(theta / 2) + (9 * mp.sqrt(3) / 4 if name == "cuspless" else 0)
+    mp = exact.context
+    closed = _closed_length(map, exact.ops, exact.shape, component, theta)
+    if closed is not None:
+        return closed
     if map.blueprint.table == "ellipse" and exact.shape:
         return mp.ellipe(theta, 1 - exact.shape[0] ** 2)
     if len(map.blueprint.parts) > 1:
@@ -153,6 +149,25 @@ def _length(exact: ExactMap, map: PinballMap, component: int, theta: Any) -> Any
 
     pieces = [theta * k / 8 for k in range(9)]
     return mp.quad(speed, pieces)
+
+
+def _closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: int, theta: Any) -> Any:
+    """Arc length from the table's origin in elementary functions, component by component; None where there is none."""
+    parts, length = map.blueprint.parts, map.family.arclength
+    index, start = map.blueprint.origin
+    first = length(ops, index, start(ops, *shape)[0])
+    if first is None:
+        return None
+    reached = -first
+    for turn in range(len(parts)):
+        at = (index + turn) % len(parts)
+        low, high = parts[at].ends(ops, *shape)
+        if turn:
+            reached = reached - length(ops, at, low)
+        if at == component:
+            return reached + length(ops, at, theta)
+        reached = reached + length(ops, at, high)
+    raise ValueError(f"{map.blueprint.table} has no component {component}")
 
 
 def _entry(name: str, texts: list[str | None]) -> dict[str, Any]:

@@ -34,6 +34,7 @@ class Arrays:
         return 2 * functions.HALF_PI_LOW
 
     sqrt = staticmethod(np.sqrt)
+    atan2 = staticmethod(np.arctan2)
     sin = staticmethod(np.sin)
     cos = staticmethod(np.cos)
     select = staticmethod(np.where)

@@ -47,6 +47,10 @@ class Scalars:
     def settle(self, *values: Any) -> None:
         """Nothing to do: every value is computed where it stands."""
 
+    def atan2(self, y: Any, x: Any) -> Any:
+        """The angle of the point `(x, y)`, anywhere in the plane."""
+        return self.context.atan2(y, x)
+
     def angle(self, y: Any, x: Any) -> Any:
         """`atan2(y, x)`."""
         return self.context.atan2(y, x)

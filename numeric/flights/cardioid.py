@@ -11,18 +11,61 @@ more the arc would have to bulge inwards. Paper: section 4; [BackerDullin1997].
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from numeric.backends import plane
 from numeric.backends.plane import Pair
-from numeric.flights.family import ELASTIC, NEAR, SLAP, Family, Landing, grazing
+from numeric.flights.boundary import Boundary, Frame
+from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Family, Landing, grazing
 
 
 class Cardioid(Family):
     """Paper: section 4."""
 
     name = "cardioid"
+    path = "cubic for the far end, its interval known from one sign"
+    cusped = True
+    pairs = 0, 2
     position: tuple[str, ...] = ("p", "q")  # cos and sin of theta/2
-    exit = ("cos_phi", "sin_phi")
+    direction = ("cos_phi", "sin_phi")
     steps = 4, 1
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return boundary.blueprint.same_as == "cardioid"
+
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+        radius = 2 * np.cos(theta / 2) ** 2  # relative accuracy near the cusp
+        return Frame(radius * np.cos(theta), radius * np.sin(theta), -np.sin(1.5 * theta), np.cos(1.5 * theta))
+
+    def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
+        return np.asarray(2 * np.cos(theta / 2))
+
+    def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        return np.ones(np.shape(theta)), np.asarray(-0.75 / np.cos(theta / 2))
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        half = theta * ops.number(0.5)
+        return [ops.cos(half), ops.sin(half)]
+
+    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+        return ops.number(0.0), ops.number(2.0) * ops.atan2(position[1], position[0])
+
+    def aim(self, ops: Any, frame: Frame, phi: Any) -> list[Any]:
+        return [ops.cos(phi), ops.sin(phi)]
+
+    def exit(self, ops: Any, frame: Frame, leaving: list[Any]) -> Any:
+        return ops.atan2(leaving[1], leaving[0])
+
+    def heading(self, ops: Any, frame: Frame, phi: Any, leaving: list[Any]) -> tuple[Any, Any]:
+        return frame.direction(ops, phi)
+
+    def arclength(self, ops: Any, component: int, theta: Any) -> Any:
+        return ops.constant(4) * ops.sin(theta * ops.constant(1, 2))
+
+    def parameter(self, component: int, s: Array) -> Array | None:
+        return np.asarray(2 * np.arcsin(np.clip(s / 4, -1, 1)))
 
     def cubic(self, ops: Any, sigma: Pair, exit: Pair) -> tuple[list[Any], Any, Any, Pair]:
         """The flight equation in `S`, mirrored so that `k >= 0`; then `sin(theta0/2)` so mirrored, `k`, and `-v`."""

@@ -2,17 +2,44 @@
 
 from typing import Any
 
+from numeric.flights.boundary import Boundary, Frame
 from numeric.flights.family import SLAP, Family, Landing
 
 
 class Circle(Family):
     """Paper: section 3.1."""
 
-    name = "circle"
+    name, path = "circle", "closed form in angles"
     stops = False
     often = 128  # a bounce grows no vector more than eightfold
     position = ("theta",)
-    exit = ("phi",)
+    direction = ("phi",)
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return boundary.blueprint.same_as == "circle"
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        return [theta]
+
+    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+        return ops.number(0.0), position[0]
+
+    def aim(self, ops: Any, frame: Frame, phi: Any) -> list[Any]:
+        return [phi]
+
+    def exit(self, ops: Any, frame: Frame, leaving: list[Any]) -> Any:
+        return leaving[0]
+
+    def heading(self, ops: Any, frame: Frame, phi: Any, leaving: list[Any]) -> tuple[Any, Any]:
+        return frame.direction(ops, phi)
+
+    def distance(self, ops: Any, fields: list[Any], others: list[Any]) -> Any:
+        half = (fields[0] - others[0]) * ops.number(0.5)  # angles are compared modulo a whole turn
+        return abs(ops.number(2.0) * ops.atan2(ops.sin(half), ops.cos(half)))
+
+    def arclength(self, ops: Any, component: int, theta: Any) -> Any:
+        return theta
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         (theta,), (phi,) = position, exit

@@ -7,10 +7,14 @@ arc or `(y, .)` on the wall, and `exp(i*phi)`. Paper: section 5 and the appendix
 
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from numeric.backends import plane
 from numeric.backends.plane import Pair
+from numeric.flights.boundary import Boundary, Frame
 from numeric.flights.cardioid import Cardioid
-from numeric.flights.family import NEAR, SLAP, Landing, grazing
+from numeric.flights.family import NEAR, SLAP, Array, Landing, grazing
 from numeric.flights.near_grazing import sharpened
 
 QUARTER = 0.25
@@ -23,8 +27,43 @@ class Cuspless(Cardioid):
     """Paper: section 5."""
 
     name = "cuspless"
+    path = "the cardioid's cubic, the wall, and a quartic from the wall"
+    cusped = False
+    pairs = 1, 3  # the first is a height on the wall
     position = ("wall", "p", "q")
     steps = 3, 1
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return boundary.blueprint.same_as == "cuspless"
+
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+        wall, arc = component == 1, super().frame(component, theta)
+        x, y = np.where(wall, -QUARTER, arc.x), np.where(wall, -theta, arc.y)
+        return Frame(x, y, np.where(wall, 0.0, arc.tx), np.where(wall, -1.0, arc.ty))
+
+    def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
+        return np.where(component == 1, 1.0, super().speed(component, theta))
+
+    def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        rate, curvature = super().bending(component, theta)
+        return rate, np.where(component == 1, 0.0, curvature)
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        wall = ops.number(0.5) < component
+        p, q = super().enter(ops, component, theta)
+        return [component, ops.select(wall, -theta, p), ops.select(wall, ops.number(0.0), q)]
+
+    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+        component, p, q = position
+        _, theta = super().place(ops, [p, q])
+        return component, ops.select(ops.number(0.5) < component, -p, theta)
+
+    def arclength(self, ops: Any, component: int, theta: Any) -> Any:
+        return theta if component == 1 else super().arclength(ops, component, theta)
+
+    def parameter(self, component: int, s: Array) -> Array | None:
+        return super().parameter(component, s) if component == 0 else None
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         nought, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))

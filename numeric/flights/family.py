@@ -1,4 +1,7 @@
-"""What a family of tables is: fields of state, a flight, a reflection, and the tangent map.
+"""What a family of tables is: which tables it serves, fields of state, a flight, a reflection, and the tangent map.
+
+A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. What it must define are
+`matches`, `place`, `enter`, `fly`, `leave`, `slapped`, `departure` and `bend`; the rest has a general answer here.
 
 Everything here runs on any arithmetic of `numeric.backends`. A *law* is `slap` (lam = 0, the exit
 is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.
@@ -13,9 +16,15 @@ departure's, the paper's derivative matrix then needs no division when the vecto
 The determinant is `lam*N0/N1` of the next departure and this landing.
 """
 
-from typing import Any
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from numeric.backends import plane
+from numeric.flights.boundary import Boundary, Frame
+
+Array = NDArray[np.float64]
 
 SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"
 GRAZE = 2.0**-50  # cos(eta) below this is a tangency
@@ -46,12 +55,86 @@ class Landing:
 class Family:
     """Common ground. A subclass names its fields and defines the methods that raise here."""
 
-    name = ""
+    name = ""  # a label for files and tables; nobody decides by it
+    path = ""  # how flights are computed, in words
+    cusped: ClassVar[bool] = False  # a boundary point without a normal, at cos(theta/2) = 0
+    pairs: ClassVar[tuple[int, ...]] = ()  # where the pairs of fields begin that have length one
     stops = True  # some landings are outcomes that stop the ball
     often = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     position: tuple[str, ...] = ()
-    exit: tuple[str, ...] = ()
+    direction: tuple[str, ...] = ()
+
+    boundary: Boundary
+
+    def __init__(self, boundary: Boundary | None = None) -> None:
+        if boundary is not None:  # a flight alone gets along without
+            self.boundary = boundary
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        """Does this family serve the table?"""
+        raise NotImplementedError
+
+    @property
+    def identity(self) -> str:
+        """What kernels depend on besides the table's programs and this package's text."""
+        return ""
+
+    # ---- between people's coordinates and fields
+
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+        """Points and unit tangents; a closed form without cancellation where there is one."""
+        return self.boundary.frame(component, theta)
+
+    def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
+        """`ds/dtheta`."""
+        return self.boundary.speed(component, theta)
+
+    def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        """`ds/dp` for the parameter `p` of this family's tangent vectors, `theta` or arc length; and the curvature."""
+        return self.boundary.bending(component, theta)
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        """The position fields of a boundary point."""
+        raise NotImplementedError
+
+    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+        """Component, as a number, and parameter of position fields."""
+        raise NotImplementedError
+
+    def aim(self, ops: Any, frame: Frame, phi: Any) -> list[Any]:
+        """The exit fields of the exit angle `phi`."""
+        return [*frame.direction(ops, phi)]
+
+    def exit(self, ops: Any, frame: Frame, leaving: list[Any]) -> Any:
+        """The exit angle of exit fields, in radians."""
+        return frame.angle(ops, *leaving)
+
+    def heading(self, ops: Any, frame: Frame, phi: Any, leaving: list[Any]) -> tuple[Any, Any]:
+        """The unit direction of the flight that begins: the one that is kept as a field, if one is."""
+        return leaving[0], leaving[1]
+
+    def distance(self, ops: Any, fields: list[Any], others: list[Any]) -> Any:
+        """How far two states of the same component are apart, in the numbers that are kept as fields."""
+        total = sum(((x - y) * (x - y) for x, y in zip(fields[1:], others[1:], strict=True)), start=ops.number(0.0))
+        return ops.sqrt(total + (fields[0] - others[0]) * (fields[0] - others[0]))
+
+    # ---- arc length
+
+    def arclength(self, ops: Any, component: int, theta: Any) -> Any | None:
+        """Arc length from `theta = 0` in elementary functions, or None where there is no such form."""
+        return None
+
+    def elliptic(self) -> float | None:
+        """The parameter `m` for which arc length from `theta = 0` is the elliptic integral `E(theta | m)`, if any."""
+        return None
+
+    def parameter(self, component: int, s: Array) -> Array | None:
+        """The inverse of `arclength` in closed form, or None."""
+        return None
+
+    # ---- a bounce
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         """The landing of the ball that leaves `position` along `exit`."""
@@ -83,7 +166,7 @@ class Family:
 
     def fields(self, law: str) -> tuple[str, ...]:
         """The names of a ball's state."""
-        return self.position if law == SLAP else self.position + self.exit
+        return self.position if law == SLAP else self.position + self.direction
 
     def bounce(self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any]) -> tuple[list[Any], Any]:
         """One flight and one reflection: the new state, and the code of the outcome or None."""

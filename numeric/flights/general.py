@@ -13,8 +13,8 @@ import numpy as np
 
 from numeric.backends import plane
 from numeric.backends.plane import Pair
+from numeric.flights.boundary import Boundary
 from numeric.flights.family import NEAR, Family, Landing, grazing, reflected
-from numeric.lowering.table_ir import Blueprint
 
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
@@ -26,39 +26,33 @@ TURN = np.pi / 2  # of the tangent on one piece, at most
 class General(Family):
     """Paper: section 2, the definition of the map, as it stands."""
 
-    name = "general"
+    name, path = "general", "every zero of the flight function on every piece, first hit"
+    pairs = (2,)
     position = ("component", "theta")
-    exit = ("vx", "vy")
+    direction = ("vx", "vy")
     width = 8  # one register for each value: there are many, and as much text to compile for each piece
 
-    def __init__(self, blueprint: Blueprint) -> None:
-        self.parts = blueprint.parts
-        self.closed = len(blueprint.parts) == 1
-        self.pieces: list[tuple[int, float, float]] = []
-        self.identity = ""
+    def __init__(self, boundary: Boundary) -> None:
+        super().__init__(boundary)
+        self.parts = boundary.blueprint.parts
+        self.closed = len(self.parts) == 1
+        self.ends = boundary.ends
+        self.closing = boundary.ends[0]
+        self.pieces = pieces(boundary)  # constants of the kernels
 
-    def prepared(self, states: Any) -> None:
-        """Find the pieces of the table with its shape; they are constants of its kernels."""
-        self.ends = states.ends
-        self.closing = states.ends[0]
-        for index, (low, high) in enumerate(states.ends):
-            if max(abs(low), abs(high)) > LONG:
-                name, part = states.blueprint.table, self.parts[index].name
-                runs = f"the parameter of {part} runs to {max(abs(low), abs(high)):.6g}"
-                raise ValueError(f"{name}: {runs}, where its rounding shows; start it within {LONG:.6g}")
-            theta = np.linspace(low, high, GRID + 1)
-            _, _, dx, dy, ax, ay = states.curve(np.full(theta.shape, index), theta)
-            turning = dx * ay - dy * ax
-            angle = np.unwrap(np.arctan2(dy, dx))
-            cuts, start = [low], angle[0]
-            for i in range(1, GRID):
-                flips = turning[i - 1] * turning[i] < 0
-                if flips or abs(angle[i + 1] - start) > TURN:
-                    cuts.append(_inflection(states, index, theta[i - 1], theta[i]) if flips else float(theta[i]))
-                    start = angle[i]
-            cuts.append(high + OVERLAP if self.closed else high)
-            self.pieces += [(index, a, b) for a, b in itertools.pairwise(cuts)]
-        self.identity = repr(self.pieces)
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return True
+
+    @property
+    def identity(self) -> str:
+        return repr(self.pieces)
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        return [component, theta]
+
+    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+        return position[0], position[1]
 
     def curve(self, ops: Any, shape: list[Any], component: Any, theta: Any) -> list[Any]:
         """Point, velocity and acceleration, chosen lane by lane among the components."""
@@ -170,11 +164,34 @@ class General(Family):
         return plane.cross((ax, ay), (dx, dy)), plane.dot((dx, dy), (dx, dy))
 
 
-def _inflection(states: Any, index: int, low: float, high: float) -> float:
+def pieces(boundary: Boundary) -> list[tuple[int, float, float]]:
+    """Component and ends of the pieces on which the tangent turns by a quarter of a turn at most, and one way."""
+    found: list[tuple[int, float, float]] = []
+    for index, (low, high) in enumerate(boundary.ends):
+        if max(abs(low), abs(high)) > LONG:
+            name, part = boundary.blueprint.table, boundary.blueprint.parts[index].name
+            runs = f"the parameter of {part} runs to {max(abs(low), abs(high)):.6g}"
+            raise ValueError(f"{name}: {runs}, where its rounding shows; start it within {LONG:.6g}")
+        theta = np.linspace(low, high, GRID + 1)
+        _, _, dx, dy, ax, ay = boundary.curve(np.full(theta.shape, index), theta)
+        turning = dx * ay - dy * ax
+        angle = np.unwrap(np.arctan2(dy, dx))
+        cuts, start = [low], angle[0]
+        for i in range(1, GRID):
+            flips = turning[i - 1] * turning[i] < 0
+            if flips or abs(angle[i + 1] - start) > TURN:
+                cuts.append(_inflection(boundary, index, theta[i - 1], theta[i]) if flips else float(theta[i]))
+                start = angle[i]
+        cuts.append(high + OVERLAP if len(boundary.ends) == 1 else high)
+        found += [(index, a, b) for a, b in itertools.pairwise(cuts)]
+    return found
+
+
+def _inflection(boundary: Boundary, index: int, low: float, high: float) -> float:
     """Where the turning changes sign, by bisection."""
 
     def turning(theta: float) -> float:
-        _, _, dx, dy, ax, ay = states.curve(np.array([index]), np.array([theta]))
+        _, _, dx, dy, ax, ay = boundary.curve(np.array([index]), np.array([theta]))
         return float((dx * ay - dy * ax)[0])
 
     sign = np.sign(turning(low))

@@ -8,8 +8,8 @@ from typing import Any
 
 from numeric.backends import plane
 from numeric.backends.plane import Pair
+from numeric.flights.boundary import Boundary
 from numeric.flights.family import SLAP, Family, Landing, grazing, reflected
-from numeric.lowering.table_ir import Blueprint
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
 
@@ -18,13 +18,21 @@ class Harmonic(Family):
     """What the ellipse and the others have in common: the reflection and the tangent map."""
 
     position = ("ux", "uy")
-    exit = ("vx", "vy")
+    direction = ("vx", "vy")
+    pairs = 0, 2
 
-    def __init__(self, blueprint: Blueprint) -> None:
-        self.name = blueprint.family
+    def __init__(self, boundary: Boundary) -> None:
+        super().__init__(boundary)
+        blueprint = boundary.blueprint
         self.point = blueprint.program("point")
         self.velocity = blueprint.program("velocity")
         self.acceleration = blueprint.program("acceleration")
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        return [ops.cos(theta), ops.sin(theta)]
+
+    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+        return ops.number(0.0), ops.atan2(position[1], position[0])
 
     def landed(self, ops: Any, shape: list[Any], law: str, u: Pair, v: Pair) -> Landing:
         """The landing at `u` of a ball that flies along `v`."""
@@ -67,9 +75,22 @@ class Harmonic(Family):
 class Ellipse(Harmonic):
     """One harmonic: the middle of the chord lies along `support`, so nothing is to be solved."""
 
-    def __init__(self, blueprint: Blueprint) -> None:
-        super().__init__(blueprint)
-        self.support = blueprint.program("support")
+    name, path = "ellipse", "closed form in unit numbers"
+
+    def __init__(self, boundary: Boundary) -> None:
+        super().__init__(boundary)
+        self.support = boundary.blueprint.program("support")
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return boundary.blueprint.has("support")
+
+    def elliptic(self) -> float | None:
+        ops, shape = self.boundary.ops, self.boundary.shape
+        (right, up), (left, down) = (self.velocity(ops, *u, *shape) for u in ((1.0, 0.0), (0.0, 1.0)))
+        if (right, up, down) != (0.0, 1.0, 0.0):
+            return None
+        return float((1 + left) * (1 - left))  # the axis is -left: the velocity at the top
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         v = exit[0], exit[1]
@@ -107,9 +128,15 @@ class Fourier(Harmonic):
 
     steps = 1, 1
 
-    def __init__(self, blueprint: Blueprint) -> None:
-        super().__init__(blueprint)
-        self.chord = blueprint.program("chord")
+    name, path = "fourier", "chord polynomial, one real zero"
+
+    def __init__(self, boundary: Boundary) -> None:
+        super().__init__(boundary)
+        self.chord = boundary.blueprint.program("chord")
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return boundary.blueprint.has("chord") and boundary.convex
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         v = exit[0], exit[1]

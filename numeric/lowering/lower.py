@@ -34,11 +34,12 @@ def drawn(table: Table) -> Blueprint:
     names = tuple(shape.symbol.name for shape in table.shapes)
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols) for component in table.components)
-    family, programs = _family(table, symbols)
+    same = _same_as(table)
+    programs = {} if same else _fourier(table, symbols)
     index, start = table.origin
     return Blueprint(
         table.name,
-        family,
+        same,
         tuple(
             ShapeRange(name, _bound(shape.range.start), _bound(shape.range.end), shape.otherwise)
             for name, shape in zip(names, table.shapes, strict=True)
@@ -123,17 +124,22 @@ def _part(component: Component, symbols: list[Symbol]) -> Part:
     )
 
 
-def _family(table: Table, symbols: list[Symbol]) -> tuple[str, dict[str, Program]]:
+def _same_as(table: Table) -> str:
+    """The paper's table with the same boundary, of those that have a flight of their own."""
     if table.components == tables.cuspless.components:
-        return "cuspless", {}
-    if table.components[0].point == tables.cardioid.components[0].point and len(table.components) == 1:
-        return "cardioid", {}
-    if table.components[0].point == tables.circle.components[0].point and len(table.components) == 1:
-        return "circle", {}
+        return "cuspless"
+    for name, known in (("cardioid", tables.cardioid), ("circle", tables.circle)):
+        if len(table.components) == 1 and table.components[0].point == known.components[0].point:
+            return name
+    return ""
+
+
+def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
+    """The programs of a closed curve that is a finite Fourier sum; none of any other boundary."""
     whole = len(table.components) == 1 and table.components[0].end - table.components[0].start == 2 * pi
     h = flight.harmonics(table.components[0]) if whole else None
     if h is None:
-        return "general", {}
+        return {}
     degree = max(h)
 
     def in_nodes(nodes: Any, harmonics: flight.Harmonics) -> flight.Harmonics:
@@ -150,7 +156,7 @@ def _family(table: Table, symbols: list[Symbol]) -> tuple[str, dict[str, Program
         programs["support"] = _program(
             symbols, lambda nodes: list(flight.support(in_nodes(nodes, h), 1, tuple(nodes.inputs))), "ex", "ey"
         )
-        return "ellipse", programs
+        return programs
 
     def chord(nodes: Any) -> list[Any]:
         ex, ey, bx, by = nodes.inputs
@@ -158,7 +164,7 @@ def _family(table: Table, symbols: list[Symbol]) -> tuple[str, dict[str, Program
         return flight.chord_polynomial(ahead, flight.ONE, (bx, by))
 
     programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
-    return "fourier", programs
+    return programs
 
 
 def seen_ahead(

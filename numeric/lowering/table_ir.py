@@ -45,24 +45,32 @@ class Part(NamedTuple):
 
 
 class Blueprint(NamedTuple):
-    """A table as the kernels see it. `family` names the step that serves it."""
+    """A table as the kernels see it.
+
+    `same_as` names the paper's table with the same boundary, among those with a flight of their own; `programs` are
+    those of a closed curve that is a finite Fourier sum.
+    """
 
     table: str
-    family: str
+    same_as: str
     shape: tuple[ShapeRange, ...]
     parts: tuple[Part, ...]
     programs: tuple[tuple[str, Program], ...]
     origin: tuple[int, Program]
 
     def program(self, name: str) -> Program:
-        """A program of the family, by name."""
+        """A program by name."""
         return dict(self.programs)[name]
+
+    def has(self, name: str) -> bool:
+        """Is there a program of this name?"""
+        return any(name == known for known, _ in self.programs)
 
     def as_text(self) -> str:
         """The blueprint as JSON; equal blueprints have equal text."""
         data = {
             "table": self.table,
-            "family": self.family,
+            "same_as": self.same_as,
             "shape": [[s.name, s.low, s.high, s.otherwise] for s in self.shape],
             "parts": [[p.name, p.ends.as_data(), p.curve.as_data()] for p in self.parts],
             "programs": [[name, program.as_data()] for name, program in self.programs],
@@ -77,7 +85,7 @@ class Blueprint(NamedTuple):
         read = Program.from_data
         return Blueprint(
             data["table"],
-            data["family"],
+            data["same_as"],
             tuple(ShapeRange(*entry) for entry in data["shape"]),
             tuple(Part(name, read(ends), read(curve)) for name, ends, curve in data["parts"]),
             tuple((name, read(program)) for name, program in data["programs"]),
@@ -88,7 +96,7 @@ class Blueprint(NamedTuple):
 def blueprint(table: Any, K: int = 3) -> Blueprint:
     """The blueprint of an exact table, or of one of the paper's tables by name.
 
-    >>> blueprint("circle").family
+    >>> blueprint("circle").same_as
     'circle'
     """
     if not isinstance(table, str):

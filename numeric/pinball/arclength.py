@@ -89,7 +89,7 @@ class ArcLength:
     def __init__(self, states: States) -> None:
         self.states = states
         self.lengths = [self._length(index) for index in range(len(states.ends))]
-        index, program = states.blueprint.origin
+        index, program = states.boundary.blueprint.origin
         offsets = {}
         zero, (first, last) = float(program(states.ops, *states.shape)[0]), states.ends[index]
         reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 where nothing else is said
@@ -135,11 +135,12 @@ class ArcLength:
         slack = 1e-14 * (top - bottom)
         if np.any((s < bottom - slack) | (s > top + slack)):
             bad = s[(s < bottom - slack) | (s > top + slack)].flat[0] + self.offsets[index]
-            name = self.states.blueprint.parts[index].name
+            name = self.states.boundary.blueprint.parts[index].name
             first, last = bottom + self.offsets[index], top + self.offsets[index]
             raise ValueError(f"s = {bad} is not on the {name}; there s lies in [{first:.17g}, {last:.17g}]")
-        if self.states.family.name in ("cardioid", "cuspless") and index == 0:
-            return np.asarray(2 * np.arcsin(np.clip(s / 4, -1, 1)))
+        inverse = self.states.family.parameter(index, s)
+        if inverse is not None:
+            return inverse
         grid = np.linspace(low, high, 1025)
         theta = np.interp(s, length(grid), grid)
         where = np.full(theta.shape, index)
@@ -151,20 +152,17 @@ class ArcLength:
         return theta
 
     def _length(self, index: int) -> Callable[[Array], Array]:
-        name = self.states.family.name
-        if name == "circle" or (name == "cuspless" and index == 1):
-            return lambda theta: theta
-        if name in ("cardioid", "cuspless"):
-            return lambda theta: 4 * np.sin(theta / 2)
-        if self.states.blueprint.table == "ellipse" and self.states.shape:
+        family = self.states.family
+        if family.arclength(self.states.ops, index, np.zeros(1)) is not None:
+            return lambda theta: np.asarray(family.arclength(self.states.ops, index, theta))
+        m = family.elliptic()
+        if m is not None:
             from scipy.special import ellipeinc
 
-            m = (1 - self.states.shape[0]) * (1 + self.states.shape[0])
             return lambda theta: np.asarray(ellipeinc(theta, m))
 
         def speed(at: Array) -> Array:
             return self.states.speed(np.full(at.shape, index), at)
 
         low, high = self.states.ends[index]
-        closed = len(self.states.ends) == 1 and abs(high - low - 2 * np.pi) < 1e-12
-        return Waves.of(speed).__call__ if closed else chebyshev(speed, low, high)
+        return Waves.of(speed).__call__ if self.states.boundary.closed else chebyshev(speed, low, high)

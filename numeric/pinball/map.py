@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from numeric.flights.boundary import Boundary
 from numeric.flights.family import NEAR, PINBALL, SLAP, law_of
-from numeric.flights.registry import PATHS, family_of
+from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
 from numeric.kernels.spec import Question, starting
 from numeric.lowering.cache import key_of
@@ -44,21 +45,14 @@ class PinballMap:
         self.exact_shape = self._shape(shape)
         self.shape = [float(value) for value in self.exact_shape]
         names = [entry.name for entry in self.blueprint.shape]
-        family = family_of(self.blueprint)
-        self.states = States(self.blueprint, family, self.shape)
-        if family.name == "fourier" and not self._convex():
-            family = family_of(self.blueprint, convex=False)
-            self.states = States(self.blueprint, family, self.shape)
-        prepare = getattr(family, "prepared", None)
-        if prepare is not None:
-            prepare(self.states)
-        self.family = family
-        self.engine = Engine(family, key_of(self.blueprint.as_text(), getattr(family, "identity", "")), names, kernels)
+        self.family = family_of(Boundary(self.blueprint, self.shape))
+        self.states = States(self.family)
+        self.engine = Engine(self.family, key_of(self.blueprint.as_text(), self.family.identity), names, kernels)
 
     @property
     def path(self) -> str:
         """How flights are computed for this table, in words."""
-        return PATHS[self.family.name]
+        return self.family.path
 
     @property
     def law(self) -> str:
@@ -196,12 +190,6 @@ class PinballMap:
             values.append(value)
         return values
 
-    def _convex(self) -> bool:
-        """No curvature of the wrong sign on a fine grid, up to rounding."""
-        theta = np.linspace(-np.pi, np.pi, 4096)
-        curvature = self.states.curvature(np.zeros(theta.size, dtype=np.int64), theta)
-        return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
-
     def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:
         theta, phi = angles("theta", theta), angles("phi", phi)
         where = components(component, [part.name for part in self.blueprint.parts])
@@ -211,7 +199,7 @@ class PinballMap:
         steep = np.abs(phi) >= np.pi / 2
         if np.any(steep):
             raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
-        at_cusp = np.cos(theta / 2) < NEAR if self.family.name == "cardioid" else np.zeros(theta.shape, dtype=bool)
+        at_cusp = self.family.cusped & (np.cos(theta / 2) < NEAR)
         if np.any(at_cusp):
             raise ValueError(f"theta = {theta[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
         if self.lam.size > 1 and self.lam.shape != theta.shape:
@@ -221,7 +209,7 @@ class PinballMap:
         for index, (low, high) in enumerate(self.states.ends):
             off = (where == index) & ~((low <= theta) & (theta <= high))
             if np.any(off):
-                if len(self.blueprint.parts) == 1 and abs(high - low - 2 * np.pi) < 1e-12:
+                if self.states.boundary.closed:
                     theta = np.where(off, np.remainder(theta - low, 2 * np.pi) + low, theta)
                 else:
                     name = self.blueprint.parts[index].name

@@ -48,7 +48,7 @@ class Kernel:
             return textbook(map, [float(x) for x in state]), GOES_ON
         lam = float(map.lam.flat[0])
         if self is LONGDOUBLE:
-            own = made_unit(map.family.name, [np.array([np.longdouble(x)]) for x in state])
+            own = made_unit(map.family, [np.array([np.longdouble(x)]) for x in state])
             shape = [np.longdouble(str(N(x, 25))) for x in exact or map.exact_shape]
             with np.errstate(all="ignore"):
                 fields, code = map.family.bounce(Wide(), map.law, shape, np.array([np.longdouble(lam)]), own)

@@ -111,7 +111,7 @@ def invariant(asked: Long, a: str) -> list[Finding]:
 
 def momenta(map: PinballMap, rows: list[Any]) -> Any:
     """The product of the angular momenta about both foci, in 80 bits, of the exact balls behind the rounded rows."""
-    ux, uy, vx, vy = made_unit(map.family.name, [row.astype(np.longdouble) for row in rows])
+    ux, uy, vx, vy = made_unit(map.family, [row.astype(np.longdouble) for row in rows])
     a = np.longdouble(map.shape[0])
     momentum = a * ux * vy - uy * vx
     return momentum * momentum - (a * a - 1) * vy * vy

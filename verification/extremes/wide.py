@@ -12,6 +12,7 @@ import numpy as np
 
 from numeric.backends import roots
 from numeric.backends.arrays import Arrays
+from numeric.flights.family import Family
 
 WIDE = 2.0**-63  # the unit of rounding
 PI = np.longdouble("3.14159265358979323846264338327950288")
@@ -86,21 +87,20 @@ def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
     return x
 
 
-def made_unit(name: str, state: list[Any]) -> list[Any]:
+def made_unit(family: Family, state: list[Any]) -> list[Any]:
     """An 80-bit state, of arrays, whose pairs have length one again: as doubles they have it to 53 bits only.
 
-    >>> u, v = made_unit("cardioid", [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])
+    >>> from numeric import PinballMap
+    >>> u, v = made_unit(PinballMap("cardioid").family, [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])
     >>> bool(abs(u * u + v * v - 1)[0] <= 2.0**-63)
     True
     """
-    if name == "circle":
-        return state
-    first = {"cuspless": 1, "general": 2}.get(name, 0)
-    made = state[:first]
-    for i in range(first, len(state) - 1, 2):
-        x, y = state[i : i + 2]
-        size = np.hypot(x, y)
-        if name == "cuspless" and i == first:  # on the wall it is a height and no pair
-            size = np.where(state[0] > 0.5, 1, size)
-        made += [x / size, y / size]
+    made = list(state)
+    for i in family.pairs:
+        if i + 1 < len(state):
+            x, y = state[i : i + 2]
+            size = np.hypot(x, y)
+            if i == 1:  # on a wall the first of them is a height and no pair
+                size = np.where(state[0] > 0.5, 1, size)
+            made[i], made[i + 1] = x / size, y / size
     return made

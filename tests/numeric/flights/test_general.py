@@ -31,9 +31,8 @@ STADIUM = tables.piecewise(
 
 def generally(map):
     """The same map, made to go the general way."""
-    family = General(map.blueprint)
+    family = General(map.states.boundary)
     other = PinballMap(map.blueprint.table, lam=map.lam, **dict(zip(map.engine.names, map.exact_shape, strict=True)))
-    family.prepared(other.states)
     other.family = other.states.family = family
     other.engine = type(other.engine)(family, other.engine.identity + family.identity, other.engine.names)
     return other
@@ -232,7 +231,7 @@ def test_pieces_cover_the_boundary_and_turn_one_way_by_a_quarter_at_most(table):
         assert len(pieces) <= 16  # ten inflections, and six quarters beside them
         for a, b in pieces:
             at = np.linspace(a, b, 41)[1:-1]
-            _, _, dx, dy, ax, ay = map.states.curve(np.full(39, component), at)
+            _, _, dx, dy, ax, ay = map.states.boundary.curve(np.full(39, component), at)
             turning, angle = dx * ay - dy * ax, np.unwrap(np.arctan2(dy, dx))
             assert np.all(turning > -1e-12) or np.all(turning < 1e-12)
             assert np.ptp(angle) <= np.pi / 2 + 1e-2
@@ -244,13 +243,13 @@ def test_a_piece_ends_at_an_inflection_or_where_it_has_turned_by_a_quarter(table
     map = PinballMap(table, kernels=False)
 
     def turning(component, at):
-        _, _, dx, dy, ax, ay = map.states.curve(np.full(at.size, component), at)
+        _, _, dx, dy, ax, ay = map.states.boundary.curve(np.full(at.size, component), at)
         return dx * ay - dy * ax
 
     for (component, a, b), (following, *_) in pairwise(map.family.pieces):
         if component != following:
             continue
-        _, _, dx, dy, _, _ = map.states.curve(np.full(401, component), np.linspace(a, b, 401))
+        _, _, dx, dy, _, _ = map.states.boundary.curve(np.full(401, component), np.linspace(a, b, 401))
         turned = abs(np.ptp(np.unwrap(np.arctan2(dy, dx))))
         low, high = map.states.ends[component]
         step = 2 * (high - low) / 4096 * np.max(np.abs(turning(component, np.linspace(a, b, 401)) / (dx**2 + dy**2)))

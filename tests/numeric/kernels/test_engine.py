@@ -18,7 +18,7 @@ class Drift(Family):
     """`x -> x + pace*v`, `v -> lam*v`; flights have the length `v`, the boundary bends by `x`, `N0` is `2 + v`."""
 
     name = "drift"
-    position, exit = ("x",), ("v",)
+    position, direction = ("x",), ("v",)
     often = 3
 
     def fly(self, ops, shape, law, position, exit):

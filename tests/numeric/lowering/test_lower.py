@@ -175,13 +175,13 @@ FAMILIES = {
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_a_table_gets_the_family_that_serves_it(name):
+def test_a_table_is_known_as_the_papers_or_has_the_programs_of_its_fourier_sum(name):
     family, table = FAMILIES[name]
     made = drawn(table)
     words = {"ellipse": ["point", "velocity", "acceleration", "support"]}
     words["fourier"] = [*words["ellipse"][:3], "chord"]
 
-    assert made.family == family
+    assert made.same_as == (family if family in ("circle", "cardioid", "cuspless") else "")
     assert [word for word, _ in made.programs] == words.get(family, [])
 
 

@@ -100,7 +100,7 @@ def test_the_frame_of_the_boundary_is_that_of_its_definition(table):
     assert np.allclose(np.array(states.tangent(component, theta))[:, away], np.array(tangent)[:, away], atol=64 * EPS)
     assert np.allclose(states.speed(component, theta), speed, rtol=0, atol=16 * EPS)
     assert np.allclose(states.curvature(component, theta)[away], curvature[away], rtol=1e-11, atol=0)
-    x, y, *_ = states.curve(component, theta)
+    x, y, *_ = states.boundary.curve(component, theta)
     assert np.allclose([x, y], z, rtol=0, atol=4 * EPS)
     ds, _ = states.bending(component, theta)
     assert np.allclose(ds, 1.0 if table.name in ("cardioid", "cuspless") else speed, rtol=0, atol=16 * EPS)
@@ -109,7 +109,7 @@ def test_the_frame_of_the_boundary_is_that_of_its_definition(table):
 def test_velocity_and_acceleration_are_the_derivatives_of_the_point(table):
     states, component, theta, _ = boundary_of(table, 9)
     h = 1e-5
-    before, here, after = (np.array(states.curve(component, theta + k * h)) for k in (-1, 0, 1))
+    before, here, after = (np.array(states.boundary.curve(component, theta + k * h)) for k in (-1, 0, 1))
 
     assert np.allclose((after - before)[:4] / (2 * h), here[2:], rtol=0, atol=1e-8)
 

@@ -136,7 +136,7 @@ def clear_defects() -> list[Expr]:
 
 
 def radius_defects() -> list[Expr]:
-    """`d^2 rho/d s^2 < 0` on the arc, Wojtkowski's condition: `rho^2 = (16 - s^2)/9`, and the rest follows. Zeros.
+    """`rho^2 = (16 - s^2)/9` and `d^2 rho/d s^2 = -16/(81*rho^3) < 0` on the arc, as [Wojtkowski1986] asks: zeros.
 
     >>> radius_defects()
     [0, 0]

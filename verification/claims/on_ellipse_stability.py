@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from sympy import Expr, Integer, Interval, Matrix, S, Symbol, eye, limit, oo, sqrt, symbols
+from sympy import Expr, Integer, Interval, Matrix, S, Symbol, diag, eye, limit, oo, sqrt, symbols
 
 from symbolic.cycles import discriminant, monodromy, multipliers
 from symbolic.double_normal import stability_number, stable_while_nonnegative
 from symbolic.multipliers import saddle
-from symbolic.named_cycles import minor_axis
+from symbolic.named_cycles import major_axis, minor_axis
 from symbolic.signs import Box, Finding, conjunction, nonnegative, positive
 from symbolic.symbols import a, lam
 from symbolic.thresholds import lambda_minus, lambda_plus
@@ -305,3 +305,13 @@ def dominated_splitting(claim: Claim) -> Judgement:
 def lower_root_at_5(claim: Claim) -> Judgement:
     """The closed form at `a = 5`."""
     return digits(claim, lambda_minus().subs(a, Integer(5)))
+
+
+@judges("ellipse.major_by_inversion")
+def major_by_inversion(claim: Claim) -> Judgement:
+    """The ellipse with `1/a`, turned and enlarged `a` times; arc lengths grow with it, angles do not."""
+    enlarged = diag(a, 1) * monodromy(minor_axis()).subs(a, 1 / a) * diag(1 / a, 1)
+    return Judgement(
+        by("an identity, with arc length in units of a", zero("", *(enlarged - monodromy(major_axis())))),
+        "D T^2 on the major axis is that on the minor axis with 1/a for a, in units of length of a",
+    )

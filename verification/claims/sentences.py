@@ -28,7 +28,7 @@ ENDS = re.compile(r"(?<=[.?!])\)?\s+|\n\s*\n")
 
 @dataclass(frozen=True)
 class Sentence:
-    """One sentence of the paper, by its opening words, and what becomes of it: exactly one of the last four."""
+    """One sentence of the paper, by its opening words, and what becomes of it: exactly one of the last three."""
 
     section: str
     opens: str
@@ -36,12 +36,11 @@ class Sentence:
     claims: tuple[str, ...] = ()
     repeats: tuple[str, ...] = ()
     prose: str = ""
-    todo: str = ""
 
     @property
     def fates(self) -> int:
         """How many of its fates are given: it must be one."""
-        return sum(map(bool, (self.claims, self.repeats, self.prose, self.todo)))
+        return sum(map(bool, (self.claims, self.repeats, self.prose)))
 
 
 def inventory() -> list[Sentence]:
@@ -129,7 +128,7 @@ def defects(listed: list[Sentence], claims: list[Claim]) -> list[str]:
     for sentence in listed:
         where = f"{sentence.section}: {sentence.opens!r}"
         if sentence.fates != 1:
-            found.append(f"{where} needs one of claims, repeats, prose, todo, not {sentence.fates}")
+            found.append(f"{where} needs one of claims, repeats, prose, not {sentence.fates}")
         found += [f"{where} names {name}, which is no claim" for name in _named(sentence) if name not in known]
         strangers = [name for name in sentence.claims if name in known and not _within(known[name], sentence)]
         found += [f"{where} lists {name}, which quotes another section" for name in strangers]

@@ -1,4 +1,4 @@
-"""The two crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
+"""The crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
 
 `verification.manifolds` has the same crises as tangencies, to many digits; this is what balls do.
 
@@ -6,6 +6,9 @@ Below a crisis no ball leaves the attractor; above it each bounce has a chance t
 like a power of the distance. So many balls are started on the attractor, and the contractions at
 which some leave are bracketed. Just above a crisis a budget of bounces sees none leave; the error
 reaches up to the contraction at which it saw ten.
+
+A crisis that no ball leaves for good shows in how far the attractor extends: `extent` is its largest exit angle, its
+reach at either end of the diameter and its area, and `widenings` the steps of a scan in which a length grows at once.
 """
 
 from collections.abc import Callable
@@ -19,6 +22,10 @@ from numeric import Exponents, PinballMap
 BALLS, PART, TRANSIENT = 4096, 200, 2000
 SEED = 1
 BLOCKS = 6
+ORBITS, LONG, RECORDED = 400, 20_000, 500  # balls, bounces before their orbits count, and bounces that do
+CELLS = 500  # to a radian, by which an area is counted
+CHAOTIC = 0.02  # growth from which an orbit counts as chaotic
+AT_ONCE = 0.01  # by which part an extent has to grow in one small step, so that it is no steady growth
 Array = NDArray[np.float64]
 Left = Callable[[Exponents], NDArray[np.bool_]]
 
@@ -137,3 +144,79 @@ def power(points: tuple[tuple[float, float], ...]) -> Scaling:
 
 def _slope(x: Array, y: Array) -> float:
     return float(np.polyfit(x, y, 1)[0])
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How far the chaotic orbits from near one end of a diameter extend, and the cells of 1/`CELLS` that they visit.
+
+    `near` and `far` are the largest distances in `theta` from that end, at every second bounce, and from the other end.
+    """
+
+    lam: float
+    angle: float
+    near: float
+    far: float
+    area: int
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """All but the area, which grows with every fold and is no sharp sign."""
+        return self.angle, self.near, self.far
+
+
+def extent(map: PinballMap) -> Extent | None:
+    """The extent at the map's contraction; None where no orbit is chaotic.
+
+    >>> found = extent(PinballMap("egg", lam="0.42", alpha="0.08"))
+    >>> found is None  # inside the window of period 20
+    True
+    """
+    start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, ORBITS))
+    ball = map.exponents(start[0], start[1], RECORDED, LONG)
+    chaotic = ball.nu_plus > CHAOTIC
+    if not chaotic.any():
+        return None
+    orbit = map.orbit(ball.theta[chaotic], ball.phi[chaotic], RECORDED)
+    ends = [orbit.theta[0::2].ravel(), np.remainder(orbit.theta[1::2].ravel(), 2 * np.pi) - np.pi]
+    angles = [orbit.phi[0::2].ravel(), orbit.phi[1::2].ravel()]
+    cells = (np.unique(np.floor(CELLS * np.array(pair)), axis=1).shape[1] for pair in zip(ends, angles, strict=True))
+    angle, near, far = (float(np.max(np.abs(values))) for values in (np.concatenate(angles), *ends))
+    return Extent(float(map.lam.flat[0]), angle, near, far, sum(cells))
+
+
+def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
+    """The steps of a scan, upwards, in which an attractor reaches farther at once than it ever has.
+
+    It is compared with the farthest that it has come before, so that the end of a window, where it is as wide again as
+    before the window, is no widening. Steps of 5e-4 or less tell growth at once from steady growth.
+    """
+    found: list[tuple[Extent, Extent]] = []
+    before: Extent | None = None
+    farthest = np.zeros(3)
+    map = PinballMap("egg", lam=float(lams[0]), alpha=alpha)
+    for lam in lams:
+        here = extent(map.at(float(lam)))
+        if here is None:
+            continue
+        if before is not None and np.any(np.array(here.lengths) > (1 + AT_ONCE) * farthest):
+            found.append((before, here))
+        before, farthest = here, np.maximum(farthest, here.lengths)
+    return found
+
+
+def narrowed(alpha: str, step: tuple[Extent, Extent], tolerance: float) -> tuple[float, float]:
+    """The contractions between which the attractor widens, by bisection of a step of `widenings`.
+
+    Just above a crisis the new part is visited so seldom that the orbits may miss it: the lower end may be too high.
+    """
+    low, high = step
+    widest = int(np.argmax(np.array(high.lengths) / np.array(low.lengths)))
+    level = (low.lengths[widest] + high.lengths[widest]) / 2
+    ends = [low.lam, high.lam]
+    map = PinballMap("egg", lam=low.lam, alpha=alpha)
+    while ends[1] - ends[0] > tolerance:
+        middle = (ends[0] + ends[1]) / 2
+        here = extent(map.at(middle))
+        ends[int(here is not None and here.lengths[widest] > level)] = middle
+    return ends[0], ends[1]

@@ -278,7 +278,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
 
 
 def at_period(kind: str, digits: int, alpha: Expr, period: Expr) -> Found:
-    """Where a window or a small family of attractors of some period ends, or its bands join."""
+    """Where a window or a small family of some period ends, its bands join, or an attractor reaches its saddle."""
     from verification.manifolds.known import CONTACTS
 
     name = f"{kind}-{period}"
@@ -312,9 +312,13 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "boundary-crisis": (lambda digits, alpha: egg_crisis("boundary", digits, alpha), ("alpha",)),
     "band-merging": (partial(at_period, "band-merging"), ("alpha", "period")),
     "symmetry-restoring": (lambda digits, alpha: egg_crisis("symmetry-restoring", digits, alpha), ("alpha",)),
+    "interior-crisis": (partial(at_period, "interior-crisis"), ("alpha", "period")),
     "window-end": (partial(at_period, "window-end"), ("alpha", "period")),
     "window-merging": (partial(at_period, "window-merging"), ("alpha", "period")),
     "family-end": (partial(at_period, "family-end"), ("alpha", "period")),
     "family-merging": (partial(at_period, "family-merging"), ("alpha", "period")),
 }
-USUAL = {"band-merging": {"period": Integer(4)}}  # letters that need not be given
+USUAL = {  # letters that need not be given
+    "band-merging": {"period": Integer(4)},
+    "interior-crisis": {"period": Integer(12)},
+}

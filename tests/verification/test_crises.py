@@ -10,7 +10,7 @@ from numeric import PinballMap
 from verification.claims import judge
 from verification.claims.claim import Claim, Verdict
 from verification.claims.on_crises import distance, sides
-from verification.crises import KINDS, crisis, power, scaling, spread, stay
+from verification.crises import KINDS, crisis, extent, narrowed, power, scaling, spread, stay, widenings
 from verification.locate import egg_crisis
 from verification.manifolds.known import SHAPE, contact
 
@@ -91,6 +91,26 @@ def test_balls_see_eight_bands_become_four_where_the_tangency_is():
     assert np.median(bands_apart(at + 3e-4)) < 0.004
 
 
+def test_a_scan_of_extents_finds_the_one_widening_and_the_tangency_lies_where_it_is():
+    """Two methods that share only the map: farthest points of orbits, and manifolds that touch."""
+    at = contact("interior-crisis-12", SHAPE).letter
+    (step,) = widenings("0.08", np.arange(0.4265, 0.4301, 5e-4))
+    low, high = narrowed("0.08", step, 2e-6)
+
+    assert low < at < high
+    before, after = (extent(PinballMap("egg", lam=lam, alpha="0.08")) for lam in (at - 1e-5, at + 1e-5))
+    assert after.angle > 1.02 * before.angle
+    assert after.near > 1.2 * before.near
+    assert after.far > 1.13 * before.far
+    assert after.area > 1.5 * before.area
+
+
+def test_a_scan_of_extents_takes_no_window_and_no_steady_growth_for_a_widening():
+    """0.405 and 0.42 lie in windows, after which the attractor is as wide as it was before."""
+    assert widenings("0.08", np.arange(0.4035, 0.4071, 5e-4)) == []
+    assert widenings("0.08", np.arange(0.4185, 0.4226, 5e-4)) == []
+
+
 def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_side_goes_there():
     assert distance(0.64) > 5 * distance(0.66) > 0
     assert sides(0.66) == (1.0, 0.0)
@@ -99,6 +119,7 @@ def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_si
 @pytest.mark.parametrize(
     ("kind", "saddle", "letter"),
     [
+        ("interior-crisis-12", "saddle of period 12", "0.42841919075459522651"),
         ("boundary", "triangle", "0.66214427335822441948"),
         ("merging", "cycle of period 8", "0.44343524608185121825"),
     ],

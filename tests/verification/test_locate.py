@@ -43,7 +43,7 @@ def test_each_name_is_located_and_certified(name):
 
 
 def test_every_name_is_a_bifurcation_with_a_known_value_or_a_contact_of_manifolds():
-    contacts = {"merging-crisis", "boundary-crisis", "symmetry-restoring", "band-merging"}
+    contacts = {"merging-crisis", "boundary-crisis", "symmetry-restoring", "band-merging", "interior-crisis"}
     contacts |= {f"{what}-{event}" for what in ("window", "family") for event in ("end", "merging")}
 
     assert set(NAMES) == set(KNOWN) | contacts
@@ -110,6 +110,7 @@ def test_the_papers_ladder_is_judged_digit_by_digit(n, printed, right):
         ("window-end", {"alpha": ALPHA}, "given --alpha; it takes --alpha, --period"),
         ("window-end", {"alpha": ALPHA, "period": Integer(7)}, "accepted: 6, 8, 9, 12, 14, 15, 18, 20"),
         ("band-merging", {"alpha": ALPHA, "period": Integer(3)}, "accepted: 4, 8, 16"),
+        ("interior-crisis", {"alpha": ALPHA, "period": Integer(8)}, "accepted: 12"),
     ],
 )
 def test_a_search_that_cannot_succeed_says_what_is_accepted(name, shape, message):

@@ -38,9 +38,9 @@ def command(
     """Where does it happen, to N certified digits? Exit status 1 when something is not proved.
 
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
-    merging-crisis, boundary-crisis, symmetry-restoring, band-merging and, with --period, window-end, window-merging,
-    family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes there, and
-    nowhere before, is not.
+    merging-crisis, boundary-crisis, symmetry-restoring, band-merging, interior-crisis and, with --period, window-end,
+    window-merging, family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes
+    there, and nowhere before, is not.
     """
     from symbolic.formula import number
     from verification.locate import GMPY2, WORDS, locate

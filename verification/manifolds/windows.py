@@ -1,4 +1,5 @@
-"""Starts for the contacts that end the small families and the windows of periodic attractors, and join their bands.
+"""Starts for the contacts that end the small families and the windows of periodic attractors, join their bands, and
+widen the attractors of the main cascade.
 
 All at `alpha = 0.08`, for `known`: what each is, `docs/crises.md` tells. Found by `search`, settled by `tangency`.
 """
@@ -282,5 +283,18 @@ WINDOWS = {
         -0.00290017391,
         0.000978875023,
         0.42043357048402,
+    ),
+    "interior-crisis-12": homoclinic(
+        Orbit(
+            "saddle of period 12 from the fold at 0.36753",
+            (0.09755931, 3.631414, 6.293937, 9.245568, 12.65503, 16.08594),
+            -1,
+            (9, 3),
+        ),
+        36,
+        1,
+        0.0047203997,
+        0.0106893905,
+        0.4284191907546,
     ),
 }

@@ -18,6 +18,7 @@ from numeric.backends import plane
 from numeric.backends.plane import Pair
 from numeric.flights.boundary import Boundary, Frame
 from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Family, Landing, grazing
+from numeric.flights.status import Status
 
 
 class Cardioid(Family):
@@ -110,9 +111,9 @@ class Cardioid(Family):
         w = plane.times(plane.times(landing, plane.squared(landing)), plane.conjugate(back))
         code = ops.number(0.0)
         if law != SLAP:
-            code = ops.select(grazing(ops, w[1], -w[0]), ops.number(3.0), code)
+            code = ops.select(grazing(ops, w[1], -w[0]), ops.number(float(Status.GRAZING.code)), code)
         aside = ops.number(0.0) < coefficients[3]  # else the flight meets the cusp itself, and there the map jumps
-        code = ops.select(aside & (ops.number(NEAR) < landing[0]), code, ops.number(2.0))
+        code = ops.select(aside & (ops.number(NEAR) < landing[0]), code, ops.number(float(Status.CUSP.code)))
         return Landing(list(landing), w[1], -w[0], code, {"back": back})
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:

@@ -16,6 +16,7 @@ from numeric.flights.boundary import Boundary, Frame
 from numeric.flights.cardioid import Cardioid
 from numeric.flights.family import NEAR, SLAP, Array, Landing, grazing
 from numeric.flights.near_grazing import sharpened
+from numeric.flights.status import Status
 
 QUARTER = 0.25
 FLAT_WALL = 0.125  # cosines of the incidence below which a flight is sharpened: on the wall,
@@ -114,9 +115,9 @@ class Cuspless(Cardioid):
         real, height, *found, sine, cosine = ops.when(flat, rough, sharp)
         back, landing = (real, back[1]), (found[0], found[1])
         join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(tangent) - root3 * base))
-        code = ops.select(ops.number(NEAR) * base < join, nought, one)
+        code = ops.select(ops.number(NEAR) * base < join, nought, ops.number(float(Status.JOIN.code)))
         if law != SLAP:
-            code = ops.select(grazing(ops, sine, cosine), ops.number(3.0), code)
+            code = ops.select(grazing(ops, sine, cosine), ops.number(float(Status.GRAZING.code)), code)
         wall = ops.select(to_wall, one, nought)
         landed = [wall, ops.select(to_wall, height, landing[0]), ops.select(to_wall, nought, landing[1])]
         return Landing(landed, sine, cosine, code, {"back": back})

@@ -15,6 +15,7 @@ from numeric.backends import plane
 from numeric.backends.plane import Pair
 from numeric.flights.boundary import Boundary
 from numeric.flights.family import NEAR, Family, Landing, grazing, reflected
+from numeric.flights.status import Status
 
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
@@ -76,15 +77,17 @@ class General(Family):
         _x, _y, dx, dy, _, _ = self.curve(ops, shape, where, at)
         across, along = dx * v[0] + dy * v[1], dy * v[0] - dx * v[1]
         nought, one = ops.number(0.0), ops.number(1.0)
-        code = ops.select(grazing(ops, across, along), ops.number(3.0), nought)
+        code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
         speed = ops.sqrt(dx * dx + dy * dy)
         for index, (low, high) in enumerate(self.ends):
             if not self.closed:
                 here = ops.number(0.25) < abs(where - ops.number(float(index)))
                 gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
                 gap = ops.select(here, one, gap * speed)
-                code = ops.select(gap < ops.number(NEAR), one, code)
-        nowhere = ops.number(4.0 if self.closed else 1.0)  # what is lost between two components is at a join
+                code = ops.select(gap < ops.number(NEAR), ops.number(float(Status.JOIN.code)), code)
+        nowhere = ops.number(
+            float((Status.LOST if self.closed else Status.JOIN).code)
+        )  # what is lost between two components is at a join
         code = ops.select(t < far, code, nowhere)
         return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy), "t": t})
 

@@ -10,6 +10,7 @@ from numeric.backends import plane
 from numeric.backends.plane import Pair
 from numeric.flights.boundary import Boundary
 from numeric.flights.family import SLAP, Family, Landing, grazing, reflected
+from numeric.flights.status import Status
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
 
@@ -41,7 +42,7 @@ class Harmonic(Family):
         along = -plane.exact_cross(ops, (dx, dy), v)
         code = None  # a convex table has no tangent normals
         if law != SLAP:
-            code = ops.select(grazing(ops, across, along), ops.number(3.0), ops.number(0.0))
+            code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), ops.number(0.0))
         return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:

@@ -14,6 +14,7 @@ FAMILIES = (
     ("cuspless", "Cuspless"),
     ("harmonic", "Ellipse"),
     ("harmonic", "Fourier"),
+    ("polygon", "Polygon"),
     ("general", "General"),
 )
 

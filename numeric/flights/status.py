@@ -4,15 +4,23 @@ from enum import Enum
 
 
 class Status(Enum):
-    """The outcome of a trajectory. All but `REGULAR` stop the ball, which keeps its last good state."""
+    """The outcome of a trajectory. All but `REGULAR` stop the ball, which keeps its last good state.
 
-    REGULAR = "every bounce is defined"
-    JOIN = "lands within rounding of a point where two components meet"
-    CUSP = "lands within rounding of a cusp, where the map is undefined"
-    GRAZING = "tangent to the boundary: there is no next bounce"
-    LOST = "no landing point was found; the table is not closed"
+    `code` is the number that kernels use.
 
-    @property
-    def code(self) -> int:
-        """The number that kernels use."""
-        return list(Status).index(self)
+    >>> Status.CUSP.code, Status.CUSP.value
+    (2, 'lands within rounding of a cusp, where the map is undefined')
+    """
+
+    code: int
+
+    def __new__(cls, code: int, meaning: str) -> "Status":
+        member = object.__new__(cls)
+        member._value_, member.code = meaning, code
+        return member
+
+    REGULAR = 0, "every bounce is defined"
+    JOIN = 1, "lands within rounding of a point where two components meet"
+    CUSP = 2, "lands within rounding of a cusp, where the map is undefined"
+    GRAZING = 3, "tangent to the boundary: there is no next bounce"
+    LOST = 4, "no landing point was found; the table is not closed"

@@ -38,6 +38,12 @@ class Program(NamedTuple):
                 known.append(-x if word == "neg" else getattr(ops, word)(x))
         return [known[i] for i in self.outputs]
 
+    def constant(self, output: int) -> Fraction | None:
+        """The rational that an output is whatever the inputs are, or None where it is not written as one."""
+        at = self.outputs[output] - len(self.inputs)
+        word, *numbers = self.lines[at] if at >= 0 else ("",)
+        return Fraction(*numbers) if word == "q" else None
+
     def as_data(self) -> list[Any]:
         """Nested lists for JSON."""
         return [list(self.inputs), [list(line) for line in self.lines], list(self.outputs)]

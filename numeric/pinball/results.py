@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from numeric.flights.status import Status
 
 Array = NDArray[np.float64]
-STATUSES = np.array(list(Status), dtype=object)
+STATUSES = np.array(sorted(Status, key=lambda status: status.code), dtype=object)
 UNITS = {"theta": "1", "phi": "rad", "eta": "rad", "x": "1", "y": "1", "nu_plus": "1/bounce", "nu_minus": "1/bounce"}
 MEANINGS = {
     "component": "component of the boundary",

@@ -113,7 +113,7 @@ def doublings() -> list[Cascade]:
 @judges("map.collapse_in_crises")
 def collapse(claim: Claim) -> Judgement:
     """Two ways to end: in the basin of another attractor, or by growing together with others."""
-    ends = [name for name in CONTACTS if name.startswith(("family-end", "window-end", "boundary"))]
+    ends = [name for name in CONTACTS if any(kind in name for kind in ("family-end", "window-end", "boundary"))]
     before, after = egg("0.65"), egg("0.67")
     gone = bool(chaotic(before)) and not chaotic(after) and unsettled(after) < 0.1 * STARTS
     return sampled(

@@ -94,7 +94,7 @@ def period3_islands(claim: Claim) -> Judgement:
     return Judgement(
         by(
             "one flight of the triangle, turned back by 120 degrees, has an elliptic fixed point whose multiplier is "
-            "no root of unity of order 1 to 4 and whose twist is not 0, so invariant curves surround it (Moser 1962)",
+            "no root of unity of order 1 to 4 and whose twist is not 0, so invariant curves surround it [Moser1962]",
             *findings,
         ),
         f"islands at all three shapes; twist (in units of its own) {', '.join(told)}. For every alpha in (0, 1/10) but "

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 
 BALLS = 2048
 
@@ -43,7 +43,7 @@ def main(collisions):
         rows = map.states.enter(np.zeros(BALLS, dtype=int), theta, phi, map.law)
         lam = np.ones(BALLS)
         start = product(map, rows)
-        result = map.engine.run(Question(map.law), rows, lam, map.shape, collisions)
+        result = map.engine.run(KernelSpec(map.law), rows, lam, map.shape, collisions)
         change = np.asarray(product(map, [result.rows[f] for f in map.family.fields(map.law)]) - start, dtype=float)
         mean, error = change.mean() / collisions, change.std(ddof=1) / np.sqrt(BALLS) / collisions
         walk = change.std() / np.sqrt(collisions)

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question, starting
+from numeric.kernels.spec import KernelSpec, starting
 from verification.bench import BALLS, LAWS, SCENES, attracted, best
 
 BOUNCES = 1000
@@ -28,8 +28,8 @@ def main(names):
 
         pairs = [
             (
-                nanoseconds(Question(map.law)),
-                nanoseconds(Question(map.law, exponents=True), starting(one, 0 * one, one)),
+                nanoseconds(KernelSpec(map.law)),
+                nanoseconds(KernelSpec(map.law, exponents=True), starting(one, 0 * one, one)),
             )
             for _ in range(3)
         ]

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question, fields
+from numeric.kernels.spec import KernelSpec, fields
 from numeric.kernels.text import kernel_text, operations
 from verification.bench import LAWS
 from verification.labelled import SCENES
@@ -29,7 +29,9 @@ ORBITS = {
     for name, shape in SCENES.items()
 }
 QUESTIONS = {"end": {}, "orbit": {"record": True}, "exponents": {"exponents": True}}
-EVERYTHING = Question("pinball", record=True, exponents=True)  # what a kernel made for no scene in particular would do
+EVERYTHING = KernelSpec(
+    "pinball", record=True, exponents=True
+)  # what a kernel made for no scene in particular would do
 PROBE = """
 import json, pathlib, sys, time
 import numpy
@@ -110,7 +112,7 @@ def probe(text, folder, runs=1, warm=True):
 def counted(name, law, asked):
     """Operations, the share of the kernel that does everything, and the doubles of a ball's state."""
     map = PinballMap(name, lam=LAWS[law], **SCENES[name])
-    question = Question(law, **QUESTIONS[asked])
+    question = KernelSpec(law, **QUESTIONS[asked])
     own, whole = (
         sum(operations(kernel_text(map.family, map.engine.names, one)).values()) for one in (question, EVERYTHING)
     )

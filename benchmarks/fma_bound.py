@@ -15,7 +15,7 @@ import llvmlite.binding as llvm
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text, operations
 from verification.bench import BALLS, LAWS, attracted
 from verification.labelled import SCENES
@@ -95,7 +95,7 @@ def main():
         for law, lam in LAWS.items():
             map = PinballMap(name, lam=lam, **shape)
             own, lams = attracted(map, BALLS, 20), np.full(BALLS, float(map.lam))
-            question = Question(law)
+            question = KernelSpec(law)
             counts = operations(kernel_text(map.family, map.engine.names, question))
 
             def bounce(map=map, question=question, own=own, lams=lams):

@@ -9,7 +9,7 @@ import time
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.pinball.sampling import phase_starts
 from verification.bench import SCENES
 
@@ -33,7 +33,7 @@ def main(collisions, only):
             rows = map.states.enter(component, theta, phi, map.law)
             began, lost, off = time.perf_counter(), {}, 0.0
             for _ in range(max(1, round(collisions / BALLS / PART))):
-                result = map.engine.run(Question(map.law), rows, np.full(BALLS, float(lam)), map.shape, PART)
+                result = map.engine.run(KernelSpec(map.law), rows, np.full(BALLS, float(lam)), map.shape, PART)
                 rows = [np.ascontiguousarray(result.rows[field]) for field in fields]
                 for row in rows:
                     off = max(off, float(np.max(np.abs(row))) if np.all(np.isfinite(row)) else np.inf)

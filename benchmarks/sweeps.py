@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from numeric.kernels.spec import Question, starting
+from numeric.kernels.spec import KernelSpec, starting
 from verification.commands.scene import Scene
 from verification.dynamics.basins import starts_at
 from verification.sweeps.basins import basins
@@ -53,7 +53,7 @@ def kernel(map, balls, bounces):
     own = map.states.enter(balls.component, balls.theta, balls.phi, "pinball")
     one = np.ones(balls.theta.size)
     lam = np.broadcast_to(map.lam, one.shape).astype(float)
-    question = Question("pinball", exponents=True)
+    question = KernelSpec("pinball", exponents=True)
     return lambda: map.engine.run(question, own, lam, map.shape, bounces, starting(one, 0 * one, one), 1)
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.spec import Question, starting
+from numeric.kernels.spec import KernelSpec, starting
 from numeric.kernels.text import kernel_text, operations
 from numeric.pinball.sampling import phase_starts
 from verification.arithmetic import bits_of, working
@@ -98,7 +98,7 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
         error = worst(map, own)
 
         def run(
-            question: Question,
+            question: KernelSpec,
             tangent: tuple[Array, ...] = (),
             threads: int = 1,
             map: PinballMap = map,
@@ -113,22 +113,24 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
             return best(once, runs) / bounces / own[0].size
 
         nought = np.zeros(balls)
-        alone = run(Question(map.law))
+        alone = run(KernelSpec(map.law))
         yield Row(name, "float64", kernel, error, alone, runs)
         if kernels:
             copies = 1 + int(WORTH_A_THREAD / (alone * balls * bounces))  # more balls, for more bounces would underflow
             many = [np.tile(field, copies) for field in own]
             tangent = tuple(starting(nought + 1, nought, nought + 1))
-            yield Row(name, "float64", "llvm, exponents", error, run(Question(map.law, exponents=True), tangent), runs)
-            both = run(Question(map.law), threads=2, own=many, lam=np.tile(lam, copies))
+            yield Row(
+                name, "float64", "llvm, exponents", error, run(KernelSpec(map.law, exponents=True), tangent), runs
+            )
+            both = run(KernelSpec(map.law), threads=2, own=many, lam=np.tile(lam, copies))
             yield Row(name, "float64", "llvm, 2 threads", error, both, runs)
-            recorded = run(Question(map.law, record=True), bounces=100)
+            recorded = run(KernelSpec(map.law, record=True), bounces=100)
             yield Row(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
             yield Row(name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs)
     for law in ("slap", "elastic"):
         map = PinballMap(name, lam=LAWS[law], **_shape(name))
         own, lam = attracted(map, BALLS, 1), np.full(BALLS, float(map.lam))
-        alone = run(Question(law), map=map, own=own, lam=lam, bounces=1000)
+        alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
         yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
 
 
@@ -178,7 +180,7 @@ def attracted(map: PinballMap, balls: int, transient: int = 100) -> list[Array]:
     """Fields of random balls after some bounces."""
     starts = phase_starts(map, balls, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
-    rows = map.engine.run(Question(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows
+    rows = map.engine.run(KernelSpec(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows
     return [np.ascontiguousarray(rows[field]) for field in map.family.fields(map.law)]
 
 
@@ -186,7 +188,7 @@ def worst(map: PinballMap, own: list[Array]) -> Decimal:
     """The largest error of one bounce over the first balls, in units of 2**-52, against 50 digits."""
     first = [field[:CHECKED].copy() for field in own]
     lam = np.full(CHECKED, float(map.lam))
-    after = map.engine.run(Question(map.law, record=True), first, lam, map.shape, 1).record
+    after = map.engine.run(KernelSpec(map.law, record=True), first, lam, map.shape, 1).record
     assert after is not None
     position, direction = errors(map, ExactMap(map, DIGITS), first, list(after[0]))
     return Decimal(f"{max(position.max(), direction.max()):.3g}")
@@ -223,7 +225,7 @@ def operation_table() -> str:
     for name in SCENES:
         for law, lam in LAWS.items():
             map = PinballMap(name, lam=lam, **_shape(name))
-            for question in (Question(law), Question(law, record=True), Question(law, exponents=True)):
+            for question in (KernelSpec(law), KernelSpec(law, record=True), KernelSpec(law, exponents=True)):
                 counts = operations(kernel_text(map.family, map.engine.names, question))
                 asked = question.text.partition("-")[2] or "end"
                 lines.append(f"| {name} | {law} | {asked} | " + " | ".join(map_str(counts.values())) + " |")

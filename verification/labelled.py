@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from verification.exact_map import ExactMap
 from verification.truth import errors
 
@@ -107,7 +107,7 @@ def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
     map = case.map
     own = map.states.enter(case.component, case.theta, case.phi, map.law)
     lam = np.full(case.theta.size, float(map.lam))
-    result = map.engine.run(Question(map.law, record=True), own, lam, map.shape, 1)
+    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
     assert result.record is not None
     going = result.rows["code"] == 0 if "code" in result.rows else np.ones(case.theta.size, dtype=bool)
     return own, list(result.record[0]), going

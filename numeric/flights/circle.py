@@ -11,7 +11,7 @@ class Circle(Family):
 
     name, path = "circle", "closed form in angles"
     stops = False
-    often = 128  # a bounce grows no vector more than eightfold
+    renormalise_every = 128  # a bounce grows no vector more than eightfold
     position = ("theta",)
     direction = ("phi",)
 

@@ -60,7 +60,7 @@ class Family:
     cusped: ClassVar[bool] = False  # a boundary point without a normal, at cos(theta/2) = 0
     pairs: ClassVar[tuple[int, ...]] = ()  # where the pairs of fields begin that have length one
     stops = True  # some landings are outcomes that stop the ball
-    often = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
+    renormalise_every = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     position: tuple[str, ...] = ()
     direction: tuple[str, ...] = ()

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from numeric.backends.arrays import Arrays
 from numeric.flights.family import Family
 from numeric.kernels import machine
-from numeric.kernels.spec import Question, fields, rescaled
+from numeric.kernels.spec import KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
 PART = 1 << 17  # doubles recorded at a time: a page that stays in the cache
@@ -44,7 +44,7 @@ class Engine(NamedTuple):
 
     def run(
         self,
-        question: Question,
+        question: KernelSpec,
         own: Sequence[Array],
         lam: Array,
         shape: Sequence[float],
@@ -77,7 +77,7 @@ class Engine(NamedTuple):
 
     def _advance(
         self,
-        question: Question,
+        question: KernelSpec,
         state: Array,
         contraction: Array,
         shape: Sequence[float],
@@ -118,7 +118,7 @@ def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]
 
 def _run_arrays(
     family: Family,
-    question: Question,
+    question: KernelSpec,
     state: Array,
     lam: Array,
     shape: list[float],
@@ -136,7 +136,7 @@ def _run_arrays(
             if question.exponents:
                 vector = [row.copy() for row in state[extra:]]
                 new, code, more, kept = family.bounce_with_tangent(ops, question.law, shape, lam, ball, vector, kept)
-                if bounce % family.often == family.often - 1 or bounce == bounces - 1:
+                if bounce % family.renormalise_every == family.renormalise_every - 1 or bounce == bounces - 1:
                     more = rescaled(ops, more)
             else:
                 new, code = family.bounce(ops, question.law, shape, lam, ball)

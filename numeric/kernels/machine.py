@@ -8,7 +8,7 @@ from typing import Any
 
 from numeric.flights.family import Family
 from numeric.kernels.image import MAGIC, entered, image
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.lowering import cache
 
 Run = Callable[..., None]
@@ -58,7 +58,7 @@ def available() -> bool:
     return _llvm() is not None
 
 
-def compiled(family: Family, identity: str, shape: Sequence[str], question: Question, width: int) -> Run | None:
+def compiled(family: Family, identity: str, shape: Sequence[str], question: KernelSpec, width: int) -> Run | None:
     """The kernel as a function, from memory, from disk, or newly made; None when only NumPy is left.
 
     `identity` names the blueprint: everything the family's steps depend on besides this package's text.

@@ -8,8 +8,8 @@ TANGENT = ("shift", "omega", "growth", "up", "down", "volume", "n0")
 FAR = 2.0**100  # a double holds 2**1000
 
 
-class Question(NamedTuple):
-    """What a kernel is asked besides the end of the trajectory."""
+class KernelSpec(NamedTuple):
+    """What a kernel is made for, besides the end of the trajectory."""
 
     law: str
     record: bool = False
@@ -21,7 +21,7 @@ class Question(NamedTuple):
         return "-".join([self.law, *(["record"] if self.record else []), *(["exponents"] if self.exponents else [])])
 
 
-def fields(family: Family, question: Question) -> tuple[str, ...]:
+def fields(family: Family, question: KernelSpec) -> tuple[str, ...]:
     """The rows of `state`."""
     extra = TANGENT if question.exponents else ()
     return (*family.fields(question.law), *(("code", "lost") if family.stops else ()), *extra)
@@ -34,7 +34,7 @@ def starting(q: Any, omega: Any, n0: Any) -> list[Any]:
 
 
 def rescaled(ops: Any, rows: list[Any]) -> list[Any]:
-    """The rows of a tangent vector, with mantissas far from one brought back, to be done every `Family.often` bounces.
+    """The rows of a tangent vector, with mantissas far from one brought back; done every `renormalise_every` bounces.
 
     The vector is `(q, omega)*2**growth/down` and the product of the ratios of cosines `2**volume*up/down`; so no
     logarithm and no division is needed on the way.

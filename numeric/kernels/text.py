@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from numeric.backends.llvm import Lane, Lanes
 from numeric.flights.family import ELASTIC, SLAP, Family
-from numeric.kernels.spec import TANGENT, Question, fields, rescaled
+from numeric.kernels.spec import TANGENT, KernelSpec, fields, rescaled
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
 HEAD = (
@@ -23,7 +23,7 @@ HEAD = (
 TAIL = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
 
 
-def kernel_text(family: Family, shape: Sequence[str], question: Question, width: int = 0) -> str:
+def kernel_text(family: Family, shape: Sequence[str], question: KernelSpec, width: int = 0) -> str:
     """The module in LLVM's language."""
     ops = Lanes(width or family.width)
     names = fields(family, question)
@@ -46,7 +46,7 @@ def kernel_text(family: Family, shape: Sequence[str], question: Question, width:
     ops.label("stretch")
     far = len(ops.lines)
     ops.open()
-    stretch = f"add i64 %begun, {family.often}" if question.exponents else "add i64 %bounces, 0"
+    stretch = f"add i64 %begun, {family.renormalise_every}" if question.exponents else "add i64 %bounces, 0"
     ops.lines += [f"  %full = {stretch}", "  %short = icmp slt i64 %full, %bounces"]
     ops.lines += ["  %until = select i1 %short, i64 %full, i64 %bounces", "  br label %bounce"]
     ops.label("bounce")
@@ -163,7 +163,7 @@ def _contraction(ops: Lanes, law: str) -> Lane:
 
 
 def _bounced(
-    ops: Lanes, family: Family, question: Question, shape: list[Lane], lam: Lane, state: list[Lane]
+    ops: Lanes, family: Family, question: KernelSpec, shape: list[Lane], lam: Lane, state: list[Lane]
 ) -> list[Lane]:
     """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost."""
     count = len(family.fields(question.law))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric.flights.family import SLAP
-from numeric.kernels.spec import TANGENT, Question, starting
+from numeric.kernels.spec import TANGENT, KernelSpec, starting
 
 if TYPE_CHECKING:
     from numeric.pinball.map import PinballMap
@@ -56,7 +56,7 @@ class Growth:
     def skip(self, bounces: int, threads: int | None = None) -> None:
         """Moves the balls alone, and starts the sums where they arrive; these bounces do not count."""
         if bounces:
-            self._run(Question(self.law), bounces, (), threads)
+            self._run(KernelSpec(self.law), bounces, (), threads)
             self.began()
 
     def advance(self, bounces: int, threads: int | None = None) -> None:
@@ -64,7 +64,7 @@ class Growth:
         if not bounces:
             return
         going = self.code == 0
-        rows = self._run(Question(self.law, exponents=True), bounces, self.tangent, threads)
+        rows = self._run(KernelSpec(self.law, exponents=True), bounces, self.tangent, threads)
         self.tangent = [rows[name] for name in TANGENT]
         speed, curvature = self.map.states.bending(self.component, self.theta)
         moved = rows["shift"] / rows["n0"] * speed
@@ -78,7 +78,7 @@ class Growth:
         made = bounces - (rows["lost"].astype(np.int64) if "lost" in rows else 0)
         self.bounces = self.bounces + np.where(going, made, 0)
 
-    def _run(self, question: Question, bounces: int, tangent: Any, threads: int | None) -> dict[str, Array]:
+    def _run(self, question: KernelSpec, bounces: int, tangent: Any, threads: int | None) -> dict[str, Array]:
         map = self.map
         rows = map.engine.run(question, self.own, self.lam, map.shape, bounces, tangent, threads).rows
         self.own = [rows[name] for name in map.family.fields(self.law)]

@@ -12,7 +12,7 @@ from numeric.flights.boundary import Boundary
 from numeric.flights.family import NEAR, PINBALL, SLAP, law_of
 from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
-from numeric.kernels.spec import Question, starting
+from numeric.kernels.spec import KernelSpec, starting
 from numeric.lowering.cache import key_of
 from numeric.lowering.table_ir import Blueprint, blueprint
 from numeric.pinball.coordinates import States
@@ -83,7 +83,7 @@ class PinballMap:
         start, lam = (where.ravel(), theta.ravel(), phi.ravel()), self._lams(theta)
         frame = self.states.frame(*start[:2])
         own = self.states.enter(*start, law, frame)
-        result = self.engine.run(Question(law, record=True), own, lam, self.shape, bounces, threads=threads)
+        result = self.engine.run(KernelSpec(law, record=True), own, lam, self.shape, bounces, threads=threads)
         assert result.record is not None
         told = self.states.told(result.record, start, frame, own, lam, law)
         code = self._codes(result.rows, bounces, theta.size)
@@ -104,7 +104,7 @@ class PinballMap:
         rate, curvature = states.bending(where.ravel(), theta.ravel())
         q, omega = np.append(n0 / rate, np.zeros(count)), np.append(curvature, np.ones(count))  # of ds, then of dphi
         balls, tangent = [np.tile(field, 2) for field in own], starting(q, omega, np.tile(n0, 2))
-        found = self.engine.run(Question(law, exponents=True), balls, np.tile(lam, 2), self.shape, 1, tangent)
+        found = self.engine.run(KernelSpec(law, exponents=True), balls, np.tile(lam, 2), self.shape, 1, tangent)
         rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
         rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
         moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)

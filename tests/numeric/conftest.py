@@ -14,7 +14,7 @@ os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 from numeric import PinballMap
 from numeric.backends.arrays import Arrays
 from numeric.backends.scalars import Scalars
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text, operations
 
 SHAPES = {
@@ -83,7 +83,7 @@ class Bounced:
         lams = np.full(theta.size, float(map.lam))
         own = map.states.enter(where, theta, phi, law)
         with np.errstate(all="ignore"):
-            fields = list(map.engine.run(Question(law, record=True), own, lams, map.shape, 1).record[0])
+            fields = list(map.engine.run(KernelSpec(law, record=True), own, lams, map.shape, 1).record[0])
         self.fields, self.own = fields, own
         self.where, self.theta = map.states.place(fields)
         self.phi = map.states.exit(self.where, self.theta, fields, law)
@@ -111,7 +111,7 @@ def rounding(map, where, theta, phi):
     context = mpmath.MPContext()
     context.dps = 40
     own = map.states.enter(where, theta, phi, map.law)
-    result = map.engine.run(Question(map.law, record=True), own, np.full(theta.size, float(map.lam)), map.shape, 1)
+    result = map.engine.run(KernelSpec(map.law, record=True), own, np.full(theta.size, float(map.lam)), map.shape, 1)
     found, shape, lam = result.record[0], [context.mpf(x) for x in map.shape], context.mpf(float(map.lam))
     errors = []
     for i in range(theta.size):
@@ -149,7 +149,7 @@ def as_on_the_page():
     def compare(name, **shape):
         for lam in (0, "1/2", 1):
             map = PinballMap(name, lam=lam, **shape)
-            found = operations(kernel_text(map.family, map.engine.names, Question(map.law, exponents=True)))
+            found = operations(kernel_text(map.family, map.engine.names, KernelSpec(map.law, exponents=True)))
             (row,) = (row[3:] for row in rows if row[:3] == [name, map.law, "exponents"])
             assert [str(count) for count in found.values()] == row
 

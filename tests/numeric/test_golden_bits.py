@@ -13,7 +13,7 @@ import pytest
 from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question, starting
+from numeric.kernels.spec import KernelSpec, starting
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.symbols import theta
@@ -65,9 +65,9 @@ def ended(scene, law, start):
     own, (n0,) = unhexed(start["own"]), unhexed(start["n0"])
     lam = np.full(COUNT, float(LAMS[law]))
     vector = starting(0.8 * n0, np.full(COUNT, 0.6), n0)
-    step = map.engine.run(Question(law, record=True), own, lam, map.shape, 1)
-    orbit = map.engine.run(Question(law, record=True), own, lam, map.shape, BOUNCES)
-    growth = map.engine.run(Question(law, exponents=True), own, lam, map.shape, BOUNCES, vector)
+    step = map.engine.run(KernelSpec(law, record=True), own, lam, map.shape, 1)
+    orbit = map.engine.run(KernelSpec(law, record=True), own, lam, map.shape, BOUNCES)
+    growth = map.engine.run(KernelSpec(law, exponents=True), own, lam, map.shape, BOUNCES, vector)
     assert np.array_equal(orbit.record[0], step.record[0])
     return {
         "step": hexed(step.record[0]),

@@ -17,7 +17,7 @@ from numeric import PinballMap
 from numeric.backends.scalars import Scalars
 from numeric.flights.harmonic import Ellipse
 from numeric.flights.status import Status
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from verification.extremes.wide import WIDE, Wide, made_unit
 
 DOUBLE = 2.0**-52  # the unit of rounding
@@ -91,7 +91,7 @@ def _compiled(map: PinballMap, state: list[Any], kernels: bool) -> tuple[list[An
     """A bounce by the engine, on LLVM lanes or on NumPy arrays."""
     engine = map.engine._replace(kernels=kernels)
     own = [np.array([float(x)]) for x in state]
-    result = engine.run(Question(map.law, record=True), own, np.full(1, float(map.lam)), map.shape, 1)
+    result = engine.run(KernelSpec(map.law, record=True), own, np.full(1, float(map.lam)), map.shape, 1)
     assert result.record is not None
     return [field[0] for field in result.record[0]], _status(result.rows.get("code"))
 

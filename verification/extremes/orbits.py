@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from symbolic.tables import egg
 from verification.dynamics.certified import certificate
 from verification.dynamics.places import places
@@ -85,7 +85,7 @@ def advanced(map: PinballMap, rows: list[Array], bounces: int) -> tuple[list[Arr
     own, said = rows, ""
     for done in range(0, bounces, PART):
         lam = np.full(own[0].size, float(map.lam))
-        after = map.engine.run(Question(map.law), own, lam, map.shape, min(PART, bounces - done), threads=1).rows
+        after = map.engine.run(KernelSpec(map.law), own, lam, map.shape, min(PART, bounces - done), threads=1).rows
         own = [np.ascontiguousarray(after[field]) for field in map.family.fields(map.law)]
         if "code" in after and np.any(after["code"]):
             said = "a ball stopped"
@@ -182,7 +182,7 @@ def ergodic(asked: Long) -> list[Finding]:
     for done in range(0, asked.bounces, BLOCK):
         count = min(BLOCK, asked.bounces - done)
         lam = np.ones(asked.balls)
-        result = map.engine.run(Question(map.law, record=True), rows, lam, map.shape, count, threads=1)
+        result = map.engine.run(KernelSpec(map.law, record=True), rows, lam, map.shape, count, threads=1)
         assert result.record is not None
         rows = [np.ascontiguousarray(row) for row in result.record[-1]]
         if np.any(result.rows["code"]) or not np.all(np.isfinite(result.record[-1])):

@@ -12,7 +12,7 @@ from flint import arb
 from sympy import Expr, Rational, sqrt
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question as Run
+from numeric.kernels.spec import KernelSpec as Run
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.chords import chord_angle, chord_kernel, theta0, theta1

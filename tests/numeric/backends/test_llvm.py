@@ -10,7 +10,7 @@ from numeric.backends.arrays import Arrays
 from numeric.backends.llvm import Lane, Lanes
 from numeric.flights.family import Family, Landing
 from numeric.kernels.engine import Engine
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 
 EPS = 2.0**-52
 RNG = np.random.default_rng(7)
@@ -43,7 +43,7 @@ COUNTER = iter(range(10**6))
 def valued(formula, x=X, y=Y, z=Z, kernels=True):
     """The value of a formula in every lane."""
     engine = Engine(Words(formula), f"words {next(COUNTER)}", [], kernels, 8)
-    return engine.run(Question("slap"), [x, y, z, 0 * x], np.zeros(x.size), [], 1).rows["value"].tolist()
+    return engine.run(KernelSpec("slap"), [x, y, z, 0 * x], np.zeros(x.size), [], 1).rows["value"].tolist()
 
 
 def rounded(*terms):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from verification.exact_map import ExactMap
 from verification.truth import errors
 
@@ -14,7 +14,7 @@ EPS = 2.0**-52
 def measured(map, where, theta, phi):
     own = map.states.enter(where, theta, phi, map.law)
     lam = np.full(theta.size, float(map.lam))
-    result = map.engine.run(Question(map.law, record=True), own, lam, map.shape, 1)
+    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
     return errors(map, ExactMap(map, 40), own, list(result.record[0]))
 
 

@@ -64,7 +64,7 @@ def test_a_landing_is_a_tangency_below_four_eps_of_cosine():
 
 
 def test_a_family_of_its_own_has_outcomes_and_registers_to_fill():
-    assert (Family.stops, Family.often, Family.width) == (True, 8, 32)
+    assert (Family.stops, Family.renormalise_every, Family.width) == (True, 8, 32)
     assert Family().kept(None, [], []) == []
     assert (Landing([], 0, 0).code, Landing([], 0, 0).more) == (None, {})
     for method, count in (("fly", 5), ("leave", 5), ("slapped", 3), ("departure", 4), ("bend", 3)):

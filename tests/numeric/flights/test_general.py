@@ -9,7 +9,7 @@ from sympy import Rational, cos, pi, sin, sqrt
 
 from numeric import PinballMap
 from numeric.flights.general import General
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from symbolic import tables
 from symbolic.symbols import theta
 from verification import strategies
@@ -66,7 +66,7 @@ def test_flights_on_any_table_are_the_exact_ones(table):
     ends = np.array(map.states.ends)[where]
     start, phi = ends[:, 0] + np.ptp(ends, axis=1) * rng.uniform(0.05, 0.95, 10), rng.uniform(-1.2, 1.2, 10)
     own = map.states.enter(where, start, phi, map.law)
-    result = map.engine.run(Question(map.law, record=True), own, np.full(10, 0.9), map.shape, 1)
+    result = map.engine.run(KernelSpec(map.law, record=True), own, np.full(10, 0.9), map.shape, 1)
     position, direction = errors(map, ExactMap(map, 30), own, list(result.record[0]))
 
     assert max(position) <= 64

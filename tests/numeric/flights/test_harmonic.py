@@ -5,7 +5,7 @@ import pytest
 from sympy import Rational, cos, sin
 
 from numeric import PinballMap, Status
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from symbolic import tables
 from symbolic.symbols import theta as symbol
 
@@ -66,7 +66,7 @@ def test_the_slap_map_of_an_ellipse_needs_no_unit_normal_but_exponents_do(harmon
     map = harmonic(0, kernels=False)
     theta = np.linspace(-3, 3, 24)
     own = map.states.enter(HERE, theta, 0 * theta, "slap")
-    fast = map.engine.run(Question("slap"), own, np.zeros(24), map.shape, 1).rows
+    fast = map.engine.run(KernelSpec("slap"), own, np.zeros(24), map.shape, 1).rows
     step = map.at(lam=1).step(theta, 0.0)
 
     assert np.max(np.abs(np.arctan2(fast["uy"], fast["ux"]) - step.theta)) <= 1e-13

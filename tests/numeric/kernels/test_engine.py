@@ -9,7 +9,7 @@ import pytest
 from numeric.flights.family import Family, Landing
 from numeric.kernels import engine as engines
 from numeric.kernels.engine import Engine, _pieces
-from numeric.kernels.spec import TANGENT, Question, starting
+from numeric.kernels.spec import TANGENT, KernelSpec, starting
 
 END = 4.0  # a ball beyond it is stopped with code 1
 
@@ -19,7 +19,7 @@ class Drift(Family):
 
     name = "drift"
     position, direction = ("x",), ("v",)
-    often = 3
+    renormalise_every = 3
 
     def fly(self, ops, shape, law, position, exit):
         x = position[0] + shape[0] * exit[0]
@@ -93,7 +93,7 @@ LAM = 2.0 ** -(np.arange(COUNT) % 3)
 @pytest.mark.parametrize("family", [Drift(), Endless()], ids=["stopping", "endless"])
 @pytest.mark.parametrize("threads", [1, 2, None])
 def test_every_bounce_of_every_ball_is_recorded(ways, family, bounces, threads):
-    result = ways(family).run(Question("pinball", record=True), START, LAM, [0.5], bounces, threads=threads)
+    result = ways(family).run(KernelSpec("pinball", record=True), START, LAM, [0.5], bounces, threads=threads)
 
     assert result.record.shape == (bounces, 2, COUNT)
     assert list(result.rows) == ["x", "v", *(["code", "lost"] if family.stops else [])]
@@ -109,7 +109,9 @@ def test_every_bounce_of_every_ball_is_recorded(ways, family, bounces, threads):
 
 
 def test_rows_of_outcomes_stay_empty_where_the_law_has_none(ways):
-    silent, endless = (ways(family).run(Question("pinball"), START, LAM, [0.5], 7) for family in (Silent(), Endless()))
+    silent, endless = (
+        ways(family).run(KernelSpec("pinball"), START, LAM, [0.5], 7) for family in (Silent(), Endless())
+    )
 
     assert not silent.rows["code"].any()
     assert not silent.rows["lost"].any()
@@ -117,14 +119,14 @@ def test_rows_of_outcomes_stay_empty_where_the_law_has_none(ways):
 
 
 def test_a_state_of_one_row_is_a_state(ways):
-    result = ways(Endless()).run(Question("slap", record=True), START[:1], 0 * LAM, [0.5], 2)
+    result = ways(Endless()).run(KernelSpec("slap", record=True), START[:1], 0 * LAM, [0.5], 2)
 
     assert result.record.shape == (2, 1, COUNT)
     assert np.array_equal(result.rows["x"], START[0])
 
 
 def test_a_run_without_a_record_ends_at_the_same_place(ways):
-    with_record, plain = (ways().run(Question("pinball", record=r), START, LAM, [0.5], 7) for r in (True, False))
+    with_record, plain = (ways().run(KernelSpec("pinball", record=r), START, LAM, [0.5], 7) for r in (True, False))
 
     assert plain.record is None
     assert all(np.array_equal(plain.rows[name], row) for name, row in with_record.rows.items())
@@ -132,7 +134,7 @@ def test_a_run_without_a_record_ends_at_the_same_place(ways):
 
 @pytest.mark.parametrize("part", [1, 2 * 24 * 3, 2 * 24 * 3 + 1, 2 * 24 * 7, 10**6])
 def test_records_in_parts_have_no_seam(ways, part, monkeypatch):
-    whole = ways().run(Question("pinball", record=True), START, LAM, [0.5], 7)
+    whole = ways().run(KernelSpec("pinball", record=True), START, LAM, [0.5], 7)
     pages = []
     advance = Engine._advance
 
@@ -142,7 +144,7 @@ def test_records_in_parts_have_no_seam(ways, part, monkeypatch):
 
     monkeypatch.setattr(engines, "PART", part)
     monkeypatch.setattr(Engine, "_advance", watched)
-    parts = ways().run(Question("pinball", record=True), START, LAM, [0.5], 7)
+    parts = ways().run(KernelSpec("pinball", record=True), START, LAM, [0.5], 7)
     most = max(1, part // 48)
 
     assert np.array_equal(parts.record, whole.record)
@@ -156,7 +158,7 @@ def test_rows_are_padded_to_whole_blocks_with_the_last_ball(ways, count, width, 
     states = []
     monkeypatch.setattr(Engine, "_advance", lambda self, question, state, lam, *more: states.append((state, lam)))
     x = np.arange(1.0, count + 1)
-    ways().run(Question("pinball"), [x, -x], x / 16, [0.5], 1)
+    ways().run(KernelSpec("pinball"), [x, -x], x / 16, [0.5], 1)
     ((state, lam),) = states
 
     assert state.shape == (4, width)
@@ -177,7 +179,7 @@ def test_tangent_vectors_follow_the_derivative_matrix(ways, family, bounces):
     x, v = np.array([-4.0, 0.0, 2.0, 3.5]), np.array([3.0, 1.0, -0.5, 2.0])
     lam, q, omega = np.array([0.5, 1.0, 0.25, 0.5]), np.array([1.0, 0.5, -2.0, 1.0]), np.array([-0.5, 2.0, 1.0, 1.0])
     tangent = starting(q, omega, v + 2)
-    result = ways(family).run(Question("pinball", exponents=True), [x, v], lam, [0.5], bounces, tangent)
+    result = ways(family).run(KernelSpec("pinball", exponents=True), [x, v], lam, [0.5], bounces, tangent)
     end = END if family.stops else np.inf
     for i in range(4):
         states, lost, _ = by_hand(*(Fraction(float(a[i])) for a in (x, v, lam)), Fraction(1, 2), bounces, end)
@@ -203,7 +205,7 @@ def test_mantissas_are_looked_at_every_few_bounces_and_at_the_end(ways, bounces)
     """A vector of 2**150 that doubles at each bounce is brought back at the first look, and there its size is read."""
     start = [np.array([0.0]), np.array([0.0])]
     tangent = starting(np.array([2.0**150]), np.array([2.0**150]), np.array([2.0]))
-    rows = ways().run(Question("pinball", exponents=True), start, np.array([1.0]), [0.5], bounces, tangent).rows
+    rows = ways().run(KernelSpec("pinball", exponents=True), start, np.array([1.0]), [0.5], bounces, tangent).rows
 
     assert rows["growth"][0] == 150 + min(bounces, 3)
     assert rows["shift"][0] / rows["down"][0] == 2.0 ** max(0, bounces - 3)
@@ -216,7 +218,7 @@ def test_a_kernel_is_made_where_it_is_asked_for_and_only_there(kernels, monkeypa
         "numeric.kernels.machine.compiled", lambda *key: asked.append(key)
     )  # and gives none, as without LLVM
     engine = Engine(Drift(), "a test's", ["pace"], kernels)
-    result = engine.run(Question("pinball"), START, LAM, [0.5], 2)
+    result = engine.run(KernelSpec("pinball"), START, LAM, [0.5], 2)
 
     assert result.rows["x"][0] == by_hand(float(START[0][0]), float(START[1][0]), 1.0, 0.5, 2)[0][-1][0]
     assert len(asked) == kernels
@@ -226,7 +228,7 @@ def test_a_kernel_is_made_where_it_is_asked_for_and_only_there(kernels, monkeypa
 def test_work_is_counted_in_bounces_of_lanes(monkeypatch):
     asked = []
     monkeypatch.setattr(engines, "_pieces", lambda *given: asked.append(given) or [(0, given[0])])
-    Engine(Drift(), "a test's", ["pace"], lanes=8).run(Question("pinball"), START, LAM, [0.5], 7, threads=2)
+    Engine(Drift(), "a test's", ["pace"], lanes=8).run(KernelSpec("pinball"), START, LAM, [0.5], 7, threads=2)
 
     assert asked == [(3, 24 * 7, 2)]
 

@@ -10,7 +10,7 @@ import pytest
 from numeric import PinballMap
 from numeric.kernels import machine
 from numeric.kernels.image import MAGIC, entered, image
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text
 
 
@@ -26,7 +26,7 @@ def bounced(address, rows, lam, bounces):
 
 def test_an_image_runs_as_the_object_file_it_was_made_of():
     map = PinballMap("cardioid", lam=0.9)
-    code = machine.object_code(kernel_text(map.family, map.engine.names, Question(map.law)))
+    code = machine.object_code(kernel_text(map.family, map.engine.names, KernelSpec(map.law)))
     theta = np.linspace(-3, 3, map.family.width)
     rows = [np.cos(theta / 2), np.sin(theta / 2), np.cos(theta / 3), np.sin(theta / 3), 0 * theta, 0 * theta]
     (address, _owner), lam = machine._entered(code), np.full(theta.size, 0.9)

@@ -6,7 +6,7 @@ import pytest
 from numeric import PinballMap
 from numeric.flights.family import SLAP
 from numeric.kernels.engine import Engine
-from numeric.kernels.spec import Question, starting
+from numeric.kernels.spec import KernelSpec, starting
 from numeric.kernels.text import kernel_text
 
 LAMS = (0, 0.3, 1)
@@ -17,7 +17,7 @@ def record(map, count=200, bounces=30, seed=1, threads=1, engine=None, exponents
     own = map.states.enter(where, theta, phi, map.law)
     lam = np.full(count, float(map.lam))
     tangent = starting(np.ones(count), np.zeros(count), np.ones(count)) if exponents else ()
-    question = Question(map.law, record=not exponents, exponents=exponents)
+    question = KernelSpec(map.law, record=not exponents, exponents=exponents)
     return (engine or map.engine).run(question, own, lam, map.shape, bounces, tangent, threads)
 
 
@@ -75,9 +75,9 @@ def test_arrays_and_lanes_agree_to_a_few_units(table, lam):
 
 def test_the_text_of_a_kernel_is_always_the_same(table):
     map = table.map(0.5)
-    text = kernel_text(map.family, map.engine.names, Question(map.law))
+    text = kernel_text(map.family, map.engine.names, KernelSpec(map.law))
 
-    assert text == kernel_text(map.family, map.engine.names, Question(map.law))
+    assert text == kernel_text(map.family, map.engine.names, KernelSpec(map.law))
     assert "fast" not in text
     assert "contract" not in text
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question, fields
+from numeric.kernels.spec import KernelSpec, fields
 from numeric.kernels.text import alive, kernel_text, operations
 from verification.bench import SCENES, operation_table
 
@@ -19,7 +19,7 @@ HEAVY = ("sympy", "mpmath", "flint", "matplotlib", "scipy", "numba", "hypothesis
 
 def counts(name, lam, **asked):
     map = PinballMap(name, lam=lam, **SCENES[name])
-    return operations(kernel_text(map.family, map.engine.names, Question(map.law, **asked)))
+    return operations(kernel_text(map.family, map.engine.names, KernelSpec(map.law, **asked)))
 
 
 def test_the_page_holds_the_table_of_operations():
@@ -41,7 +41,7 @@ def test_no_reflection_arithmetic_at_the_ends(name):
 def test_recording_costs_no_arithmetic_and_is_only_there_when_asked(name):
     map = PinballMap(name, lam="1/2", **SCENES[name])
     plain, recording = (
-        kernel_text(map.family, map.engine.names, Question(map.law, record=record)) for record in (False, True)
+        kernel_text(map.family, map.engine.names, KernelSpec(map.law, record=record)) for record in (False, True)
     )
 
     assert operations(plain) == operations(recording)
@@ -52,8 +52,8 @@ def test_recording_costs_no_arithmetic_and_is_only_there_when_asked(name):
 def test_the_state_holds_no_tangent_vector_unless_exponents_are_asked_for(name):
     map = PinballMap(name, lam="1/2", **SCENES[name])
 
-    assert "omega" not in fields(map.family, Question(map.law))
-    assert "omega" in fields(map.family, Question(map.law, exponents=True))
+    assert "omega" not in fields(map.family, KernelSpec(map.law))
+    assert "omega" in fields(map.family, KernelSpec(map.law, exponents=True))
 
 
 def test_the_state_of_the_slap_map_is_a_place():

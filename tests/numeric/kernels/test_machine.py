@@ -7,11 +7,11 @@ import pytest
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text
 
 MAP = PinballMap("circle", lam=0.5)
-QUESTION = Question("pinball")
+QUESTION = KernelSpec("pinball")
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def test_a_kernel_is_compiled_once_for_each_thing_it_depends_on(compiled):
     first = compiled()
     assert compiled() is first
     assert len(compiled.made) == 1
-    others = [compiled(identity="x"), compiled(width=16), compiled(Question("elastic")), compiled(names=("b",))]
+    others = [compiled(identity="x"), compiled(width=16), compiled(KernelSpec("elastic")), compiled(names=("b",))]
 
     assert len({*map(id, others), id(first)}) == 5
     assert len(compiled.made) == 5

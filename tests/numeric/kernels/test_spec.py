@@ -6,7 +6,7 @@ import pytest
 from numeric.backends.arrays import Arrays
 from numeric.flights.circle import Circle
 from numeric.flights.harmonic import Harmonic
-from numeric.kernels.spec import FAR, TANGENT, Question, fields, rescaled, starting
+from numeric.kernels.spec import FAR, TANGENT, KernelSpec, fields, rescaled, starting
 
 SIZES = 2.0 ** np.array([-300, -101, -99, -1, 0, 1, 99, 101, 300])
 
@@ -72,9 +72,9 @@ def test_a_vector_starts_with_no_growth_counted():
 
 
 def test_a_question_has_a_name_and_rows():
-    assert Question("slap").text == "slap"
-    assert Question("pinball", record=True).text == "pinball-record"
-    assert Question("elastic", record=True, exponents=True).text == "elastic-record-exponents"
-    assert fields(Circle(), Question("pinball")) == ("theta", "phi")
-    assert fields(Circle(), Question("slap", exponents=True)) == ("theta", *TANGENT)
+    assert KernelSpec("slap").text == "slap"
+    assert KernelSpec("pinball", record=True).text == "pinball-record"
+    assert KernelSpec("elastic", record=True, exponents=True).text == "elastic-record-exponents"
+    assert fields(Circle(), KernelSpec("pinball")) == ("theta", "phi")
+    assert fields(Circle(), KernelSpec("slap", exponents=True)) == ("theta", *TANGENT)
     assert (Circle.stops, Harmonic.stops) == (False, True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import Question
+from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import alive, kernel_text, operations
 
 TEXT = """\
@@ -66,7 +66,7 @@ def test_a_ball_that_stops_keeps_its_outcome_and_counts_what_it_loses():
     map = PinballMap("cuspless", lam=0.9)
     aim = np.arctan2(np.sqrt(3) / 4, 2.25)
     own = map.states.enter(np.zeros(3, dtype=int), np.zeros(3), np.array([aim, -aim, 0.3]), map.law)
-    rows = map.engine.run(Question(map.law), own, np.full(3, 0.9), [], 5).rows
+    rows = map.engine.run(KernelSpec(map.law), own, np.full(3, 0.9), [], 5).rows
 
     assert rows["code"].tolist() == [1, 1, 0] or rows["code"].tolist() in ([1, 0, 0], [0, 1, 0])
     assert rows["lost"].tolist() == (5 * rows["code"]).tolist()
@@ -74,7 +74,7 @@ def test_a_ball_that_stops_keeps_its_outcome_and_counts_what_it_loses():
 
 def test_a_kernel_has_the_lanes_of_its_family_unless_told_otherwise():
     map = PinballMap("cardioid", lam=0.5)
-    asked = map.family, map.engine.names, Question("pinball")
+    asked = map.family, map.engine.names, KernelSpec("pinball")
 
     assert kernel_text(*asked) == kernel_text(*asked, map.family.width) != kernel_text(*asked, 8)
 
@@ -82,8 +82,8 @@ def test_a_kernel_has_the_lanes_of_its_family_unless_told_otherwise():
 def test_a_tangent_vector_is_looked_at_every_few_bounces_and_without_one_nothing_is():
     map = PinballMap("cardioid", lam=0.5)
     plain, watched = (
-        kernel_text(map.family, map.engine.names, Question("pinball", exponents=asked)) for asked in (False, True)
+        kernel_text(map.family, map.engine.names, KernelSpec("pinball", exponents=asked)) for asked in (False, True)
     )
 
     assert "%full = add i64 %bounces, 0" in plain
-    assert f"%full = add i64 %begun, {map.family.often}" in watched
+    assert f"%full = add i64 %begun, {map.family.renormalise_every}" in watched

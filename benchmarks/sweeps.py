@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from numeric.kernels.spec import KernelSpec, starting
-from verification.commands.scene import Scene
+from symbolic import Scene
 from verification.dynamics.basins import starts_at
 from verification.sweeps.basins import basins
 from verification.sweeps.cost import cores

@@ -15,11 +15,13 @@ from sympy import Expr, Rational, cos, sqrt
 
 import verification
 from symbolic import tables
+from symbolic.definition import PAPER
+from symbolic.scene import Scene
 from symbolic.symbols import theta
 from verification import cli
 from verification.cli import COMMANDS, main
 from verification.commands.output import Output, json_option
-from verification.commands.scene import SHAPES, Scene, scene_options, table_options
+from verification.commands.scene import scene_options, table_options
 
 Verdict = Enum("Verdict", {name.upper(): name for name in ("confirmed", "corrected", "refuted", "supported", "open")})
 
@@ -70,12 +72,12 @@ def scenes(monkeypatch):
     @scene_options
     @json_option
     def show(scene, output):
-        seen.append((scene, scene.table()))
+        seen.append((scene, scene.table))
 
     @click.command()
     @table_options
     def shape(scene):
-        seen.append((scene, scene.table()))
+        seen.append((scene, scene.table))
 
     for command in (show, shape):
         monkeypatch.setitem(COMMANDS, command.name, "for tests")
@@ -198,12 +200,12 @@ def test_an_unknown_table_is_told_which_are_known(scenes, capsys):
 @pytest.mark.parametrize(
     ("arguments", "scene"),
     [
-        ("circle --lam 0", Scene("circle", lam="0")),
-        ("egg --alpha 0.08 --lam .5", Scene("egg", {"alpha": "2/25"}, lam="1/2")),
-        ("egg --alpha 1/17 --K 4 --lam 1", Scene("egg", {"alpha": "1/17"}, lam="1", K=4)),
-        ("ellipse --a sqrt(2) --lam 1/3", Scene("ellipse", {"a": "sqrt(2)"}, lam="1/3")),
-        ("--polar 1+cos(5*theta)/40 --lam 1e-3", Scene("polar", formula=("1+cos(5*theta)/40",), lam="1/1000")),
-        ("--parametric 2*cos(theta) sin(theta) --lam 1", Scene("parametric", {}, ("2*cos(theta)", "sin(theta)"), "1")),
+        ("circle --lam 0", Scene("circle", lam=0)),
+        ("egg --alpha 0.08 --lam .5", Scene("egg", alpha="2/25", lam="1/2")),
+        ("egg --alpha 1/17 --K 4 --lam 1", Scene("egg", alpha="1/17", lam=1, K=4)),
+        ("ellipse --a sqrt(2) --lam 1/3", Scene("ellipse", a="sqrt(2)", lam="1/3")),
+        ("--polar 1+cos(5*theta)/40 --lam 1e-3", Scene(tables.polar(1 + cos(5 * theta) / 40), lam="1/1000")),
+        ("--parametric 2*cos(theta) sin(theta) --lam 1", Scene(tables.parametric("2*cos(theta)", "sin(theta)"))),
     ],
 )
 def test_a_scene_is_exact(scenes, arguments, scene):
@@ -219,12 +221,12 @@ def test_a_scene_builds_the_table_it_names(scenes):
     (_, egg), (scene, star) = scenes
     assert egg == tables.egg(3).at(alpha=Rational(2, 25))
     assert star == tables.polar(1 + cos(5 * theta) / 40)
-    assert scene.contraction() == 1 / sqrt(2)
-    assert isinstance(scene.contraction(), Expr)
+    assert scene.lam == 1 / sqrt(2)
+    assert isinstance(scene.lam, Expr)
 
 
 def test_the_shapes_known_here_are_those_of_the_tables():
-    for name, shape in SHAPES.items():
+    for name, shape in PAPER.items():
         assert tuple(p.symbol.name for p in tables.named(name).shapes) == shape
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from verification.commands.scene import Scene
+from symbolic import Scene
 from verification.sweeps import Axis, Field, Sweep, UnfinishedError, cost, run
 from verification.sweeps.bifurcation import bifurcation
 from verification.sweeps.parameter_space import parameter_space
@@ -67,7 +67,7 @@ def test_the_bits_depend_on_no_order():
 
 
 def test_a_store_says_what_it_holds(tmp_path):
-    scene = text_of(Scene("egg", {"alpha": "2/25"}))
+    scene = text_of(Scene("egg", alpha="2/25"))
     sweep = bifurcation(scene, np.array([0.3, 0.4]), orbits=2, points=3, bounces=80, transient=10)
     kept = run(sweep, tmp_path / "store")
 
@@ -196,7 +196,7 @@ def test_the_cost_is_that_of_all_bounces():
 
 def test_the_diagram_of_the_egg_doubles_its_period():
     # the paper: period 4 before lambda_3 = 0.372, period 8 after it (section 6.6)
-    scene = text_of(Scene("egg", {"alpha": "2/25"}))
+    scene = text_of(Scene("egg", alpha="2/25"))
     found = run(bifurcation(scene, np.array([0.36, 0.38]), orbits=6, points=16, transient=20_000))
 
     points = [np.unique(np.round(one, 5)).size for one in found.theta.values[:, 0]]

@@ -4,10 +4,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.scene import Scene
 from verification.cli import DONE, FAILED
 from verification.commands.mapped import pinball_map
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, scene_options
+from verification.commands.scene import scene_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -34,7 +35,7 @@ def command(
     """
     from verification.dynamics.attractors import find
 
-    map, table = pinball_map(scene), scene.table()
+    map, table = pinball_map(scene), scene.table
     found = find(map, orbits, seed, table, transient, bounces)
     document: dict[str, Any] = {
         "orbits": orbits,
@@ -98,7 +99,9 @@ def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
 
     if attractor.kind.name != "CYCLE":
         return {}
-    return dict(certificate(scene.table(), scene.contraction(), attractor.points).checks)
+    from sympy import S
+
+    return dict(certificate(scene.table, S(scene.lam), attractor.points).checks)
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verification.commands.mapped import contraction
-from verification.commands.scene import Scene, exact, scene_options
+from symbolic.definition import exact
+from symbolic.scene import Scene
+from verification.commands.scene import scene_options
 from verification.commands.sweeping import How, carried_out, sweep_options
 
 if TYPE_CHECKING:
@@ -50,9 +51,9 @@ def command(
                 "the smaller first"
             )
         ends = Window((left, right), (low, high))
-    lam = float(contraction(scene.lam))
+    lam = float(scene.lam)
     known = () if how.dry_run else None  # what the sweep costs does not depend on them
-    sweep = basins(text_of(scene), lam, columns, rows, ends, starts, transient, seed, scene.table(), known)
+    sweep = basins(text_of(scene), lam, columns, rows, ends, starts, transient, seed, scene.table, known)
     return carried_out(sweep, how, lines)
 
 

@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verification.commands.scene import Scene, table_options
+from symbolic.scene import Scene
+from verification.commands.scene import table_options
 from verification.commands.sweeping import How, carried_out, lams_option, over, seed_option, sweep_options
 
 if TYPE_CHECKING:

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.scene import Scene
 from verification.cli import DONE, FAILED
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, scene_options
+from verification.commands.scene import scene_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -33,11 +34,13 @@ def command(
 
     Exit status 1 when a count does not come out even or a proof stays open; the cycles found are kept.
     """
+    from sympy import S
+
     from verification.all_cycles.search import ROUNDS, all_cycles
     from verification.shooting.newton import given
     from verification.shooting.problem import Problem
 
-    table, lam = scene.table(), scene.contraction()
+    table, lam = scene.table, S(scene.lam)
     with output.progress("Searching", ROUNDS) as tick:
         found = all_cycles(table, lam, period, seed, tick)
     catalogue = found.catalogue
@@ -45,7 +48,7 @@ def command(
     counts = counted(catalogue, count, output) if count else []
     completed = completeness(catalogue, lam, prove, budget, output) if prove else []
     document = {
-        "table": scene.table_name,
+        "table": scene.name,
         "lam": str(lam),
         "rounds": found.rounds,
         "degenerate": catalogue.degenerate,

@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.definition import exact
+from symbolic.scene import Scene
 from verification.cli import DONE, FAILED
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, exact, table_options
+from verification.commands.scene import table_options
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -61,15 +63,15 @@ def command(
     from verification.continuation.dataset import record
     from verification.continuation.starts import at_contraction, freed, named, typed
 
-    if curves and (scene.table_name != "egg" or shape):
-        given = "--shape" if shape else scene.table_name
+    if curves and (scene.name != "egg" or shape):
+        given = "--shape" if shape else scene.name
         raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
     letter = varied(scene) if shape else "lam"
     low, high = interval_of(f"--{'shape' if shape else 'lam'}", shape or interval)
     lam = contraction(interval) if shape else None
-    table = scene.table()
+    table = scene.table
     if cycle is not None:
         ring, x, own = named(cycle, table)
     else:
@@ -80,7 +82,7 @@ def command(
     if lam is not None:
         x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
         ring = freed(ring, scene.K, letter, [exact("--shape", part) for part in str(shape).split(":")])
-        value = float(exact(f"--{letter}", scene.shape[letter]))
+        value = float(scene.shape[letter])
     steps = Steps(most=points)
     with output.progress("Following", points) as tick:
         found = [branch(ring, x, letter, value, (low, high), fixed, steps, lambda p: tick(f"{letter} = {p.z[-1]:.4f}"))]
@@ -98,7 +100,7 @@ def command(
         document["events"] = [noted(event, letter, certificates.get(id(event))) for event in one.events]
         documents.append(document)
     drawn_on = curves_of(found, scene, output) if curves else []
-    output.write({"table": scene.table_name, "branches": documents, "curves": drawn_on})
+    output.write({"table": scene.name, "branches": documents, "curves": drawn_on})
     if plot:
         drawn(found, plot)
     for document in documents:
@@ -128,7 +130,7 @@ def interval_of(option: str, text: str) -> tuple[float, float]:
 def varied(scene: Scene) -> str:
     """The letter of the table's shape."""
     if not scene.shape:
-        raise ValueError(f"--shape: {scene.table_name} has none; accepted: the ellipse and the egg")
+        raise ValueError(f"--shape: {scene.name} has none; accepted: the ellipse and the egg")
     (letter,) = scene.shape
     return letter
 
@@ -194,7 +196,7 @@ def curves_of(branches: list["Branch"], scene: Scene, output: Output) -> list[di
     from verification.continuation.survey import curve_of
 
     events = [(one.system.recurrence.period, event) for one in branches for event in one.events]
-    alpha, rows = float(exact("--alpha", scene.shape["alpha"])), []
+    alpha, rows = float(scene.shape["alpha"]), []
     with output.progress("Drawing", len(events)) as tick:
         for period, event in events:
             found = curve_of(event, alpha, scene.K)

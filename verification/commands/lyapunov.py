@@ -4,10 +4,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.scene import Scene
 from verification.cli import DONE, FAILED, INTERRUPTED
 from verification.commands.mapped import pinball_map
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, scene_options
+from verification.commands.scene import scene_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -102,19 +103,21 @@ def with_families(scene: Scene, map: "PinballMap", survey: "Survey") -> "Survey"
     from symbolic.symmetry import group
     from verification.dynamics.symmetry import with_images
 
-    joined = iter(with_images(map, found, group(scene.table())))
+    joined = iter(with_images(map, found, group(scene.table)))
     groups = [one if one.attractor is None else one._replace(attractor=next(joined)) for one in survey.groups]
     return replace(survey, groups=tuple(groups))
 
 
 def certify(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
     """Adds the proved exponents of each cycle to its group, null where the proof failed; and those of chaos."""
+    from sympy import S
+
     from verification.dynamics.certified_exponents import certified_exponents, chaotic_exponents
 
     for one, described in zip(survey.groups, document["groups"], strict=True):
         if described.get("period") and one.attractor is not None:
-            described["certified"] = certified_exponents(scene.table(), scene.contraction(), one.attractor.points)
-        elif described["kind"] == "chaotic" and (found := chaotic_exponents(scene.table(), scene.contraction())):
+            described["certified"] = certified_exponents(scene.table, S(scene.lam), one.attractor.points)
+        elif described["kind"] == "chaotic" and (found := chaotic_exponents(scene.table, S(scene.lam))):
             described["certified"] = found
 
 

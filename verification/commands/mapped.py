@@ -3,7 +3,8 @@
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from verification.commands.scene import Scene, exact
+from symbolic.definition import exact
+from symbolic.scene import Scene
 
 if TYPE_CHECKING:
     from numeric import PinballMap
@@ -12,23 +13,20 @@ if TYPE_CHECKING:
 def pinball_map(scene: Scene, lam: Any = None) -> "PinballMap":
     """The map of a scene; SymPy is imported only for a formula or an irrational shape.
 
-    >>> pinball_map(Scene("egg", {"alpha": "2/25"}, lam="1/2")).path
+    >>> pinball_map(Scene("egg", alpha="2/25", lam="1/2")).path
     'chord polynomial, one real zero'
     """
     from numeric import PinballMap
 
-    lam = contraction(scene.lam) if lam is None else lam
-    if scene.formula:
-        return PinballMap(scene.table(), lam=lam)
-    shape: dict[str, Any] = {name: exact(f"--{name}", text) for name, text in scene.shape.items()}
-    if not all(isinstance(value, Fraction) for value in shape.values()):
-        return PinballMap(scene.table(), lam=lam)
-    return PinballMap(scene.table_name, lam=lam, K=scene.K, **shape)
+    lam = numeral(scene.lam) if lam is None else lam
+    shape: dict[str, Any] = dict(scene.shape)
+    if "table" in scene.document and all(isinstance(value, Fraction) for value in shape.values()):
+        return PinballMap(scene.name, lam=lam, K=scene.K, **shape)
+    return PinballMap(scene.table, lam=lam)
 
 
-def contraction(text: str) -> Any:
-    """`lam` as an exact number."""
-    value = exact("--lam", text)
+def numeral(value: Any) -> Any:
+    """A contraction for a kernel: a fraction as it is, an expression as the nearest float."""
     return value if isinstance(value, Fraction) else float(value)
 
 

@@ -4,10 +4,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.scene import Scene
 from verification.cli import DONE, FAILED
 from verification.commands.mapped import pinball_map, start_of
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, exact, scene_options
+from verification.commands.scene import scene_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -69,7 +70,7 @@ def command(
 
         follow = in_multiprecision if arithmetic == "mpmath" else in_balls
         with output.progress("Bouncing", bounces) as step:
-            entries = follow(map, exact("--lam", scene.lam), (index, theta, phi), bounces, digits, step)
+            entries = follow(map, scene.lam, (index, theta, phi), bounces, digits, step)
     output.write({"bounces": entries} | picked)
     show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
     if picked:

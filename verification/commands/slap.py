@@ -4,10 +4,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symbolic.scene import Scene
 from verification.cli import DONE
 from verification.commands.mapped import pinball_map
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, table_options
+from verification.commands.scene import table_options
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symbolic.scene import Scene
 from verification.commands.basins import command as basins
 from verification.commands.bifurcation import command as bifurcation
-from verification.commands.scene import Scene, table_options
+from verification.commands.scene import table_options
 from verification.commands.sweeping import How, carried_out, lams_option, over, seed_option, span, sweep_options
 
 if TYPE_CHECKING:

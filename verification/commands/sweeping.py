@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.definition import exact
+from symbolic.scene import Scene
 from verification.cli import DONE, FAILED
 from verification.commands.output import Output, json_option
-from verification.commands.scene import Scene, exact
 
 if TYPE_CHECKING:
     import numpy as np

@@ -4,11 +4,13 @@ import shlex
 from dataclasses import dataclass
 
 from numeric import PinballMap
+from symbolic.definition import PAPER
+from symbolic.scene import Scene
 from verification.commands.mapped import pinball_map
-from verification.commands.scene import SHAPES, Scene, scene
+from verification.commands.scene import scene
 
 OWN = "polar formula"
-TABLES = (*SHAPES, OWN)
+TABLES = (*PAPER, OWN)
 DEFAULTS = {"a": "1.5", "alpha": "0.08"}
 
 
@@ -27,7 +29,7 @@ class Choice:
     @property
     def letter(self) -> str | None:
         """The name of the table's shape parameter, if it has one."""
-        return next(iter(SHAPES.get(self.table, ())), None)
+        return next(iter(PAPER.get(self.table, ())), None)
 
     def scene(self) -> Scene:
         """The scene; `ValueError` with one sentence when there is none."""

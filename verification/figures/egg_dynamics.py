@@ -103,13 +103,13 @@ def draw_attractors(panels: Panels) -> "Figure":
 
 def bifurcation(fine: float = 1.0) -> Panels:
     """Where balls from random starts are after a long time, for contractions around the cascade and the merging."""
-    from verification.commands.scene import Scene
+    from symbolic.scene import Scene
     from verification.sweeps.bifurcation import bifurcation as sweep
     from verification.sweeps.scenes import text_of
 
     lams = np.linspace(*RANGE, scaled(300, fine**0.5, 4))
     orbits, points = scaled(12, fine**0.25, 4), scaled(40, fine**0.25, 8)
-    found = swept(sweep(text_of(Scene("egg", {"alpha": ALPHA})), lams, orbits, points, 80, 3000, seed=SEED))
+    found = swept(sweep(text_of(Scene("egg", alpha=ALPHA)), lams, orbits, points, 80, 3000, seed=SEED))
     theta = found["theta"].ravel()
     curve = Curve(theta, np.repeat(lams, orbits * points))
     known: dict[str, Fact] = {

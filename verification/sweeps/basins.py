@@ -54,7 +54,7 @@ def basins(
 
     Attractors that are `known` already are not looked for.
 
-    >>> from verification.commands.scene import Scene
+    >>> from symbolic import Scene
     >>> from verification.sweeps.scenes import text_of
     >>> sweep = basins(text_of(Scene("cuspless")), 0.09, 4, 2, starts=100)
     >>> sorted(set(sweep.task(sweep.part((0, 0)))["label"].ravel().tolist()))  # a chaotic attractor and period 2

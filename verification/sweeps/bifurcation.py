@@ -57,9 +57,9 @@ def bifurcation(
 ) -> Sweep:
     """The sweep over `lams`: for each the last `points` bounces of `orbits` random balls. `s` is nan where one stopped.
 
-    >>> from verification.commands.scene import Scene
+    >>> from symbolic import Scene
     >>> from verification.sweeps.scenes import text_of
-    >>> sweep = bifurcation(text_of(Scene("ellipse", {"a": "2"})), np.array([0.5]), orbits=3, points=4)
+    >>> sweep = bifurcation(text_of(Scene("ellipse", a=2)), np.array([0.5]), orbits=3, points=4)
     >>> found = sweep.task(sweep.part((0, 0, 0)))
     >>> np.unique(found["theta"].round(6)).tolist()  # every ball ends on the minor axis
     [-1.570796, 1.570796]

@@ -79,9 +79,9 @@ def exponents(
 ) -> Sweep:
     """The sweep over `lams`, with as many `groups` as are kept for each.
 
-    >>> from verification.commands.scene import Scene
+    >>> from symbolic import Scene
     >>> from verification.sweeps.scenes import text_of
-    >>> sweep = exponents(text_of(Scene("ellipse", {"a": "2"})), np.array([0.5]), orbits=8, groups=2, bounces=512)
+    >>> sweep = exponents(text_of(Scene("ellipse", a=2)), np.array([0.5]), orbits=8, groups=2, bounces=512)
     >>> found = sweep.task(sweep.part((0, 0)))
     >>> found["period"].tolist(), found["total"].round(12).tolist()  # period 2 and log(1/2)
     ([[2, -1]], [[-0.69314718056, nan]])

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from verification.commands.scene import Scene
+from symbolic.scene import Scene
 from verification.sweeps.scenes import map_of, spread, text_of
 from verification.sweeps.signs import BLOCKS, measured
 from verification.sweeps.sweep import Array, Axis, Field, Part, Sweep
@@ -69,7 +69,7 @@ class Pairs:
 
 def egg(K: int, alpha: float) -> str:
     """The scene of one shape, the decimal that `alpha` shows."""
-    return text_of(Scene("egg", {"alpha": str(Fraction(repr(float(alpha))))}, K=K))
+    return text_of(Scene("egg", alpha=Fraction(repr(float(alpha))), K=K))
 
 
 def parameter_space(

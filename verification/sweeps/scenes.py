@@ -1,6 +1,5 @@
 """A scene as a line of text, which labels results and travels to other machines; its map, and random balls in it."""
 
-import json
 from functools import lru_cache
 from typing import Any
 
@@ -9,27 +8,26 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.pinball.sampling import Starts, interior_starts
+from symbolic.scene import Scene
 from verification.commands.mapped import pinball_map
-from verification.commands.scene import Scene
 
 KEPT = 16  # maps
 Array = NDArray[np.float64]
 
 
 def text_of(scene: Scene) -> str:
-    """The scene without its contraction, as JSON with sorted keys.
+    """The scene as a sweep labels it: at `lam = 1`, since the contraction is an axis of the sweep.
 
-    >>> text_of(Scene("egg", {"alpha": "2/25"}))
-    '{"K": 3, "formula": [], "shape": {"alpha": "2/25"}, "table": "egg"}'
+    >>> text_of(Scene("egg", alpha="2/25", lam="1/2"))
+    'scene = { table = "egg", shape = { alpha = "2/25" }, lam = "1" }'
     """
-    parts = {"table": scene.table_name, "shape": dict(scene.shape), "formula": list(scene.formula), "K": scene.K}
-    return json.dumps(parts, sort_keys=True)
+    return scene.at(lam=1).text
 
 
 def map_of(text: str, lam: Any) -> PinballMap:
     """The map of a scene written by `text_of`, with a contraction, or one for each ball.
 
-    >>> map_of('{"K": 3, "formula": [], "shape": {"a": "2"}, "table": "ellipse"}', 0.5).law
+    >>> map_of(text_of(Scene("ellipse", a=2)), 0.5).law
     'pinball'
     """
     return _elastic(text).at(lam)
@@ -47,6 +45,4 @@ def spread(text: str, lams: Array, each: int, seed: int) -> tuple[PinballMap, St
 
 @lru_cache(KEPT)
 def _elastic(text: str) -> PinballMap:
-    parts = json.loads(text)
-    scene = Scene(parts["table"], parts["shape"], tuple(parts["formula"]), "1", parts["K"])
-    return pinball_map(scene)
+    return pinball_map(Scene.parse(text))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from symbolic import Scene
 from verification.cli import main
 from verification.commands.sweeping import span
 from verification.sweeps import run
@@ -24,7 +25,7 @@ def test_a_bifurcation_diagram_as_json(capsys):
     )
 
     assert found["coords"]["lam"] == [0.1, 0.2, 0.3]
-    assert found["scene"] == {"K": 3, "formula": [], "shape": {"alpha": "2/25"}, "table": "egg"}
+    assert found["scene"] == Scene("egg", alpha="0.08").text
     assert found["fields"]["phi"]["dims"] == ["lam", "orbit", "bounce"]
     assert found["fields"]["phi"]["units"] == "rad"
     phi = np.array(found["fields"]["phi"]["values"])
@@ -44,7 +45,7 @@ def test_basins_of_the_cuspless_table_are_those_of_period_2_and_of_chaos(capsys)
 
 def test_basins_have_the_symmetry_of_the_table():
     # y -> -y maps (s, phi) to (-s, -phi), and swaps or keeps attractors
-    found = run(basins('{"K": 3, "formula": [], "shape": {}, "table": "cuspless"}', 0.09, 40, 30, starts=200))
+    found = run(basins(Scene("cuspless").text, 0.09, 40, 30, starts=200))
 
     label = found.label.values
     assert np.mean(label == label[::-1, ::-1]) > 0.98  # rounding decides where basins are thinner than a cell
@@ -64,7 +65,7 @@ def test_a_window_of_phase_space(tmp_path, capsys):
 
 def test_exponents_of_each_attractor_obey_the_sum_rule_of_the_ellipse():
     # the period-2 orbit has det DT^2 = lam^2, so the exponents add up to log(lam)
-    found = run(exponents('{"K": 3, "formula": [], "shape": {"a": "2"}, "table": "ellipse"}', np.array([0.3, 0.6])))
+    found = run(exponents(Scene("ellipse", a="2").text, np.array([0.3, 0.6])))
 
     assert found.orbits.values[:, 0].tolist() == [100, 100]
     assert [KINDS[int(kind)].name for kind in found.kind.values[:, 0]] == ["CYCLE", "CYCLE"]

@@ -3,7 +3,8 @@
 The two columns `/condition` divide by one plus the row sums of the derivative matrix, the condition numbers; `beyond`
 and `from` say how many points go beyond 4 (position) or 8 (direction), and the smallest condition number among them.
 The reference is the same step on 80-bit floats, with elementary functions and zeros to their own last bits
-(`verification/extremes/wide.py`); that the step itself is right is what tests/numeric/flights/test_accuracy.py shows,
+(`verification/measure/extremes/kernels.py`); that the step itself is right is what
+tests/numeric/flights/test_accuracy.py shows,
 with 50 digits. `judge` is how far the reference moves when the state is rounded once more in 80 bits: what it can
 tell. A point is beyond only where that does not explain it.
 
@@ -14,8 +15,8 @@ import sys
 
 import numpy as np
 
-from verification.extremes.wide import Wide, made_unit
-from verification.labelled import bounced, cases, conditions
+from verification.measure.extremes.kernels import Wide, made_unit
+from verification.measure.speed.labelled import bounced, cases, conditions
 
 EPS = 2.0**-52
 

@@ -10,8 +10,8 @@ import numpy as np
 from sympy import cos, lambdify, sin, symbols
 
 from symbolic import tables
-from symbolic.geometry import velocity
-from symbolic.symbols import theta as parameter
+from symbolic.tables.geometry import velocity
+from symbolic.tables.symbols import theta as parameter
 
 
 class Lambdified:

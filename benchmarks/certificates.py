@@ -19,22 +19,22 @@ from rich.table import Table as Shown
 from sympy import Expr, Integer, N, Rational, acos, pi
 
 from symbolic import tables
-from symbolic.polygons import saddle_node
-from symbolic.symbols import alpha as letter
-from verification.arithmetic import balls, bits_of, working
-from verification.certificates.bifurcation import Claim, proved
-from verification.certificates.birth import birth
-from verification.certificates.contraction import exact_balls
-from verification.certificates.exclusion import no_triangles
-from verification.certificates.files import checked, document
-from verification.certificates.kink import kink_falls, minimum_at_kink
-from verification.certificates.special import SpecialClaim, specially_proved
-from verification.feigenbaum import limit, ratio
-from verification.ladder import ladder
-from verification.locate import GMPY2, locate
-from verification.shooting.newton import GUARD, System, floats, levels, refined
-from verification.shooting.problem import Kind, Problem
-from verification.shooting.small import corner
+from symbolic.cycles.polygons import saddle_node
+from symbolic.tables.symbols import alpha as letter
+from verification.arithmetic.words import balls, bits_of, working
+from verification.cycles.shooting.cascade import ladder
+from verification.cycles.shooting.newton import GUARD, System, floats, levels, refined
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.small import corner
+from verification.named.feigenbaum import limit, ratio
+from verification.named.files import checked, document
+from verification.named.locate import GMPY2, locate
+from verification.proofs.corner.corner_orbit import SpecialClaim, specially_proved
+from verification.proofs.corner.half_return import birth
+from verification.proofs.corner.return_map import kink_falls, minimum_at_kink
+from verification.proofs.periodic.bifurcation import Claim, proved
+from verification.proofs.periodic.exclusion import no_triangles
+from verification.proofs.periodic.interval_newton import exact_balls
 
 ALPHA: Expr = Rational(2, 25)
 DIGITS = (16, 50, 100, 300, 1000, 3000, 10_000)

@@ -23,13 +23,13 @@ from sympy import Rational
 
 from numeric import PinballMap
 from symbolic.tables import egg
-from verification.continuation.arc import Steps
-from verification.continuation.branch import What, branch
-from verification.continuation.recurrence import Array, Chords
-from verification.continuation.tongue import Rung, cascade
-from verification.locate import certify
-from verification.shooting.follow import next_critical
-from verification.shooting.problem import Kind, Problem
+from verification.cycles.continuation.arc import Steps
+from verification.cycles.continuation.branch import What, branch
+from verification.cycles.continuation.recurrence import Array, Chords
+from verification.cycles.shooting.attracting import next_critical
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.named.locate import certify
+from verification.named.tongue import Rung, cascade
 
 ALPHA = Rational(2, 25)
 POINTS = 50

@@ -15,14 +15,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table as Shown
 
-from verification import crises
-from verification.manifolds import passages
-from verification.manifolds.known import SHAPE, contact, table
-from verification.manifolds.located import crisis
-from verification.manifolds.proof import sharpened, tangency_proved
-from verification.manifolds.shadows import shadow
-from verification.manifolds.tangency import tangency
-from verification.shooting.newton import refined
+from verification.cycles.shooting.newton import refined
+from verification.named import crises
+from verification.proofs.manifolds import shadows as passages
+from verification.proofs.manifolds.known import SHAPE, contact, crisis, table
+from verification.proofs.manifolds.proof import sharpened, tangency_proved
+from verification.proofs.manifolds.shadows import shadow
+from verification.proofs.manifolds.tangency import tangency
 
 SHOWN = ("merging", "boundary", "band-merging", "symmetry-restoring", "window-end-15")
 DISTANCES = {"merging": np.geomspace(3e-3, 3e-7, 61), "boundary": np.geomspace(4e-3, 9e-5, 40)}

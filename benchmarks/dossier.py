@@ -3,7 +3,8 @@
     python benchmarks/dossier.py
 
 writes the page from `docs/bench.json` (`pinball bench --json`), `docs/work_precision.json`, `docs/leave_out.md`,
-`docs/mutation.md`, `verification/extremes/recorded.json` and `tests/symbolic/corpus.json`; each is written by the
+`docs/mutation.md`, `verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`; each is written
+by the
 command that the page names. The words are in `dossier.md` beside this file. Nothing is measured here, and a test
 holds the page to its sources.
 """
@@ -14,13 +15,12 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from verification.diagram import duration
-from verification.extremes.stability import Stability
-from verification.labelled import SCENES
-from verification.work.choice import crossovers, entries
-from verification.work.prose import times
-from verification.work.row import Row, front
-from verification.work.text import footer, short
+from verification.measure.extremes.near import Stability
+from verification.measure.speed.baselines import duration
+from verification.measure.speed.labelled import SCENES
+from verification.measure.work.choice import crossovers, entries
+from verification.measure.work.prose import times
+from verification.measure.work.row import Row, footer, front, short
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"
@@ -194,7 +194,7 @@ def fuzz(text, corpus):
 def page():
     """The text of the page."""
     bench, work = load("docs/bench.json"), load("docs/work_precision.json")
-    record, rows = load("verification/extremes/recorded.json"), [Row.from_dict(row) for row in work["rows"]]
+    record, rows = load("verification/measure/extremes/recorded.json"), [Row.from_dict(row) for row in work["rows"]]
     loose = [f"`{name}`" for name, about in work["questions"].items() if not about["certified"]]
     return TEXT.read_text().format(
         machine=footer(bench["machine"]),

@@ -11,10 +11,10 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
+from numeric.dynamics.exponents import Count
+from numeric.dynamics.statistics import estimate
 from numeric.pinball.growth import Growth
 from numeric.pinball.sampling import interior_starts
-from verification.dynamics.exponents import Count
-from verification.dynamics.statistics import estimate
 
 SCENES = (
     ("cardioid", {}, "0"),

@@ -15,9 +15,8 @@ import json
 import sys
 from pathlib import Path
 
-from verification.extremes.catalogue import rows
-from verification.extremes.orbits import BALLS, findings, orbits
-from verification.extremes.page import LONG, RECORD, lines, page, record
+from verification.measure.extremes.orbits import BALLS, findings, orbits
+from verification.measure.extremes.page import LONG, RECORD, lines, page, record, rows
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "extremes.md"
 

@@ -8,7 +8,7 @@ The bar: all of them within 3 minutes on two cores. A resolution of 8 is that of
 import sys
 import time
 
-from verification.figures.catalogue import DRAFT, pictures
+from verification.paper.figures.catalogue import DRAFT, pictures
 
 BAR = 180.0  # seconds
 

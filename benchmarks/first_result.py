@@ -19,8 +19,8 @@ from pathlib import Path
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec, fields
 from numeric.kernels.text import kernel_text, operations
-from verification.bench import LAWS
-from verification.labelled import SCENES
+from verification.measure.speed.bench import LAWS
+from verification.measure.speed.labelled import SCENES
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "leave_out.md"

@@ -17,8 +17,8 @@ import numpy as np
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text, operations
-from verification.bench import BALLS, LAWS, attracted
-from verification.labelled import SCENES
+from verification.measure.speed.bench import BALLS, LAWS, attracted
+from verification.measure.speed.labelled import SCENES
 
 CHAINS, LANES, PASSES = 12, 8, 20_000
 BOUNCES, RUNS = 100, 100

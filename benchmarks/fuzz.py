@@ -11,10 +11,11 @@ import sys
 
 import atheris
 
-with atheris.instrument_imports(include=["symbolic.formula", "symbolic.formula_bounds", "verification.commands"]):
-    from symbolic.formula import FUNCTIONS, number, parse
-    from verification.commands.mapped import start_of
-    from verification.commands.scene import scene
+with atheris.instrument_imports(
+    include=["symbolic.tables.formula", "symbolic.tables.formula_bounds", "verification.commands"]
+):
+    from symbolic.tables.formula import FUNCTIONS, number, parse
+    from verification.app.shell.scene import scene, start_of
 
 WORDS = (
     *FUNCTIONS, "theta", "pi", "E", "+", "-", "*", "/", "**", "^", "(", ")", "0", "1", "2", "3", "9", ".", "e", "1e9",

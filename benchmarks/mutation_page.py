@@ -82,7 +82,7 @@ def summary(name: str, figures: dict[str, dict]) -> str:
         text += f". Asked was a random part of {total} mutants"
     fresh, fresh_hits = (sum(entry.get(key, 0) for entry in figures.values()) for key in ("fresh", "fresh_killed"))
     if fresh and asked < total:
-        from verification.dynamics.kinds import wilson  # here: no mutant is asked after the package was imported
+        from numeric.dynamics.kinds import wilson  # here: no mutant is asked after the package was imported
 
         share = wilson(fresh_hits, fresh)
         text += f". Of {fresh} mutants drawn at random after the last test was written {fresh_hits} are killed, "

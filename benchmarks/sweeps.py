@@ -12,14 +12,14 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from numeric.dynamics.basins import starts_at
 from numeric.kernels.spec import KernelSpec, starting
+from numeric.sweeps.basins import basins
+from numeric.sweeps.parameter_space import egg, parameter_space
+from numeric.sweeps.pools import on_threads
+from numeric.sweeps.scenes import map_of, spread, text_of
+from numeric.sweeps.sweep import cores
 from symbolic import Scene
-from verification.dynamics.basins import starts_at
-from verification.sweeps.basins import basins
-from verification.sweeps.cost import cores
-from verification.sweeps.parameter_space import egg, parameter_space
-from verification.sweeps.pools import on_threads
-from verification.sweeps.scenes import map_of, spread, text_of
 
 TURNS = 10
 

@@ -1,7 +1,8 @@
 """Measures every work-precision diagram and writes the chapter: `python benchmarks/work_precision.py`.
 
 It writes docs/work_precision.md, docs/work_precision.json, docs/figures/work-*.svg, and the table from which
-`verification.work.choice` picks an arithmetic. `--question NAME` measures one and leaves the others as they were;
+`verification.measure.work.choice` picks an arithmetic. `--question NAME` measures one and leaves the others as they
+were;
 `--write` measures nothing and writes page and figures from the JSON. `--compare` writes nothing: it measures and says
 what moved against the committed JSON, by the ratios of times within each run.
 """
@@ -14,14 +15,12 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from verification.work.catalogue import QUESTIONS, question
-from verification.work.choice import TABLE, written
-from verification.work.compare import moved
-from verification.work.figure import drawn, image
-from verification.work.measure import measured
-from verification.work.prose import paragraph
-from verification.work.row import Row, front
-from verification.work.text import baseline, facts, footer, markdown
+from verification.measure.work.choice import TABLE, written
+from verification.measure.work.compare import QUESTIONS, moved, question
+from verification.measure.work.figure import drawn, image
+from verification.measure.work.prose import paragraph
+from verification.measure.work.question import measured
+from verification.measure.work.row import Row, baseline, facts, footer, front, markdown
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 DATA, PAGE, FIGURES = DOCS / "work_precision.json", DOCS / "work_precision.md", DOCS / "figures"

@@ -8,9 +8,9 @@
 from IPython.display import Math, display
 from sympy import simplify, symbols
 
-from symbolic import collision
-from symbolic.notation import latex
-from symbolic.symbols import cos_eta1, cos_phi0, lam
+from symbolic.motion import collision
+from symbolic.tables.notation import latex
+from symbolic.tables.symbols import cos_eta1, cos_phi0, lam
 
 
 def show(left, right):

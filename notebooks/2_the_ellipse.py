@@ -7,10 +7,13 @@
 from IPython.display import Math, display
 from sympy import Rational, factor, simplify, sqrt
 
-from symbolic import cycles, double_normal, geometry, tables, thresholds
-from symbolic.named_cycles import major_axis, minor_axis
-from symbolic.notation import latex
-from symbolic.symbols import a, lam
+from symbolic import tables
+from symbolic.cycles import cycle as cycles
+from symbolic.cycles import double_normal, thresholds
+from symbolic.cycles.named import major_axis, minor_axis
+from symbolic.tables import geometry
+from symbolic.tables.notation import latex
+from symbolic.tables.symbols import a, lam
 
 
 def show(left, right):

@@ -8,8 +8,11 @@
 from IPython.display import Math, display
 from sympy import N, Rational
 
-from symbolic import geometry, length, slap_cardioid, tables
-from symbolic.notation import latex
+from symbolic import tables
+from symbolic.cycles import cardioid_slap as slap_cardioid
+from symbolic.tables import arclength as length
+from symbolic.tables import geometry
+from symbolic.tables.notation import latex
 
 
 def show(left, right):
@@ -80,8 +83,8 @@ assert np.min(twice) < float(infimum) * (1 + 1e-3)
 # measure, transitivity.
 
 # +
-from symbolic import defocusing
-from symbolic.symbols import lam
+from symbolic.cycles import defocusing
+from symbolic.tables.symbols import lam
 
 show(r"\liminf \tfrac1n \log|D(T^n)(1, 0)| \geq", defocusing.least_exponent())
 bound = [float(defocusing.least_stretch(n).subs(lam, Rational(1, 2))) for n in range(2, 30)]

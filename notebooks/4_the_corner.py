@@ -7,10 +7,11 @@
 # +
 from IPython.display import Math, display
 
-from symbolic import cycles, thresholds
-from symbolic.named_cycles import cuspless_horizontal
-from symbolic.notation import latex
-from verification.locate import locate
+from symbolic.cycles import cycle as cycles
+from symbolic.cycles import thresholds
+from symbolic.cycles.named import cuspless_horizontal
+from symbolic.tables.notation import latex
+from verification.named.locate import locate
 
 
 def show(left, right):

@@ -8,11 +8,11 @@
 from IPython.display import Math, display
 from sympy import N, Rational, S
 
-from symbolic import double_normal, polygons, thresholds
-from symbolic.named_cycles import egg_diameter
-from symbolic.notation import latex
-from symbolic.symbols import alpha, lam
-from verification.locate import locate
+from symbolic.cycles import double_normal, polygons, thresholds
+from symbolic.cycles.named import egg_diameter
+from symbolic.tables.notation import latex
+from symbolic.tables.symbols import alpha, lam
+from verification.named.locate import locate
 
 
 def show(left, right):

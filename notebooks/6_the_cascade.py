@@ -10,8 +10,8 @@ from itertools import pairwise
 from mpmath import nstr
 from sympy import Rational
 
-from verification.feigenbaum import accumulation
-from verification.locate import locate
+from verification.named.feigenbaum import accumulation
+from verification.named.locate import locate
 
 SHAPE = Rational(2, 25)
 # -

@@ -9,10 +9,10 @@ import numpy as np
 from mpmath import nstr
 from sympy import Rational
 
-from verification.arithmetic import FLOAT64
-from verification.manifolds.known import TRIANGLE, contact, table
-from verification.manifolds.saddle import saddle
-from verification.manifolds.series import local
+from verification.arithmetic.words import FLOAT64
+from verification.proofs.manifolds.known import TRIANGLE, contact, table
+from verification.proofs.manifolds.saddle import saddle
+from verification.proofs.manifolds.series import local
 
 SHAPE = Rational(2, 25)
 # -
@@ -35,7 +35,7 @@ print("residuals of the series of order", unstable.order, ":", unstable.residual
 # methods that share nothing but the chord: a tangency of the two series, and the fold of a long cycle that shadows it.
 
 # +
-from verification.manifolds.located import crisis
+from verification.proofs.manifolds.known import crisis
 
 boundary = crisis("boundary", SHAPE, 15)
 merging = crisis("merging", SHAPE, 12)

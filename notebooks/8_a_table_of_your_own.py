@@ -8,11 +8,13 @@ from IPython.display import Math, display
 from sympy import S, pi
 
 from numeric import PinballMap
-from symbolic import double_normal, geometry, tables
-from symbolic.convexity import convexity
-from symbolic.cycles import Cycle
-from symbolic.notation import latex
-from symbolic.symbols import theta
+from symbolic import tables
+from symbolic.cycles import double_normal
+from symbolic.cycles.cycle import Cycle
+from symbolic.motion.convexity import convexity
+from symbolic.tables import geometry
+from symbolic.tables.notation import latex
+from symbolic.tables.symbols import theta
 
 
 def show(left, right):
@@ -50,9 +52,9 @@ print(float(found.nu_plus), float(found.nu_minus))
 # The same threshold on the chord system, in balls, with the whole checklist.
 
 # +
-from verification.balls import decimal
-from verification.locate import certify
-from verification.shooting.problem import Kind, Problem
+from verification.arithmetic.balls import decimal
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.named.locate import certify
 
 problem = Problem(flower, (0, 0), Kind.FLIP, free="lam")
 proof = certify(problem, [0.0, 3.141592653589793, float(threshold)], 30)
@@ -63,7 +65,7 @@ for item, answer in proof.checks.items():
 # ## A check that can fail
 
 # +
-from verification.balls import real_ball
+from verification.arithmetic.balls import real_ball
 
 assert proof.certified
 assert proof.value.overlaps(real_ball(threshold, 40))

@@ -1,4 +1,4 @@
 from . import tables
-from .scene import Law, Scene
+from .tables.scene import Law, Scene
 
 __all__ = ["Law", "Scene", "tables"]

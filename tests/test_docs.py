@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.cli import main
+from verification.app.shell.cli import main
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))

@@ -24,7 +24,7 @@ WORDS = sorted(
 )
 TESTS = sorted(path for path in (ROOT / "tests").rglob("*.py") if "golden" not in path.parts)
 READERS_OF_TEXT = {"eval", "sympify", "parse_expr", "__import__"}
-EXECUTES = {Path("symbolic/codegen.py")}  # compiles what it has written itself
+EXECUTES = {Path("symbolic/generation/text.py")}  # compiles what it has written itself
 LINES = 350
 
 

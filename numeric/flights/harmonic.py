@@ -1,7 +1,7 @@
 """Tables whose boundary is a finite Fourier sum: the ellipse in closed form, any convex one by its chord polynomial.
 
 State: the unit numbers `u = exp(i*theta)` and `v`, the ball's direction. The programs that a flight
-needs come from `symbolic.flight` through the blueprint.
+needs come from `symbolic.motion.flight` through the blueprint.
 """
 
 from typing import Any

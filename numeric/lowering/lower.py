@@ -13,11 +13,13 @@ from sympy import sympify as exact
 
 from numeric.lowering.program import Builder, Node, Program
 from numeric.lowering.table_ir import Blueprint, Part, ShapeRange
-from symbolic import flight, tables
-from symbolic.geometry import velocity
-from symbolic.symbols import theta
-from symbolic.table import Component, Table
-from symbolic.validity import closed_and_finite
+from symbolic import tables
+from symbolic.motion import flight
+from symbolic.tables.geometry import velocity
+from symbolic.tables.symbols import theta
+from symbolic.tables.symmetry import Symmetry, group
+from symbolic.tables.table import Component, Table
+from symbolic.tables.validity import closed_and_finite
 
 
 def named(name: str, K: int = 3) -> Blueprint:
@@ -48,6 +50,17 @@ def drawn(table: Table) -> Blueprint:
         tuple(programs.items()),
         (index, _program(symbols, lambda nodes: [nodes(start)])),
     )
+
+
+def exact_table(table: Table | str, K: int, shape: dict[str, Any]) -> Table:
+    """The exact table of a map, with the numbers of its shape."""
+    given = tables.named(table, K) if isinstance(table, str) else table
+    return given.at(**{name: exact(value) for name, value in shape.items()}) if shape else given
+
+
+def symmetries(table: Table) -> tuple[Symmetry, ...]:
+    """The symmetries of an exact table that are proved, the identity first."""
+    return group(table)
 
 
 def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:

@@ -19,6 +19,7 @@ from numeric.pinball.coordinates import States
 from numeric.pinball.growth import Growth
 from numeric.pinball.inputs import angles, components, contraction, counted, real, shape_value
 from numeric.pinball.results import Exponents, Orbit, Slap
+from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
     from numeric.pinball.arclength import ArcLength
@@ -29,9 +30,9 @@ Array = NDArray[np.float64]
 class PinballMap:
     """The map `T_lambda` of a table. Paper: section 2.
 
-    `table` is an exact table or the name of one of the paper's; shape parameters are keywords, exact or
-    decimal, and a decimal means the decimal it shows. `lam` is one number or one for each ball. With
-    `kernels=False` the same steps run on NumPy arrays.
+    `table` is a scene, which says everything, or an exact table, or the name of one of the paper's; then shape
+    parameters are keywords, exact or decimal, and a decimal means the decimal it shows. `lam` is one number or one
+    for each ball, and comes before a scene's own. With `kernels=False` the same steps run on NumPy arrays.
 
     >>> ellipse = PinballMap("ellipse", lam=1, a=2)
     >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
@@ -39,15 +40,26 @@ class PinballMap:
     (-2.0, 0.0)
     """
 
-    def __init__(self, table: Any, lam: Any = 1, K: int = 3, kernels: bool = True, **shape: Any) -> None:
+    def __init__(self, table: Any, lam: Any = None, K: int = 3, kernels: bool = True, **shape: Any) -> None:
+        if isinstance(table, Scene):
+            table, lam, K, shape = _unpacked(table, lam, shape)
         self.blueprint: Blueprint = blueprint(table, K)
-        self.lam = contraction(lam)
+        self.lam = contraction(1 if lam is None else lam)
+        self._given = table, K
         self.exact_shape = self._shape(shape)
         self.shape = [float(value) for value in self.exact_shape]
         names = [entry.name for entry in self.blueprint.shape]
         self.family = family_of(Boundary(self.blueprint, self.shape))
         self.states = States(self.family)
         self.engine = Engine(self.family, key_of(self.blueprint.as_text(), self.family.identity), names, kernels)
+
+    @cached_property
+    def table(self) -> Any:
+        """The exact table, with the numbers of its shape."""
+        from numeric.lowering.lower import exact_table
+
+        names = [entry.name for entry in self.blueprint.shape]
+        return exact_table(*self._given, dict(zip(names, self.exact_shape, strict=True)))
 
     @property
     def path(self) -> str:
@@ -227,3 +239,15 @@ class PinballMap:
             stopped = np.arange(bounces + 1)[:, None] >= first[None]
             codes[stopped] = np.broadcast_to(rows["code"].astype(np.int64), codes.shape)[stopped]
         return codes
+
+
+def _unpacked(scene: Scene, lam: Any, shape: dict[str, Any]) -> tuple[Any, Any, int, dict[str, Any]]:
+    """A scene as table, contraction, points of the egg and shape; SymPy is needed for a formula or a root only."""
+    if shape:
+        raise ValueError(f"{scene.name}: {', '.join(shape)} given beside a scene; change its shape by scene.at")
+    numbers: dict[str, Any] = dict(scene.shape)
+    own = scene.lam
+    lam = lam if lam is not None else own if isinstance(own, Fraction) else float(own)
+    if "table" in scene.document and all(isinstance(value, Fraction) for value in numbers.values()):
+        return scene.name, lam, scene.K, numbers
+    return scene.table, lam, 3, {}

@@ -3,9 +3,9 @@
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from verification import claims
-from verification.report.page import Picture
-from verification.report.page import page as html
+from verification.paper.report import verdicts as claims
+from verification.paper.report.page import Picture
+from verification.paper.report.page import page as html
 
 DOT = bytes.fromhex(
     "89504e470d0a1a0a0000000d4948445200000001000000010806000000"

@@ -3,13 +3,13 @@
 import sys
 from pathlib import Path
 
-from symbolic.chords import chord_kernel, collision_kernel
-from symbolic.codegen import Kernel, kernel, module_text
-from symbolic.collision import derivative_matrix
-from symbolic.geometry import curvature
-from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
-from symbolic.table import Table
+from symbolic.generation.text import Kernel, kernel, module_text
+from symbolic.motion.chords import chord_kernel, collision_kernel
+from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
+from symbolic.tables.geometry import curvature
+from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
+from symbolic.tables.table import Table
 
 TABLES: dict[str, Table] = {
     "circle": circle,
@@ -38,9 +38,11 @@ def files() -> dict[str, str]:
     for name, table in TABLES.items():
         chords = [chord_kernel(table, *pair, order=2) for pair in PAIRS.get(name, [(0, 0)])]
         rules = [collision_kernel(table, triple) for triple in TRIPLES.get(name, [(0, 0, 0)])]
-        made[f"chords_{name}.py"] = module_text(chords, f"symbolic.chords.chord_angle, table {name}")
-        made[f"rules_{name}.py"] = module_text(rules, f"symbolic.chords.collision_rule, table {name}")
-        made[f"curvature_{name}.py"] = module_text(curvatures(table), f"symbolic.geometry.curvature, table {name}")
+        made[f"chords_{name}.py"] = module_text(chords, f"symbolic.motion.chords.chord_angle, table {name}")
+        made[f"rules_{name}.py"] = module_text(rules, f"symbolic.motion.chords.collision_rule, table {name}")
+        made[f"curvature_{name}.py"] = module_text(
+            curvatures(table), f"symbolic.tables.geometry.curvature, table {name}"
+        )
     matrix = derivative_matrix()
     entries = {
         f"d{row}_d{column}": matrix[i, j]
@@ -48,7 +50,7 @@ def files() -> dict[str, str]:
         for j, column in enumerate(("s0", "phi0"))
     }
     step = kernel("derivative_matrix", [K0, K1, t, cos_phi0, cos_eta1, lam], entries, about="d(s1, phi1)/d(s0, phi0).")
-    made["derivative_matrix.py"] = module_text([step], "symbolic.collision.derivative_matrix")
+    made["derivative_matrix.py"] = module_text([step], "symbolic.motion.collision.derivative_matrix")
     return made
 
 

@@ -5,8 +5,7 @@ import pytest
 
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec
-from verification.exact_map import ExactMap
-from verification.truth import errors
+from verification.maps.exact import ExactMap, errors
 
 EPS = 2.0**-52
 

@@ -9,9 +9,9 @@ from sympy import Rational, cos, expand, pi, sin, symbols
 
 from numeric.lowering.lower import seen_ahead
 from symbolic import tables
-from symbolic.flight import ONE, chord_polynomial, flight_residual, harmonics, point_at, support
-from symbolic.symbols import alpha, theta
-from symbolic.table import Component
+from symbolic.motion.flight import ONE, chord_polynomial, flight_residual, harmonics, point_at, support
+from symbolic.tables.symbols import alpha, theta
+from symbolic.tables.table import Component
 
 
 @pytest.mark.parametrize("table", [tables.circle, tables.ellipse, tables.cardioid], ids=lambda table: table.name)

@@ -11,10 +11,9 @@ from numeric import PinballMap
 from numeric.flights.general import General
 from numeric.kernels.spec import KernelSpec
 from symbolic import tables
-from symbolic.symbols import theta
-from verification import strategies
-from verification.exact_map import ExactMap
-from verification.truth import errors
+from symbolic.tables.symbols import theta
+from verification.maps import strategies
+from verification.maps.exact import ExactMap, errors
 
 WAVY = tables.polar(1 + cos(5 * theta) / 10, name="wavy")
 MILD = tables.polar(1 + cos(5 * theta) / 40, name="mild")

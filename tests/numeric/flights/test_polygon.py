@@ -7,9 +7,8 @@ from sympy import Rational
 from numeric import PinballMap, phase_starts
 from numeric.flights.general import General
 from symbolic import tables
-from symbolic.symbols import theta
-from verification.exact_map import ExactMap
-from verification.truth import errors
+from symbolic.tables.symbols import theta
+from verification.maps.exact import ExactMap, errors
 
 
 def polygon(name, *corners):

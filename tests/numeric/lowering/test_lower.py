@@ -11,10 +11,10 @@ from numeric.lowering.lower import converted, drawn, named, seen_ahead
 from numeric.lowering.program import Builder
 from numeric.lowering.table_ir import blueprint
 from symbolic import tables
-from symbolic.flight import ONE, chord_polynomial
-from symbolic.geometry import velocity
-from symbolic.symbols import theta
-from symbolic.table import Component, Table
+from symbolic.motion.flight import ONE, chord_polynomial
+from symbolic.tables.geometry import velocity
+from symbolic.tables.symbols import theta
+from symbolic.tables.table import Component, Table
 
 MP = mpmath.MPContext()
 MP.dps = 40

@@ -12,7 +12,7 @@ from sympy import Rational, cos, pi, sin, sqrt
 from numeric import PinballMap
 from numeric.pinball.arclength import MOST, Waves, chebyshev
 from symbolic import tables
-from symbolic.symbols import theta
+from symbolic.tables.symbols import theta
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from sympy import lambdify
 
 from numeric import PinballMap
-from symbolic.collision import derivative_matrix
-from symbolic.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
-from verification import strategies
-from verification.exact_map import ExactMap
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
+from verification.maps import strategies
+from verification.maps.exact import ExactMap
 
 EPS = 2.0**-52
 SYMBOLIC = lambdify((K0, K1, t, cos_phi0, cos_eta1, lam), derivative_matrix().tolist(), "math")

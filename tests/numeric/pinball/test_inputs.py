@@ -9,8 +9,8 @@ from sympy import Rational, S, cos, pi, sin, sqrt
 
 from numeric import PinballMap
 from numeric.pinball.inputs import angles, components, contraction, counted, real, shape_value
-from symbolic.symbols import theta
-from symbolic.table import Component, Table
+from symbolic.tables.symbols import theta
+from symbolic.tables.table import Component, Table
 
 
 @pytest.mark.parametrize(

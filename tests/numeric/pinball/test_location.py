@@ -7,7 +7,7 @@ from sympy import cos, pi, sin
 from numeric import PinballMap
 from numeric.pinball.location import located
 from symbolic import tables
-from symbolic.symbols import theta
+from symbolic.tables.symbols import theta
 
 EPS = 2.0**-52
 LENS = tables.piecewise(

@@ -1,0 +1,1 @@
+"""Attractors, exponents with error bars, basins, statistics of orbits."""

@@ -1,0 +1,181 @@
+"""A survey of exponents as plain data: means, error bars and how they were made, for each attractor.
+
+`nu_plus + nu_minus` along an orbit, from its angles alone: the check on what the tangent kernels multiply up.
+
+`det DT = lam*cos(phi0)/cos(eta1)` in `(s, phi)`; along an orbit cosines of successive bounces pair up, and
+
+    log|det D(T^n)| = n*log(lam) + sum of log(cos(lam*eta_k)/cos(eta_k)) + log(cos(phi_0)/cos(phi_n)).
+
+See `symbolic.motion.contraction` for the derivation and for what follows from it.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey
+from numeric.dynamics.kinds import Attractor, Kind
+from numeric.dynamics.phase_points import Places
+from numeric.dynamics.statistics import Estimate
+from numeric.pinball.growth import Growth
+
+METHOD = (
+    "batch means over orbits and blocks, batches merged until their ends matter little and put right with the "
+    "integrated autocorrelation time; the last level is one batch for each independent orbit"
+)
+CHECKED_BALLS, CHECKED_BOUNCES = 32, 500
+
+
+def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
+    """The document of `pinball lyapunov`. At the top stands the one attractor's result; null where there are several.
+
+    >>> from numeric.pinball.sampling import phase_starts
+    >>> from numeric.dynamics.exponents import surveyed
+    >>> circle = PinballMap("circle", lam="0.25")
+    >>> document = account(circle, surveyed(circle, phase_starts(circle, 10, seed=1), 200, 100))
+    >>> round(document["sum"], 12), document["groups"][0]["kind"]  # log(1/4)
+    (-1.38629436112, 'neutral')
+    """
+    groups = [described(group, survey) for group in survey.groups]
+    settled = [group for group in survey.groups if group.attractor and group.attractor.kind is not Kind.STOPPED]
+    families = {group.attractor.family if group.attractor else -1 for group in settled}
+    one = len(settled) == 1 or (len(families) == 1 and -1 not in families)
+    together = np.concatenate([group.members for group in settled]) if one else None
+    whole = None if together is None else survey.count.measured(together)
+    return {
+        **(of_cycle(settled[0].attractor) if one and is_cycle(settled[0]) else numbers(whole)),
+        "orbits": int(survey.count.growth.theta.size),
+        "counted": survey.count.bounces,
+        "transient": survey.transient,
+        "ended": survey.ended,
+        "method": METHOD,
+        "attractors": len(settled),
+        "sum_rule": sum_rule(map, survey),
+        "groups": groups,
+    }
+
+
+def numbers(measured: Measured | None) -> dict[str, Any]:
+    """Exponents and sum with standard errors, null where there is no finite number."""
+    whole = measured or Measured(None, None, None)
+    found: dict[str, Any] = {}
+    for name, value in (("nu_plus", whole.upper), ("nu_minus", whole.lower), ("sum", whole.total)):
+        found[name] = None if value is None else value.mean
+        found[f"{name}_stderr"] = None if value is None or np.isnan(value.error) else value.error
+    return found
+
+
+def is_cycle(group: Group) -> bool:
+    """Does the group end on a cycle, whose multipliers give its exponents without a statistical error?"""
+    return group.attractor is not None and group.attractor.kind is Kind.CYCLE
+
+
+def of_cycle(cycle: Attractor | None) -> dict[str, Any]:
+    """Exponents from multipliers. Along orbits they are less good: a turning vector leaves an error of order `1/n`."""
+    assert cycle is not None
+    finite = bool(np.isfinite(cycle.nu_minus))
+    return {
+        "nu_plus": cycle.nu_plus,
+        "nu_plus_stderr": 0.0,
+        "nu_minus": cycle.nu_minus if finite else None,
+        "nu_minus_stderr": 0.0 if finite else None,
+        "sum": cycle.nu_plus + cycle.nu_minus if finite else None,
+        "sum_stderr": 0.0 if finite else None,
+    }
+
+
+def described(group: Group, survey: Survey) -> dict[str, Any]:
+    """One group: its kind and size, its exponents, and how far their error bars can be trusted."""
+    attractor, measured = group.attractor, group.measured
+    lost = group.kind.startswith("stopped") or group.kind == CHANGED
+    found: dict[str, Any] = {
+        "kind": group.kind,
+        "orbits": int(group.members.size),
+        **numbers(None if lost else measured),
+    }
+    if attractor is not None and attractor.family >= 0:
+        found["family"] = attractor.family
+    if attractor is not None and attractor.kind is Kind.CYCLE:
+        found |= {"period": attractor.period, **of_cycle(attractor), "along_orbits": numbers(measured)}
+    if lost or measured.upper is None:
+        return found
+    upper, length = measured.upper, survey.count.length
+    return {
+        **found,
+        "batch_bounces": upper.level.batch * length,
+        "batches": upper.level.count,
+        "trusted": bool(trusted(measured)),
+        "interval_95": upper.interval if np.isfinite(upper.interval) else None,
+        "autocorrelation_time": measured.tau,
+        "naive_stderr": measured.naive,
+        "trace": trace(group, survey),
+    }
+
+
+def trusted(measured: Measured) -> bool:
+    """Are all error bars of a group made of enough batches, longer than the memory?"""
+    return all(x.trusted for x in measured[:3] if isinstance(x, Estimate))
+
+
+def trace(group: Group, survey: Survey) -> list[dict[str, Any]]:
+    """How estimate and error came to be: after the first block, two, four, ... and after all of them."""
+    blocks, count = 1, survey.count
+    found = []
+    while blocks < 2 * len(count.up):
+        used = min(blocks, len(count.up))
+        bounces = used * count.length
+        found.append({"collisions": bounces * int(group.members.size), **numbers(count.measured(group.members, used))})
+        blocks *= 2
+    return found
+
+
+def sum_rule(map: PinballMap, survey: Survey) -> dict[str, Any]:
+    """`log|det D(T^n)|` by the tangent kernel and from the angles alone, along the same orbits."""
+    end = survey.count.growth
+    few = np.nonzero(end.code == 0)[0][:CHECKED_BALLS]
+    if few.size == 0:
+        return {"difference": None, "bounces": 0, "balls": 0}
+    lam = end.lam[few]
+    balls = Places(end.component[few], end.theta[few], end.phi[few])
+    return checked(map.at(lam), balls, CHECKED_BOUNCES)._asdict()
+
+
+Array = NDArray[np.float64]
+
+
+class Check(NamedTuple):
+    """The largest difference of `log|det D(T^n)|` between kernel and angles over `balls` orbits of `bounces`."""
+
+    difference: float
+    bounces: int
+    balls: int
+
+
+def volume(map: PinballMap, balls: Places, bounces: int) -> Array:
+    """`log|det D(T^n)|` of each orbit by the rule above, without the `n*log(lam)`; nan for a ball that stops.
+
+    >>> circle = PinballMap("circle", lam="0.5")
+    >>> balls = Places(np.array([0]), np.array([0.3]), np.array([0.4]))
+    >>> bool(abs(volume(circle, balls, 5)[0]) < 1e-15)  # eta_{k+1} = -phi_k, so the sum telescopes to 0
+    True
+    """
+    orbit = map.orbit(balls.theta, balls.phi, bounces, balls.component)
+    lam = np.broadcast_to(map.lam, balls.theta.shape)
+    inner = np.sum(np.log(np.cos(lam * orbit.eta[1:]) / np.cos(orbit.eta[1:])), axis=0)
+    return np.asarray(inner + np.log(np.cos(orbit.phi[0]) / np.cos(orbit.phi[-1])))
+
+
+def checked(map: PinballMap, balls: Places, bounces: int) -> Check:
+    """The rule against the kernel, on the same orbits: both come bit for bit along the same bounces.
+
+    >>> from numeric.pinball.sampling import phase_starts
+    >>> table = PinballMap("cuspless", lam="0.5")
+    >>> bool(checked(table, Places(*phase_starts(table, 8, seed=1)[:3]), 200).difference < 1e-11)
+    True
+    """
+    growth = Growth(map, balls.component, balls.theta, balls.phi)
+    growth.advance(bounces)
+    difference = np.abs(volume(map, balls, bounces) - growth.volume)[growth.code == 0]
+    return Check(float(np.max(difference, initial=0.0)), bounces, int(difference.size))

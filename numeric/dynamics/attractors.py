@@ -1,0 +1,214 @@
+"""The attractors of a map: found from many starts, told apart, and every ball labelled with the one it reaches.
+
+A cycle is polished (`numeric.dynamics.cycles`) and then recognised by nearness; what settles on no cycle
+and spreads is chaotic when no ball leaves it for a whole round of bounces, and then falls into the sets
+that its orbits join (`numeric.dynamics.clouds`). Whatever is still leaving at the end is unsettled.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from numeric import PinballMap, Status
+from numeric.dynamics.clouds import gathered
+from numeric.dynamics.kinds import Attractor, Kind, Share, wilson
+from numeric.dynamics.phase_points import Array, Places, places
+from numeric.dynamics.recognition import UNSETTLED, Labels, at_clouds, at_cycles, recognised, same
+from numeric.dynamics.symmetry import with_images
+from numeric.pinball.sampling import interior_starts
+
+__all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find", "wilson"]
+SAMPLE = 64  # balls looked at for new cycles
+ROUNDS = 6
+WATCHED = 100_000  # bounces, of all balls together, in which none leaves a chaotic attractor
+MEASURED = 64  # balls whose exponents are averaged
+
+
+class Classified(NamedTuple):
+    """The index of each ball's attractor, -1 where it did not settle, and the attractors."""
+
+    label: Labels
+    attractors: tuple[Attractor, ...]
+
+
+def classify(
+    map: PinballMap,
+    component: ArrayLike,
+    theta: ArrayLike,
+    phi: ArrayLike,
+    transient: int = 1000,
+    known: Sequence[Attractor] = (),
+    rounds: int = ROUNDS,
+) -> Classified:
+    """The attractor that each ball reaches. Attractors already `known` keep their index; new ones follow.
+
+    >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
+    >>> found = classify(ellipse, 0, [0.1, 1.0, 2.0], 0.2)
+    >>> found.label.tolist(), [(a.kind.name, a.period) for a in found.attractors]
+    ([0, 0, 0], [('CYCLE', 2)])
+    """
+    return _Sorting(map, places(component, theta, phi), list(known)).sorted(transient, rounds)
+
+
+@dataclass
+class _Sorting:
+    """Balls on their way to attractors; the ones in `going` have not been recognised yet."""
+
+    map: PinballMap
+    balls: Places
+    attractors: list[Attractor]
+    label: Labels = field(init=False)
+    going: Labels = field(init=False)
+    growth: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.label = np.full(self.balls.size, UNSETTLED)
+        self.going = np.arange(self.balls.size)
+
+    def sorted(self, transient: int, rounds: int) -> Classified:
+        """Rounds of bounces, each twice as long, until one goes by in which no ball is recognised."""
+        self._advance(transient)
+        if self.map.law == "elastic":
+            self._conserved(transient)
+        self._catch()
+        bounces, leaving = transient, True
+        for turn in range(rounds):
+            bounces, before = transient << turn, self.going.size
+            if before == 0:
+                break
+            self._advance(bounces)
+            self._catch()
+            leaving = self.going.size < before
+            if not leaving and before * bounces >= WATCHED and np.all(self.growth > calm(bounces)):
+                break
+        if not leaving:
+            self._spread(bounces)
+        return Classified(self.label, tuple(self.attractors))
+
+    def _advance(self, bounces: int) -> None:
+        """Moves those that are going, and keeps how fast their neighbourhoods grow; the ones that stop are labelled."""
+        here = self.balls.only(self.going)
+        end = self.map.exponents(here.theta, here.phi, bounces, 0, here.component)
+        for rows, new in zip(self.balls, (end.component, end.theta, end.phi), strict=True):
+            rows[self.going] = new
+        for code in np.unique(end.code[end.code > 0]):
+            at = end.code == code
+            status = list(Status)[code]
+            index = self._entered(Attractor(Kind.STOPPED, 0, here.only(at).only(slice(0, 1)), status=status))
+            self.label[self.going[at]] = index
+        self._keep(end.code == 0, end.nu_plus)
+
+    def _keep(self, which: NDArray[np.bool_], growth: Array) -> None:
+        self.going, self.growth = self.going[which], growth[which]
+
+    def _entered(self, new: Attractor) -> int:
+        """The index of an attractor, in the list if it was not there."""
+        for index, old in enumerate(self.attractors):
+            if same(self.map, old, new):
+                return index
+        self.attractors.append(new)
+        return len(self.attractors) - 1
+
+    def _catch(self) -> None:
+        """Labels the balls that are at a cycle, and looks for new cycles among the others."""
+        while self.going.size:
+            caught = at_cycles(self.map, self.balls.only(self.going), self.attractors)
+            self.label[self.going] = caught
+            self._keep(caught == UNSETTLED, self.growth)
+            known, calm = len(self.attractors), np.argsort(self.growth)[:SAMPLE]
+            for cycle in recognised(self.map, self.balls.only(self.going[calm]), self.growth[calm] < 0):
+                self._entered(cycle)
+            if len(self.attractors) == known:
+                break
+
+    def _conserved(self, bounces: int) -> None:
+        """At `lam = 1` nothing attracts: a ball spreads like a power of the time, or exponentially."""
+        regular = self.growth < calm(bounces)
+        if np.any(regular):
+            points = self.balls.only(self.going[regular])
+            self.label[self.going[regular]] = self._entered(Attractor(Kind.NEUTRAL, 0, points))
+            self._keep(~regular, self.growth)
+
+    def _spread(self, bounces: int) -> None:
+        """Shares out the balls that spread among the chaotic attractors; new ones are made for those near none."""
+        stay = self.going.size * bounces / 3
+        self._keep(self.growth > calm(bounces), self.growth)
+        while self.going.size:
+            near = at_clouds(self.map, self.balls.only(self.going), self.attractors)
+            self.label[self.going] = near
+            self._keep(near == UNSETTLED, self.growth)
+            if self.going.size:
+                self._gather(stay)
+
+    def _gather(self, stay: float) -> None:
+        """Labels a few of the balls with the set their orbits lie on, known or new."""
+        spread = [i for i, a in enumerate(self.attractors) if a.kind is Kind.CHAOTIC]
+        balls = self.balls.only(self.going)
+        found = gathered(self.map, balls, [self.attractors[i].points for i in spread])
+        for points in found.sets[len(spread) :]:
+            spread.append(len(self.attractors))
+            self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
+        self.label[self.going[found.looked]] = np.array(spread)[found.member]
+        self._keep(~np.isin(np.arange(balls.size), found.looked), self.growth)
+
+
+def calm(bounces: int) -> float:
+    """The exponent up to which a growth over so many bounces may be no more than a power of their number.
+
+    >>> round(calm(1000), 4)
+    0.0207
+    """
+    return float(3 * np.log(bounces + 1) / bounces)
+
+
+def find(
+    map: PinballMap,
+    orbits: int,
+    seed: int,
+    table: Any = None,
+    transient: int = 1000,
+    bounces: int = 4000,
+    known: Sequence[Attractor] = (),
+) -> tuple[Attractor, ...]:
+    """The attractors that random starts reach, the most visited first, each with the share of starts it attracts.
+
+    Starts are those of the paper's appendix. With the exact `table` the images under its symmetries belong
+    to the result, also those that no start has reached: their share is 0 out of `orbits`.
+
+    >>> from symbolic.tables import egg
+    >>> found = find(PinballMap("egg", alpha="0.08", lam="0.7"), 200, seed=1, table=egg(3).at(alpha="0.08"))
+    >>> [(a.kind.name, a.period, a.symmetry, a.family) for a in found]
+    [('CYCLE', 3, 'C3', 0), ('CYCLE', 3, 'C3', 0)]
+    """
+    starts = interior_starts(map, orbits, seed)
+    phi = np.zeros(orbits) if map.law == "slap" else starts.phi  # then every exit is along the normal
+    label, attractors = classify(map, starts.component, starts.theta, phi, transient, known)
+    found = [
+        replace(measured(map, attractor, bounces), share=wilson(int(np.sum(label == i)), orbits))
+        for i, attractor in enumerate(attractors)
+    ]
+    if table is not None:
+        from numeric.lowering.lower import symmetries
+
+        images = with_images(map, found, symmetries(table))
+        found = [a if a.share else replace(a, share=wilson(0, orbits)) for a in images]
+    found.sort(key=lambda a: -a.share.count if a.share else 0)
+    order = list(dict.fromkeys(a.family for a in found))
+    return tuple(replace(a, family=order.index(a.family)) for a in found)
+
+
+def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
+    """The attractor with the exponents of a chaotic one, and their standard errors over as many balls."""
+    if attractor.kind is not Kind.CHAOTIC:
+        return attractor
+    points = attractor.points
+    some = points.only(np.linspace(0, points.size - 1, MEASURED).astype(int))
+    end = map.exponents(some.theta, some.phi, bounces, 100, some.component)
+    good = end.code == 0
+    plus, minus = end.nu_plus[good], end.nu_minus[good]
+    root = np.sqrt(max(np.sum(good), 1))
+    errors = float(np.std(plus) / root), float(np.std(minus) / root) if np.all(np.isfinite(minus)) else 0.0
+    return replace(attractor, nu_plus=float(np.mean(plus)), nu_minus=float(np.mean(minus)), errors=errors)

@@ -1,0 +1,1 @@
+"""Grids of tasks: chunks, seeds, stores, threads and clusters."""

@@ -1,0 +1,213 @@
+"""What a sweep is: named axes, the fields measured over them, and one task for each part of the grid.
+
+What a sweep will cost, before anything runs: bounces, seconds at the speed measured here, bytes.
+"""
+
+import itertools
+import json
+import os
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A dimension and its coordinates; a task takes `part` of its values at a time, or all when it is 0."""
+
+    name: str
+    values: Array
+    units: str
+    about: str
+    part: int = 0
+
+    @property
+    def size(self) -> int:
+        """How many values."""
+        return len(self.values)
+
+    @property
+    def length(self) -> int:
+        """How many of its values a task takes."""
+        return self.part or self.size
+
+
+class Field(NamedTuple):
+    """A quantity on some of the axes; those that are cut into parts come among them."""
+
+    name: str
+    dims: tuple[str, ...]
+    dtype: str
+    units: str
+    about: str
+
+
+class Part(NamedTuple):
+    """One task's share of the grid: where it lies, the coordinates there, and a seed that no other part has."""
+
+    at: tuple[int, ...]
+    values: Mapping[str, Array]
+    seed: int
+
+
+Task = Callable[[Part], dict[str, Array]]
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A grid of independent tasks. `task` can be sent to another machine; it sees nothing but its part.
+
+    `settings` and `scene` are what else the results depend on; `collisions` is how many bounces it all takes,
+    and `map` makes the map on which their speed is measured.
+    """
+
+    name: str
+    about: str
+    axes: tuple[Axis, ...]
+    fields: tuple[Field, ...]
+    task: Task
+    seed: int
+    scene: str
+    settings: Mapping[str, Any]
+    collisions: int
+    map: Callable[[], Any]
+
+    def __post_init__(self) -> None:
+        cut = [axis.name for axis in self.axes if axis.length < axis.size]
+        for field in self.fields:
+            if not set(cut) <= set(field.dims):
+                raise ValueError(f"{field.name} lies on {field.dims}; it must lie on every axis that is cut: {cut}")
+
+    @cached_property
+    def axis(self) -> dict[str, Axis]:
+        """The axes by name."""
+        return {axis.name: axis for axis in self.axes}
+
+    def indices(self) -> list[tuple[int, ...]]:
+        """Where the parts lie, along each axis, in order."""
+        return list(itertools.product(*(range(-(-axis.size // axis.length)) for axis in self.axes)))
+
+    def part(self, index: tuple[int, ...]) -> Part:
+        """The part at `index`."""
+        values = {axis.name: axis.values[self.within(axis.name, i)] for axis, i in zip(self.axes, index, strict=True)}
+        return Part(index, values, seed_of(self.seed, index))
+
+    def within(self, name: str, i: int) -> slice:
+        """The values of an axis in its part `i`."""
+        length = self.axis[name].length
+        return slice(i * length, min((i + 1) * length, self.axis[name].size))
+
+    def where(self, field: Field, index: tuple[int, ...]) -> tuple[slice, ...]:
+        """The place of a part in a field's array."""
+        at = dict(zip(self.axis, index, strict=True))
+        return tuple(self.within(name, at[name]) for name in field.dims)
+
+    def shape(self, field: Field) -> tuple[int, ...]:
+        """The shape of a field's array."""
+        return tuple(self.axis[name].size for name in field.dims)
+
+    @property
+    def size(self) -> int:
+        """Bytes of all fields and coordinates, before compression."""
+        fields = sum(prod(self.shape(field)) * np.dtype(field.dtype).itemsize for field in self.fields)
+        return fields + sum(axis.values.nbytes for axis in self.axes)
+
+    def attributes(self) -> dict[str, Any]:
+        """What labels the results: scene, seed, settings and versions."""
+        return {
+            "sweep": self.name,
+            "scene": self.scene,
+            "seed": self.seed,
+            "settings": json.dumps(dict(self.settings), sort_keys=True),
+            "versions": json.dumps(versions(), sort_keys=True),
+            "grid": self.grid(),
+            "title": self.about,
+        }
+
+    def grid(self) -> str:
+        """A digest of the axes and of how they are cut."""
+        digest = sha256()
+        for axis in self.axes:
+            digest.update(f"{axis.name} {axis.length} {axis.values.dtype} ".encode() + axis.values.tobytes())
+        return digest.hexdigest()
+
+
+def seed_of(seed: int, index: tuple[int, ...]) -> int:
+    """A seed for one part of a sweep, independent of the seeds of all others.
+
+    >>> seed_of(1, (0, 2)) == seed_of(1, (0, 2)), seed_of(1, (0, 2)) == seed_of(1, (2, 0))
+    (True, False)
+    """
+    words = np.random.SeedSequence(seed, spawn_key=index).generate_state(2, np.uint64)
+    return int(words[0]) << 64 | int(words[1])
+
+
+def versions() -> dict[str, str]:
+    """The packages whose versions the last bits may depend on."""
+    found = {}
+    for name in ("pinball-billiards", "numpy", "scipy", "llvmlite"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "unknown"
+    return found
+
+
+def missing_value(dtype: str) -> Any:
+    """What stands where nothing was measured: nan, or -1 for whole numbers."""
+    return np.nan if np.dtype(dtype).kind == "f" else -1
+
+
+BALLS, BOUNCES, RUNS = 1024, 400, 3
+
+
+class Cost(NamedTuple):
+    """`seconds` is what the kernel needs for that many bounces with `workers` like this core."""
+
+    parts: int
+    collisions: int
+    nanoseconds: float
+    workers: int
+    bytes: int
+
+    @property
+    def seconds(self) -> float:
+        """The kernel's time."""
+        return self.collisions * self.nanoseconds * 1e-9 / self.workers
+
+    def as_data(self) -> dict[str, Any]:
+        """The keys of the JSON document."""
+        return {**self._asdict(), "seconds": self.seconds}
+
+
+def cost(sweep: Sweep, workers: int | None = None) -> Cost:
+    """The cost of all parts of a sweep; the speed of a bounce with exponents is measured in some milliseconds."""
+    workers = workers or cores()
+    return Cost(len(sweep.indices()), sweep.collisions, speed(sweep.map()), workers, sweep.size)
+
+
+def cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def speed(map: Any) -> float:
+    """Nanoseconds for a bounce with exponents, on one core: the fastest of a few runs."""
+    low, high = map.states.ends[0]
+    theta = low + (high - low) * (np.arange(BALLS) + 0.5) / BALLS
+    best = np.inf
+    for _ in range(RUNS):
+        begun = time.perf_counter()
+        map.exponents(theta, 0.0 * theta, BOUNCES, threads=1)
+        best = min(best, time.perf_counter() - begun)
+    return float(best / BALLS / BOUNCES * 1e9)

@@ -1,0 +1,1 @@
+"""Cycles in closed form: named ones, thresholds, polygons, and the slap maps."""

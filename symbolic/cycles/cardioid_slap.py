@@ -1,0 +1,375 @@
+"""The slap map of the cardioid: parametrised algebraically, so that its expansion can be proved; and in the half
+angle, where it expands at once, with a rational slope.
+
+Paper: section 4.2."""
+
+from functools import cache
+
+from sympy import Expr, I, Interval, Poly, Rational, Symbol, atan, cancel, cos, expand, pi, sin, sqrt, together
+
+from symbolic.generation.text import Kernel, kernel
+from symbolic.proofs.signs import Finding, Outcome, conjunction, nonnegative, positive
+
+q = Symbol("q", real=True)  # the landing point
+y = Symbol("y", real=True)  # q of the launching point, where both are needed
+UPPER = Interval.open(-1, Rational(1, 3))  # landing points of the upper half
+
+COS2 = (1 - q**2) / (1 + 7 * q**2)  # cos(Theta/2)**2 where the ball lands
+LAUNCH_COS2 = (1 - 3 * q) ** 2 * (1 - q) / ((1 + 7 * q**2) * (3 - q))  # cos(theta/2)**2 where it left
+LAUNCH_Q2 = (1 + q) ** 3 / (5 - 25 * q + 63 * q**2 - 35 * q**3)  # the launching point's own q, squared
+
+
+def slope_squared(q: Expr = q) -> Expr:
+    """`T0'(s)**2` as a function of the landing point `q`.
+
+    >>> slope_squared(Rational(0))
+    108/25
+    """
+    return 4 * (3 - q) ** 3 / ((1 - 3 * q) ** 2 * (1 + q) * (5 - 7 * q) ** 2)
+
+
+def parametrised() -> Finding:
+    """The landing at `q` from `LAUNCH_COS2` solves the flight equation, and `slope_squared` follows.
+
+    The launching point is `u = -U*E*(cos - i*r)/(2*U + 1)` with `E = exp(i*Theta/2)`, `U = E**2`,
+    `cos = cos(Theta/2)` and `r = sqrt(1 + 7*cos**2)`, so that `E = cos + i*q*r`.
+    """
+    u, U = Symbol("u"), Symbol("U")
+    ray = (U - u) * (2 + u + U) * u**-3 - (1 / U - 1 / u) * (2 + 1 / u + 1 / U)  # Im((Z - z)/normal), scaled
+    cubic = U**3 + (2 + u) * U**2 + u * (2 * u + 1) * U + u**2
+    half, conjugate = _C + I * q * _R, _C - I * q * _R
+    top, bottom = -(half**3) * (_C - I * _R), 2 * half**2 + 1
+    solved = together(cubic.subs(u, top / bottom).subs(U, half**2)).as_numer_denom()[0]
+    twice_real = top * (2 * conjugate**2 + 1) - conjugate**3 * (_C + I * _R) * bottom  # 2*Re(u)*|2*U + 1|**2
+    ratio = (COS2.diff(q) / LAUNCH_COS2.diff(q)) ** 2 * (1 - LAUNCH_COS2) / (1 - COS2)
+    facts = {
+        "the flight equation is the cubic": ray * u**3 * U**2 - (U - u) * cubic,
+        "the launching point solves it": _on_circle(solved),
+        "its cos(theta/2)^2": _on_circle(twice_real) - 2 * (2 * LAUNCH_COS2 - 1) * (1 + 8 * COS2),
+        "its q^2": LAUNCH_Q2 - (1 - LAUNCH_COS2) / (1 + 7 * LAUNCH_COS2),
+        "T0'^2 = (ds1/ds0)^2 with s = 4*sin(theta/2)": slope_squared() - ratio,
+    }
+    return conjunction(*(Finding(_zero(expression), fact) for fact, expression in facts.items()))
+
+
+_C, _R = Symbol("cos"), Symbol("r")
+
+
+def _on_circle(expression: Expr) -> Expr:
+    """`expression` with `cos**2` and `r**2` as functions of `q`; it must hold even powers only."""
+    terms = Poly(expand(expression), _C, _R).terms()
+    return cancel(sum(c * COS2 ** Rational(i, 2) * (8 / (1 + 7 * q**2)) ** Rational(j, 2) for (i, j), c in terms))
+
+
+def _zero(expression: Expr) -> Outcome:
+    return Outcome.PROVED if cancel(together(expression)) == 0 else Outcome.UNKNOWN
+
+
+def forward_once() -> Finding:
+    """The upper half launches to each `q` of `UPPER` exactly once.
+
+    `cos(theta/2)**2` falls strictly from 1 to 0 on it, and the flight never has length 0 there: a
+    landing at the launching point would need `4*u**2*(u + 1) = 0`, the cusp.
+
+    >>> forward_once().outcome.name
+    'PROVED'
+    """
+    falls = positive(-LAUNCH_COS2.diff(q), {q: UPPER})
+    ends = _zero(LAUNCH_COS2.subs(q, -1) - 1), _zero(LAUNCH_COS2.subs(q, UPPER.end))
+    return conjunction(falls, *(Finding(end, "cos(theta/2)^2 runs from 1 to 0") for end in ends))
+
+
+def slow_region() -> tuple[Expr, Expr]:
+    """The launching arc lengths `0 < s < s'` between which `T0' < 1`, one region on each half.
+
+    >>> [value.n(6) for value in slow_region()]
+    [0.0692582, 1.20379]
+    """
+    edges = Poly(expand(4 * (3 - q) ** 3 - (1 - 3 * q) ** 2 * (1 + q) * (5 - 7 * q) ** 2), q)
+    inside = [root for root in edges.real_roots() if root > UPPER.start and root < UPPER.end]
+    first, last = (4 * sqrt(1 - LAUNCH_COS2.subs(q, root)) for root in inside)
+    return first, last
+
+
+def _expanding_by(bound: Expr) -> Expr:
+    """A polynomial in `q` and `y` that vanishes where `|(T0**2)'| = bound`."""
+    (top, bottom), (top_y, bottom_y) = slope_squared(q).as_numer_denom(), slope_squared(y).as_numer_denom()
+    return top * top_y - bound**2 * bottom * bottom_y
+
+
+def _critical() -> Expr:
+    """A polynomial in `q` and `y` that vanishes where the slope of `(T0**2)'` does along a branch."""
+    log_slope = cancel(slope_squared().diff(q) / slope_squared())
+    chained = log_slope + log_slope.subs(q, y) * LAUNCH_Q2.diff(q) / (2 * y)
+    return together(chained).as_numer_denom()[0]
+
+
+@cache
+def expansion_polynomial(bound: Expr) -> Expr:
+    """A polynomial in the final `q` without a root where `|(T0**2)'| = bound` nowhere on the table.
+
+    The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; both signs are multiplied.
+    """
+    return _norm(*_split(_expanding_by(bound))).as_expr()
+
+
+def expands_by(bound: Expr) -> Finding:
+    """Is `|(T0**2)'| > bound` everywhere? Unbounded at the ends of each branch, it is if it nowhere equals it.
+
+    >>> expands_by(Rational(3, 2)).outcome.name
+    'PROVED'
+    """
+    polynomial = Poly(expansion_polynomial(bound), q).sqf_part()
+    roots = polynomial.count_roots(UPPER.start, UPPER.end)
+    if roots == 0:
+        return conjunction(
+            unbounded(), Finding(Outcome.PROVED, f"Sturm: |(T0^2)'| = {bound} has no solution on either branch")
+        )
+    return Finding(Outcome.UNKNOWN, f"|(T0^2)'| = {bound} has {roots} formal solution(s)")
+
+
+def unbounded() -> Finding:
+    """Is `|(T0**2)'|` infinite at the ends of both branches of `T0**2`?
+
+    On one, `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other from 0 to 1/3, as `q` runs from -1.
+
+    >>> unbounded().outcome.name
+    'PROVED'
+    """
+    inverse = cancel(1 / slope_squared())
+    ends = [inverse.subs(q, end) for end in (UPPER.start, UPPER.end)] + [
+        LAUNCH_Q2.subs(q, -1),
+        LAUNCH_Q2.subs(q, UPPER.end) - 1,
+    ]
+    whole = conjunction(
+        positive(inverse, {q: UPPER}), *(Finding(_zero(end), "T0' is infinite at the ends") for end in ends)
+    )
+    return Finding(whole.outcome, "(T0^2)' is infinite at the ends of its branches") if whole else whole
+
+
+@cache
+def expansion_infimum() -> Expr:
+    """The least value of `|(T0**2)'|`, an algebraic number; reached where the first flight crosses the axis.
+
+    `infimum_attained` proves that it is the least.
+
+    >>> expansion_infimum().n(12)
+    1.50626223937
+    """
+    critical = _critical()
+    ((low, high),) = [ends for ends, side in zeros(critical) if side < 0]
+    (root,) = [r for r in _norm(*_split(critical)).real_roots() if r >= low and r <= high]
+    return sqrt(slope_squared(root) * slope_squared(-sqrt(LAUNCH_Q2.subs(q, root))))
+
+
+@cache
+def infimum_attained() -> Finding:
+    """Is `expansion_infimum` the least value of `|(T0**2)'|` on the table? In exact arithmetic, by counting.
+
+    On the branch that changes halves, `y < 0`, it is infinite at both ends and has one critical point: its minimum.
+    It takes the value `ABOVE` twice there, so the minimum is smaller; and nowhere on the other branch, where it is
+    infinite at both ends too, and so larger than `ABOVE`.
+
+    >>> infimum_attained().outcome.name
+    'PROVED'
+    """
+    critical = [side for _, side in zeros(_critical())]
+    level = [side for _, side in zeros(_expanding_by(ABOVE))]
+    if not unbounded() or critical.count(-1) != 1 or sorted(level) != [-1, -1]:
+        said = f"critical points {critical}, solutions of |(T0^2)'| = {ABOVE} {level} by the sign of y"
+        return Finding(Outcome.UNKNOWN, said)
+    said = f"Sturm: (T0^2)' has one critical point on the branch that changes halves, and is {ABOVE} twice, there alone"
+    return Finding(Outcome.PROVED, said)
+
+
+@cache
+def fixed_points() -> list[tuple[Expr, Expr]]:
+    """Bounds on the last landing point `q` of each fixed point of `T0**2`, one of each mirror pair.
+
+    From `x > 0` to `y` and back: for `y < 0` the second flight is mirrored and lands at `q = -x`, else at `q = x`; so
+    `LAUNCH_Q2(y) = q**2` at a `q` of the sign of `y`. There is one pair, the vertical orbit.
+
+    >>> fixed_points()
+    [(-1/5, -1/5)]
+    """
+    found = zeros(together(LAUNCH_Q2.subs(q, y) - q**2).as_numer_denom()[0])
+    return [ends for ends, side in found if sum(ends) * side > 0]
+
+
+ABOVE = Rational(151, 100)  # between the least values of (T0**2)' on its two branches, 1.506... and 1.656...
+
+
+def zeros(expression: Expr) -> list[tuple[tuple[Expr, Expr], int]]:
+    """The zeros of a polynomial in `q`, `y` where `y**2 = LAUNCH_Q2`, over `UPPER`: bounds on `q`, and the sign of `y`.
+
+    With `even + y*odd`, a zero of the norm is one at the `y` whose sign is that of `-even*odd`; at a common zero of
+    both, at either. Points with `y >= 1/3`, where no particle that leaves the upper half lands, are left out.
+
+    >>> zeros(q + y)  # LAUNCH_Q2 is 1/25 at q = -1/5
+    [((-1/5, -1/5), 1)]
+    """
+    even, odd = _split(expression)
+    common = even.gcd(odd)
+    even, odd = even.quo(common), odd.quo(common)
+    edge = Poly(together(LAUNCH_Q2 - UPPER.end**2).as_numer_denom()[0], q)  # y = 1/3
+    found = []
+    for low, high in _isolated(_norm(even, odd), (even, odd, edge)):
+        middle = (low + high) / 2
+        found.append(((low, high), 1 if even.eval(middle) * odd.eval(middle) < 0 else -1))
+    found += [(ends, side) for ends in _isolated(common, (edge,)) for side in (-1, 1)]
+    return [(ends, side) for ends, side in found if side < 0 or LAUNCH_Q2.subs(q, sum(ends) / 2) < UPPER.end**2]
+
+
+def _isolated(polynomial: Poly, others: tuple[Poly, ...]) -> list[tuple[Expr, Expr]]:
+    """Intervals in `UPPER`, each with one root of `polynomial` and none of the `others`.
+
+    Roots at the ends of `UPPER`, and those that are also roots of the last of the `others`, are left out.
+    """
+    squarefree = polynomial.sqf_part()
+    for known in (Poly(q - UPPER.start, q), Poly(q - UPPER.end, q), others[-1]):
+        squarefree = squarefree.quo(squarefree.gcd(known))
+    found = []
+    for (low, high), _ in squarefree.intervals(inf=UPPER.start, sup=UPPER.end):
+        while any(other.count_roots(low, high) for other in others):
+            low, high = squarefree.refine_root(low, high, steps=4)
+        found.append((low, high))
+    return found
+
+
+def _split(expression: Expr) -> tuple[Poly, Poly]:
+    """`even` and `odd`, polynomials in `q`, so that `expression` is `even + y*odd` over a power of a denominator."""
+    top, bottom = (Poly(part, q) for part in LAUNCH_Q2.as_numer_denom())
+    terms = Poly(expression, y).terms()
+    half = max(k for (k,), _ in terms) // 2
+    parts = [Poly(0, q), Poly(0, q)]
+    for (k,), coefficient in terms:
+        parts[k % 2] += Poly(coefficient, q) * top ** (k // 2) * bottom ** (half - k // 2)
+    return parts[0], parts[1]
+
+
+def _norm(even: Poly, odd: Poly) -> Poly:
+    """The product of `even + y*odd` over `y = +-sqrt(LAUNCH_Q2)`, without denominators."""
+    top, bottom = (Poly(part, q) for part in LAUNCH_Q2.as_numer_denom())
+    return even**2 * bottom - odd**2 * top
+
+
+b = Symbol("b", real=True)  # half the landing angle, negative on the lower half
+RATE = (1 + q) * (5 - 7 * q) / (2 * (3 - q))  # one over the slope
+LAUNCH_TAN2 = 2 * (1 + q) ** 3 / ((1 - 3 * q) ** 2 * (1 - q))  # tan(theta/2)**2 where the ball left
+SPEED2 = (1 + 7 * q**2) ** 2 * (1 - q**2) / 8  # (dq/db)**2
+CUSP = Rational(-69, 100)  # landings below it are near the cusp
+SHRINKS = Rational(835, 1000)
+STEEP = Rational(31, 10)
+
+
+def derived() -> Finding:
+    """`RATE`, `LAUNCH_TAN2`, `SPEED2` follow from what `symbolic.cycles.cardioid_slap` proves.
+
+    Arc length is `s = 4*sin(theta/2)`, so the slope in half angles is `T0'(s)*cos(theta/2)/cos(b)`.
+
+    >>> derived().outcome.name
+    'PROVED'
+    """
+    sin2 = 1 - COS2
+    facts = {
+        "the slope squared": RATE**2 * slope_squared() * LAUNCH_COS2 / COS2 - 1,
+        "the launching point": LAUNCH_TAN2 * LAUNCH_COS2 - (1 - LAUNCH_COS2),
+        "q^2 of the half angle": q**2 * (1 + 7 * COS2) - sin2,
+        "its speed: d(sin(b)^2)/dq = 2*sin(b)*cos(b)*db/dq": sin2.diff(q) ** 2 * SPEED2 - 4 * sin2 * COS2,
+    }
+    zero = {fact: Outcome.PROVED if cancel(together(e)) == 0 else Outcome.UNKNOWN for fact, e in facts.items()}
+    return conjunction(*(Finding(outcome, fact) for fact, outcome in zero.items()))
+
+
+def lands_first() -> Finding:
+    """Of all points where the normal of an upper launch meets the boundary, the landing at `q < 1/3` alone is ahead.
+
+    The flight equation is quadratic in `u`, so the launches to a landing are `u(q)` and, mirrored, that of `-q`; and
+    `u(q)` is continuous for `-1 < q < 1`, in the upper half below 1/3 and in the lower above. Along `-exp(3*I*theta/2)`
+    the flight from `u(q)` has a length that is 0 nowhere: it would end where it began, which only the cusp solves, and
+    no `q` between -1 and 1 lands there. It is positive at `q = 0`, so it is everywhere. That direction points inward in
+    the upper half, and outward in the lower one: a launch there meets the boundary at such a `q` behind it.
+
+    >>> lands_first().outcome.name
+    'PROVED'
+    """
+    u, cosine = Symbol("u"), sqrt(LAUNCH_COS2.subs(q, 0))
+    cubic = u**3 + (2 + u) * u**2 + u * (2 * u + 1) * u + u**2  # the flight equation where it ends as it began
+    facts = {
+        "only the cusp lands on itself": expand(cubic - 4 * u**2 * (u + 1)) == 0,
+        "the landing at q = 0 is theta = 0": COS2.subs(q, 0) == 1,
+        "ahead there": bool(flown(cosine) > 0),
+    }
+    found = [Finding(Outcome.PROVED if true else Outcome.UNKNOWN, fact) for fact, true in facts.items()]
+    return conjunction(positive(COS2, {q: Interval.open(-1, 1)}), *found)
+
+
+def flown(cosine: Expr) -> Expr:
+    """How far `z = 2` lies along the normal `-exp(3*I*theta/2)` from the launch with this `cos(theta/2)`.
+
+    >>> flown(Rational(1, 2))  # from theta = 2*pi/3, at x = -1/4, where the normal is the x axis
+    9/4
+    """
+    return 2 * cosine**3 - 2 * (4 * cosine**3 - 3 * cosine)
+
+
+def expands() -> Finding:
+    """`RATE < SHRINKS` at every landing, so that one bounce expands half angles by more than 1.197.
+
+    >>> expands().outcome.name
+    'PROVED'
+    """
+    return conjunction(positive(RATE, {q: UPPER}), positive(SHRINKS - RATE, {q: Interval(-1, UPPER.end)}))
+
+
+def quiet_near_the_cusp() -> Finding:
+    """Below `CUSP` the rate grows from 0 at the cusp to less than `SHRINKS/2`.
+
+    >>> quiet_near_the_cusp().outcome.name
+    'PROVED'
+    """
+    near = {q: Interval(-1, CUSP)}
+    grows = positive(RATE.diff(q), near)
+    return conjunction(grows, nonnegative(SHRINKS / 2 - RATE, near), Finding(_zero_at_cusp(), "0 at the cusp"))
+
+
+def _zero_at_cusp() -> Outcome:
+    return Outcome.PROVED if RATE.subs(q, -1) == 0 else Outcome.UNKNOWN
+
+
+def gentle_elsewhere() -> Finding:
+    """`abs(d log(RATE)/db) < STEEP` from `CUSP` on.
+
+    >>> gentle_elsewhere().outcome.name
+    'PROVED'
+    """
+    return positive(STEEP**2 - (RATE.diff(q) / RATE) ** 2 * SPEED2, {q: Interval(CUSP, UPPER.end)})
+
+
+def branch(above: bool) -> Kernel:
+    """`(launch, rate)` of the landing half angle `b`, without cancellation at the cusp.
+
+    `launch` is the arc tangent of `sqrt(LAUNCH_TAN2)`, for `b < pi/4`, or `above` the right angle less that of its
+    inverse, for `b > -pi/2`; `rate` is its derivative.
+
+    >>> branch(False).results
+    ('launch', 'rate')
+    """
+    r, landing = sqrt(1 + 7 * cos(b) ** 2), _landing()
+    tangent = 32 * cos(b) ** 3 / (r**3 * (1 - landing) ** 2 * (1 - 3 * landing))  # 1 + q is 8*cos(b)**2/(r**2*(1 - q))
+    rate = 4 * cos(b) ** 2 * (5 - 7 * landing) / (r**2 * (1 - landing) * (3 - landing))
+    values = {"launch": pi / 2 - atan(1 / tangent) if above else atan(tangent), "rate": rate}
+    return kernel("branch", [b], values, about="Where a ball that lands at half angle b left, and db0/db.")
+
+
+def near_launch() -> Expr:
+    """The launching half angle of `q = CUSP`.
+
+    >>> near_launch().n(6)
+    0.0610851
+    """
+    return atan(sqrt(LAUNCH_TAN2.subs(q, CUSP)))
+
+
+def _landing() -> Expr:
+    return sin(b) / sqrt(1 + 7 * cos(b) ** 2)

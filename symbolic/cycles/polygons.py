@@ -1,0 +1,194 @@
+"""Cycles that are one bounce seen q times: regular polygons in a table with rotational symmetry.
+
+Where a turn by `2*pi*p/q` maps the table to itself, a cycle may turn by that angle at each bounce.
+Its chords make the angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the
+radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lands at
+`gamma + delta` (either sign), and the law `gamma - delta = lam*(gamma + delta)` holds when
+
+    rho'/rho = tan(gamma*(1 - lam)/(1 + lam)).
+
+The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
+"""
+
+from sympy import (
+    Expr,
+    Function,
+    Matrix,
+    Rational,
+    S,
+    Symbol,
+    asin,
+    atan,
+    cos,
+    diff,
+    expand,
+    expand_trig,
+    factor,
+    log,
+    pi,
+    simplify,
+    sin,
+    sqrt,
+    symbols,
+    tan,
+)
+
+from symbolic.cycles.cycle import frame
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables import egg
+from symbolic.tables.geometry import curvature, tangent
+from symbolic.tables.ranges import parameter_box
+from symbolic.tables.symbols import alpha, lam, theta
+from symbolic.tables.table import Component
+
+
+def half_turn(p: int = 1, q: int = 3) -> Expr:
+    """`gamma = pi/2 - pi*p/q`, the elastic exit angle of the polygon, in radians.
+
+    >>> half_turn(1, 3)
+    pi/6
+    """
+    if not (q >= 3 and 0 < 2 * p < q):
+        raise ValueError(f"polygon: the rotation number {p}/{q} must lie strictly between 0 and 1/2")
+    return pi / 2 - pi * Rational(p, q)
+
+
+def tilt_tangent(K: int | Expr = 3) -> Expr:
+    """`-rho'/rho` of the K-pointed egg.
+
+    >>> tilt_tangent().subs(theta, pi / 6)
+    3*alpha
+    """
+    rho = 1 + alpha * cos(K * theta)
+    return -diff(rho, theta) / rho
+
+
+def largest_tilt(K: int | Expr = 3) -> Expr:
+    """The maximum of `|rho'/rho|` over the egg, reached where `cos(K*theta) = -alpha`.
+
+    >>> largest_tilt()
+    3*alpha/sqrt(1 - alpha**2)
+    """
+    return K * alpha / sqrt(1 - alpha**2)
+
+
+def required_tilt(p: int = 1, q: int = 3) -> Expr:
+    """`delta(lam) = gamma*(1-lam)/(1+lam)`, the tilt of the normal that a polygon needs."""
+    return half_turn(p, q) * (1 - lam) / (1 + lam)
+
+
+def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
+    """`lambda_c(alpha)`: polygons exist for `lam >= lambda_c` and none below, in closed form.
+
+    >>> saddle_node().subs(alpha, 0)
+    1
+    """
+    gamma, delta = half_turn(p, q), atan(largest_tilt(K))
+    return (gamma - delta) / (gamma + delta)
+
+
+def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
+    """The bounce, a polar angle, of the polygon that is at the flat point `pi/K` at `lam = 1`; for `lam >= lambda_c`.
+
+    `rho'/rho = T` is `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. The polygon turns
+    counterclockwise as `lam` falls, and so does the ball; its mirror image turns and runs clockwise.
+
+    >>> near_flat().subs(lam, 1)
+    pi/3
+    """
+    T = tan(required_tilt(p, q))
+    return (pi + asin(T / (alpha * sqrt(K**2 + T**2))) - atan(T / K)) / K
+
+
+def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: Expr) -> tuple[Expr, Expr]:
+    """Trace and determinant of one bounce of a polygon, in the frame that turns with it."""
+    matrix = derivative_matrix(K0, K0, t, cos(exit_angle), cos(incidence))
+    return simplify(matrix.trace()), simplify(matrix.det())
+
+
+def polygon_identities() -> dict[str, Expr]:
+    """What every polygon in a polar curve `rho(theta)` obeys, as expressions that vanish identically.
+
+    With `tan(delta) = rho'/rho`, and the turn `pi - 2*gamma` from bounce to bounce. The last one says on which side
+    of the fold a bounce lies: `1 - trace + det` is the product of the multipliers' distances from 1.
+
+    >>> from symbolic.proofs.zero import vanishes
+    >>> [vanishes(difference) for difference in polygon_identities().values()]
+    [True, True, True, True]
+    """
+    gamma, delta = symbols("gamma delta", real=True)
+    radius = Symbol("rho", positive=True)
+    slope, bend = symbols("rho1 rho2", real=True)  # rho' and rho'' at the bounce
+    rho = Function("rho", positive=True)(theta)
+    curve = Component("polar", (rho * cos(theta), rho * sin(theta)), -pi, pi)
+    here, unit, kappa = (
+        value.subs(diff(rho, theta, 2), bend).subs(diff(rho, theta), slope).subs(rho, radius)
+        for value in (Matrix(curve.point), tangent(curve), curvature(curve))
+    )
+    turn = Matrix([[-cos(2 * gamma), -sin(2 * gamma)], [sin(2 * gamma), -cos(2 * gamma)]])
+    leaving, arriving = turn * here - here, here - turn.T * here
+    length, speed = 2 * radius * cos(gamma), sqrt(radius**2 + slope**2)
+    trace, det = turn_trace_and_determinant(kappa, length, gamma - delta, gamma + delta)
+    at_one = (1 - trace + det) * cos(gamma + delta)
+    sided = 2 * (1 + lam) * radius * cos(gamma) * (radius * bend - slope**2) / speed**3
+    tilted = {cos(delta): radius / speed, sin(delta): slope / speed}
+    facts = {
+        "a chord is 2*rho*cos(gamma) long": leaving.dot(leaving) - length**2,
+        "it leaves at gamma - delta": leaving.dot(unit) - length * sin(gamma - delta),
+        "it lands at gamma + delta": arriving.dot(unit) - length * sin(gamma + delta),
+        "(1 - trace + det)*cos(eta) = 2*(1 + lam)*cos(gamma)*rho*(rho*rho'' - rho'^2)/(rho^2 + rho'^2)^(3/2)": at_one
+        - sided,
+    }
+    return {fact: expand_trig(expand(difference)).subs(tilted) for fact, difference in facts.items()}
+
+
+def fold_margin(K: int | Expr = 3) -> Expr:
+    """`rho*rho'' - rho'**2` of the K-pointed egg, which changes sign where the tilt is largest.
+
+    >>> simplify(fold_margin() + 9 * alpha * (cos(3 * theta) + alpha))
+    0
+    """
+    rho = 1 + alpha * cos(K * theta)
+    return rho * diff(rho, theta, 2) - diff(rho, theta) ** 2
+
+
+def elastic_trace(at_flat: bool, K: int = 3, p: int = 1, q: int = 3) -> Expr:
+    """The trace of one elastic bounce of the polygon at the flat points, or at the vertices; the determinant is 1.
+
+    >>> elastic_trace(True)
+    2*(19*alpha - 1)/(alpha - 1)
+    """
+    bounce, gamma = pi / K if at_flat else S.Zero, half_turn(p, q)
+    length = 2 * (1 + alpha * cos(K * bounce)) * cos(gamma)
+    kappa = frame(egg(K), 0, bounce, parameter_box(egg(K))).curvature
+    trace, _ = turn_trace_and_determinant(kappa, length, gamma, gamma)
+    return factor(simplify(trace.subs(lam, 1)))
+
+
+def contraction_slope(p: int = 1, q: int = 3) -> Expr:
+    """`d(log det)/d lam` of one bounce at `lam = 1`: positive where weak dissipation contracts areas.
+
+    >>> contraction_slope()
+    -sqrt(3)*pi/18 + 1
+    """
+    gamma, delta = half_turn(p, q), required_tilt(p, q)
+    _, det = turn_trace_and_determinant(Symbol("K0"), Symbol("t"), gamma - delta, gamma + delta)
+    return simplify(diff(log(det), lam).subs(lam, 1))
+
+
+def characteristic_on_branch(x: Expr, at: Expr, K: int = 3, p: int = 1, q: int = 3) -> Expr:
+    """`at**2 - trace*at + det` of one bounce of a polygon of the egg, times `cos(eta)`, where `cos(K*theta) = -cos(x)`.
+
+    The branch starts at a flat point at `x = 0` (elastic) and folds at `cos(x) = alpha`; on it
+    `lam = (gamma - delta)/(gamma + delta)` with `tan(delta) = K*alpha*sin(x)/rho`.
+    """
+    C = -cos(x)
+    rho = 1 + alpha * C
+    delta, gamma = atan(K * alpha * sin(x) / rho), half_turn(p, q)
+    out, back = gamma - delta, gamma + delta
+    contraction = out / back
+    squared = rho**2 + (K * alpha * sin(x)) ** 2
+    curvature = -(rho**2 + 2 * (squared - rho**2) + rho * K**2 * alpha * C) / (squared * sqrt(squared))
+    tK = 2 * rho * cos(gamma) * curvature
+    trace = -((tK + cos(out)) + contraction * (tK + cos(back)))
+    return at**2 * cos(back) - trace * at + contraction * cos(out)

@@ -1,0 +1,1 @@
+"""Text and programs from expressions, in a closed vocabulary that every number system reads."""

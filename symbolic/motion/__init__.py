@@ -1,0 +1,1 @@
+"""Motion on a table: flight, reflection, derivative, chord rule, and what a bounce contracts."""

@@ -1,0 +1,202 @@
+"""The collision rule as one equation per bounce, in boundary parameters alone.
+
+With `q` a bounce, `V` the velocity of the boundary there and `N` that velocity turned left (inwards),
+the chord `d` to another boundary point makes with the inward normal the angle
+
+    A(q, d) = atan(d.V / d.N),    positive towards the tangent, as the paper's exit angle.
+
+The chord to the next bounce gives the exit angle, `phi = A`, and the chord back to the previous one
+the incidence angle, `eta = A`. The law `phi = -lam*eta` is `A(next) + lam*A(previous) = 0`: one
+equation in three neighbouring parameters. A cycle of any length is a cyclic chain of this one.
+
+`A` is the direction of `N` minus the direction of `d`, so each derivative is that of two arguments:
+`dA = bend(V) - bend(d)`, `bend(w) = (w x dw)/(w.w)`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations_with_replacement
+
+from sympy import Derivative, Expr, Function, Symbol, atan, diff
+
+from symbolic.generation.text import Kernel, kernel
+from symbolic.tables.symbols import lam, theta
+from symbolic.tables.table import Table
+
+theta0 = Symbol("theta0", real=True)  # the bounce itself
+theta1 = Symbol("theta1", real=True)  # the other end of a chord
+theta_previous = Symbol("theta_previous", real=True)
+theta_next = Symbol("theta_next", real=True)
+
+
+@dataclass(frozen=True)
+class Staged:
+    """Expressions by name, over intermediate values that are defined in order."""
+
+    arguments: tuple[Symbol, ...]
+    definitions: dict[Symbol, Expr]
+    values: dict[str, Expr]
+
+    def whole(self, name: str) -> Expr:
+        """The expression called `name` with every intermediate value put in.
+
+        >>> from symbolic.tables import circle
+        >>> chord_angle(circle, order=0).whole("angle").subs({theta0: 0, theta1: 3})
+        atan(sin(3)/(1 - cos(3)))
+        """
+        return self.values[name].subs(list(reversed(self.definitions.items())))
+
+
+def chord_angle(table: Table, here: int = 0, there: int = 0, order: int = 1) -> Staged:
+    """`A`, the angle in radians from the inward normal at `here` to the chord to `there`.
+
+    `here` and `there` are components; `theta0` is the parameter here, `theta1` there. The values are
+    `angle` and its partial derivatives up to `order` (at most 2), `angle_0` by `theta0`, `angle_01`
+    by `theta0` and `theta1`, `angle_1_alpha` by `theta1` and `alpha`. A shape comes in from order 1.
+
+    >>> from symbolic.tables import circle
+    >>> list(chord_angle(circle, order=2).values)
+    ['angle', 'angle_0', 'angle_1', 'angle_00', 'angle_01', 'angle_11']
+    """
+    if order not in (0, 1, 2):
+        raise ValueError(f"chord_angle: order = {order} is not available; it must be 0, 1 or 2")
+    shapes = tuple(p.symbol for p in table.shapes)
+    stage = _Stage(table, shapes)
+    x0, y0 = stage.point("0", here, theta0)
+    x1, y1 = stage.point("1", there, theta1)
+    dx, dy = stage.chord((x0, y0), (x1, y1))
+    vx, vy = diff(x0, theta0), diff(y0, theta0)
+    parameters = (theta0, theta1, *shapes)
+
+    def first(p: Symbol) -> Expr:
+        return _bend(vx, vy, p) - _bend(dx, dy, p)
+
+    found = {"angle": atan((dx * vx + dy * vy) / (dy * vx - dx * vy))}
+    if order >= 1:
+        found |= {_named(p): first(p) for p in parameters}
+    if order >= 2:
+        pairs = combinations_with_replacement(parameters, 2)
+        found |= {_named(p, q): diff(first(p), q) for p, q in pairs if not (p in shapes and q in shapes and p != q)}
+    return stage.finished(parameters, found)
+
+
+def collision_rule(table: Table, components: tuple[int, int, int] = (0, 0, 0), order: int = 1) -> Staged:
+    """`A(next) + lam*A(previous)` at a bounce, and its first derivatives; 0 when the rule is obeyed.
+
+    `components` are those of the previous bounce, of the bounce and of the next one. The values are
+    `residual`, `d_previous`, `d_here`, `d_next`, `d_lam` and one for each shape parameter.
+
+    >>> from symbolic.tables import circle
+    >>> rule = collision_rule(circle).whole("residual")
+    >>> rule.subs({theta_previous: -2, theta: 0, theta_next: 2, lam: 1}).simplify()
+    0
+    """
+    previous, here, following = components
+    forth = chord_angle(table, here, following, order)
+    back = chord_angle(table, here, previous, order)
+    renamed = {}
+    definitions: dict[Symbol, Expr] = {}
+    for staged, mark, other in ((forth, "next", theta_next), (back, "previous", theta_previous)):
+        own = {theta0: theta, theta1: other}
+        own |= {s: Symbol(_ending(s.name, mark), real=True) for s in staged.definitions}
+        definitions |= {own[s]: e.xreplace(own) for s, e in staged.definitions.items()}
+        renamed[mark] = {name: e.xreplace(own) for name, e in staged.values.items()}
+    out, into = renamed["next"], renamed["previous"]
+    values = {"residual": out["angle"] + lam * into["angle"]}
+    if order:
+        values |= {"d_previous": lam * into["angle_1"], "d_here": out["angle_0"] + lam * into["angle_0"]}
+        values |= {"d_next": out["angle_1"], "d_lam": into["angle"]}
+        for shape in (p.symbol for p in table.shapes):
+            values[f"d_{shape}"] = out[_named(shape)] + lam * into[_named(shape)]
+    shapes = tuple(p.symbol for p in table.shapes)
+    return Staged((theta_previous, theta, theta_next, lam, *shapes), definitions, values)
+
+
+@cache
+def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) -> Kernel:
+    """`chord_angle` as a generated function of `(theta0, theta1, *shape)`."""
+    staged = chord_angle(table, here, there, order)
+    ends = f"{table.components[here].name} to {table.components[there].name}"
+    about = f"Angle from the inward normal to the chord, {ends}, with derivatives to order {order}."
+    name = f"chord_angle_{here}_{there}_{order}"
+    return kernel(name, staged.arguments, staged.values, staged.definitions, about)
+
+
+@cache
+def collision_kernel(table: Table, components: tuple[int, int, int] = (0, 0, 0)) -> Kernel:
+    """`collision_rule` as a generated function of `(theta_previous, theta, theta_next, lam, *shape)`."""
+    staged = collision_rule(table, components)
+    about = f"The collision rule phi + lam*eta at a bounce, components {' '.join(map(str, components))}."
+    name = "collision_rule_" + "_".join(map(str, components))
+    return kernel(name, staged.arguments, staged.values, staged.definitions, about)
+
+
+class _Stage:
+    """The coordinates of a chord as functions, until their derivatives become named values."""
+
+    def __init__(self, table: Table, shapes: tuple[Symbol, ...]) -> None:
+        self.table, self.shapes = table, shapes
+        self.meaning: dict[Expr, Expr] = {}  # an undefined function, by what it stands for
+
+    def point(self, end: str, index: int, parameter: Symbol) -> list[Expr]:
+        """The coordinates of one end."""
+        made = []
+        for letter, expression in zip("xy", self.table.components[index].point, strict=True):
+            f = Function(letter + end, real=True)(parameter, *self.shapes)
+            self.meaning[f] = expression.subs(theta, parameter)
+            made.append(f)
+        return made
+
+    def chord(self, start: Sequence[Expr], end: Sequence[Expr]) -> list[Expr]:
+        """The coordinates of the chord from `start` to `end`."""
+        made = []
+        for letter, p, q in zip("xy", start, end, strict=True):
+            f = Function("d" + letter, real=True)(theta0, theta1, *self.shapes)
+            self.meaning[f] = q - p
+            made.append(f)
+        return made
+
+    def finished(self, arguments: tuple[Symbol, ...], found: dict[str, Expr]) -> Staged:
+        """The values with each derivative of a coordinate replaced by a name, and the names' definitions."""
+        definitions: dict[Symbol, Expr] = {}
+        values = {name: self._named_parts(e, definitions) for name, e in found.items()}
+        return Staged(arguments, definitions, values)
+
+    def _named_parts(self, e: Expr, definitions: dict[Symbol, Expr]) -> Expr:
+        derivatives = sorted(e.atoms(Derivative), key=lambda d: (-d.derivative_count, str(d)))
+        own = {d: self._value(d, d.expr, d.variables, definitions) for d in derivatives}
+        e = e.xreplace(own)
+        functions = sorted((f for f in self.meaning if e.has(f)), key=str)
+        return e.xreplace({f: self._value(f, f, (), definitions) for f in functions})
+
+    def _value(self, whole: Expr, f: Expr, variables: Sequence[Symbol], definitions: dict[Symbol, Expr]) -> Expr:
+        expression = self.meaning[f].diff(*variables) if variables else self.meaning[f]
+        expression = self._named_parts(expression, definitions)
+        if expression.is_number or expression.is_Symbol:
+            return expression
+        turns = "t" * sum(v in (theta0, theta1) for v in variables)
+        parts = [f.func.__name__, turns, *(v.name for v in variables if v in self.shapes)]
+        symbol = Symbol("_".join(part for part in parts if part), real=True)
+        if f.func.__name__.startswith("d"):
+            if variables:
+                return expression
+            definitions[symbol] = expression
+            return symbol
+        definitions.setdefault(symbol, expression)
+        return symbol
+
+
+def _bend(x: Expr, y: Expr, p: Symbol) -> Expr:
+    """The derivative by `p` of the direction of `(x, y)`."""
+    return (x * diff(y, p) - y * diff(x, p)) / (x**2 + y**2)
+
+
+def _named(*parameters: Symbol) -> str:
+    tail = "".join({theta0: "0", theta1: "1"}.get(p, f"_{p}") for p in parameters)
+    return f"angle_{tail.removeprefix('_')}"
+
+
+def _ending(name: str, mark: str) -> str:
+    """`x0_t` keeps its name: it belongs to the bounce; what belongs to a chord is marked."""
+    return name if "0" in name else f"{name}_{mark}"

@@ -1,0 +1,169 @@
+"""The flight equation with its known root divided out, exactly.
+
+Let the boundary be `z(theta) = sum_k C_k cos(k*theta) + S_k sin(k*theta)` with vectors `C_k`, `S_k`,
+and let a ball fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two
+parameters, `B = m - theta0` and `E = -i*v`, which is `exp(i*m)` for a chord of the circle,
+
+    Im(conj(v)*(z1 - z0)) = 2*sin(B) * sum_k U_{k-1}(cos B) * Im(conj(M_k) * exp(i*k*m)),
+
+where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)`
+with `exp(i*m) = E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`,
+`n` the highest harmonic: 1 for circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg.
+Paper: the flights of section 2.
+
+The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text
+that SymPy proves is the text that the numeric kernels run. Complex numbers are pairs.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sympy import Expr, I, S, cos, exp, expand, im, pi, re, simplify, sin, symbols
+
+from symbolic.tables.fourier import boundary_coefficients
+from symbolic.tables.symbols import theta
+from symbolic.tables.table import Component
+
+Complex = tuple[Any, Any]
+Harmonics = Mapping[int, tuple[Complex, Complex]]  # C_k and S_k by k
+ONE: Complex = (1, 0)
+
+
+def harmonics(component: Component) -> dict[int, tuple[Complex, Complex]] | None:
+    """The vectors `C_k` and `S_k` by `k`; None when the boundary is no finite sum.
+
+    >>> from symbolic.tables import ellipse
+    >>> harmonics(ellipse.components[0])
+    {1: ((a, 0), (0, 1))}
+    """
+    c = boundary_coefficients(component)
+    if c is None:
+        return None
+    found = {}
+    for k in sorted(set(map(abs, c))):
+        there, back = c.get(k, S.Zero), c.get(-k, S.Zero)
+        C, sine = simplify(there + back if k else there), simplify(I * (there - back))
+        found[k] = ((re(C), im(C)), (re(sine), im(sine)))
+    return found
+
+
+def times(z: Complex, w: Complex) -> Complex:
+    """The product of two complex numbers."""
+    return z[0] * w[0] - z[1] * w[1], z[0] * w[1] + z[1] * w[0]
+
+
+def powers(z: Complex, highest: int) -> list[Complex]:
+    """`1, z, z**2, ...` up to `z**highest`."""
+    found = [ONE, z]
+    for k in range(2, highest + 1):
+        found.append(times(found[k // 2], found[k - k // 2]))
+    return found
+
+
+def point_at(h: Harmonics, u: Complex) -> Complex:
+    """The boundary point at `u = exp(i*theta)`, highest harmonic first."""
+    up = powers(u, max(h, default=0))
+    x, y = 0, 0
+    for k in sorted(h, reverse=True):
+        (cx, cy), (sx, sy) = h[k]
+        c, s = up[k]
+        x, y = x + cx * c + sx * s, y + cy * c + sy * s
+    return x, y
+
+
+def differentiated(h: Harmonics) -> dict[int, tuple[Complex, Complex]]:
+    """The harmonics of `d z/d theta`.
+
+    >>> differentiated({1: ((3, 0), (0, 2))})
+    {1: ((0, 2), (-3, 0))}
+    """
+    return {k: ((k * sx, k * sy), (-k * cx, -k * cy)) for k, ((cx, cy), (sx, sy)) in h.items() if k}
+
+
+def support(h: Harmonics, k: int, E: Complex) -> Complex:
+    """`M_k`. For `n = 1` this alone gives the chord: `exp(i*m)` lies along `M_1`.
+
+    >>> support({1: ((4, 0), (0, 2))}, 1, (5, 7))
+    (20, 14)
+    """
+    (cx, cy), (sx, sy) = h[k]
+    return cx * E[0] + cy * E[1], sx * E[0] + sy * E[1]
+
+
+def chord_polynomial(h: Harmonics, E: Complex, B: Complex) -> list[Any]:
+    """The coefficients, constant first, of the deflated flight equation in `T = tan(delta)`.
+
+    `E = -i*v` is a unit vector, and `B = E*conj(exp(i*theta0))`.
+
+    >>> chord_polynomial({1: ((1, 0), (0, 1))}, (1, 0), (0, 1))  # the circle: T = 0
+    [0, 1]
+    """
+    n = max(h)
+    up = powers(E, n)
+    x = [B[0], -B[1]]  # cos(B)/cos(delta) as a polynomial in T
+    r = [1, 0, 1]  # 1/cos(delta)**2
+    chebyshev: list[list[Any]] = [[1], _scaled(2, x)]
+    while len(chebyshev) < n:
+        chebyshev.append(_sum(_product(_scaled(2, x), chebyshev[-1]), _scaled(-1, _product(r, chebyshev[-2]))))
+    total: list[Any] = [0]
+    for k in sorted(set(h) - {0}):
+        M = support(h, k, E)
+        term = _product(chebyshev[k - 1], _imaginary_part(times(up[k], (M[0], -M[1])), k))
+        for _ in range(n - k):
+            term = _product(r, term)
+        total = _sum(total, term)
+    return total
+
+
+def flight_residual(component: Component) -> Expr:
+    """The flight equation minus its factored form: 0 proves `chord_polynomial` for this component.
+
+    >>> from symbolic.tables import cardioid
+    >>> flight_residual(cardioid.components[0])
+    0
+    """
+    h = harmonics(component)
+    if h is None:
+        raise ValueError(f"{component.name}: the boundary is no finite Fourier sum, it has no chord polynomial")
+    start, direction, delta = symbols("theta0 psi delta", real=True)
+    m0 = direction - pi / 2
+    E, B = (cos(m0), sin(m0)), (cos(m0 - start), sin(m0 - start))
+    n = max(h)
+    coefficients = chord_polynomial(h, E, B)
+    polynomial = sum(p * sin(delta) ** j * cos(delta) ** (2 * n - 1 - j) for j, p in enumerate(coefficients))
+    x, y = component.point
+    end = 2 * (m0 + delta) - start
+    flight = cos(direction) * (y.subs(theta, end) - y.subs(theta, start)) - sin(direction) * (
+        x.subs(theta, end) - x.subs(theta, start)
+    )
+    residual = flight - 2 * sin(m0 + delta - start) * polynomial
+    return expand(expand(residual.rewrite(exp)).replace(exp, lambda power: exp(expand(power))))
+
+
+def _sum_pair(z: Complex, w: Complex) -> Complex:
+    return z[0] + w[0], z[1] + w[1]
+
+
+def _imaginary_part(g: Complex, k: int) -> list[Any]:
+    """`Im(g*(1 + i*T)**k)` as a polynomial in T."""
+    w: list[Complex] = [ONE]
+    for _ in range(k):
+        w = [_sum_pair(z, (-up[1], up[0])) for z, up in zip([*w, (0, 0)], [(0, 0), *w], strict=True)]
+    return [g[0] * z[1] + g[1] * z[0] for z in w]
+
+
+def _scaled(factor: Any, p: Sequence[Any]) -> list[Any]:
+    return [factor * a for a in p]
+
+
+def _sum(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
+    longer, shorter = (p, q) if len(p) >= len(q) else (q, p)
+    return [a + shorter[i] if i < len(shorter) else a for i, a in enumerate(longer)]
+
+
+def _product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
+    total: list[Any] = [0] * (len(p) + len(q) - 1)
+    for i, a in enumerate(p):
+        for j, b in enumerate(q):
+            total[i + j] = total[i + j] + a * b
+    return total

@@ -1,0 +1,1 @@
+"""Proofs in exact arithmetic: signs over boxes, and identities."""

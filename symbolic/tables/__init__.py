@@ -1,0 +1,5 @@
+"""Tables: components, the paper's own, formulas that users type, validity, symmetry, laws and scenes."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

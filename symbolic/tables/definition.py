@@ -1,0 +1,285 @@
+"""What a scene says, as plain data: its boundary by a name, by formulas, or from an exact table; each number exact.
+
+Formulas and numbers are text here, read by `symbolic.tables.formula`, which executes nothing. One of the paper's tables
+with plain numbers is read without SymPy.
+"""
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sympy import Expr, Symbol
+
+    from symbolic.tables.table import Table
+
+PAPER = {"circle": (), "ellipse": ("a",), "cardioid": (), "cuspless": (), "egg": ("alpha",)}
+POINTS = 3  # of the paper's egg
+UNIFORM = "-lam*eta"  # the paper's law
+PIECE = ("name", "x", "y", "from", "to")
+KINDS = ("table", "polar", "parametric", "component")
+BOUNDARY = ("name", *KINDS, "K", "undefined", "origin")
+KEYS = (*BOUNDARY, "shape", "law", "lam")
+PLAIN = re.compile(r"[+-]?(\d{1,99}/[1-9]\d{0,98}|(\d{1,99}\.?\d{0,99}|\.\d{1,99})([eE][+-]?\d{1,2})?)", re.ASCII)
+WORD = re.compile(r"[A-Za-z][A-Za-z0-9_ -]{0,59}", re.ASCII)
+NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def exact(label: str, given: Any) -> "Fraction | Expr":
+    """The exact real number that text, an integer, a fraction or an expression says; a plain one without SymPy.
+
+    A decimal means the decimal it shows. A float is refused, because it is not the number it shows.
+
+    >>> exact("alpha", "0.08"), exact("a", "sqrt(2)")
+    (Fraction(2, 25), sqrt(2))
+    """
+    if isinstance(given, int | Fraction) and not isinstance(given, bool):
+        return Fraction(given)
+    if isinstance(given, str) and PLAIN.fullmatch(given):
+        return Fraction(given)
+    if isinstance(given, str):
+        from symbolic.tables.formula import number
+
+        return number(given, label)
+    from symbolic.tables.table import exact_number
+
+    value = exact_number(label, given)
+    if not value.is_real:
+        raise ValueError(f"{label} = {given} is no real number")
+    return value
+
+
+def exact_text(label: str, given: Any) -> str:
+    """The same number as text, the same for every way to write it: `0.08` and `2/25` are `2/25`."""
+    return str(exact(label, given))
+
+
+# ---- the boundary, from a name, a table or a document
+
+
+def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """One of the paper's tables by its name."""
+    if name not in PAPER:
+        raise ValueError(f"no table is called {name!r}; the paper's are {', '.join(PAPER)}")
+    if isinstance(K, bool) or not isinstance(K, int) or K < 2:
+        raise ValueError(f"{name}: K = {K!r} is no number of points; K must be an integer of at least 2")
+    if K != POINTS and name != "egg":
+        raise ValueError(f"{name}: K = {K} is only for the egg; leave it out")
+    return {"table": name} | ({"K": K} if K != POINTS else {}), {}
+
+
+def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
+    """What an exact table says; the paper's own are recognised, with the numbers that they hold already."""
+    from sympy import cos, pi, sin
+
+    from symbolic import tables
+    from symbolic.tables.symbols import theta
+
+    held = dict(table.fixed)
+    K = _points(table) if table.name == "egg" else POINTS
+    if table.name in PAPER and tables.named(table.name, K).at(**held) == table:
+        return named_boundary(table.name, K)[0], held
+    said: dict[str, Any] = {"name": table.name} if table.name not in ("polar", "parametric", "piecewise") else {}
+    first = table.components[0]
+    x, y = first.point
+    if len(table.components) == 1 and (first.start, first.end) == (-pi, pi):
+        rho = x / cos(theta)
+        same = rho * sin(theta) == y
+        said |= {"polar": str(rho)} if same else {"parametric": [str(x), str(y)]}
+    else:
+        values = [(p.name, *p.point, p.start, p.end) for p in table.components]
+        said["component"] = [dict(zip(PIECE, map(str, row), strict=True)) for row in values]
+    if table.undefined:
+        said["undefined"] = [{"name": m.name, "component": m.component, "theta": str(m.theta)} for m in table.undefined]
+    if table.origin != (0, 0):
+        said["origin"] = {"component": table.origin[0], "theta": str(table.origin[1])}
+    return said, {}
+
+
+def _points(table: "Table") -> int:
+    """`K` of an egg: the highest frequency of its boundary is `K + 1`."""
+    from symbolic.tables.fourier import boundary_coefficients
+
+    waves = boundary_coefficients(table.components[0])
+    return max(2, max(waves) - 1) if waves else POINTS
+
+
+def boundary_of(said: Mapping[str, Any], letters: tuple[str, ...]) -> dict[str, Any]:
+    """A boundary as a document says it, each formula read and written again, so that equal ones are the same text."""
+    if "table" in said:
+        known_entries("scene with a named table", said, ("table", "K"))
+        return named_boundary(text_entry("table", said["table"]), said.get("K", POINTS))[0]
+    found: dict[str, Any] = {"name": word_entry("name", said["name"])} if "name" in said else {}
+    if "polar" in said:
+        found["polar"] = _formula("polar", said["polar"], letters)
+    elif "parametric" in said:
+        if not isinstance(said["parametric"], list) or len(said["parametric"]) != 2:
+            raise ValueError("scene: parametric needs two formulas, as in parametric = ['3*cos(theta)', 'sin(theta)']")
+        found["parametric"] = [_formula("parametric", text, letters) for text in said["parametric"]]
+    else:
+        found["component"] = [_component(n, entry, letters) for n, entry in enumerate(_list("component", said), 1)]
+    if "undefined" in said:
+        found["undefined"] = [_mark(entry) for entry in _list("undefined", said)]
+    if "origin" in said:
+        known_entries("scene: origin", said["origin"], ("component", "theta"))
+        found["origin"] = _place("origin", said["origin"])
+    return found
+
+
+def _component(n: int, entry: Any, letters: tuple[str, ...]) -> dict[str, str]:
+    """One component: a name, two formulas in `theta`, and where `theta` begins and ends."""
+    label = f"component {n}"
+    known_entries(f"scene: {label}", entry, PIECE)
+    for key in PIECE[1:]:
+        if key not in entry:
+            raise ValueError(f"scene: {label} has no {key}; it needs {', '.join(PIECE[1:])}")
+    return {"name": word_entry(f"{label}: name", entry.get("name", f"component{n}"))} | {
+        key: _formula(f"{label}: {key}", entry[key], letters) for key in PIECE[1:]
+    }
+
+
+def _mark(entry: Any) -> dict[str, Any]:
+    """A boundary point where the map is undefined."""
+    known_entries("scene: undefined", entry, ("name", "component", "theta"))
+    return {"name": word_entry("undefined: name", entry.get("name"))} | _place("undefined", entry)
+
+
+def _place(label: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """A component's index and a parameter there."""
+    index = entry.get("component", 0)
+    if isinstance(index, bool) or not isinstance(index, int) or index < 0:
+        raise ValueError(f"scene: {label}: component = {index!r} is no index, counted from 0")
+    return {"component": index, "theta": _formula(f"{label}: theta", entry.get("theta", "0"), ())}
+
+
+def _formula(label: str, given: Any, letters: tuple[str, ...]) -> str:
+    """A formula in `theta` and the shape's letters, as SymPy writes it."""
+    text = str(given) if isinstance(given, int) and not isinstance(given, bool) else text_entry(label, given)
+    return str(_parsed(label, text, letters))
+
+
+def _parsed(label: str, text: str, letters: Iterable[str]) -> "Expr":
+    from symbolic.tables.formula import parse
+
+    try:
+        return parse(text, _symbols(letters))
+    except ValueError as error:
+        raise ValueError(f"{label}: {error}") from None
+
+
+def _symbols(letters: Iterable[str]) -> "dict[str, Symbol]":
+    """`theta`, and the shape's letters as real symbols."""
+    from sympy import Symbol
+
+    from symbolic.tables.symbols import theta
+
+    return {letter: Symbol(letter, real=True) for letter in letters} | {theta.name: theta}
+
+
+def built(document: Mapping[str, Any]) -> "Table":
+    """The exact table that a document says, with its numbers."""
+    from symbolic import tables
+    from symbolic.tables.table import Mark
+
+    texts = document.get("shape", {})
+    numbers = {letter: _expression(letter, text) for letter, text in texts.items()}
+    if "table" in document:
+        return tables.named(document["table"], document.get("K", POINTS)).at(**numbers)
+    symbols = _symbols(texts)
+
+    def formula(text: str) -> "Expr":
+        return _parsed("scene", text, texts).subs({symbols[letter]: value for letter, value in numbers.items()})
+
+    marks = [Mark(m["name"], m["component"], formula(m["theta"])) for m in document.get("undefined", ())]
+    name = name_of(document)
+    if "polar" in document:
+        return tables.polar(formula(document["polar"]), name, undefined=marks)
+    if "parametric" in document:
+        x, y = document["parametric"]
+        return tables.parametric(formula(x), formula(y), name, undefined=marks)
+    arcs = [tables.arc(p["name"], *(formula(p[key]) for key in PIECE[1:])) for p in document["component"]]
+    start = document.get("origin", {"component": 0, "theta": "0"})
+    origin = start["component"], formula(start["theta"])
+    return tables.piecewise(*arcs, name=name, undefined=marks, origin=origin)
+
+
+def name_of(boundary: Mapping[str, Any]) -> str:
+    kind = next((key for key in ("polar", "parametric") if key in boundary), "piecewise")
+    return str(boundary.get("table") or boundary.get("name") or kind)
+
+
+def letters_of(boundary: Mapping[str, Any]) -> tuple[str, ...]:
+    """The shape parameters of a boundary: the paper's, or the letters of the formulas other than `theta`."""
+    if "table" in boundary:
+        return PAPER[boundary["table"]]
+    formulas = [boundary.get("polar", ""), *boundary.get("parametric", ())]
+    formulas += [part[key] for part in boundary.get("component", ()) for key in PIECE[1:]]
+    return tuple(sorted({name for text in formulas for name in NAME.findall(text)} - _vocabulary()))
+
+
+def _vocabulary() -> set[str]:
+    from symbolic.tables.formula import CONSTANTS, FUNCTIONS
+
+    return {*FUNCTIONS, *CONSTANTS, "theta"}
+
+
+# ---- one entry at a time
+
+
+def contraction_text(given: Any) -> str:
+    value = exact("lam", given)
+    if not 0 <= value <= 1:
+        raise ValueError(f"lam = {given} is no contraction; accepted: numbers in [0, 1]")
+    return str(value)
+
+
+def _expression(label: str, text: str) -> "Expr":
+    from symbolic.tables.formula import number
+
+    return number(text, label)
+
+
+def known_entries(label: str, entry: Any, keys: tuple[str, ...]) -> None:
+    if not isinstance(entry, Mapping):
+        raise ValueError(f"{label} is {entry!r}; it must be a table with the entries {', '.join(keys)}")
+    for key in entry:
+        if key not in keys:
+            raise ValueError(f"{label}: the entry {key!r} is unknown; accepted: {', '.join(keys)}")
+
+
+def _list(key: str, said: Mapping[str, Any]) -> list[Any]:
+    if not isinstance(said[key], list) or not said[key]:
+        raise ValueError(f"scene: {key} = {said[key]!r} is no list of tables; write [[{key}]] before each")
+    return list(said[key])
+
+
+def text_entry(label: str, given: Any) -> str:
+    if not isinstance(given, str):
+        raise ValueError(f"scene: {label} = {given!r} is no text; put it in quotation marks")
+    return given
+
+
+def word_entry(label: str, given: Any) -> str:
+    if not isinstance(given, str) or not WORD.fullmatch(given):
+        raise ValueError(f"scene: {label} = {given!r} is no name; accepted: letters, digits, '_', '-' and blanks")
+    return given
+
+
+def number_entry(label: str, given: Any) -> Any:
+    """A number as text or as an integer; a TOML float is refused, because it is not the decimal that it shows."""
+    if isinstance(given, float):
+        raise ValueError(f"scene: {label} = {given} is a rounded float; put the decimal in quotation marks")
+    if isinstance(given, bool) or not isinstance(given, int | str):
+        raise ValueError(f"scene: {label} = {given!r} is no number; write it as text, such as '2/25' or '0.08'")
+    return given
+
+
+def toml(value: Any) -> str:
+    """Plain data on one line of TOML; its strings are JSON's, which TOML reads too."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml, value))}]"
+    return json.dumps(value)

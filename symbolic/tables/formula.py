@@ -1,0 +1,208 @@
+"""Formulas typed by a user, read by a parser that can only build exact expressions.
+
+    sum     = product { ("+" | "-") product }
+    product = signed { ("*" | "/") signed }
+    signed  = ("+" | "-") signed | power
+    power   = atom [ ("**" | "^") signed ]
+    atom    = number | name | function "(" sum ")" | "(" sum ")"
+
+Nothing typed is ever executed, and a decimal is the decimal it shows: `0.08` is 2/25.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from sympy import Abs, Add, E, Expr, Mul, Pow, Rational, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
+
+from symbolic.tables.formula_bounds import ARGUMENTS, EXPONENTS, LEVELS, flaw, is_exponent, is_huge, modest
+from symbolic.tables.symbols import theta
+
+LENGTH, DIGITS = 2000, 400
+TOKEN = re.compile(
+    r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>\*\*|[-+*/^()])|\s+", re.ASCII
+)
+CONSTANTS: Mapping[str, Expr] = {"pi": pi, "E": E}
+NAMES: Mapping[str, Symbol] = MappingProxyType({theta.name: theta})
+
+
+def _tan(x: Expr) -> Expr:
+    """`tan(x)` in the vocabulary: SymPy turns `tan(x + pi/2)` into a cotangent."""
+    value = tan(x)
+    return value if value.func is tan or value.is_number else sin(x) / cos(x)
+
+
+STEEP = ("sin", "cos", "tan", "exp")  # costly to evaluate far from 0
+FUNCTIONS: Mapping[str, Callable[[Expr], Expr]] = {
+    **{f.__name__: f for f in (sqrt, sin, cos, exp, log, atan, Abs)},
+    "abs": Abs,
+    "tan": _tan,
+}
+
+
+def parse(text: str, names: Mapping[str, Symbol] = NAMES) -> Expr:
+    """The exact expression that `text` says, in the given names; `ValueError` when it says none.
+
+    >>> parse("1 + cos(5*theta)/40")
+    cos(5*theta)/40 + 1
+    >>> parse("0.08^2 - 1e-3")
+    27/5000
+    >>> parse("theta.real")
+    Traceback (most recent call last):
+    ...
+    ValueError: '.' at column 6 is no part of a formula; accepted: numbers, + - * / ** ( ), theta, pi, E, \
+sqrt, sin, cos, exp, log, atan, abs, tan
+    """
+    if len(text) > LENGTH:
+        raise ValueError(f"the formula has {len(text)} characters; at most {LENGTH} are accepted")
+    return _Reader(text, names).whole()
+
+
+def number(text: str, label: str) -> Expr:
+    """The exact real number that `text` says; an error begins with `label`.
+
+    >>> number("2/25", "alpha"), number("sqrt(2)", "a")
+    (2/25, sqrt(2))
+    """
+    try:
+        value = parse(text, {})
+    except ValueError as error:
+        raise ValueError(f"{label} = {_shown(text)}: {error}") from None
+    if not value.is_real:
+        raise ValueError(f"{label} = {_shown(text)} is not a real number")
+    return value
+
+
+class _Token(NamedTuple):
+    kind: str
+    text: str
+    place: int
+
+
+class _Reader:
+    """One pass over the tokens of a formula; `level` counts how deep the recursion is."""
+
+    def __init__(self, text: str, names: Mapping[str, Symbol]) -> None:
+        self.named: Mapping[str, Expr] = {**names, **CONSTANTS}
+        self.tokens = self._split(text)
+        self.level = 0
+
+    def whole(self) -> Expr:
+        value = self._sum()
+        self._expect("", "an operator or the end")
+        return value
+
+    def _split(self, text: str) -> list[_Token]:
+        """The tokens, last one first, so that the next one is popped off the end."""
+        found, place = [], 0
+        while place < len(text):
+            match = TOKEN.match(text, place)
+            if match is None:
+                raise _error(text[place], place, "is no part of a formula", self._accepted())
+            if match.lastgroup:
+                found.append(_Token(match.lastgroup, match.group(), place))
+            place = match.end()
+        return [_Token("end", "", len(text)), *reversed(found)]
+
+    @property
+    def _next(self) -> _Token:
+        return self.tokens[-1]
+
+    def _take(self, *marks: str) -> str | None:
+        return self.tokens.pop().text if self._next.kind == "mark" and self._next.text in marks else None
+
+    def _expect(self, mark: str, accepted: str) -> None:
+        token = self._next
+        if token.text != mark:
+            raise _error(token.text, token.place, "is unexpected", accepted)
+        if mark:
+            self.tokens.pop()
+
+    def _sum(self) -> Expr:
+        place, terms = self._next.place, [self._product()]
+        while sign := self._take("+", "-"):
+            terms.append(self._product() if sign == "+" else -self._product())
+        return _checked(Add(*terms), place) if len(terms) > 1 else terms[0]
+
+    def _product(self) -> Expr:
+        place, factors = self._next.place, [self._signed()]
+        while mark := self._take("*", "/"):
+            where, factor = self._next.place, self._signed()
+            if mark == "/" and (factor.is_zero or (factor.is_number and factor.is_zero is None)):
+                raise _error(str(factor), where, "may not be divided by", "a divisor other than 0")
+            factors.append(factor if mark == "*" else _checked(1 / factor, where))
+        return _checked(Mul(*factors), place) if len(factors) > 1 else factors[0]
+
+    def _signed(self) -> Expr:
+        self.level += 1
+        if self.level > LEVELS:
+            raise _error(self._next.text, self._next.place, "is nested too deeply", f"at most {LEVELS} levels")
+        sign = self._take("+", "-")
+        value = self._signed() if sign else self._power()
+        self.level -= 1
+        return -value if sign == "-" else value
+
+    def _power(self) -> Expr:
+        place, base = self._next.place, self._atom()
+        if not self._take("**", "^"):
+            return base
+        where, exponent = self._next.place, self._signed()
+        if not is_exponent(exponent):
+            raise _error(str(exponent), where, "is no accepted exponent", EXPONENTS)
+        if base.is_zero and exponent.is_negative:
+            raise _error(str(base), place, "may not be divided by", "a divisor other than 0")
+        if isinstance(base, Rational) and not modest(base, abs(exponent)):
+            raise _error(f"{base}**{exponent}", place, "is too large", "a smaller power")
+        return _checked(Pow(base, exponent), place)
+
+    def _atom(self) -> Expr:
+        kind, text, place = self._next
+        if self._take("("):
+            return self._inside()
+        if kind not in ("name", "number") or (kind == "name" and text not in {**FUNCTIONS, **self.named}):
+            raise _error(text, place, "is unknown" if kind == "name" else "is unexpected", self._accepted())
+        self.tokens.pop()
+        if kind == "number":
+            return _numeral(text, place)
+        return self._call(text, place) if text in FUNCTIONS else self.named[text]
+
+    def _call(self, name: str, place: int) -> Expr:
+        self._expect("(", f"{name}(...)")
+        argument = self._inside()
+        if name in STEEP and is_huge(argument):
+            raise _error(name, place, "has too large an argument", ARGUMENTS)
+        return _checked(FUNCTIONS[name](argument), place)
+
+    def _inside(self) -> Expr:
+        value = self._sum()
+        self._expect(")", "an operator or )")
+        return value
+
+    def _accepted(self) -> str:
+        functions = [name for name in FUNCTIONS if name != "Abs"]
+        return ", ".join(["numbers", "+ - * / ** ( )", *self.named, *functions])
+
+
+def _numeral(text: str, place: int) -> Expr:
+    mantissa, _, power = text.lower().partition("e")
+    if len(mantissa) > DIGITS or len(power) > DIGITS or abs(int(power or 0)) > DIGITS:
+        raise _error(text, place, "is too long a number", f"at most {DIGITS} digits, and e-{DIGITS} to e+{DIGITS}")
+    return Rational(text)
+
+
+def _checked(value: Expr, place: int) -> Expr:
+    found = flaw(value)
+    if found:
+        raise _error("the formula", place, f"cannot be used: {found[0]}", found[1], quoted=False)
+    return value
+
+
+def _error(subject: str, place: int, complaint: str, accepted: str, quoted: bool = True) -> ValueError:
+    subject = (_shown(subject) if subject else "the end") if quoted else subject
+    return ValueError(f"{subject} at column {place + 1} {complaint}; accepted: {accepted}")
+
+
+def _shown(text: str) -> str:
+    """`text` quoted on one line and cut to a readable length."""
+    return ascii(text if len(text) <= 40 else f"{text[:37]}...")

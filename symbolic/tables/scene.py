@@ -1,0 +1,223 @@
+"""A scene: a table, its shape, a reflection law and a contraction; exact, and one line of text.
+
+A scene is written down once and everything takes it. It holds text and fractions only, so that one of the
+paper's tables is read, compared, hashed and sent to another machine without SymPy; `table` builds the exact
+table when somebody asks for it. Paper: section 2.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symbolic.tables.definition import (
+    BOUNDARY,
+    KEYS,
+    KINDS,
+    POINTS,
+    UNIFORM,
+    boundary_of,
+    built,
+    contraction_text,
+    exact,
+    exact_text,
+    known_entries,
+    letters_of,
+    name_of,
+    named_boundary,
+    number_entry,
+    table_boundary,
+    text_entry,
+    toml,
+    word_entry,
+)
+
+if TYPE_CHECKING:
+    from sympy import Expr
+
+    from symbolic.tables.table import Table
+
+
+@dataclass(frozen=True)
+class Law:
+    """A reflection law: the exit angle `phi` as a formula in the angle of incidence `eta` and `lam`.
+
+    >>> Law().phi
+    -eta*lam
+    """
+
+    formula: str = UNIFORM
+
+    def __post_init__(self) -> None:
+        if self.formula != UNIFORM:
+            raise ValueError(
+                f"law = {self.formula!r}; so far only the paper's uniform contraction, {UNIFORM}, is known"
+            )
+
+    @property
+    def phi(self) -> "Expr":
+        """The exit angle, exactly. Paper: section 2, `phi = -lambda*eta`."""
+        from symbolic.tables.formula import parse
+        from symbolic.tables.symbols import eta, lam
+
+        return parse(self.formula, {"eta": eta, "lam": lam})
+
+    def __str__(self) -> str:
+        return self.formula
+
+
+@dataclass(frozen=True, repr=False)
+class Scene:
+    """A table with numbers for its shape, a law and a contraction.
+
+    `table` is an exact table, or the name of one of the paper's; shape parameters are keywords. Numbers are exact,
+    or text, where a decimal means the decimal it shows.
+
+    >>> egg = Scene("egg", alpha="0.08", lam="1/2")
+    >>> egg
+    Scene('egg', alpha='2/25', lam='1/2')
+    >>> egg.text
+    'scene = { table = "egg", shape = { alpha = "2/25" }, lam = "1/2" }'
+    >>> Scene.parse(egg.text) == egg
+    True
+    >>> from symbolic import tables
+    >>> Scene(tables.egg(3), alpha="2/25", lam="1/2") == egg
+    True
+    """
+
+    text: str
+
+    def __init__(
+        self, table: "Table | str", *, lam: Any = 1, law: Law | str = UNIFORM, K: int = POINTS, **shape: Any
+    ) -> None:
+        boundary, fixed = named_boundary(table, K) if isinstance(table, str) else table_boundary(table)
+        self._hold(boundary, {**fixed, **shape}, lam, law)
+
+    def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
+        """Keeps the one line that says all of it; the same line for every way to write it."""
+        name, letters = name_of(boundary), letters_of(boundary)
+        for letter in shape:
+            if letter not in letters:
+                raise ValueError(f"{name}: no shape parameter {letter}; it has: {', '.join(letters) or 'none'}")
+        for letter in letters:
+            if letter not in shape:
+                raise ValueError(f"{name}: the shape parameter {letter} needs a value, as in Scene(..., {letter}=...)")
+        document = dict(boundary)
+        if letters:
+            document["shape"] = {letter: exact_text(f"{name}: {letter}", shape[letter]) for letter in letters}
+        formula = (law if isinstance(law, Law) else Law(law)).formula
+        if formula != UNIFORM:
+            document["law"] = formula
+        document["lam"] = contraction_text(lam)
+        object.__setattr__(self, "text", f"scene = {toml(document)}")
+
+    # ---- what it says
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The scene as plain data, for JSON and for a scene file."""
+        said: dict[str, Any] = tomllib.loads(self.text)["scene"]
+        return said
+
+    @property
+    def name(self) -> str:
+        """The table's name: one of the paper's, the user's own, or `polar`, `parametric`, `piecewise`."""
+        return name_of(self.document)
+
+    @property
+    def K(self) -> int:
+        """Points of the egg; 3 for every other table, where it means nothing."""
+        return int(self.document.get("K", POINTS))
+
+    @property
+    def lam(self) -> "Fraction | Expr":
+        """The contraction, exactly."""
+        return exact("lam", self.document["lam"])
+
+    @property
+    def shape(self) -> "dict[str, Fraction | Expr]":
+        """The numbers of the shape parameters, exactly."""
+        return {name: exact(name, text) for name, text in self.document.get("shape", {}).items()}
+
+    @property
+    def law(self) -> Law:
+        """The reflection law."""
+        return Law(self.document.get("law", UNIFORM))
+
+    @cached_property
+    def table(self) -> "Table":
+        """The exact table with its shape; `ValueError` when there is none."""
+        return built(self.document)
+
+    def at(self, *, lam: Any = None, **shape: Any) -> "Scene":
+        """The same scene with another contraction, or other numbers for its shape.
+
+        >>> Scene("egg", alpha="0.08").at(lam="0.4", alpha="1/20")
+        Scene('egg', alpha='1/20', lam='2/5')
+        """
+        other = object.__new__(Scene)
+        boundary = {key: value for key, value in self.document.items() if key in BOUNDARY}
+        numbers = {**self.document.get("shape", {}), **shape}
+        other._hold(boundary, numbers, self.document["lam"] if lam is None else lam, self.law)
+        return other
+
+    # ---- text and back
+
+    @classmethod
+    def parse(cls, text: str) -> "Scene":
+        """The scene that a line, or a scene file, says; `ValueError` names the entry that is wrong.
+
+        >>> Scene.parse('table = "ellipse"\\nlam = "0.9"\\n[shape]\\na = "sqrt(2)"')
+        Scene('ellipse', a='sqrt(2)', lam='9/10')
+        """
+        try:
+            said = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise ValueError(f"scene: {error}") from None
+        return cls.of(said["scene"] if set(said) == {"scene"} and isinstance(said["scene"], dict) else said)
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> "Scene":
+        """The scene of a `document`.
+
+        >>> Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}, "lam": "0.5"})
+        Scene(polar='b*cos(5*theta) + 1', b='1/40', lam='1/2')
+        """
+        known_entries("scene", document, KEYS)
+        kinds = [key for key in KINDS if key in document]
+        if len(kinds) != 1:
+            raise ValueError(
+                f"scene: one table is needed, {' and '.join(kinds) or 'none'} given; accepted: {', '.join(KINDS)}"
+            )
+        shape = document.get("shape", {})
+        if not isinstance(shape, Mapping):
+            raise ValueError(f"scene: shape = {shape!r} is no table of numbers such as a = '3/2'")
+        numbers = {
+            word_entry("shape", letter): number_entry(f"shape.{letter}", value) for letter, value in shape.items()
+        }
+        other = object.__new__(cls)
+        boundary = boundary_of({key: document[key] for key in BOUNDARY if key in document}, tuple(numbers))
+        law = text_entry("law", document.get("law", UNIFORM))
+        other._hold(boundary, numbers, number_entry("lam", document.get("lam", "1")), law)
+        return other
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Scene":
+        """The scene of a file."""
+        return cls.parse(Path(path).read_text(encoding="utf-8"))
+
+    def __repr__(self) -> str:
+        said = self.document
+        first = [repr(said["table"])] if "table" in said else []
+        first += [f"{key}={said[key]!r}" for key in ("name", "polar", "parametric", "K") if key in said]
+        first += [f"{len(said['component'])} components"] if "component" in said else []
+        first += [f"{name}={text!r}" for name, text in said.get("shape", {}).items()]
+        return f"Scene({', '.join([*first, *(f'{key}={said[key]!r}' for key in ('law', 'lam') if key in said)])})"
+
+    def _repr_latex_(self) -> str:
+        from symbolic.tables.notation import latex
+
+        return rf"$\displaystyle {latex(self.table)}, \quad \varphi = {latex(self.law.phi)}$"

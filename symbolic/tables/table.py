@@ -1,0 +1,141 @@
+"""What a table is: smooth components in a closed, simple, counterclockwise chain.
+
+A table is written down once, as exact expressions in the boundary parameter `theta`; everything
+else in the package is derived from it. Paper: section 2, the definition of `Gamma`.
+"""
+
+from dataclasses import dataclass, replace
+
+from sympy import Expr, Float, Interval, Rational, S, Symbol
+from sympy import sympify as exact  # converts Python numbers; never called on text
+
+from symbolic.proofs.signs import interval_text
+from symbolic.tables.symbols import theta
+
+Pair = tuple[Expr, Expr]
+
+
+@dataclass(frozen=True)
+class Component:
+    """A smooth part of the boundary: the points `(x, y)` for `start <= theta <= end`.
+
+    The interior lies to the left as `theta` grows, so the inward normal is the tangent turned by
+    a quarter turn counterclockwise.
+    """
+
+    name: str
+    point: Pair
+    start: Expr
+    end: Expr
+
+    def at(self, value: Expr) -> Pair:
+        """The point at parameter `value`, exactly."""
+        x, y = self.point
+        return x.subs(theta, value), y.subs(theta, value)
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A shape parameter, the closed range in which the table is one, and what fails outside."""
+
+    symbol: Symbol
+    range: Interval
+    otherwise: str
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A boundary point where the map is undefined, with the name of the outcome (`cusp`)."""
+
+    name: str
+    component: int
+    theta: Expr
+
+
+@dataclass(frozen=True)
+class Table:
+    """A billiard table, exact.
+
+    `origin` is where the paper counts arc length from: a component's index and a parameter there;
+    `s` grows counterclockwise, which is the direction of `theta`.
+    """
+
+    name: str
+    components: tuple[Component, ...]
+    shapes: tuple[Shape, ...] = ()
+    undefined: tuple[Mark, ...] = ()
+    origin: tuple[int, Expr] = (0, S.Zero)
+    fixed: tuple[tuple[str, Expr], ...] = ()
+
+    def at(self, **shape: Expr | int | str) -> "Table":
+        """The same table with numbers (or symbols) for its shape parameters.
+
+        >>> from symbolic.tables import ellipse
+        >>> ellipse.at(a=2).components[0].point
+        (2*cos(theta), sin(theta))
+        """
+        known = {parameter.symbol.name: parameter for parameter in self.shapes}
+        values: dict[Symbol, Expr] = {}
+        for name, given in shape.items():
+            if name not in known:
+                accepted = ", ".join(sorted(known)) or "none"
+                raise ValueError(f"{self.name}: no shape parameter {name}; it has: {accepted}")
+            value = exact_number(f"{self.name}: {name}", given)
+            if value.has(theta):
+                raise ValueError(f"{self.name}: {name} = {value} changes along the boundary; a shape is one number")
+            if value.is_number and known[name].range.contains(value) == S.false:
+                raise ValueError(
+                    f"{self.name}: {name} = {value} {known[name].otherwise}; "
+                    f"{name} must lie in {interval_text(known[name].range)}"
+                )
+            values[known[name].symbol] = value
+        table = replace(
+            self,
+            components=tuple(_substituted(component, values) for component in self.components),
+            shapes=tuple(p for p in self.shapes if p.symbol not in values),
+            fixed=self.fixed + tuple((symbol.name, value) for symbol, value in values.items()),
+        )
+        if not table.shapes:
+            from symbolic.tables.validity import simple  # which needs this module
+
+            simple(table)
+        return table
+
+    def component(self, name: str) -> Component:
+        """The component called `name`."""
+        for component in self.components:
+            if component.name == name:
+                return component
+        names = ", ".join(component.name for component in self.components)
+        raise ValueError(f"{self.name}: no component {name}; it has: {names}")
+
+    def _repr_latex_(self) -> str:
+        from symbolic.tables.notation import latex  # a notebook asks for it, nothing else does
+
+        return rf"$\displaystyle {latex(self)}$"
+
+
+def exact_number(label: str, given: Expr | int | str) -> Expr:
+    """`given` as an exact expression; a float is refused, because it is not the number it shows.
+
+    >>> exact_number("a", "0.08")
+    2/25
+    """
+    if isinstance(given, str):
+        try:
+            return Rational(given)
+        except (TypeError, ValueError, ZeroDivisionError):
+            raise ValueError(f"{label} = {given!r} is no exact number such as 2/25 or 0.08") from None
+    value = exact(given)
+    if not isinstance(value, Expr):
+        raise ValueError(f"{label} = {given!r} is no exact number such as 2/25 or 0.08")
+    if value.has(Float):
+        raise ValueError(
+            f"{label} = {given} is a rounded float; write it exactly, as a string '0.08' or Rational(2, 25)"
+        )
+    return value
+
+
+def _substituted(component: Component, values: dict[Symbol, Expr]) -> Component:
+    x, y = (coordinate.subs(values) for coordinate in component.point)
+    return replace(component, point=(x, y), start=component.start.subs(values), end=component.end.subs(values))

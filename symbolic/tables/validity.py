@@ -1,0 +1,191 @@
+"""What must hold before a table is one: exact, closed, counterclockwise, free of self-crossings.
+
+Every check here is a proof. A boundary that is no trigonometric polynomial, or one of high degree,
+may be too hard for the last two; it is then accepted here and examined where kernels are built.
+"""
+
+from dataclasses import replace
+from itertools import pairwise
+
+from sympy import (
+    Expr,
+    Float,
+    I,
+    Interval,
+    Poly,
+    S,
+    cos,
+    expand,
+    integrate,
+    nan,
+    oo,
+    pi,
+    sin,
+    tan,
+    together,
+    zoo,
+)
+
+from symbolic.proofs.signs import Outcome, conjunction, positive
+from symbolic.proofs.zero import vanishes
+from symbolic.tables.crossing import chord_of_length_zero, polygon_crossing
+from symbolic.tables.fourier import boundary_coefficients, coefficients, in_half_tangent
+from symbolic.tables.geometry import trigonometric
+from symbolic.tables.symbols import theta
+from symbolic.tables.table import Component, Table
+
+HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box
+
+
+def validated(table: Table) -> Table:
+    """`table` with its letters made the package's own; `ValueError` when it is no table."""
+    return counterclockwise_and_simple(closed_and_finite(table))
+
+
+def counterclockwise_and_simple(table: Table) -> Table:
+    """The part of `validated` that a polar table of positive radius does not need."""
+    _counterclockwise(table)
+    if not table.shapes:
+        simple(table)
+    return table
+
+
+def closed_and_finite(table: Table) -> Table:
+    """The part of `validated` that every table needs, whatever is known of its self-crossings."""
+    if not table.components:
+        raise ValueError(f"{table.name}: a table needs at least one component, and none is given")
+    table = replace(table, components=tuple(_own_letters(table, c) for c in table.components))
+    for component in table.components:
+        _finite(table, component)
+    _closed(table)
+    return table
+
+
+def positive_radius(name: str, rho: Expr) -> bool:
+    """True when `rho(theta) > 0` is proved; `ValueError` when it is refuted.
+
+    >>> positive_radius("flower", 1 + cos(5 * theta) / 40)
+    True
+    """
+    outcome = radius_sign(rho)
+    if outcome is Outcome.REFUTED:
+        wanted = "a polar table needs rho > 0, or its cusp named"
+        raise ValueError(f"{name}: rho = {rho} is not positive for every theta; {wanted}")
+    return outcome is Outcome.PROVED
+
+
+def radius_sign(rho: Expr) -> Outcome:
+    """Is `rho(theta) > 0` for every theta? A polar curve is then simple and counterclockwise."""
+    half = in_half_tangent(rho)
+    if half is None:
+        return Outcome.PROVED if rho.is_positive else Outcome.UNKNOWN
+    c = coefficients(rho) or {}
+    if c.get(0, S.Zero) > sum(abs(value) for k, value in c.items() if k):
+        return Outcome.PROVED
+    polynomial, T, at_pi = half
+    sides = (positive(polynomial.subs(T, s * T), {T: Interval(0, oo)}) for s in (1, -1))
+    return conjunction(positive(at_pi, {}), *sides).outcome
+
+
+def _own_letters(table: Table, component: Component) -> Component:
+    allowed = {theta.name: theta} | {p.symbol.name: p.symbol for p in table.shapes}
+    allowed |= {str(s): s for p in table.shapes for s in p.range.free_symbols}
+    renamed = {}
+    for expression in (*component.point, component.start, component.end):
+        if expression.has(Float):
+            raise ValueError(f"{table.name}: {expression} contains a rounded float; write 2/25 or '0.08', not 0.08")
+        if expression.has(I, nan, oo, -oo, zoo):
+            raise ValueError(f"{table.name}: {expression} is no finite real expression")
+        for symbol in sorted(expression.free_symbols, key=str):
+            if symbol.name not in allowed:
+                accepted = ", ".join(sorted(allowed))
+                raise ValueError(f"{table.name}: unknown symbol {symbol} in {expression}; it may use: {accepted}")
+            renamed[symbol] = allowed[symbol.name]
+    x, y = (coordinate.xreplace(renamed) for coordinate in component.point)
+    return replace(
+        component, point=(x, y), start=component.start.xreplace(renamed), end=component.end.xreplace(renamed)
+    )
+
+
+def _finite(table: Table, component: Component) -> None:
+    start, end = component.start, component.end
+    if start.has(theta) or end.has(theta) or (end - start).is_nonpositive:
+        raise ValueError(
+            f"{table.name}: {component.name} runs from theta = {start} to {end}; the end must be a larger number"
+        )
+    for coordinate in component.point:
+        below = together(coordinate.replace(tan, lambda x: sin(x) / cos(x))).as_numer_denom()[1]
+        half = in_half_tangent(below) if below.has(theta) else None
+        if half is None:
+            continue
+        polynomial, T, at_pi = half
+        roots = Poly(polynomial, T).count_roots() if not table.shapes else 0
+        if roots or at_pi.is_zero:
+            raise ValueError(f"{table.name}: {coordinate} has a pole, where {below} = 0; a boundary must be finite")
+
+
+def _closed(table: Table) -> None:
+    ring = (*table.components, table.components[0])
+    for before, after in pairwise(ring):
+        leaves, arrives = before.at(before.end), after.at(after.start)
+        for p, q in zip(leaves, arrives, strict=True):
+            if not vanishes(p - q):
+                raise ValueError(
+                    f"{table.name}: the boundary is not closed: {before.name} ends at "
+                    f"({leaves[0]}, {leaves[1]}) and {after.name} starts at ({arrives[0]}, {arrives[1]})"
+                )
+
+
+def _counterclockwise(table: Table) -> None:
+    area = enclosed_area(table)
+    ranges = {p.symbol: p.range for p in table.shapes}
+    if area is None or any(r.free_symbols for r in ranges.values()):
+        return
+    if area.is_zero:
+        raise ValueError(f"{table.name}: the boundary encloses area 0; it crosses itself or runs back along itself")
+    if area.is_negative or (ranges and positive(area, ranges).outcome is Outcome.REFUTED):
+        raise ValueError(f"{table.name}: the boundary runs clockwise; exchange theta for -theta")
+
+
+def enclosed_area(table: Table) -> Expr | None:
+    """The area by Green's formula, negative for a clockwise boundary; None when it is too hard to integrate.
+
+    >>> from symbolic.tables import cardioid, cuspless
+    >>> enclosed_area(cardioid), enclosed_area(cuspless)
+    (3*pi/2, 15*sqrt(3)/16 + pi)
+    """
+    total = S.Zero
+    for component in table.components:
+        x, y = component.point
+        swept = expand(x * y.diff(theta) - y * x.diff(theta))
+        if not swept.is_polynomial(theta) and coefficients(swept) is None:
+            return None
+        total += integrate(trigonometric(swept), (theta, component.start, component.end)) / 2
+    return expand(total)
+
+
+def simple(table: Table) -> None:
+    """Refuses a boundary that crosses itself.
+
+    A positive radius or the exclusion of chords of length 0 proves that it does not; a boundary too
+    hard for either (pieces, high harmonics, no finite sum) is refused when its inscribed polygon crosses.
+    """
+    whole = table.components[0]
+    if any(c.free_symbols - {theta} for component in table.components for c in component.point):
+        return
+    if len(table.components) == 1 and not table.undefined:
+        scale = (whole.end - whole.start) / (2 * pi)
+        x, y = whole.point
+        radius = trigonometric(x * cos(theta) + y * sin(theta))
+        straight = scale == 1 and trigonometric(y * cos(theta) - x * sin(theta)) == 0
+        if straight and radius_sign(radius) is Outcome.PROVED:
+            return
+        c = boundary_coefficients(replace(whole, point=(x.subs(theta, scale * theta), y.subs(theta, scale * theta))))
+        if c is not None and max(abs(k) for k in c) <= HIGHEST_HARMONIC:
+            crossing = chord_of_length_zero(c, scale)
+            if crossing:
+                raise ValueError(f"{table.name}: {crossing}")
+            return
+    crossing = polygon_crossing(table)
+    if crossing:
+        raise ValueError(f"{table.name}: {crossing}")

@@ -1,0 +1,123 @@
+"""Laws of basins: labels are fates, smooth boundaries have dimension 1, and mixing is measured as defined."""
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from numeric.dynamics.attractors import Kind, find
+from numeric.dynamics.basins import Window, entropies, grid, intermingling, labels, random_points, starts_at, whole
+from numeric.dynamics.phase_points import advanced, embedded
+from numeric.dynamics.symmetry import moved
+from numeric.dynamics.uncertainty import fitted, uncertainty
+from symbolic.tables import egg
+from symbolic.tables.symmetry import group
+
+RNG = 5
+
+
+def settled(lam):
+    map = PinballMap("egg", alpha="0.08", lam=lam)
+    return map, find(map, 200, 1)
+
+
+def test_a_ball_has_the_label_of_the_cycle_it_ends_on():
+    map, found = settled("0.7")
+    balls = starts_at(map, *random_points(whole(map), 400, np.random.default_rng(RNG)))
+
+    label = labels(map, balls, found)
+    end = embedded(map, advanced(map, balls, 5000).places)
+    for index, attractor in enumerate(found):
+        points = embedded(map, attractor.points)
+        gaps = np.linalg.norm(end[label == index][:, None] - points, axis=2).min(axis=1)
+        assert gaps.max() < 1e-8
+
+
+def test_the_quick_labels_are_the_sure_ones():
+    map, found = settled("0.66")
+    balls = starts_at(map, *random_points(whole(map), 5000, np.random.default_rng(RNG)))
+
+    assert labels(map, balls, found).tolist() == labels(map, balls, found, sure=True).tolist()
+
+
+def test_labels_do_not_depend_on_how_starts_are_cut_into_pieces():
+    map, found = settled("0.66")
+    balls = starts_at(map, *grid(whole(map), 40, 20))
+
+    parts = [labels(map, balls.only(slice(i, i + 130)), found) for i in range(0, 800, 130)]
+    assert np.concatenate(parts).tolist() == labels(map, balls, found).tolist()
+
+
+def test_a_mirror_exchanges_the_basins_of_the_two_ways_round():
+    map, found = settled("0.66")
+    cycles = [i for i, a in enumerate(found) if a.kind is Kind.CYCLE]
+    mirror = next(s for s in group(egg(3).at(alpha="0.08")) if s.sign < 0)
+    balls = starts_at(map, *random_points(whole(map), 2000, np.random.default_rng(RNG)))
+
+    label, image = labels(map, balls, found), labels(map, moved(mirror, balls), found)
+    exchanged = {cycles[0]: cycles[1], cycles[1]: cycles[0]}
+    expected = np.array([exchanged.get(int(i), int(i)) for i in label])
+    assert np.mean(expected == image) > 0.998  # only at a boundary does rounding decide
+
+
+def test_starts_lie_where_they_are_wanted():
+    map = PinballMap("cuspless", lam="0.09")
+    s, height = random_points(whole(map), 500, np.random.default_rng(RNG))
+    balls = starts_at(map, s, height)
+
+    there = map.arclength.s(balls.theta, balls.component)
+    assert np.max(np.abs(np.sin((there - s) * np.pi / map.arclength.perimeter))) < 1e-9  # whole turns apart
+    assert np.max(np.abs(np.sin(balls.phi) - height)) < 1e-9
+
+
+def test_a_start_beyond_grazing_is_mirrored_back():
+    balls = starts_at(PinballMap("circle"), [0.0, 0.0], [1.1, -1.25])
+
+    assert np.sin(balls.phi).round(9).tolist() == [0.9, -0.75]
+
+
+@pytest.mark.parametrize("true", [0.05, 0.5, 1.0])
+def test_the_exponent_of_a_power_law_is_found_within_its_error(true):
+    rng = np.random.default_rng(RNG)
+    eps = 10.0 ** -np.arange(1, 5)
+    found = fitted(eps, rng.uniform(size=30_000) < 0.5 * (eps[:, None] / eps[0]) ** true, rng)
+
+    assert abs(found.exponent - true) < 3 * found.error < 0.2
+    assert abs(found.curvature[0]) < 3 * found.curvature[1]
+
+
+def test_a_bent_law_is_seen_to_bend():
+    rng = np.random.default_rng(RNG)
+    eps = 10.0 ** -np.arange(1.0, 4.0, 0.5)
+    share = 0.3 * eps / (eps + 0.01)
+    found = fitted(eps, rng.uniform(size=30_000) < share[:, None], rng)
+
+    assert found.curvature[0] < -3 * found.curvature[1]
+
+
+def test_where_nothing_differs_there_is_no_exponent():
+    map = PinballMap("ellipse", a=2, lam="0.5")
+
+    assert np.isnan(uncertainty(map, find(map, 50, 1), 200, 1, distances=(0.1, 0.01)).exponent)
+
+
+def test_basins_of_period_4_have_smooth_boundaries_and_those_after_the_crisis_have_not():
+    smooth = uncertainty(*settled("0.2"), 6000, 2, distances=(0.03, 0.01, 0.003))
+    mixed = uncertainty(*settled("0.7"), 4000, 2, distances=(1e-3, 1e-5, 1e-7))
+
+    assert abs(smooth.dimension - 1) < 3 * smooth.error
+    assert 1.9 < mixed.dimension - 3 * mixed.error < mixed.dimension < 2
+
+
+def test_the_entropy_of_even_shares_is_the_logarithm_of_their_number():
+    label = np.array([[0, 1, 2, 0, 1, 2], [1, 1, 1, 1, 1, 1], [0, 0, 0, 1, 1, 1]])
+
+    assert np.allclose(entropies(label, 3), [np.log(3), 0, np.log(2)])
+
+
+def test_a_square_is_mixed_when_it_holds_two_fates():
+    map, found = settled("0.7")
+    row = intermingling(map, found, [1e-3], 200, 3, Window((-0.2, 0.2), (-0.1, 0.1)))[0]
+
+    assert row.mixed.low > 0.75  # in the middle of what was the chaotic attractor's basin
+    assert 0.9 * np.log(2) < row.boundary_entropy < np.log(2)
+    assert np.isclose(row.entropy, row.boundary_entropy * row.mixed.count / 200)

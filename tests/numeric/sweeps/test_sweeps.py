@@ -1,0 +1,214 @@
+"""Laws of sweeps: the parts tile the grid, the bits do not depend on who computes them, a store is whole or refused."""
+
+import errno
+import os
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from numeric.sweeps.bifurcation import bifurcation
+from numeric.sweeps.parameter_space import parameter_space
+from numeric.sweeps.pools import UnfinishedError
+from numeric.sweeps.run import run
+from numeric.sweeps.scenes import text_of
+from numeric.sweeps.store import opened
+from numeric.sweeps.sweep import Axis, Field, Sweep, cost
+from symbolic import Scene
+
+TIMES = Axis("x", np.arange(7.0), "1", "first factor", 3), Axis("y", np.arange(5), "1", "second factor", 2)
+
+
+def product(part):
+    rng = np.random.default_rng(part.seed)
+    whole = np.multiply.outer(part.values["x"], part.values["y"])
+    return {"product": whole, "noise": rng.normal(size=whole.shape), "sign": np.full(whole.shape, -1)}
+
+
+def table(task=product, seed=1, axes=TIMES, **settings):
+    fields = (
+        Field("product", ("x", "y"), "float64", "1", "product of both"),
+        Field("noise", ("x", "y"), "float64", "1", "random numbers"),
+        Field("sign", ("x", "y"), "int8", "1", "what stands for a missing whole number, too"),
+    )
+    return Sweep("table", "Products", axes, fields, task, seed, "none", settings, 0, lambda: None)
+
+
+def bytes_of(path):
+    return {str(file.relative_to(path)): file.read_bytes() for file in path.rglob("*") if file.is_file()}
+
+
+def test_the_parts_tile_the_grid():
+    found = run(table())
+
+    assert np.array_equal(found.product, np.multiply.outer(np.arange(7.0), np.arange(5)))
+
+
+def test_no_two_parts_share_their_random_numbers():
+    noise = run(table()).noise.values
+
+    assert np.unique(noise).size == noise.size
+    assert not np.any(noise == run(table(seed=2)).noise.values)
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_the_bits_depend_on_no_number_of_threads(workers):
+    sweep = parameter_space(np.array([0.06, 0.09]), np.array([0.3, 1.0]), starts=20, bounces=200, transient=50)
+
+    assert run(sweep, workers=workers).identical(run(sweep, workers=2))
+
+
+def test_the_bits_depend_on_no_order():
+    sweep = table()
+    backwards = {at: sweep.task(sweep.part(at)) for at in reversed(sweep.indices())}
+
+    found = run(sweep)
+    for at, arrays in backwards.items():
+        for field in sweep.fields:
+            assert np.array_equal(found[field.name].values[sweep.where(field, at)], arrays[field.name])
+
+
+def test_a_store_says_what_it_holds(tmp_path):
+    scene = text_of(Scene("egg", alpha="2/25"))
+    sweep = bifurcation(scene, np.array([0.3, 0.4]), orbits=2, points=3, bounces=80, transient=10)
+    kept = run(sweep, tmp_path / "store")
+
+    read = xr.open_zarr(tmp_path / "store")
+    assert read.identical(kept)
+    assert read.load().identical(run(sweep))
+    assert read.s.dims == ("lam", "orbit", "bounce")
+    assert read.s.attrs["units"] == "length"
+    assert read.attrs["scene"] == scene
+    assert read.attrs["seed"] == 1
+    assert "pinball-billiards" in read.attrs["versions"]
+
+
+def test_a_part_that_equals_the_missing_value_is_not_done_twice(tmp_path):
+    calls = []
+
+    def counted(part):
+        calls.append(part.at)
+        return product(part)
+
+    run(table(counted), tmp_path / "store")
+    run(table(counted), tmp_path / "store")
+
+    assert sorted(calls) == sorted(table().indices())
+
+
+def test_a_damaged_chunk_is_done_again(tmp_path):
+    run(table(), tmp_path / "store")
+    before = bytes_of(tmp_path / "store")
+    chunk = tmp_path / "store" / "noise" / "c" / "1" / "0"
+    damaged = bytearray(chunk.read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    chunk.write_bytes(damaged)
+
+    run(table(), tmp_path / "store")
+
+    assert bytes_of(tmp_path / "store") == before
+
+
+def test_a_full_disk_is_one_sentence_and_no_damage(tmp_path, monkeypatch):
+    run(table(), tmp_path / "whole")
+    fsync, left = os.fsync, [25]  # the store itself and a few parts
+
+    def full(handle):
+        left[0] -= 1
+        if left[0] < 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        fsync(handle)
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(UnfinishedError, match=r"^the disk is full; [1-9]\d? of 9 parts are in .*store, and the same"):
+        run(table(), tmp_path / "store")
+    monkeypatch.undo()
+
+    assert list((tmp_path / "store").rglob("*.partial")) == []
+    assert xr.open_zarr(tmp_path / "store").product.notnull().sum() > 0
+    run(table(), tmp_path / "store")
+    assert bytes_of(tmp_path / "store") == bytes_of(tmp_path / "whole")
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        (table(seed=2), "seed = 1 and not 2"),
+        (table(bounces=3), "settings = "),
+        (table(axes=(TIMES[0], Axis("y", np.arange(5) + 1, "1", "second factor", 2))), "another grid"),
+        (table(axes=(Axis("x", np.arange(7.0), "1", "first factor", 7), TIMES[1])), "another grid"),
+    ],
+    ids=["seed", "settings", "values", "chunks"],
+)
+def test_another_sweep_is_refused(tmp_path, other, said):
+    run(table(), tmp_path / "store")
+    before = bytes_of(tmp_path / "store")
+
+    with pytest.raises(ValueError, match=said):
+        run(other, tmp_path / "store")
+
+    assert bytes_of(tmp_path / "store") == before
+
+
+def test_a_directory_of_something_else_is_refused(tmp_path):
+    (tmp_path / "letter.txt").write_text("keep me")
+
+    with pytest.raises(ValueError, match="not a sweep of ours"):
+        run(table(), tmp_path)
+
+    assert bytes_of(tmp_path) == {"letter.txt": b"keep me"}
+
+
+def test_a_second_driver_is_refused(tmp_path):
+    with (
+        opened(table(), tmp_path / "store"),
+        pytest.raises(ValueError, match="another process is writing to it"),
+    ):
+        run(table(), tmp_path / "store")
+
+
+def test_a_task_that_fails_leaves_what_was_done(tmp_path):
+    def failing(part):
+        if part.at == (2, 2):
+            raise ZeroDivisionError
+        return product(part)
+
+    with pytest.raises(ZeroDivisionError):
+        run(table(failing), tmp_path / "store", workers=1)
+
+    assert run(table(), tmp_path / "store").identical(run(table(), tmp_path / "again"))
+
+
+def test_a_field_lies_on_every_axis_that_is_cut():
+    field = Field("sum", ("x",), "float64", "1", "sum over y")
+
+    with pytest.raises(ValueError, match="it must lie on every axis that is cut"):
+        Sweep("table", "Sums", TIMES, (field,), product, 1, "none", {}, 0, lambda: None)
+
+
+def test_the_cost_is_that_of_all_bounces():
+    sweep = parameter_space(np.linspace(0, 0.1, 3), np.linspace(0, 1, 4), starts=5, bounces=100, transient=60)
+    expected = cost(sweep, workers=2)
+
+    assert expected.collisions == 3 * 4 * 5 * 160
+    assert expected.parts == 3
+    assert expected.bytes == run(sweep).nbytes
+    assert expected.seconds == expected.collisions * expected.nanoseconds * 1e-9 / 2
+
+
+def test_the_diagram_of_the_egg_doubles_its_period():
+    # the paper: period 4 before lambda_3 = 0.372, period 8 after it (section 6.6)
+    scene = text_of(Scene("egg", alpha="2/25"))
+    found = run(bifurcation(scene, np.array([0.36, 0.38]), orbits=6, points=16, transient=20_000))
+
+    points = [np.unique(np.round(one, 5)).size for one in found.theta.values[:, 0]]
+    assert points == [4, 8]
+    assert not found.chaotic.any()
+
+
+def test_the_count_of_chaotic_orbits_is_the_paper_s_picture():
+    # section 6.5: chaos at alpha = 0.08 within about [0.42, 0.66] and at lam = 1, none at alpha = 0
+    found = run(parameter_space(np.array([0.0, 0.08]), np.array([0.1, 0.5, 1.0]), starts=20, bounces=2000))
+
+    assert np.array_equal(found.chaotic.values > 0, [[False] * 3, [False, True, True]])
+    assert np.all(found.nu_max.values >= found.nu_min.values)

@@ -1,0 +1,200 @@
+"""Sweeps that are killed end bit-identical to those that are not: the driver, its workers, Ctrl-C, a disk that is full.
+
+Moments are drawn by seeded generators, and counted in chunks that have come in, so a slow machine changes nothing.
+"""
+
+import json
+import logging
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from distributed.comm.core import CommClosedError
+
+from numeric.sweeps.parameter_space import parameter_space
+from numeric.sweeps.run import run
+from verification.app.shell.cli import main
+
+ROOT = Path(__file__).parents[3]
+PARTS = 12
+GRID = ["parameter-space", "--alphas", f"0.07:0.1:{PARTS}", "--lams", "0.3:0.6:3"]
+SPACE = [*GRID, "--starts", "4", "--bounces", "400"]
+SECONDS = [*GRID, "--starts", "64", "--bounces", "40000"]  # so long that an interruption is never too late
+
+
+def started(arguments, prepare=None):
+    """A sweep that hears Ctrl-C, also where a shell that runs the tests in the background has them ignore it."""
+    command = [sys.executable, "-m", "verification", "sweep", *arguments]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+
+    def prepared():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        if prepare is not None:
+            prepare()
+
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(command, cwd=ROOT, env=environment, preexec_fn=prepared, **pipes)
+
+
+def files(store):
+    return {str(file.relative_to(store)): file.read_bytes() for file in store.rglob("*") if file.is_file()}
+
+
+def chunks(store):
+    return len(list((store / "nu_min" / "c").rglob("0")))
+
+
+def reached(process, store, count):
+    """Waits until so many chunks are there or the process has ended; True if it still runs."""
+    while chunks(store) < count and process.poll() is None:
+        time.sleep(0.002)
+    return process.poll() is None
+
+
+def stop(process, number=signal.SIGKILL):
+    process.send_signal(number)
+    return process.communicate()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The files of a sweep that nothing disturbed."""
+    store = tmp_path_factory.mktemp("whole") / "store"
+    assert main(["sweep", *SPACE, "--store", str(store)]) == 0
+    return files(store)
+
+
+def test_a_driver_killed_at_random_moments_ends_with_the_same_bits(whole, tmp_path):
+    store, rng = tmp_path / "store", random.Random(5)
+    killed = []
+    for _ in range(2):
+        process = started([*SPACE, "--store", str(store)])
+        if reached(process, store, rng.randint(chunks(store) + 1, PARTS - 1)):
+            time.sleep(rng.uniform(0, 0.02))  # in the middle of whatever comes next
+        stop(process)
+        killed.append(chunks(store))
+
+    assert 0 < killed[0] <= killed[1]
+    assert main(["sweep", *SPACE, "--store", str(store)]) == 0
+    assert files(store) == whole
+
+
+def test_an_interrupted_sweep_says_how_to_go_on(tmp_path):
+    store, undisturbed = tmp_path / "store", tmp_path / "undisturbed"
+    process = started([*SECONDS, "--store", str(store), "--workers", "1"])
+    assert reached(process, store, 1)
+    out, said = stop(process, signal.SIGINT)
+
+    assert (process.returncode, out) == (130, "")
+    assert said.startswith("pinball: interrupted; ")
+    assert said.endswith(f" of {PARTS} parts are in {store}, and the same command goes on from there\n")
+    assert all(main(["sweep", *SECONDS, "--store", str(place)]) == 0 for place in (store, undisturbed))
+    assert files(store) == files(undisturbed)
+
+
+def test_a_limit_on_files_is_met_with_one_sentence(tmp_path):
+    diagram = ["bifurcation", "circle", "--lams", "0.1:0.9:3", "--orbits", "20", "--points", "500", "--bounces", "8"]
+    arguments = [*diagram, "--transient", "0", "--store", str(tmp_path / "store")]
+    process = started(arguments, lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000)))
+    out, said = process.communicate()
+
+    assert (process.returncode, out) == (1, "")
+    assert said.startswith("pinball: a file would be too large; 0 of 1 parts are in ")
+    assert list((tmp_path / "store").rglob("*.partial")) == []
+    assert main(["sweep", *arguments]) == 0
+    assert xr.open_zarr(tmp_path / "store").s.notnull().all()
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A Dask scheduler with two worker processes."""
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        silence_logs=logging.CRITICAL,
+        host="127.0.0.1",
+    ) as cluster:
+        yield cluster
+
+
+def test_a_cluster_finds_the_same_bits_also_when_a_worker_is_killed(whole, cluster, tmp_path):
+    store, rng = tmp_path / "store", random.Random(7)
+
+    def kill(moment):
+        while chunks(store) < moment:
+            time.sleep(0.002)
+        os.kill(cluster.workers[0].pid, signal.SIGKILL)
+
+    killer = threading.Thread(target=kill, args=(rng.randint(1, PARTS // 2),))
+    killer.start()
+    assert main(["sweep", *SPACE, "--store", str(store), "--scheduler", cluster.scheduler_address]) == 0
+    killer.join()
+
+    assert files(store) == whole
+
+
+def test_a_driver_of_a_cluster_may_be_killed(whole, cluster, tmp_path):
+    store, rng = tmp_path / "store", random.Random(11)
+    arguments = [*SPACE, "--store", str(store), "--scheduler", cluster.scheduler_address]
+    process = started(arguments)
+    reached(process, store, rng.randint(1, PARTS // 2))
+    stop(process)
+
+    assert chunks(store) > 0
+    assert main(["sweep", *arguments]) == 0
+    assert files(store) == whole
+
+
+def test_a_task_that_fails_on_a_worker_is_told(cluster):
+    sweep = parameter_space(np.array([0.09, 0.2]), np.array([0.5]), starts=2, bounces=80)
+
+    with pytest.raises(ValueError, match="alpha must lie in"):
+        run(sweep, scheduler=cluster.scheduler_address)
+
+
+def test_a_scheduler_that_goes_away_is_told_and_nothing_is_lost(cluster, tmp_path, monkeypatch, capsys):
+    def gone(*_):
+        raise CommClosedError
+
+    store = tmp_path / "store"
+    with monkeypatch.context() as patched:
+        patched.setattr("numeric.sweeps.pools._shared_out", gone)
+        assert main(["sweep", *SPACE, "--store", str(store), "--scheduler", cluster.scheduler_address]) == 1
+
+    said = (
+        f"the Dask scheduler at {cluster.scheduler_address} went away; 0 of {PARTS} parts are in {store}, and the same "
+    )
+    assert said in capsys.readouterr().err
+    assert xr.open_zarr(store).nu_min.isnull().all()
+
+
+@pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1:1"])
+def test_a_scheduler_that_is_not_there_is_told(address, capsys, monkeypatch):
+    monkeypatch.setattr("numeric.sweeps.pools.ANSWER", 0.5)
+
+    assert main(["sweep", *SPACE, "--scheduler", address]) == 2
+    assert f"--scheduler {address}: no Dask scheduler answers there; accepted: " in capsys.readouterr().err
+
+
+def test_a_dry_run_says_what_it_costs_and_does_nothing(tmp_path, capsys):
+    assert main(["sweep", *SPACE, "--store", str(tmp_path / "store"), "--dry-run", "--json", "-"]) == 0
+
+    document = json.loads(capsys.readouterr().out)
+    assert document["parts"] == PARTS
+    assert document["collisions"] == PARTS * 3 * 4 * (400 + 2000)
+    assert document["bytes"] == PARTS * 3 * (2 * 4 + 3 * 8) + (PARTS + 3) * 8
+    assert document["seconds"] > 0
+    assert not (tmp_path / "store").exists()

@@ -1,0 +1,60 @@
+"""How areas contract: the factor of a bounce, its sum along orbits, and what is left near the elastic case."""
+
+from sympy import Rational, S, cos, diff, limit, log, oo, pi, simplify, sin, symbols, tan
+
+from symbolic.motion.contraction import area_factor, elastic_mean, image_share, steepening, telescoped, weak_dissipation
+from symbolic.motion.invariants import joachimsthal_defect
+from symbolic.proofs.zero import vanishes
+from symbolic.tables.symbols import eta, lam
+
+
+def test_a_bounce_contracts_by_the_slope_of_sin_lam_eta_against_sin_eta():
+    assert vanishes(area_factor() - diff(sin(lam * eta), eta) / diff(sin(eta), eta))
+
+
+def test_contraction_is_not_pointwise_however_strong_it_is():
+    for contraction in (Rational(1, 100), Rational(1, 2), Rational(99, 100)):
+        factor = area_factor().subs(lam, contraction)
+
+        assert factor.subs(eta, 0) == contraction
+        assert limit(factor, eta, pi / 2, "-") is oo
+
+
+def test_the_elastic_bounce_keeps_areas():
+    assert simplify(area_factor().subs(lam, 1)) == 1
+
+
+def test_the_factor_grows_with_the_angle():
+    assert vanishes(steepening() - (tan(eta) - lam * tan(lam * eta)))
+    assert all(steepening().subs({lam: S.Half, eta: Rational(k, 2)}) > 0 for k in (1, 2, 3))
+
+
+def test_determinants_along_an_orbit_telescope_to_the_sum_rule():
+    assert [telescoped(n) for n in (1, 2, 4)] == [1, 1, 1]
+
+
+def test_leaving_the_elastic_law_contracts_nothing_on_average_over_phase_space():
+    assert elastic_mean(weak_dissipation()) == 0
+    assert elastic_mean(eta * tan(eta)) == 1
+    assert elastic_mean(eta * tan(eta) * cos(eta) ** 2) == Rational(2, 9)  # by parts: the integral of cos(eta)**3/6
+
+
+def test_oblique_bounces_expand_and_steep_ones_contract_under_weak_dissipation():
+    rate = weak_dissipation()
+
+    assert rate.subs(eta, pi / 6) > 0  # log(g) falls with lam below 1: a triangle attracts
+    assert rate.subs(eta, pi / 4) > 0
+    assert rate.subs(eta, 3 * pi / 10) < 0  # and a pentagon repels
+
+
+def test_the_image_fills_the_strip_that_exit_angles_allow():
+    assert image_share() == sin(pi * lam / 2)
+
+
+def test_in_an_ellipse_the_sum_rule_ends_after_one_term():
+    """`cos(phi0)*g(q0) = cos(eta1)*g(q1)`: `det DT` is `lam` times a quotient of positions, and the sum `log(lam)`."""
+    g0, g1, leaving = symbols("g0 g1 leaving", positive=True)
+    landing = g0 * leaving / g1
+
+    assert vanishes(joachimsthal_defect())
+    assert simplify(log(lam * leaving / landing) - log(lam) - log(g1 / g0)).expand(force=True) == 0

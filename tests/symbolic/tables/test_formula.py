@@ -1,0 +1,186 @@
+"""The formula parser: exact, total, and closed to everything that is not a formula."""
+
+import re
+import time
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from sympy import Abs, Expr, Float, Rational, S, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
+
+from symbolic.tables.formula import FUNCTIONS, number, parse
+from symbolic.tables.formula_bounds import flaw
+from symbolic.tables.symbols import theta
+
+SECONDS = 5  # the slowest formula found takes 1 s
+
+numbers = st.fractions(max_denominator=99).map(lambda q: Rational(q.numerator, q.denominator) % 100)
+leaves = st.sampled_from([theta, pi, sqrt(2)]) | numbers
+functions = st.sampled_from([sqrt, sin, cos, tan, exp, log, atan, Abs])
+
+
+def compound(parts: st.SearchStrategy[Expr]) -> st.SearchStrategy[Expr]:
+    return st.one_of(
+        st.builds(lambda x, y: x + y, parts, parts),
+        st.builds(lambda x, y: x * y, parts, parts),
+        st.builds(lambda x, n: x ** Rational(n, 2), parts, st.integers(-6, 6)),
+        st.builds(lambda f, x: f(x), functions, parts),
+    )
+
+
+expressions = st.recursive(leaves, compound, max_leaves=8).filter(lambda value: flaw(value) is None)
+
+
+def read(text: str) -> tuple[Expr, str]:
+    """The value of `text`, or 0 and the sentence that refuses it."""
+    try:
+        return parse(text), ""
+    except ValueError as error:
+        return S.Zero, str(error)
+
+
+@given(expressions)
+def test_a_formula_is_read_back_from_its_own_text(expression):
+    assert parse(str(expression)) == expression
+
+
+@given(st.text(alphabet="0123456789.eE+-*/^()_ ,thasincoqrpl[]'\"\n\0", max_size=60) | st.text(max_size=2100))
+@example("sqrt(3)-sin(1)*(" * 50 + "sqrt(2)" + ")" * 50)  # SymPy needs a day to find the sign of this
+@example("sin(atan(" * 29 + "theta" + "))" * 29)  # doubles in size at each level
+@example("abs(" * 58 + "theta" + "-theta)" * 58)
+@example("+".join(["sqrt(12345678**56+1)"] * 90))
+@example("((((9**64)**64)**64)**64)**64")
+@example("1/(sin(1)**2 + cos(1)**2 - 1)")
+@example("abs(exp(sqrt(theta)))")
+@settings(max_examples=300)
+def test_any_text_is_a_formula_or_one_sentence_and_soon(text):
+    started = time.monotonic()
+    value, sentence = read(text)
+    assert time.monotonic() - started < SECONDS
+    assert "\n" not in sentence
+    assert len(sentence) < 300
+    assert flaw(value) is None
+    assert not value.has(Float)
+
+
+@given(
+    st.lists(st.sampled_from(["theta", "2", "0.5", "pi", "+", "-", "*", "/", "**", "(", ")", *FUNCTIONS]), max_size=30)
+)
+def test_any_sequence_of_words_is_a_formula_or_one_sentence(words):
+    _, sentence = read(" ".join(words))
+
+    assert sentence == "" or "accepted" in sentence
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.08", Rational(2, 25)),
+        ("1e-3", Rational(1, 1000)),
+        (".5E1", Rational(5)),
+        ("-2^2", Rational(-4)),
+        ("2**3**2", Rational(512)),
+        ("2^-1", Rational(1, 2)),
+        ("6/2/3", Rational(1)),
+        ("1 - 2 - 3", Rational(-4)),
+        ("--+-3", Rational(-3)),
+        ("abs(-sqrt(2))", sqrt(2)),
+        ("1 + cos(5*theta)/40", 1 + cos(5 * theta) / 40),
+        ("theta^(-3/2)", theta ** Rational(-3, 2)),
+        ("tan(theta + pi/2)", -cos(theta) / sin(theta)),
+    ],
+)
+def test_a_formula_means_what_mathematicians_write(text, value):
+    assert parse(text) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("__import__('os').system('true')", '"\'" at column 12 is no part of a formula'),
+        ("__class__", "'__class__' at column 1 is unknown"),
+        ("theta.real", "'.' at column 6 is no part"),
+        ("theta[0]", "'[' at column 6 is no part"),
+        ("lambda x: x", "':' at column 9 is no part"),
+        ("eval(1)", "'eval' at column 1 is unknown"),
+        ("theta(2)", "'(' at column 6 is unexpected"),
+        ("sin theta", "'theta' at column 5 is unexpected; accepted: sin(...)"),
+        ("(1 + 2", "the end at column 7 is unexpected"),
+        ("2theta", "'theta' at column 2 is unexpected"),
+        ("\u0441os(theta)", "'\\u0441' at column 1 is no part"),  # a Cyrillic letter
+        ("\u00bd", "'\\xbd' at column 1 is no part"),
+        ("1\0", "'\\x00' at column 2 is no part"),
+        ("", "the end at column 1 is unexpected"),
+        ("2**theta", "'theta' at column 4 is no accepted exponent"),
+        ("9**9**9", "'387420489' at column 4 is no accepted exponent"),
+        ("theta**0.3", "'3/10' at column 8 is no accepted exponent"),
+        ("(theta**64)**2", "the exponent 128 is not accepted"),
+        ("1/(theta - theta)", "'0' at column 3 may not be divided by"),
+        ("0**-1", "'0' at column 1 may not be divided by"),
+        ("tan(pi/2)", "the value is not finite"),
+        ("sqrt(1 - sqrt(2))", "the value is not real"),
+        ("exp(exp(exp(10)))", "'exp' at column 1 has too large an argument"),
+        ("1e401", "too long a number"),
+        ("9" * 401, "too long a number"),
+        ("1" * 2001, "2001 characters; at most 2000"),
+        ("(" * 100, "nested too deeply; accepted: at most 60 levels"),
+    ],
+)
+def test_what_is_no_formula_is_named_with_its_place(text, complaint):
+    with pytest.raises(ValueError, match="accepted") as caught:
+        parse(text)
+
+    assert complaint in str(caught.value)
+
+
+def test_the_last_formula_within_each_limit_is_read():
+    assert parse("1" + " " * 1999) == 1
+    assert parse("(" * 59 + "1" + ")" * 59) == 1
+    assert parse("1*" * 300 + "(" * 59 + "1" + ")" * 59) == 1  # what is closed no longer counts
+    assert parse("1e400") == S(10) ** 400 == 1 / parse("1e-400")
+    assert parse("9" * 400) == S(10) ** 400 - 1
+
+
+@pytest.mark.parametrize(
+    "text", ["1" + " " * 2000, "(" * 60 + "1" + ")" * 60, "1*" * 300 + "(" * 60 + "1" + ")" * 60, "1e-401", "0" * 401]
+)
+def test_the_first_formula_beyond_each_limit_is_refused(text):
+    with pytest.raises(ValueError, match=r"2001 characters|nested too deeply|too long a number"):
+        parse(text)
+
+
+def test_what_is_shown_of_a_text_is_at_most_forty_characters():
+    for length, shown in ((40, "a" * 40), (41, "a" * 37 + "...")):
+        with pytest.raises(ValueError, match=f"^'{shown}' at column 1 is unknown"):
+            parse("a" * length)
+
+
+def test_a_refusal_says_what_would_be_accepted():
+    with pytest.raises(ValueError, match=r"accepted: an integer or half-integer between -64 and 64$"):
+        parse("(theta**64)**2")
+
+
+def test_only_the_given_names_are_known():
+    x = Symbol("x")
+
+    assert parse("x**2", {"x": x}) == x**2
+    with pytest.raises(ValueError, match="'theta' at column 1 is unknown"):
+        parse("theta", {"x": x})
+
+
+@pytest.mark.parametrize(("text", "value"), [("2/25", Rational(2, 25)), ("sqrt(2)", sqrt(2)), ("pi/4", pi / 4)])
+def test_a_number_is_exact(text, value):
+    assert number(text, "a") == value
+
+
+@pytest.mark.parametrize("text", ["theta", "sqrt(-1)", "log(-1)", "1/0", "nan", "inf", "0x10", "1_000", "1,5"])
+def test_what_is_no_real_number_is_named_with_its_label(text):
+    with pytest.raises(ValueError, match=r"^alpha = "):
+        number(text, "alpha")
+
+
+@pytest.mark.parametrize("text", ["log(0)", "tan(pi/2)"])
+def test_a_formula_without_a_value_is_refused_as_a_whole(text):
+    said = "the formula at column 1 cannot be used: the value is not finite; accepted: a formula without a pole"
+    with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):
+        parse(text)

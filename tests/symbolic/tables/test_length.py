@@ -1,0 +1,137 @@
+"""Arc length is the integral of the speed, from the paper's origin in the paper's direction."""
+
+import mpmath
+import pytest
+from sympy import Integral, Rational, S, Symbol, cos, elliptic_e, pi, simplify, sin, sqrt
+
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
+from symbolic.tables.arclength import arc_length, perimeter, positions
+from symbolic.tables.geometry import speed, trigonometric
+from symbolic.tables.symbols import a, alpha, theta
+from symbolic.tables.table import Component, Table
+
+mp = mpmath.MPContext()
+mp.dps = 30
+TABLES = [circle, ellipse, cardioid, cuspless, egg(3), egg(4)]
+SHAPE = {a: Rational(3, 2), alpha: Rational(1, 20)}
+
+
+def identity(table: Table) -> str:
+    return table.name
+
+
+@pytest.mark.parametrize("table", TABLES, ids=identity)
+def test_the_derivative_of_arc_length_is_the_speed(table):
+    for component in table.components:
+        slope = arc_length(component).diff(theta)
+
+        assert trigonometric(slope**2 - speed(component) ** 2) == 0
+        assert simplify(slope.subs(theta, 0)).is_positive
+        assert arc_length(component).subs(theta, 0).doit() == 0
+
+
+@pytest.mark.parametrize("table", TABLES, ids=identity)
+def test_arc_length_agrees_with_quadrature(table):
+    for component in table.components:
+        rate = speed(component).subs(SHAPE)
+        end = mp.mpf(2) / 5
+        value = arc_length(component).subs(SHAPE).subs(theta, Rational(2, 5)).evalf(25)
+        quadrature = mp.quad(lambda x, rate=rate: mp.mpf(rate.subs(theta, x).evalf(30)), [0, end], maxdegree=3)
+
+        assert abs(value - quadrature) < 1e-15
+
+
+def test_the_cusp_of_the_cardioid_is_at_plus_and_minus_four():
+    (s,) = positions(cardioid)
+
+    assert s == 4 * sin(theta / 2)
+    assert [s.subs(theta, value) for value in (-pi, 0, pi)] == [-4, 0, 4]
+
+
+def test_the_cuspless_table_counts_from_the_wall_and_its_upper_join_is_negative():
+    on_arc, on_wall = positions(cuspless)
+    arc_, wall = cuspless.components
+    upper = wall.at(wall.start)
+
+    assert upper[1].is_positive
+    assert on_wall.subs(theta, wall.start) == -sqrt(3) / 4
+    assert on_wall.subs(theta, 0) == 0
+    assert on_wall.subs(theta, wall.end) == sqrt(3) / 4
+    assert simplify(on_arc.subs(theta, arc_.start)) == sqrt(3) / 4
+    assert on_arc.subs(theta, 0) == 9 * sqrt(3) / 4  # the paper's C
+
+
+@pytest.mark.parametrize("table", TABLES, ids=identity)
+def test_positions_are_zero_at_the_origin_and_grow_with_the_boundary(table):
+    component, value = table.origin
+    s = positions(table)
+
+    assert s[component].subs(theta, value).doit() == 0
+    assert all(simplify(p.diff(theta).subs(theta, 0)).is_positive for p in s)
+
+
+def test_positions_go_once_around_without_a_gap():
+    start = (2, S.Zero)
+    table = piecewise(
+        arc("bottom", theta, -1, -1, 1),
+        arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
+        arc("top", -theta, 1, -1, 1),
+        arc("left", cos(theta) - 1, sin(theta), pi / 2, 3 * pi / 2),
+        origin=start,
+    )
+    s = positions(table)
+    ends = [(p.subs(theta, c.start), p.subs(theta, c.end)) for p, c in zip(s, table.components, strict=True)]
+
+    assert s[2].subs(theta, 0) == 0
+    assert ends[2][1] == ends[3][0]
+    assert ends[3][1] == ends[0][0]
+    assert ends[0][1] == ends[1][0]
+    assert simplify(ends[1][1] - ends[2][0] - perimeter(table)) == 0
+
+
+def test_an_origin_in_the_middle_of_a_component_is_where_the_length_is_zero():
+    shifted = Table("shifted", cardioid.components, origin=(0, pi / 3))
+
+    assert positions(shifted)[0].subs(theta, pi / 3) == 0
+    assert positions(shifted)[0].subs(theta, pi) == 2
+
+
+def test_perimeters_are_those_of_a_hand_calculation():
+    assert perimeter(circle) == 2 * pi
+    assert perimeter(cardioid) == 8
+    assert perimeter(cuspless) == 2 * 4 * sqrt(3) / 2 + sqrt(3) / 2
+    assert perimeter(egg(3).at(alpha=0)) == 2 * pi
+
+
+def test_the_perimeter_of_an_ellipse_is_the_complete_elliptic_integral():
+    expected = 4 * 2 * elliptic_e(1 - Rational(1, 4))  # 4*a*E(1 - 1/a**2)
+
+    assert abs((perimeter(ellipse.at(a=2)) - expected).evalf(30)) < Rational(1, 10**25)
+
+
+def test_a_length_without_closed_form_stays_an_exact_integral():
+    assert isinstance(arc_length(egg(3).components[0]), Integral)
+
+
+@pytest.mark.parametrize("table", [circle, cuspless, ellipse.at(a=2)], ids=identity)
+def test_scaling_a_table_scales_its_length(table):
+    c = Symbol("c", positive=True)
+    for component in table.components:
+        x, y = component.point
+        wider = Component("wider", (c * x, c * y), component.start, component.end)
+
+        assert simplify(arc_length(wider) - c * arc_length(component)) == 0
+
+
+def test_the_order_of_the_axes_does_not_change_a_perimeter():
+    upright = parametric(cos(theta), 2 * sin(theta))
+
+    assert abs((perimeter(upright) - perimeter(ellipse.at(a=2))).evalf(30)) < Rational(1, 10**25)
+
+
+def test_the_length_of_a_curve_whose_speed_is_no_finite_sum_stays_an_integral():
+    pear = polar(1 / (9 + cos(theta))).components[0]
+    found = arc_length(pear)
+
+    assert isinstance(found, Integral)
+    assert simplify(found.diff(theta) - speed(pear)) == 0

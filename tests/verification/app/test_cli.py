@@ -1,0 +1,326 @@
+"""The command line: one sentence for what is wrong, exact scenes, and nothing loaded that is not needed."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from types import SimpleNamespace
+
+import click
+import pytest
+from sympy import Expr, Rational, cos, sqrt
+
+import verification
+from symbolic import tables
+from symbolic.tables.definition import PAPER
+from symbolic.tables.scene import Scene
+from symbolic.tables.symbols import theta
+from verification.app.shell import cli
+from verification.app.shell.cli import COMMANDS, main
+from verification.app.shell.output import Output, json_option
+from verification.app.shell.scene import scene_options, table_options
+
+Verdict = Enum("Verdict", {name.upper(): name for name in ("confirmed", "corrected", "refuted", "supported", "open")})
+
+
+@dataclass(frozen=True)
+class Result:
+    """A stand-in for the engine's."""
+
+    id: str
+    verdict: Verdict
+    section: str = "3.1 Circular table"
+    quote: str = "$1 = 1$"
+    printed: str = "1"
+    derived: str = "1"
+    value: str | None = None
+    radius: str | None = None
+    method: str = "the identity [0, 1] holds"
+    seconds: float = 0.0
+    erratum: str = ""
+
+    def to_dict(self):
+        return {**self.__dict__, "verdict": self.verdict.value}
+
+
+@pytest.fixture
+def engine(monkeypatch, tmp_path):
+    """A catalogue of two claims, and an empty working directory."""
+    verdicts = {"circle.area": "confirmed", "ellipse.P1": "corrected"}
+    fake = SimpleNamespace(
+        verdicts=verdicts,
+        catalogue=lambda: [SimpleNamespace(id=each) for each in verdicts],
+        verify=lambda only="*", digits=15: (
+            Result(each, Verdict(verdict)) for each, verdict in verdicts.items() if only in ("*", each)
+        ),
+    )
+    monkeypatch.setitem(sys.modules, "verification.paper.report.verdicts", fake)
+    monkeypatch.setattr(verification, "claims", fake, raising=False)
+    monkeypatch.chdir(tmp_path)
+    return fake
+
+
+@pytest.fixture
+def scenes(monkeypatch):
+    """`pinball show` and `pinball shape`, which keep the scene they are given."""
+    seen = []
+
+    @click.command()
+    @scene_options
+    @json_option
+    def show(scene, output):
+        seen.append((scene, scene.table))
+
+    @click.command()
+    @table_options
+    def shape(scene):
+        seen.append((scene, scene.table))
+
+    for command in (show, shape):
+        monkeypatch.setitem(COMMANDS, command.name, "for tests")
+        monkeypatch.setitem(sys.modules, f"verification.commands.{command.name}", SimpleNamespace(command=command))
+    return seen
+
+
+def refusal(capsys, *arguments: str) -> str:
+    """The one sentence that `pinball` refuses these arguments with."""
+    assert main(arguments) == cli.BAD_INPUT
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith("pinball: ")
+    assert printed.err.count("\n") == 1
+    return printed.err[len("pinball: ") : -1]
+
+
+def test_verify_writes_the_report_and_says_where(engine, capsys, tmp_path):
+    assert main(["verify"]) == 0
+
+    printed = capsys.readouterr().out
+    assert "report/report.html" in printed
+    assert "corrected  ellipse.P1: the identity [0, 1] holds" in printed
+    assert (tmp_path / "report" / "report.md").exists()
+    assert len(json.loads((tmp_path / "report" / "report.json").read_text())["claims"]) == 2
+
+
+def test_an_open_claim_is_exit_status_1_and_named(engine, capsys):
+    engine.verdicts["egg.crisis"] = "open"
+
+    assert main(["verify"]) == 1
+    assert "open       egg.crisis" in capsys.readouterr().out
+
+
+def test_json_has_standard_output_to_itself(engine, capsys):
+    assert main(["verify", "--json", "-"]) == 0
+
+    assert json.loads(capsys.readouterr().out)["schema"] == 1
+
+
+def test_json_goes_to_a_file(engine, tmp_path):
+    assert main(["verify", "--only", "circle.area", "--json", "out.json"]) == 0
+
+    assert [claim["id"] for claim in json.loads((tmp_path / "out.json").read_text())["claims"]] == ["circle.area"]
+
+
+def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path):
+    monkeypatch.setattr(
+        "verification.app.shell.output.write_whole", lambda *_: (_ for _ in ()).throw(OSError(28, "full"))
+    )
+
+    with pytest.raises(ValueError, match="full") as caught:
+        Output(str(tmp_path / "x.json")).write({"schema": 1})
+    kept = str(caught.value).rsplit(" ", 1)[1]
+    assert json.loads(Path(kept).read_text()) == {"schema": 1}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (
+            ["verify", "--only", "elipse.*"],
+            "--only 'elipse.*' matches no claim; the nearest are: ellipse.P1, circle.area",
+        ),
+        (["verify", "--digits", "0"], "accepted: integers from 1 to 10000"),
+        (["verify", "--digits", "9" * 5000], "accepted: integers from 1 to 10000"),
+        (["verify", "--digits"], "'--digits' requires an argument"),
+        (
+            ["verify", "--nope"],
+            "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, --work, -h",
+        ),
+        (["verify", "more"], "unexpected extra argument (more); pinball verify --help shows what is accepted"),
+        (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),
+        (["verify", "--json", "."], "'.' is a directory; accepted: a file, or - for standard output"),
+        (["verify", "--report", "/dev/null/x"], "--report '/dev/null/x' cannot be made"),
+        (["judge"], "no command is called 'judge'; accepted: verify, "),
+        (["judge\nme\x1b"], "no command is called 'judge\\nme\\x1b'"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_nothing_is_written(engine, capsys, tmp_path, arguments, sentence):
+    assert sentence in refusal(capsys, *arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "sentence"),
+    [
+        (ValueError("alpha = 2\nis too large"), 2, "pinball: alpha = 2 is too large\n"),
+        (KeyError("x"), 1, "pinball: an unexpected KeyError: 'x'; PINBALL_DEBUG=1 shows where\n"),
+        (RecursionError("deep"), 1, "pinball: an unexpected RecursionError: deep; PINBALL_DEBUG=1 shows where\n"),
+        (KeyboardInterrupt(), 130, "pinball: interrupted\n"),
+        (ValueError("x" * 5000), 2, "..."),
+    ],
+)
+def test_no_traceback_reaches_a_user(engine, capsys, error, status, sentence):
+    def broken(*_):
+        raise error
+
+    engine.verify = broken
+
+    assert main(["verify"]) == status
+    printed = capsys.readouterr().err
+    assert sentence in printed
+    assert "Traceback" not in printed
+    assert len(printed) < 700
+
+
+def test_the_traceback_is_there_for_who_asks(engine, capsys, monkeypatch):
+    monkeypatch.setenv("PINBALL_DEBUG", "1")
+    engine.verify = None
+
+    assert main(["verify"]) == 1
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_an_unknown_table_is_told_which_are_known(scenes, capsys):
+    assert "'circle', 'ellipse', 'cardioid', 'cuspless', 'egg'" in refusal(capsys, "show", "square", "--lam", "1")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "scene"),
+    [
+        ("circle --lam 0", Scene("circle", lam=0)),
+        ("egg --alpha 0.08 --lam .5", Scene("egg", alpha="2/25", lam="1/2")),
+        ("egg --alpha 1/17 --K 4 --lam 1", Scene("egg", alpha="1/17", lam=1, K=4)),
+        ("ellipse --a sqrt(2) --lam 1/3", Scene("ellipse", a="sqrt(2)", lam="1/3")),
+        ("--polar 1+cos(5*theta)/40 --lam 1e-3", Scene(tables.polar(1 + cos(5 * theta) / 40), lam="1/1000")),
+        ("--parametric 2*cos(theta) sin(theta) --lam 1", Scene(tables.parametric("2*cos(theta)", "sin(theta)"))),
+    ],
+)
+def test_a_scene_is_exact(scenes, arguments, scene):
+    assert main(["show", *arguments.split()]) == 0
+
+    assert [seen for seen, _ in scenes] == [scene]
+
+
+def test_a_scene_builds_the_table_it_names(scenes):
+    main(["shape", "egg", "--alpha", "2/25"])
+    main(["show", "--polar", "1 + cos(5*theta)/40", "--lam", "1/sqrt(2)"])
+
+    (_, egg), (scene, star) = scenes
+    assert egg == tables.egg(3).at(alpha=Rational(2, 25))
+    assert star == tables.polar(1 + cos(5 * theta) / 40)
+    assert scene.lam == 1 / sqrt(2)
+    assert isinstance(scene.lam, Expr)
+
+
+def test_the_shapes_known_here_are_those_of_the_tables():
+    for name, shape in PAPER.items():
+        assert tuple(p.symbol.name for p in tables.named(name).shapes) == shape
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ("--lam 1", "one table is needed, none given; accepted: circle, ellipse, cardioid, cuspless, egg, --polar or"),
+        ("circle --polar 1 --lam 1", "one table is needed, polar and circle given"),
+        ("circle", "--lam = missing is no contraction; accepted: numbers in [0, 1]"),
+        ("circle --lam 1.0001", "--lam = 10001/10000 is no contraction; accepted: numbers in [0, 1]"),
+        ("circle --lam -1", "--lam = -1 is no contraction"),
+        ("circle --lam sqrt(2)", "--lam = sqrt(2) is no contraction"),
+        ("circle --lam nan", "--lam = 'nan': 'nan' at column 1 is unknown"),
+        ("circle --lam 1/0", "--lam = '1/0': '0' at column 3 may not be divided by"),
+        ("circle --lam 1e999999999", "too long a number"),
+        ("egg --lam 1", "egg: --alpha is missing; give it a number such as --alpha 2/25"),
+        ("egg --alpha 0.2 --lam 1", "egg: alpha = 1/5 makes the table non-convex; alpha must lie in [0, 1/10]"),
+        ("egg --alpha 0.1 --K 4 --lam 1", "alpha must lie in [0, 1/17]"),
+        ("egg --alpha 0.1 --K 1 --lam 1", "accepted: integers from 2"),
+        ("ellipse --a 1/2 --lam 1", "ellipse: a = 1/2 makes the y axis the longer one; a must lie in [1, oo)"),
+        ("ellipse --a pi*theta --lam 1", "--a = 'pi*theta': 'theta' at column 4 is unknown"),
+        ("circle --a 2 --lam 1", "circle: --a = 2 is no shape parameter of this table; accepted: none"),
+        ("circle --K 3 --lam 1", "circle: --K = 3 is only for the egg; leave it out"),
+        ("--polar theta.real --lam 1", "--polar: '.' at column 6 is no part of a formula"),
+        ("--polar __import__('os').system('true') --lam 1", '--polar: "\'" at column 12 is no part of a formula'),
+        ("--polar theta --lam 1", "polar: the boundary is not closed"),
+        ("--polar 1+2*cos(theta) --lam 1", "polar: rho = 2*cos(theta) + 1 is not positive"),
+        ("--parametric cos(theta) -sin(theta) --lam 1", "parametric: the boundary runs clockwise"),
+        ("--lam 1 --parametric cos(theta)", "requires 2 arguments"),
+    ],
+)
+def test_a_scene_that_is_none_is_one_sentence(scenes, capsys, arguments, sentence):
+    assert sentence in refusal(capsys, "show", *arguments.split())
+    assert scenes == []
+
+
+def pinball(*arguments: str, **kwargs) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "verification", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60, **kwargs)
+
+
+@pytest.mark.parametrize("package", ["xarray", "zarr"])
+def test_a_missing_extra_is_one_sentence_with_the_command_that_brings_it(package, capsys, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, package, None)
+    store = str(tmp_path / "store.zarr")
+    sweep = ["sweep", "parameter-space", "--alphas", "0:0.1:2", "--lams", "0:1:2", "--starts", "2", "--bounces", "8"]
+
+    said = refusal(capsys, *sweep, "--transient", "0", "--store", store)
+    assert said == f"{package} is missing; install it with: pip install 'pinball-billiards[sweep]'"
+
+
+def test_help_loads_no_mathematics():
+    loaded = "import sys; from verification.app.shell import cli; cli.main(['--help']); "
+    loaded += "print(sorted(sys.modules), file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, check=True, timeout=60)
+
+    for module in ("sympy", "numpy", "scipy", "matplotlib", "flint", "mpmath", "llvmlite", "rich"):
+        assert f"'{module}'" not in done.stderr
+    for name, about in COMMANDS.items():
+        assert name in done.stdout
+        assert about in done.stdout
+
+
+def test_the_catalogue_has_every_id_that_scripts_rely_on():
+    from verification.paper.report.verdicts import catalogue
+
+    egg = "monodromy alpha_tilde alpha_hat period3_elliptic saddle_node merging_crisis boundary_crisis"
+    ids = {
+        "map": "derivative_matrix",
+        "ellipse": "monodromy P1 P2 lambda_minus major_axis_unstable",
+        "cardioid": "slap_expanding",
+        "cuspless": "monodromy mu lambda_c lambda_star phi_star",
+        "egg": egg + " doubling.3 doubling.4 doubling.5 doubling.6",
+    }
+    promised = {f"{table}.{thing}" for table, things in ids.items() for thing in things.split()}
+
+    assert promised <= {claim.id for claim in catalogue()}
+
+
+def test_every_command_has_help_with_an_example():
+    for name in COMMANDS:
+        done = pinball(name, "--help")
+
+        assert done.returncode == 0
+        example = " ".join(done.stdout.split()).partition("Example: ")[2]
+        assert example.startswith("pinball ")
+        assert f"pinball {name}" in example
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-m", "verification", "--help"]
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+    os.close(write)
+
+    assert (done.returncode, done.stderr) == (141, "")

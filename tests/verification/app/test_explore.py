@@ -1,0 +1,108 @@
+"""The live table without a browser: what is picked, dragged and clicked, and what is said to it."""
+
+import re
+import runpy
+import shlex
+
+import numpy as np
+import pytest
+
+from verification.app.live.choice import TABLES, Choice
+from verification.app.live.page import LiveTable
+from verification.app.shell.cli import main
+
+
+@pytest.fixture
+def live():
+    return LiveTable()
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_the_command_on_the_page_is_one_that_runs(table, live, capsys):
+    live.table.value = table
+    live.bounces.value = 3
+
+    words = shlex.split(live.command.value)
+    assert words[0] == "pinball"
+    assert main(words[1:]) == 0
+    assert "3 bounces" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_the_python_on_the_page_gives_the_orbit_that_is_drawn(table, live, tmp_path):
+    live.table.value = table
+    live.bounces.value = 5
+    script = tmp_path / "script.py"
+    script.write_text(live.python.value)
+
+    assert np.array_equal(runpy.run_path(str(script))["orbit"].x, live.path.data["x"])
+
+
+def test_the_dragged_ball_starts_where_the_boundary_is_nearest(live):
+    live.table.value = "circle"
+    live.dots.data = {"x": [0.0, 0.0], "y": [1.3, 0.0]}
+
+    assert live.choice.theta == pytest.approx(np.pi / 2, abs=1e-6)
+    assert live.choice.phi == pytest.approx(0, abs=1e-6)
+    assert f"--start={live.choice.theta!r}," in live.command.value
+
+
+def test_the_dragged_arrow_turns_the_ball(live):
+    live.table.value = "circle"
+    before = dict(live.dots.data)
+    live.dots.data = {"x": [before["x"][0], 0.0], "y": [before["y"][0], 0.0]}
+
+    assert live.choice.phi == pytest.approx(0, abs=1e-6)
+
+
+def test_a_click_in_phase_space_starts_there(live):
+    live._tapped(type("Tap", (), {"x": 1.0, "y": 0.5}))
+
+    assert live.here.data["x"][0] == pytest.approx(1.0)
+    assert live.here.data["y"][0] == pytest.approx(0.5)
+
+
+def test_a_click_outside_phase_space_does_nothing(live):
+    before = live.choice
+    live._tapped(type("Tap", (), {"x": 0.0, "y": 1.5}))
+
+    assert live.choice == before
+
+
+def test_a_bad_shape_is_one_sentence_and_the_old_table_stays(live):
+    before = live.choice
+    live.shape.value = "0.5"
+
+    assert "accepted" in live.said.object or "must lie in" in live.said.object
+    assert live.choice == before
+
+
+def test_what_is_typed_is_never_executed(live):
+    live.table.value = "polar formula"
+    live.formula.value = "__import__('os').getcwd()"
+
+    assert re.search("accepted", live.said.object)
+
+
+def test_the_cycle_near_the_ball_is_the_ellipse_axis(live):
+    live.table.value = "ellipse"
+    live.start(type(live._ball())(0, 1.5, 0.02))
+    live.find_cycle()
+
+    assert "A cycle of period 2, attracting" in live.said.object
+
+
+def test_phase_space_fills_and_rests(live):
+    for _ in range(40):
+        live.fill()
+
+    size = len(live.cloud.data["x"])
+    live.fill()
+    assert len(live.cloud.data["x"]) == size > 1000
+
+
+def test_the_texts_name_the_component_of_a_start_on_the_wall():
+    choice = Choice("cuspless", lam="0.09", component=1, theta=0.1, phi=0.0)
+
+    assert "--component wall" in choice.command()
+    assert "component=1" in choice.python()

@@ -1,0 +1,132 @@
+"""`pinball sweep`, `bifurcation` and `basins`: what they answer, as text and as JSON, and what they refuse."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from numeric.sweeps.basins import basins
+from numeric.sweeps.exponents import KINDS, exponents
+from numeric.sweeps.run import run
+from symbolic import Scene
+from verification.app.shell.cli import main
+from verification.app.shell.sweeping import span
+
+
+def document(capsys, *arguments):
+    assert main([*arguments, "--json", "-"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_a_bifurcation_diagram_as_json(capsys):
+    found = document(
+        capsys, "bifurcation", "egg", "--alpha", "0.08", "--lams", "0.1:0.3:3", "--orbits", "4", "--points", "8"
+    )
+
+    assert found["coords"]["lam"] == [0.1, 0.2, 0.3]
+    assert found["scene"] == Scene("egg", alpha="0.08").text
+    assert found["fields"]["phi"]["dims"] == ["lam", "orbit", "bounce"]
+    assert found["fields"]["phi"]["units"] == "rad"
+    phi = np.array(found["fields"]["phi"]["values"])
+    assert phi.shape == (3, 4, 8)
+    assert np.allclose(phi[..., :4], phi[..., 4:], atol=1e-6)  # the paper: period 4 at alpha = 0.08 and small lam
+
+
+def test_basins_of_the_cuspless_table_are_those_of_period_2_and_of_chaos(capsys):
+    # the paper, section 5.2: at lam = 0.09 a period-2 and a chaotic attractor coexist
+    found = document(capsys, "basins", "cuspless", "--lam", "0.09", "--columns", "12", "--rows", "9")
+
+    kinds = {(a["kind"], a["period"]) for a in found["settings"]["attractors"]}
+    assert kinds == {("chaotic", 0), ("cycle", 2)}
+    assert set(np.ravel(found["fields"]["label"]["values"])) == {0, 1}
+    assert np.allclose(found["coords"]["sin_phi"], (np.arange(9) - 4) / 4.5)
+
+
+def test_basins_have_the_symmetry_of_the_table():
+    # y -> -y maps (s, phi) to (-s, -phi), and swaps or keeps attractors
+    found = run(basins(Scene("cuspless").text, 0.09, 40, 30, starts=200))
+
+    label = found.label.values
+    assert np.mean(label == label[::-1, ::-1]) > 0.98  # rounding decides where basins are thinner than a cell
+
+
+def test_a_window_of_phase_space(tmp_path, capsys):
+    store = str(tmp_path / "store")
+    arguments = ["basins", "egg", "--alpha", "0.08", "--lam", "0.7", "--columns", "8", "--rows", "4", "--store", store]
+    assert main([*arguments, "--window", "-1", "1", "0", "0.5"]) == 0
+
+    said = capsys.readouterr().out
+    assert "cycle of period 3" in said
+    read = xr.open_zarr(store)
+    assert read.s.values.tolist() == [-0.875, -0.625, -0.375, -0.125, 0.125, 0.375, 0.625, 0.875]
+    assert read.sin_phi.values.tolist() == [0.0625, 0.1875, 0.3125, 0.4375]
+
+
+def test_exponents_of_each_attractor_obey_the_sum_rule_of_the_ellipse():
+    # the period-2 orbit has det DT^2 = lam^2, so the exponents add up to log(lam)
+    found = run(exponents(Scene("ellipse", a="2").text, np.array([0.3, 0.6])))
+
+    assert found.orbits.values[:, 0].tolist() == [100, 100]
+    assert [KINDS[int(kind)].name for kind in found.kind.values[:, 0]] == ["CYCLE", "CYCLE"]
+    assert np.allclose(found.total.values[:, 0], np.log([0.3, 0.6]), rtol=0, atol=1e-10)
+    assert np.isnan(found.nu_plus.values[:, 1]).all()
+
+
+def test_attractors_are_not_averaged_together(capsys):
+    # the paper, section 6.7: chaos and period 3 coexist at alpha = 0.08, lam = 0.5
+    assert main(["sweep", "exponents", "egg", "--alpha", "0.08", "--lams", "0.5", "--orbits", "60"]) == 0
+
+    lines = capsys.readouterr().out.splitlines()[1:]
+    periods = [line.split()[2] for line in lines]
+    assert periods[:3] == ["-", "3", "3"]
+    assert float(lines[0].split()[3]) > 0.1
+    assert all(float(line.split()[3]) < 0 for line in lines[1:])
+
+
+@pytest.mark.parametrize("text", ["0:1", "1:0:3", "0:2:5", "a:b:3", "0:1:0", "0:1:x", "0:1:3:4", "", "0:1:9999999999"])
+def test_a_range_that_is_none_is_refused_with_what_is_accepted(text):
+    with pytest.raises(ValueError, match="accepted"):
+        span("--lams", text)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["sweep", "nothing"], "accepted: parameter-space, exponents, bifurcation, basins"),
+        (["sweep"], "Missing command"),
+        (
+            ["basins", "cuspless", "--lam", "0.1", "--columns", "2", "--rows", "2", "--window", "1", "0", "0", "1"],
+            "window",
+        ),
+        (["bifurcation", "egg", "--alpha", "1/2", "--lams", "0.3"], "alpha must lie in [0, 1/10]"),
+        (["sweep", "parameter-space", "--alphas", "0:0.2:3", "--lams", "0.3"], "in [0, 1/10]"),
+        (
+            ["sweep", "parameter-space", "--alphas", "0.1", "--lams", "0.3", "--store", __file__],
+            "is not a sweep of ours",
+        ),
+    ],
+    ids=["kind", "no kind", "window", "alpha", "alphas", "store"],
+)
+def test_bad_input_is_one_sentence(arguments, said, capsys):
+    assert main(arguments) == 2
+
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_a_dry_run_of_basins_looks_for_no_attractor(monkeypatch, capsys):
+    monkeypatch.setattr("numeric.sweeps.basins.find", None)
+
+    arguments = ["basins", "cuspless", "--lam", "0.09", "--columns", "1000", "--rows", "1000", "--dry-run"]
+    found = document(capsys, *arguments)
+    assert found["collisions"] == 10**9
+    assert found["bytes"] == 2 * 10**6 + 2 * 8 * 1000
+
+
+def test_the_picture_of_parameter_space_in_letters(capsys):
+    arguments = ["sweep", "parameter-space", "--alphas", "0.02:0.1:2", "--lams", "0.2:0.3:2", "--starts", "5"]
+    assert main(arguments) == 0
+
+    assert capsys.readouterr().out.splitlines()[1:] == ["0.02     ..", "0.1      ##"]

@@ -1,0 +1,144 @@
+"""All cycles: known counts, laws of index, a second count, and proofs of completeness."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from sympy import Rational
+
+from numeric import PinballMap
+from symbolic.tables import circle, cuspless, egg, ellipse
+from verification.app.commands.cycles import command as cycles
+from verification.cycles.search.cells import fixed_points
+from verification.cycles.search.newton import Corrector
+from verification.cycles.search.search import all_cycles
+from verification.proofs.periodic.completeness import no_others
+from verification.proofs.slap_map.periodic_points import periodic_points
+
+TABLE = egg(3).at(alpha="2/25")
+LAM = Rational(2, 5)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return all_cycles(TABLE, LAM, 6)
+
+
+def test_the_index_sums_vanish_for_every_period_and_every_number_of_turns(found):
+    for n in range(2, 7):
+        sums = found.catalogue.index_sums(n)
+
+        assert set(sums.values()) <= {0}
+    assert all(found.balanced.values())
+
+
+def test_the_cycles_that_continuation_knows_are_among_them(found):
+    """At lam = 0.4: three diameters and three parallels, four triangles, and of period 4 one symmetric cycle
+    and two without the symmetry around each diameter."""
+    counts = {n: found.catalogue.count(n) for n in range(2, 7)}
+
+    assert counts == {2: 6, 3: 4, 4: 9, 5: 0, 6: 0}
+    assert [c.spectrum.stable for c in found.catalogue.cycles].count(True) == 2  # a triangle each way round
+
+
+def test_every_cycle_obeys_the_map(found):
+    map = PinballMap(TABLE, lam=float(LAM))
+    for cycle in found.catalogue.cycles:
+        landed = map.step(np.array(cycle.theta), np.array(cycle.phi))
+
+        assert np.max(np.abs(np.sin((landed.theta - np.roll(cycle.theta, -1)) / 2))) < 1e-9
+        assert np.max(np.abs(landed.phi - np.roll(cycle.phi, -1))) < 1e-9
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_the_count_on_cells_agrees_with_the_search(found, n):
+    zeros = fixed_points(PinballMap(TABLE, lam=float(LAM)), n)
+    own = [sum(c.period for c in found.catalogue.of(n) if c.index(n) == sign) for sign in (1, -1)]
+
+    assert zeros.open == 0
+    assert [zeros.positive, zeros.negative] == own
+
+
+def test_squares_that_symmetry_makes_alike_are_told_apart():
+    """Found by the index law: sums of cosines vanish on every square, and two of them passed for one."""
+    searched = all_cycles(egg(4).at(alpha="1/18"), Rational(7, 10), 4)
+    squares = [c for c in searched.catalogue.cycles if c.period == 4 and np.ptp(c.phi) < 1e-9]
+
+    assert searched.balanced[4] is True
+    assert sorted(c.index(4) for c in squares) == [-1, -1, 1, 1]  # at the flats and at the vertices, each way round
+
+
+def test_at_lam_zero_the_count_is_that_of_the_slap_map():
+    searched = all_cycles(TABLE, Rational(0), 4).catalogue
+    for n in (2, 4):
+        zeros = fixed_points(PinballMap(TABLE, lam=0), n)
+
+        assert zeros.positive + zeros.negative == sum(c.period for c in searched.of(n))
+
+
+def test_the_slap_map_of_the_cuspless_cardioid_has_the_cycles_that_subdivision_encloses():
+    searched = all_cycles(cuspless, Rational(0), 2).catalogue
+
+    assert sum(c.period for c in searched.of(2)) == len(periodic_points(2).stretches)
+
+
+def test_completeness_is_proved_for_short_periods_and_left_open_without_budget(found):
+    assert no_others(found.catalogue, LAM, 2).complete is True
+    assert no_others(found.catalogue, LAM, 3, budget=50).complete is None
+    short = all_cycles(egg(3).at(alpha="2/25"), Rational(0), 3).catalogue
+    assert no_others(short, Rational(0), 3).complete is True  # paper: section 6.2, no period 3 at lam = 0
+
+
+def test_a_catalogue_that_lacks_a_cycle_is_not_proved_complete():
+    catalogue = all_cycles(ellipse.at(a="3/2"), Rational(1, 2), 2).catalogue
+    assert no_others(catalogue, Rational(1, 2), 2).complete is True
+    catalogue.cycles.pop()
+
+    assert no_others(catalogue, Rational(1, 2), 2, budget=1500).complete is None
+    assert any(catalogue.index_sums(2).values())
+
+
+def test_the_command_writes_every_cycle(tmp_path):
+    file = tmp_path / "cycles.json"
+    words = ["egg", "--alpha", "0.08", "--lam", "0.2", "--period", "4", "--count", "2", "--prove", "2"]
+    result = CliRunner().invoke(cycles, [*words, "--json", str(file)], standalone_mode=False)
+    document = json.loads(file.read_text())
+
+    assert result.return_value == 0
+    assert [row["cycles"] for row in document["periods"]] == [6, 0, 3]
+    assert all(row["index_sums_vanish"] for row in document["periods"])
+    assert [row["agrees"] for row in document["second_count"]] == [True]
+    assert document["completeness"][0]["complete"] is True
+
+
+def test_a_count_on_cells_is_refused_for_a_table_with_joins():
+    result = CliRunner().invoke(
+        cycles, ["cuspless", "--lam", "0.2", "--period", "2", "--count", "2"], standalone_mode=False
+    )
+
+    assert isinstance(result.exception, ValueError)
+    assert "not convex and smooth" in str(result.exception)
+
+
+def test_deflation_leads_away_from_known_cycles():
+    """Seeds around the minor axis lead to it; with it known, whatever is reached is something else."""
+    corrector, rng = Corrector(ellipse.at(a="3/2"), 0.5), np.random.default_rng(3)
+    minor = np.array([[np.pi / 2, -np.pi / 2], [-np.pi / 2, np.pi / 2]])
+    seeds = minor[0] + rng.uniform(-0.4, 0.4, (200, 2))
+    plain = corrector.closed((0, 0), seeds)
+    deflated = corrector.closed((0, 0), seeds, minor)
+
+    assert np.max(np.abs(np.cos(plain))) < 1e-9
+    assert len(plain) == 200
+    assert len(deflated) > 0
+    assert np.max(np.abs(np.sin(deflated))) < 1e-9  # the major axis, the only other one
+
+
+def test_families_of_cycles_are_said_to_be_there_and_not_listed():
+    """Every diameter of the circle is a cycle, with the multiplier 1."""
+    searched = all_cycles(circle, Rational(1, 2), 2)
+
+    assert searched.catalogue.cycles == []
+    assert searched.catalogue.degenerate > 100
+    assert searched.balanced == {2: None}

@@ -1,0 +1,133 @@
+"""Curves in two letters: against closed forms, against branches, and universal constants at their ends."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from sympy import Rational, lambdify
+
+from symbolic.cycles.polygons import saddle_node
+from symbolic.cycles.thresholds import alpha_tilde
+from symbolic.tables import egg
+from symbolic.tables.symbols import alpha as alpha_letter
+from symbolic.tables.symbols import lam as lam_letter
+from verification.arithmetic.words import FLOAT64
+from verification.cycles.continuation.arc import Steps
+from verification.cycles.continuation.branch import What, branch
+from verification.cycles.continuation.curves import Special, curve
+from verification.cycles.continuation.normal import coefficients
+from verification.cycles.continuation.recurrence import Chords, Ends, henon
+from verification.cycles.continuation.systems import Critical
+from verification.cycles.shooting.normal_form import normal_form
+from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.named.tongue import accumulation, cascade, fold, largest_shape
+from verification.named.torus import contracting_up_to, double_one, expanding_cycle
+
+CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified rungs: `verification.named.feigenbaum.accumulation`
+AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]
+
+
+@pytest.fixture(scope="module")
+def rungs():
+    return list(cascade(3, 32))
+
+
+@pytest.mark.parametrize(("K", "p", "q"), [(3, 1, 3), (4, 1, 4), (5, 2, 5)])
+def test_the_fold_of_a_polygon_is_followed_along_its_closed_form(K, p, q):
+    plane = fold(K, p, q).curve.plane
+    expected = lambdify(alpha_letter, saddle_node(K, p, q))(plane[:, 0])
+
+    assert np.max(np.abs(plane[:, 1] - expected)) < 1e-12
+    assert plane[-1, 0] == largest_shape(K)
+
+
+def test_the_first_doubling_is_followed_along_alpha_tilde(rungs):
+    plane = rungs[0].curve.plane
+    expected = lambdify(lam_letter, alpha_tilde())(plane[:, 1])
+
+    assert np.max(np.abs(plane[:, 0] - expected)) < 1e-12
+    assert plane[0, 1] == 1.0
+    assert abs(plane[-1, 1]) < 1e-12
+
+
+def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(rungs):
+    for rung in rungs:
+        (end,) = rung.special
+
+        assert end.what is Special.ONE_TWO
+        assert end.letters[1] == 1.0
+
+
+def test_the_resonances_pile_up_as_in_area_preserving_maps(rungs):
+    ends = [rung.special[0].letters[0] for rung in rungs if rung.what is What.FLIP and rung.period > 2]
+    gaps = [b - a for a, b in pairwise(ends)]
+
+    assert gaps[-2] / gaps[-1] == pytest.approx(AREA_PRESERVING, abs=0.01)
+
+
+def test_the_accumulation_is_that_of_the_certified_ladder(rungs):
+    found = accumulation(rungs, np.array([0.08]))
+
+    assert abs(found.lam[0] - CERTIFIED_END) < found.error[0]
+    assert 0 < found.error[0] < 1e-5
+
+
+def test_henons_flip_and_fold_meet_nowhere_and_end_in_resonances():
+    """Both are parabolas in closed form; at b = -1 the map keeps areas: 1:2 on the flip, 1:1 on the fold."""
+    box = ((-1.0, 0.9), (-2.0, 4.0))
+    flips = curve(henon(1), Kind.FLIP, np.array([0.95]), ("b", "a"), (0.3, 0.37), box, steps=Steps(largest=2.0))
+    folds = curve(henon(1), Kind.FOLD, np.array([2.8]), ("b", "a"), (0.3, -0.12), box, steps=Steps(largest=2.0))
+
+    assert np.allclose(flips.plane[:, 1], 3 * (1 - flips.plane[:, 0]) ** 2 / 4, atol=1e-10)
+    assert np.allclose(folds.plane[:, 1], -((1 - folds.plane[:, 0]) ** 2) / 4, atol=1e-10)
+    assert [d.what for d in flips.special] == [Special.ONE_TWO]
+    assert [d.what for d in folds.special] == [Special.ONE_ONE]
+
+
+def test_the_coefficients_are_those_of_the_certified_normal_form():
+    """A second program for the same numbers: root mean square amplitude 1 here, last entry 1 there."""
+    table = egg(3).at(alpha="7/100")
+    one = branch(Chords(table, (0, 0)), np.array([0.0, np.pi]), "lam", 0.1, (0.0, 1.0))
+    (flip,) = one.events
+    at = Linearised(Rows(Problem(table, (0, 0), Kind.FLIP, "lam"), FLOAT64), [*map(float, flip.x), flip.value])
+    v = np.array(at.critical.right)
+    expected = normal_form(at, FLOAT64).branch / np.mean(v**2)
+
+    assert coefficients(flip.ring, flip.x, {"lam": flip.value}, Kind.FLIP, "lam").branch == pytest.approx(
+        expected, rel=1e-9
+    )
+
+
+def test_a_cycle_of_the_egg_expands_areas_although_lam_is_below_one():
+    """So `det = lam**p < 1` is false; what holds is a bound on `lam`."""
+    found = expanding_cycle()
+
+    assert found.certified
+    assert found.determinant > Rational(13, 10)
+    assert [contracting_up_to(Rational(k, 50)) for k in (1, 4)] == [0.765625, 0.328125]
+
+
+def test_a_double_multiplier_one_below_lam_one_is_proved():
+    """Next to it the multipliers are complex of modulus 1: Neimark-Sacker, in a window some 1e-13 wide."""
+    found = double_one()
+
+    assert found.status.name == "UNIQUE"
+    assert found.zero[-1] < 0.97
+    assert 0.0687 < found.zero[-2] < 0.0688
+
+
+@pytest.mark.parametrize("kind", [Kind.FOLD, Kind.FLIP])
+@pytest.mark.parametrize("turn", [1, -1])
+def test_the_matrix_of_a_critical_cycle_is_that_of_the_difference_quotients(kind, turn):
+    z = np.array([0.3, 2.9, -0.4, 0.05, 0.3])
+    system = Critical.near(Chords(egg(3), (0, 0, 0), Ends(turn, 0.2)), kind, ("alpha", "lam"), z)
+    _, matrix = system.linear(z)
+    h = 1e-6
+    steps = [(system.linear(z + h * e)[0] - system.linear(z - h * e)[0]) / (2 * h) for e in np.eye(len(z))]
+
+    assert np.max(np.abs(np.array(steps).T - matrix)) < 1e-6 * (1 + np.max(np.abs(matrix)))
+
+
+def test_an_even_egg_has_no_cascade_of_diameters():
+    with pytest.raises(ValueError, match="K = 4 is even"):
+        next(cascade(4))

@@ -1,0 +1,145 @@
+"""Linear algebra along a cycle, against exact dense algebra, and the derivatives it is fed."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from sympy import Matrix, Rational, cos, diff, log, sin, sqrt, symbols
+from sympy import atan as arctan
+
+from symbolic.generation.text import kernel, load
+from symbolic.tables import cuspless, egg, polar
+from symbolic.tables.symbols import theta
+from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.words import FLOAT64
+from verification.cycles.shooting.chain import Chain, Elimination
+from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+
+fractions = st.fractions(-3, 3, max_denominator=7)
+
+
+@st.composite
+def chains(draw):
+    n = draw(st.integers(2, 7))
+    three = [draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(3)]
+    return Chain(*three, draw(st.sampled_from([1, -1])))
+
+
+def dense(chain: Chain) -> Matrix:
+    n = len(chain.diagonal)
+    columns = [chain.times([Fraction(int(i == j)) for i in range(n)]) for j in range(n)]
+    return Matrix(n, n, lambda i, j: Rational(columns[j][i].numerator, columns[j][i].denominator))
+
+
+def eliminated(chain: Chain) -> Elimination:
+    try:
+        return Elimination(chain)
+    except ZeroDivisionError:
+        assume(False)
+        raise
+
+
+def rationals(values: list) -> Matrix:
+    return Matrix([Rational(Fraction(v)) for v in values])
+
+
+@given(chains(), st.data())
+def test_solving_a_chain_inverts_its_matrix_exactly(chain, data):
+    n = len(chain.diagonal)
+    right = data.draw(st.lists(fractions, min_size=n, max_size=n))
+    one = eliminated(chain)
+    assume(one.rest != 0)
+
+    assert chain.times(one.solve(right)) == right
+
+
+@given(chains(), st.data())
+def test_a_bordered_chain_is_solved_exactly(chain, data):
+    n = len(chain.diagonal)
+    column, row = (data.draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(2))
+    corner = data.draw(fractions)
+    right = data.draw(st.lists(fractions, min_size=n + 1, max_size=n + 1))
+    whole = dense(chain).row_join(rationals(column)).col_join(rationals([*row, corner]).T)
+    one = eliminated(chain)
+    assume(whole.det() != 0)
+
+    assert whole * rationals(one.bordered(column, row, [corner], right)) == rationals(right)
+
+
+@given(chains())
+def test_rest_vanishes_exactly_when_the_matrix_is_singular(chain):
+    one = eliminated(chain)
+    product = Fraction(1)
+    for pivot in one.pivots:
+        product *= pivot
+
+    assert dense(chain).det() == Rational(product * one.rest)
+    assert chain.times(one.right) == [0] * (len(one.right) - 1) + [one.rest]
+    assert (rationals(one.left).T * dense(chain)).tolist() == [[0] * (len(one.left) - 1) + [Rational(one.rest)]]
+
+
+PROBLEMS = [
+    (Problem(egg(3).at(alpha="2/25"), (0,) * 4, Kind.FLIP, "lam"), [0.3, 3.0, -0.2, 2.5, 0.2]),
+    (Problem(egg(3), (0,) * 4, Kind.FOLD, "alpha", Rational(1, 3)), [0.3, 3.0, -0.2, 2.5, 0.05]),
+    (Problem(egg(3).at(alpha="2/25"), (0, 0), Kind.FLIP, "lam"), [0.3, 3.0, 0.2]),
+    (Problem(cuspless, (1, 0, 0), Kind.FLIP, "lam"), [0.1, -0.4, 1.1, 0.3]),
+    (Problem(egg(3).at(alpha="2/25"), (0, 0), Kind.FLIP, "lam", mirror=True), [0.1, -2.7, 0.2]),
+    (Problem(egg(3), (0, 0, 0), Kind.FOLD, "alpha", Rational(1, 3), mirror=True), [0.1, -2.7, 0.2, 0.05]),
+    (Problem(cuspless, (1, 0, 0), lam=Rational(1, 4)), [0.1, -0.4, 1.1]),
+]
+
+
+@pytest.mark.parametrize(("problem", "z"), PROBLEMS)
+def test_newtons_correction_inverts_the_matrix_of_difference_quotients(problem, z):
+    rows, h = Rows(problem, FLOAT64), 1e-6
+    correction = problem.newton(FLOAT64, z)
+    up, down = ([x + s * h * d for x, d in zip(z, correction, strict=True)] for s in (1, -1))
+    slope = [
+        (a - b) / (2 * h)
+        for a, b in zip(Linearised(rows, up, slope=False).value, Linearised(rows, down, slope=False).value, strict=True)
+    ]
+    value = Linearised(rows, z).value
+
+    size = max(abs(d) for d in correction) ** 3 + 1  # the third derivative along the correction
+    assert max(abs(a - b) for a, b in zip(slope, value, strict=True)) < 1e-7 * size
+
+
+@settings(max_examples=15)
+@given(st.floats(0.2, 3), st.floats(-2, 2), st.floats(-2, 2))
+def test_jets_are_the_taylor_coefficients(a, b, c):
+    x, e = symbols("x e")
+    expression = arctan(x) * sqrt(x + 1) / (cos(x) + 2) + log(x) * sin(x) / x
+    function = load(kernel("f", [x], {"value": expression}), jets(FLOAT64))
+    found = function(Jet(a, b, c, 0.0))[0].c
+    path = expression.subs(x, Rational(a) + Rational(b) * e + Rational(c) * e**2)
+    for k, factorial in ((0, 1), (1, 1), (2, 2)):
+        expected = float(diff(path, e, k).subs(e, 0)) / factorial
+
+        assert abs(found[k] - expected) < 1e-11 * (1 + abs(expected))  # a few roundings of numbers below 1e3
+
+
+def test_a_problem_that_is_not_square_is_refused():
+    with pytest.raises(ValueError, match="CYCLE with lam free is not square"):
+        Problem(cuspless, (1, 0), Kind.CYCLE, "lam")
+    with pytest.raises(ValueError, match="free letters must be just lam; lam = None"):
+        Problem(egg(3), (0, 0), Kind.FLIP, "lam")
+    with pytest.raises(ValueError, match="theta -> -theta is no mirror image"):
+        Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), mirror=True)
+    with pytest.raises(ValueError, match="1 row is no chain"):
+        Chain([1], [1], [1])
+
+
+@given(chains(), st.data())
+def test_a_transposed_chain_is_solved_exactly_with_and_without_a_border(chain, data):
+    n = len(chain.diagonal)
+    column, row = (data.draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(2))
+    corner = data.draw(fractions)
+    right = data.draw(st.lists(fractions, min_size=n + 1, max_size=n + 1))
+    plain = dense(chain)
+    whole = plain.row_join(rationals(column)).col_join(rationals([*row, corner]).T)
+    one = eliminated(chain)
+    assume(whole.det() != 0 and plain.det() != 0)
+
+    assert whole.T * rationals(one.transposed(column, row, [corner], right)) == rationals(right)
+    assert plain.T * rationals(one.transposed([], [], [], right[:n])) == rationals(right[:n])

@@ -1,0 +1,80 @@
+"""Shooting in mpmath: quadratic, of the digits asked for, and without a trace in the ambient context."""
+
+from itertools import pairwise
+
+import mpmath
+import pytest
+from sympy import Rational
+
+from symbolic.cycles.thresholds import alpha_tilde
+from symbolic.tables import egg
+from symbolic.tables.symbols import lam
+from verification.cycles.shooting.attracting import attractor, characteristic, next_critical
+from verification.cycles.shooting.newton import floats, levels, refined
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.small import corner
+
+EGG = egg(3).at(alpha=Rational(2, 25))
+
+
+def flip() -> Problem:
+    return Problem(egg(3), (0, 0), Kind.FLIP, "alpha", Rational(1, 3))
+
+
+def test_corrections_shrink_quadratically():
+    steps = refined(corner(), [0.25, 0.07], 300).steps
+    tail = [s for s in steps if s.correction < -20]
+
+    assert len(tail) >= 3
+    for one, two in pairwise(tail):
+        assert two.correction < max(1.9 * one.correction, -0.9 * one.digits)  # or to the rounding
+
+
+@pytest.mark.parametrize("digits", [1, 16, 17, 50, 333])
+def test_precision_doubles_up_to_the_digits_asked_for(digits):
+    found = levels(digits + 15)
+
+    assert found[-1] == digits + 15
+    assert all(b <= 2 * a for a, b in pairwise(found))
+
+
+def test_two_precisions_agree_in_the_digits_of_the_coarser():
+    coarse, fine = (refined(flip(), [0.0, 3.14, 0.06], digits).z[-1] for digits in (40, 90))
+
+    assert abs(coarse - fine) < mpmath.mpf(10) ** -40
+
+
+def test_a_flip_found_by_shooting_is_the_closed_form():
+    found = refined(flip(), [0.0, 3.14, 0.06], 50).z[-1]
+    exact = alpha_tilde().subs(lam, Rational(1, 3)).evalf(60)
+
+    assert mpmath.nstr(found, 50) == str(exact.evalf(50))
+
+
+def test_the_ambient_precision_is_neither_read_nor_changed():
+    before = mpmath.mp.dps
+    found = refined(corner(), [0.25, 0.07], 60).z[1]
+
+    assert mpmath.mp.dps == before
+    assert mpmath.nstr(found, 60).startswith("0.0712172452489159804115973829093275734858541598")
+
+
+def test_a_start_out_of_reach_is_a_sentence():
+    with pytest.raises(ValueError, match="egg, period 3: Newton's method in float64 did not settle"):
+        floats(Problem(EGG, (0, 0, 0), lam=Rational(1, 10)), [0.0, 2.0, 4.0])
+
+
+def test_an_attractor_of_the_egg_is_a_cycle_of_the_chord_system():
+    cycle = attractor(EGG, 0.36, (0.05, 3.1))
+    again = floats(Problem(EGG, (0,) * 4, lam=Rational(9, 25)), cycle)
+
+    assert len(cycle) == 4
+    assert max(abs(x - y) for x, y in zip(cycle, again, strict=True)) < 1e-6
+
+
+def test_a_followed_cycle_has_the_multiplier_it_was_followed_to():
+    theta = attractor(EGG, 0.36, (0.05, 3.1))
+    *cycle, lam_3 = next_critical(EGG, theta, 0.36, 0.005, Kind.FLIP)
+
+    assert abs(lam_3 - 0.371235502528) < 1e-11
+    assert abs(characteristic(EGG, cycle, lam_3, -1)) < 1e-9

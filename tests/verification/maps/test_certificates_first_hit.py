@@ -1,0 +1,46 @@
+"""Chords that meet nothing on their way, in tables that are not convex."""
+
+import math
+
+import pytest
+from flint import arb
+from sympy import Rational, cos
+
+from symbolic.tables import cardioid, cuspless, egg, polar
+from symbolic.tables.symbols import theta
+from verification.arithmetic.words import working
+from verification.cycles.shooting.newton import refined
+from verification.cycles.shooting.problem import Problem
+from verification.maps.first_hit import first_hits
+from verification.proofs.periodic.bifurcation import Claim, proved
+from verification.proofs.periodic.interval_newton import exact_balls
+
+WAISTED = polar(1 + cos(2 * theta) / 2)  # the waist at theta = +-pi/2 has radius 1/2
+
+
+def bounces(*values: float) -> list[arb]:
+    return [arb(x) for x in values]
+
+
+def test_a_convex_table_agrees_with_its_convexity():
+    assert first_hits(egg(3).at(alpha=Rational(2, 25)), (0, 0), bounces(0.1, 3.0)) is True
+    assert first_hits(cuspless, (1, 0, 0), bounces(0.1, 0.3, 1.5)) is True
+
+
+def test_a_chord_through_a_waist_is_free_and_one_around_it_is_not():
+    assert first_hits(WAISTED, (0, 0), bounces(0, math.pi)) is True
+    assert first_hits(WAISTED, (0, 0), bounces(0.7, math.pi - 0.7)) is None  # it leaves the table in between
+
+
+def test_a_chord_that_leaves_outwards_is_refused():
+    assert first_hits(WAISTED, (0, 0), bounces(math.pi / 2 - 0.2, math.pi / 2 + 0.2)) is None
+
+
+@pytest.mark.parametrize("lam", [Rational(1, 3), Rational(9, 10)])
+def test_the_cardioids_vertical_orbit_is_certified_though_the_table_is_not_convex(lam):
+    problem = Problem(cardioid, (0, 0), lam=lam)
+    solution = refined(problem, [1.0, -1.0], 20)
+    with working(150):
+        claim = Claim(problem, tuple(exact_balls(solution.z)), arb("1e-22").mid(), 150, 20)
+
+    assert proved(claim).certified

@@ -1,0 +1,41 @@
+"""`docs/leave_out.md` is true of the kernels and of what a process imports; memory and times are not held."""
+
+import pytest
+
+from verification.measure.speed.baselines import module
+from verification.measure.speed.labelled import SCENES
+
+PAGE = module("first_result")
+LINES = [
+    line
+    for line in PAGE.PAGE.read_text().split(PAGE.COLD)[0].splitlines()
+    if line.startswith("| ") and "scene" not in line
+]
+
+
+def cells(line):
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def test_the_page_has_a_line_for_every_scene_law_and_question():
+    assert [tuple(cells(line)[:3]) for line in LINES] == [
+        (name, law, asked) for name in SCENES for law in PAGE.LAWS for asked in PAGE.QUESTIONS
+    ]
+
+
+@pytest.mark.parametrize("line", LINES, ids=lambda line: " ".join(cells(line)[:3]))
+def test_operations_and_state_are_as_on_the_page(line):
+    name, law, asked, operations, share, state, *_ = cells(line)
+    own, part, rows = PAGE.counted(name, law, asked)
+
+    assert (str(own), f"{part:.0%}", str(rows)) == (operations, share, state)
+    assert part <= 1
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_process_imports_the_modules_on_the_page_and_no_more(name, tmp_path):
+    asked = {"circle": "end", "ellipse": "orbit"}.get(name, "exponents")
+    line = next(line for line in LINES if line.startswith(f"| {name} | pinball | {asked} "))
+    said = PAGE.probe(PAGE.program(name, "pinball", asked), str(tmp_path))
+
+    assert line.startswith(PAGE.line(name, "pinball", asked, said))

@@ -1,0 +1,160 @@
+"""The named values: against the paper, against closed forms, and against each other."""
+
+import json
+from itertools import pairwise
+
+import pytest
+from click.testing import CliRunner
+from sympy import Integer, Rational
+
+from verification.app.commands.locate import check_command as check
+from verification.app.commands.locate import command as locate_command
+from verification.cycles.shooting.cascade import ladder
+from verification.named.files import document
+from verification.named.locate import NAMES, locate
+
+ALPHA = Rational(2, 25)
+SHAPES = {
+    "alpha-tilde": {"lam": Rational(1, 3)},
+    "alpha-hat": {"lam": Rational(1, 3)},
+    "saddle-node": {"alpha": ALPHA},
+    "doubling": {"alpha": ALPHA, "n": Integer(3)},
+    "symmetry-breaking": {"alpha": ALPHA},
+}
+KNOWN = {  # each from its second method: closed forms of the symbolic storey, or 60 digits in mpmath
+    "lambda-star": "0.0712172452489159804",
+    "phi-star": "-0.0289794737869139599",
+    "lambda-c": "0.0934003354313602414",
+    "alpha-tilde": "0.0618751972700558969",
+    "alpha-hat": "0.0277563773199464655",
+    "saddle-node": "0.3781212525900902357",
+    "doubling": "0.3712355025279195235",
+    "symmetry-breaking": "0.2877854765031",
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_each_name_is_located_and_certified(name):
+    found = locate(name, 25, **SHAPES.get(name, {}))
+
+    assert found.certified, found.checks
+    assert found.value.startswith(KNOWN[name])
+    assert float(found.radius) < 1e-25
+
+
+def test_every_name_is_a_bifurcation_with_a_known_value_or_a_contact_of_manifolds():
+    contacts = {"merging-crisis", "boundary-crisis", "symmetry-restoring", "band-merging", "interior-crisis"}
+    contacts |= {f"{what}-{event}" for what in ("window", "family") for event in ("end", "merging")}
+
+    assert set(NAMES) == set(KNOWN) | contacts
+
+
+@pytest.mark.parametrize(("name", "near"), [("merging-crisis", 0.44343), ("boundary-crisis", 0.6622)])
+def test_a_crisis_is_an_estimate_and_says_so(name, near):
+    """Near: the paper's plots, 0.4435 and 0.66, and a bisection with 20 times the bounces."""
+    found = locate(name, 8, alpha=ALPHA)
+
+    assert not found.certified
+    assert abs(float(found.value) - near) < 1e-4
+    assert 0 < float(found.radius) < 1e-3
+
+
+def test_more_digits_agree_with_fewer():
+    few, many = (locate("lambda-star", digits) for digits in (20, 200))
+
+    assert abs(float(few.value) - float(many.value)) < 1e-16
+    assert many.value.startswith(few.value[:20])
+    assert float(few.radius) > 0
+
+
+def test_what_is_located_tells_how_newtons_method_came_there():
+    steps = locate("saddle-node", 200, alpha=ALPHA).steps
+
+    assert [step.digits for step in steps] == sorted(step.digits for step in steps)
+    assert steps[-1].digits > 200
+    assert -2 * steps[-1].correction > 200  # so that the digits it leaves are right
+
+
+def test_the_ladder_approaches_feigenbaums_ratio():
+    rungs = ladder(ALPHA)
+    values = [next(rungs).lam for _ in range(7)]
+    gaps = [b - a for a, b in pairwise(values)]
+
+    assert abs(gaps[-2] / gaps[-1] - 4.6692) < 1e-3  # converges like 4.67**-n
+
+
+PRINTED = [(3, 0.372, False), (4, 0.389, True), (5, 0.393, True), (6, 0.3935, False)]
+
+
+@pytest.mark.parametrize(("n", "printed", "right"), PRINTED)
+def test_the_papers_ladder_is_judged_digit_by_digit(n, printed, right):
+    found = locate("doubling", 15, alpha=ALPHA, n=Integer(n))
+    decimals = len(str(printed)) - 2
+
+    assert found.certified
+    assert (round(float(found.value), decimals) == printed) is right
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "message"),
+    [
+        ("lambda", {}, "no value is called 'lambda'; accepted: lambda-star"),
+        ("lambda-c", {"lam": Integer(0)}, "given --lam; it takes no letter"),
+        ("doubling", {"alpha": ALPHA}, "it takes --alpha, --n"),
+        ("doubling", {"alpha": ALPHA, "n": Integer(40)}, "n = 40 is out of range; accepted: 2 to 17"),
+        ("doubling", {"alpha": ALPHA, "n": Integer(17)}, "accepted for n = 17: up to 61 digits"),
+        ("doubling", {"alpha": ALPHA, "n": Integer(2)}, "alpha = 2/25 has no lambda_2"),
+        ("saddle-node", {"alpha": Integer(0)}, "alpha = 0 is a circle"),
+        ("saddle-node", {"alpha": Rational(1, 5)}, r"alpha must lie in \[0, 1/10\]"),
+        ("alpha-tilde", {"lam": Integer(2)}, "lam = 2 is out of range"),
+        ("window-end", {"alpha": ALPHA}, "given --alpha; it takes --alpha, --period"),
+        ("window-end", {"alpha": ALPHA, "period": Integer(7)}, "accepted: 6, 8, 9, 12, 14, 15, 18, 20"),
+        ("band-merging", {"alpha": ALPHA, "period": Integer(3)}, "accepted: 4, 8, 16"),
+        ("interior-crisis", {"alpha": ALPHA, "period": Integer(8)}, "accepted: 12"),
+    ],
+)
+def test_a_search_that_cannot_succeed_says_what_is_accepted(name, shape, message):
+    with pytest.raises(ValueError, match=message):
+        locate(name, 100 if shape.get("n") == 17 else 15, **shape)
+
+
+def test_ends_where_a_bifurcation_degenerates_are_not_certified():
+    elastic, slap = locate("alpha-tilde", 15, lam=Integer(1)), locate("alpha-hat", 15, lam=Integer(0))
+
+    assert elastic.checks["simple_multiplier"] is None
+    assert slap.checks["unique"] is None
+
+
+def test_the_command_writes_the_contract_and_a_certificate_that_checks(tmp_path):
+    certificate, result = tmp_path / "c.json", tmp_path / "r.json"
+    arguments = ["saddle-node", "--alpha", "0.08", "--certificate", str(certificate), "--json", str(result)]
+    done = CliRunner().invoke(locate_command, arguments, standalone_mode=False)
+    given = json.loads(result.read_text())
+
+    assert done.return_value == 0
+    assert {"name", "value", "radius", "digits", "certified", "checks", "seconds"} <= set(given)
+    assert {"gmpy2", "newton"} <= set(given)
+    assert given["certified"] is True
+    assert CliRunner().invoke(check, [str(certificate)], standalone_mode=False).return_value == 0
+
+
+def test_a_certificate_that_fails_exits_with_one(tmp_path):
+    spoiled = document("fold", locate("saddle-node", 20, alpha=ALPHA).proof) | {"kind": "flip"}
+    (tmp_path / "c.json").write_text(json.dumps(spoiled))
+
+    assert CliRunner().invoke(check, [str(tmp_path / "c.json")], standalone_mode=False).return_value == 1
+
+
+def test_a_certificate_that_cannot_be_written_is_refused_before_the_work(tmp_path):
+    nowhere = str(tmp_path / "none" / "c.json")
+    with pytest.raises(ValueError, match="cannot be written; accepted: a file in a directory of yours"):
+        CliRunner().invoke(
+            locate_command, ["lambda-c", "--certificate", nowhere], standalone_mode=False, catch_exceptions=False
+        )
+
+
+@pytest.mark.parametrize("digits", ["0", "1000000000", "-3", "many"])
+def test_digits_out_of_range_are_refused(digits):
+    done = CliRunner().invoke(locate_command, ["lambda-c", "--digits", digits])
+
+    assert done.exit_code == 2

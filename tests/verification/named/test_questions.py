@@ -1,0 +1,64 @@
+"""Questions on a scene: what they answer agrees with closed forms, and a wrong one is told in a sentence."""
+
+from functools import cache
+
+import pytest
+from sympy import Rational
+
+from symbolic import Scene
+from symbolic.cycles.polygons import saddle_node
+from symbolic.tables.symbols import alpha
+from verification.named.questions import certify, find_cycles, follow
+
+EGG = Scene("egg", alpha="2/25", lam="1/2")
+
+
+@cache
+def triangles():
+    return find_cycles(EGG, period=3)
+
+
+def test_cycles_are_chosen_by_what_they_are():
+    orbits = triangles()
+
+    assert {orbit.period for orbit in orbits} == {3}
+    assert len(orbits.stable) + len(orbits.unstable) == len(orbits)
+    assert len(orbits.stable) == 2  # one each way round; paper, section 6.4
+    assert orbits.of(3)[:2].orbits == orbits.orbits[:2]
+    assert len(orbits.of(2)) == 0
+
+
+def test_a_branch_is_followed_to_its_fold_and_the_fold_is_certified():
+    branch = follow(triangles().stable[0], lam=("0.37", "1"))
+    (fold,) = branch.folds
+    found = certify(fold, digits=25)
+    exact = saddle_node().subs(alpha, Rational(2, 25))
+
+    assert found.certified
+    assert abs(Rational(found.value) - exact.evalf(40)) <= Rational(found.radius) + Rational(1, 10**39)
+    assert branch.flips == branch.pitchforks == branch.border_collisions == ()
+    assert str(found).endswith("certified)")
+
+
+def test_a_shape_is_a_letter_too():
+    axis = find_cycles(Scene("ellipse", a="3/2", lam="1/2"), period=2).stable[0]
+    branch = follow(axis, a=("1.2", "1.9"))
+
+    assert branch.letter == "a"
+    assert branch.events == ()  # its multipliers stay inside the unit circle for every a > 1; paper, section 3.3
+
+
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda: find_cycles(EGG), "give one of"),
+        (lambda: find_cycles(EGG, period=1), "accepted: integers from 2"),
+        (lambda: follow(triangles()[0]), "one letter varies"),
+        (lambda: follow(triangles()[0], beta=(0, 1)), "accepted: lam, alpha"),
+        (lambda: follow(triangles()[0], lam=("0.5", "0.4")), "first must be the smaller"),
+        (lambda: follow(triangles()[0], lam="0.4"), "is no interval"),
+    ],
+)
+def test_a_wrong_question_is_told_in_a_sentence(ask, says):
+    with pytest.raises(ValueError, match=says):
+        ask()

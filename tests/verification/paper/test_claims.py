@@ -1,0 +1,204 @@
+"""Laws on the claims: complete, judged, and sensitive to every printed coefficient."""
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+from symbolic.tables.formula import parse
+from verification.paper.claims.claim import LETTERS, Claim, Printed, Verdict
+from verification.paper.claims.judges import JUDGES
+from verification.paper.report.verdicts import Result, catalogue, judge, verify
+
+CONTRACT = {
+    "map.derivative_matrix",
+    "ellipse.monodromy",
+    "ellipse.P1",
+    "ellipse.P2",
+    "ellipse.lambda_minus",
+    "ellipse.major_axis_unstable",
+    "cardioid.slap_expanding",
+    "cuspless.monodromy",
+    "cuspless.mu",
+    "cuspless.lambda_c",
+    "cuspless.lambda_star",
+    "cuspless.phi_star",
+    "egg.monodromy",
+    "egg.alpha_tilde",
+    "egg.alpha_hat",
+    "egg.period3_elliptic",
+    "egg.saddle_node",
+    "egg.doubling.3",
+    "egg.doubling.4",
+    "egg.doubling.5",
+    "egg.doubling.6",
+    "egg.merging_crisis",
+    "egg.boundary_crisis",
+}
+
+FAIL_AT_A_WITNESS = (
+    "map.whispering_gallery",
+    "egg.period4_created",
+    "egg.period3_found",
+    "egg.figure_attractors",
+    "egg.no_period3_caption",
+    "egg.projection_misses",
+    "cuspless.coexistence",
+)
+
+NUMERAL = re.compile(r"(?<![A-Za-z_0-9.])\d+(?:\.\d+)?(?![A-Za-z_0-9.])")
+
+
+@cache
+def results() -> dict[str, Result]:
+    """The symbolic claims, judged; the numerical ones have tests with the proofs that settle them."""
+    next(verify("map.A"))  # enters the judges
+    return {claim.id: judge(claim) for claim in catalogue() if claim.kind != "numerical"}
+
+
+def claims(*kinds: str) -> list[Claim]:
+    return [claim for claim in catalogue() if claim.kind in kinds]
+
+
+def entries(printed: Printed) -> list[str]:
+    if isinstance(printed, str):
+        return [printed]
+    return [entry for row in printed for entry in ([row] if isinstance(row, str) else row)]
+
+
+def with_entry(printed: Printed, index: int, text: str) -> Printed:
+    if isinstance(printed, str):
+        return text
+    numbered = iter(range(10**6))
+    return [
+        (text if next(numbered) == index else row)
+        if isinstance(row, str)
+        else [text if next(numbered) == index else entry for entry in row]
+        for row in printed
+    ]
+
+
+def mutations(claim: Claim) -> list[Claim]:
+    """The claim with one numeral changed, each in turn, and with each entry doubled."""
+    mutants = []
+    for index, entry in enumerate(entries(claim.printed)):
+        texts = [f"2*({entry})"]
+        for found in NUMERAL.finditer(entry):
+            digits = found.group()
+            other = digits[:-1] + str((int(digits[-1]) + 1) % 10) if "." in digits else str(int(digits) + 1)
+            texts.append(entry[: found.start()] + other + entry[found.end() :])
+        mutants += [replace(claim, printed=with_entry(claim.printed, index, text)) for text in texts]
+    return [mutant for mutant in mutants if readable(mutant) and not same(mutant, claim)]
+
+
+def readable(mutant: Claim) -> bool:
+    """A square root turned into a third root is no formula of the language, and no mutant."""
+    try:
+        return mutant.formula is not None
+    except ValueError:
+        return False
+
+
+def same(mutant: Claim, claim: Claim) -> bool:
+    """Twice nothing is nothing: such a mutant says the same."""
+    pairs = zip(entries(mutant.printed), entries(claim.printed), strict=True)
+    return all(parse(new, LETTERS) == parse(old, LETTERS) for new, old in pairs)
+
+
+def test_every_id_of_the_contract_is_a_claim():
+    assert {claim.id for claim in catalogue()} >= CONTRACT
+
+
+def test_ids_are_unique_and_every_judge_has_a_claim():
+    ids = [claim.id for claim in catalogue()]
+
+    assert len(ids) == len(set(ids))
+    results()
+    assert set(JUDGES) <= set(ids)
+
+
+def test_no_symbolic_claim_is_open():
+    left = [name for name, result in results().items() if result.verdict is Verdict.OPEN]
+
+    assert left == []
+
+
+def test_whatever_is_corrected_or_refuted_says_which_symbol_is_wrong():
+    wrong = [result for result in results().values() if result.verdict in (Verdict.CORRECTED, Verdict.REFUTED)]
+
+    assert wrong
+    assert all(result.erratum for result in wrong)
+    assert not any(result.erratum for result in results().values() if result.verdict is Verdict.CONFIRMED)
+
+
+def stray(claim: Claim, result: Result) -> list[str]:
+    """The letters of a claim at whose printed range a refutation names no witness, or one outside."""
+    given = {x: parse(result.witness[x.name], {}) for x in claim.box if x.name in result.witness}
+    return [f"{x} = {given.get(x)} for {x} in {r}" for x, r in claim.box.items() if x not in given or given[x] not in r]
+
+
+def test_a_refuted_sentence_fails_at_a_witness_inside_the_range_that_is_printed():
+    wrong = [c for c in claims("identity", "relation", "property") if results()[c.id].erratum]
+
+    assert {c.id: stray(c, results()[c.id]) for c in wrong if stray(c, results()[c.id])} == {}
+    assert not any(r.witness for r in results().values() if not r.erratum)
+
+
+@pytest.mark.parametrize("name", FAIL_AT_A_WITNESS)
+def test_a_refuted_observation_fails_at_a_witness_inside_the_range_that_is_printed(name):
+    (result,) = verify(name)
+    (claim,) = (claim for claim in catalogue() if claim.id == name)
+
+    assert result.verdict in (Verdict.CORRECTED, Verdict.REFUTED)
+    assert stray(claim, result) == []
+
+
+def test_the_known_misprints_come_out_corrected():
+    """Section 5.1: the other base point; section 6.3: one factor lambda too many; section 3.3: a closed end."""
+    misprinted = (
+        "cuspless.monodromy",
+        "egg.monodromy",
+        "ellipse.dominated_splitting",
+        "cardioid.slap_expanding_caption",
+    )
+
+    for claim in misprinted:
+        assert results()[claim].verdict is Verdict.CORRECTED, claim
+
+
+def test_the_cuspless_erratum_is_the_base_point_and_not_a_coefficient():
+    assert "(C, 0)" in results()["cuspless.monodromy"].erratum
+
+
+@pytest.mark.parametrize("claim", claims("identity"), ids=lambda claim: claim.id)
+def test_changing_any_printed_coefficient_flips_the_verdict(claim: Claim):
+    next(verify("map.A"))
+    verdict = judge(claim).verdict
+
+    for mutant in mutations(claim):
+        assert judge(mutant).verdict is not verdict, mutant.printed
+
+
+@pytest.mark.parametrize("claim", claims("digits"), ids=lambda claim: claim.id)
+def test_changing_any_printed_digit_flips_the_verdict(claim: Claim):
+    next(verify("map.A"))
+    text, verdict = str(claim.printed), judge(claim).verdict
+
+    for place in range(text.index(".") + 1, len(text)):
+        mutant = text[:place] + str((int(text[place]) + 3) % 10) + text[place + 1 :]
+        assert judge(replace(claim, printed=mutant)).verdict is not verdict, mutant
+
+
+def test_certified_values_carry_a_radius_that_shrinks_with_the_digits():
+    few, many = (next(verify("cuspless.lambda_c", digits)) for digits in (10, 40))
+
+    assert float(many.radius) < 1e-39 < float(few.radius) < 1e-9
+    assert many.value.startswith("0.09340033543136")  # (27 - 8*sqrt(11))/5 by mpmath at 60 digits
+
+
+def test_results_have_the_keys_of_the_schema():
+    (result,) = verify("ellipse.P1")
+
+    keys = ["id", "section", "quote", "printed", "derived", "verdict", "value", "radius", "method", "seconds"]
+    assert list(result.to_dict())[: len(keys)] == keys

@@ -1,0 +1,160 @@
+"""The judges of the egg's attractors and of named values, driven to each verdict that they can reach."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from sympy import Rational
+
+from symbolic.proofs.signs import Finding, Outcome
+from verification.named.locate import locate
+from verification.paper.claims.claim import Verdict
+from verification.paper.egg import basins as on_basins
+from verification.paper.egg import elastic as on_elastic
+from verification.paper.egg import period2 as on_egg_period2
+from verification.paper.egg import period3 as on_egg_period3
+from verification.paper.egg import sets as on_sets
+from verification.paper.egg import stability as judged
+from verification.paper.ellipse import circle as on_circle
+from verification.paper.report.verdicts import catalogue
+from verification.paper.shared import attractors as on_attractors
+from verification.paper.shared import located as on_located
+from verification.proofs.slap_map import critical_points as slap_critical
+from verification.proofs.slap_map.critical_points import one_zero
+from verification.proofs.slap_map.periodic_points import PeriodicPoints
+
+CLAIMS = {claim.id: claim for claim in catalogue()}
+UNKNOWN = Finding(Outcome.UNKNOWN, "no proof")
+PROVED = Finding(Outcome.PROVED, "a proof")
+
+
+def test_a_flip_is_called_subcritical_by_its_normal_form_and_not_by_the_words_beside_it(monkeypatch):
+    claim = CLAIMS["cuspless.unstable_period4"]
+    flip = locate("lambda-c", 10)
+    assert on_located.unstable_period4(claim).verdict is Verdict.CONFIRMED
+
+    silent = replace(flip, notes={})
+    monkeypatch.setattr(on_located, "located", lambda *_, **__: silent)
+    assert on_located.unstable_period4(claim).verdict is Verdict.CONFIRMED
+
+    fold = locate("saddle-node", 10, alpha=Rational(2, 25)).proof  # it has no such sign
+    wordy = replace(flip, notes={"kind": "subcritical: an unstable cycle is born"}, proof=fold)
+    monkeypatch.setattr(on_located, "located", lambda *_, **__: wordy)
+    assert on_located.unstable_period4(claim).verdict is Verdict.OPEN
+
+
+def test_period_8_has_doubled_at_panel_b_and_would_not_have_a_little_below(monkeypatch):
+    claim = CLAIMS["egg.figure_attractors"]
+    monkeypatch.setattr(judged, "attracting_4", lambda: PROVED)
+    found = judged.figure_attractors(claim)
+    assert found.verdict is Verdict.CORRECTED
+    assert "period 16 attracts at lam = 39/100" in found.mended.reason
+
+    eight, sixteen = judged.cycles_at(Rational(38, 100))
+    assert not eight
+    assert not sixteen
+
+    monkeypatch.setattr(judged, "cycles_at", lambda _: (PROVED, UNKNOWN))
+    assert judged.figure_attractors(claim).verdict is Verdict.REFUTED
+    monkeypatch.setattr(judged, "cycles_at", lambda _: (UNKNOWN, PROVED))
+    assert judged.figure_attractors(claim).verdict is Verdict.OPEN
+
+
+def test_a_cascade_with_a_rung_that_bears_no_stable_cycle_is_not_supported(monkeypatch):
+    found = judged.accumulation(Rational(2, 25), 6)
+    monkeypatch.setattr(judged, "accumulation", lambda *_: found)
+    judgement = judged.cascade(CLAIMS["egg.cascade"])
+    assert judgement.verdict is Verdict.SUPPORTED
+    assert "+-" in judgement.derived
+
+    monkeypatch.setattr(judged, "accumulation", lambda *_: replace(found, supercritical=False))
+    assert judged.cascade(CLAIMS["egg.cascade"]).verdict is Verdict.OPEN
+
+
+def test_beyond_the_crisis_a_third_attractor_leaves_it_open(monkeypatch):
+    claim = CLAIMS["egg.after_crisis"]
+    monkeypatch.setattr(on_basins, "BEYOND", ("0.67", "0.7"))
+    assert on_basins.after_crisis(claim).verdict is Verdict.SUPPORTED
+
+    monkeypatch.setattr(on_basins, "BEYOND", ("0.83",))  # where two cycles of period 12 attract too
+    assert on_basins.after_crisis(claim).verdict is Verdict.OPEN
+
+
+def test_three_chaotic_attractors_are_supported_above_042_and_not_where_there_are_six(monkeypatch):
+    claim = CLAIMS["egg.three_attractors"]
+    monkeypatch.setattr(on_attractors, "THREE", ("0.425",))
+    assert on_attractors.three(claim).verdict is Verdict.SUPPORTED
+
+    monkeypatch.setattr(on_attractors, "THREE", ("0.395",))
+    assert on_attractors.three(claim).verdict is Verdict.OPEN
+
+
+def test_localised_and_delocalised_chaos_are_told_apart(monkeypatch):
+    claim = CLAIMS["egg.figure_chaos"]
+    assert on_attractors.figure_chaos(claim).verdict is Verdict.SUPPORTED
+
+    seen = on_attractors.egg("0.45")
+    monkeypatch.setattr(on_attractors, "egg", lambda *_: seen)
+    assert on_attractors.figure_chaos(claim).verdict is Verdict.OPEN
+
+
+@pytest.mark.parametrize(("share", "wanted"), [(0.5, Verdict.SUPPORTED), (0.0, Verdict.OPEN), (1.0, Verdict.OPEN)])
+def test_a_mixed_phase_space_needs_orbits_that_are_chaotic_and_orbits_that_are_not(monkeypatch, share, wanted):
+    monkeypatch.setattr(on_elastic, "chaotic_shares", lambda _: [("0.05", share)])
+
+    assert on_elastic.elastic_mixed(CLAIMS["egg.elastic_mixed"]).verdict is wanted
+
+
+def test_a_wrong_closed_form_of_the_circles_orbit_fails_its_induction(monkeypatch):
+    assert on_circle.converges(CLAIMS["circle.converges"]).verdict is Verdict.CONFIRMED
+
+    right = on_circle.after
+    monkeypatch.setattr(on_circle, "after", lambda n: (right(n)[0] + n * on_circle.phi, right(n)[1]))
+    assert on_circle.converges(CLAIMS["circle.converges"]).verdict is not Verdict.CONFIRMED
+
+
+@pytest.mark.parametrize(("count", "wanted"), [(4, Verdict.CONFIRMED), (5, Verdict.OPEN)])
+def test_no_period_4_needs_as_many_stretches_as_the_two_orbits_of_period_2_have_ends(monkeypatch, count, wanted):
+    monkeypatch.setattr(on_sets, "points_of_period_4", lambda: PeriodicPoints([(0, 0.0, 1.0)] * count, 9))
+
+    assert on_sets.slap_no_period4(CLAIMS["cuspless.slap_no_period4"]).verdict is wanted
+
+
+def test_six_critical_points_need_the_proof_that_the_slope_vanishes_once(monkeypatch):
+    claim = CLAIMS["egg.slap_critical_points"]
+    assert on_egg_period2.critical_points(claim).verdict is Verdict.CORRECTED
+
+    monkeypatch.setattr(on_egg_period2, "crossings", lambda: one_zero(budget=10))
+    assert on_egg_period2.critical_points(claim).verdict is Verdict.REFUTED
+
+
+def test_a_centre_of_curvature_that_crossed_the_other_way_would_not_pass(monkeypatch):
+    assert one_zero().proved
+
+    wrong = -slap_critical.centre_beyond_boundary()
+    monkeypatch.setattr(slap_critical, "centre_beyond_boundary", lambda: wrong)
+    assert one_zero(budget=2000).proved is None
+
+
+def test_the_side_of_the_fold_is_not_proved_of_a_margin_with_the_wrong_sign(monkeypatch):
+    assert all(on_egg_period3.side_of_fold())
+
+    wrong = -on_egg_period3.fold_margin()
+    monkeypatch.setattr(on_egg_period3, "fold_margin", lambda: wrong)
+    assert not all(on_egg_period3.side_of_fold.__wrapped__())
+
+
+def test_a_triangle_that_is_not_elliptic_at_lambda_one_is_not_said_to_attract_below_it(monkeypatch):
+    claim = CLAIMS["egg.period3_attracting"]
+    assert on_egg_period3.attracting(claim).verdict is Verdict.CONFIRMED
+
+    at_vertices = on_egg_period3.elastic_trace(False)
+    monkeypatch.setattr(on_egg_period3, "elastic_trace", lambda _: at_vertices)
+    assert on_egg_period3.attracting(claim).verdict is not Verdict.CONFIRMED
+
+
+def test_the_vertices_that_an_attractor_comes_near_are_counted_modulo_a_turn():
+    points = SimpleNamespace(theta=np.array([2 * np.pi / 3, -4 * np.pi / 3 + 0.1, np.pi / 3]))
+
+    assert on_attractors.vertices(SimpleNamespace(points=points)) == {1}

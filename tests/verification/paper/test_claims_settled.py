@@ -1,0 +1,99 @@
+"""Numerical claims of the paper that proofs have settled, with what they came out as."""
+
+import pytest
+from sympy import Rational
+
+from verification.arithmetic.progress import heard
+from verification.paper.cardioid import border as on_border
+from verification.paper.cardioid.border import born
+from verification.paper.claims.claim import Verdict
+from verification.paper.egg.sets import without_triangles
+from verification.paper.report.verdicts import verify
+from verification.proofs.corner.half_return import Birth
+
+LOCATED = {
+    "cuspless.lambda_star": (Verdict.CORRECTED, "0.07121724524891598"),
+    "cuspless.phi_star": (Verdict.CORRECTED, "-0.028979473786913"),
+    "egg.doubling.3": (Verdict.CORRECTED, "0.3712355025279195"),
+    "egg.doubling.4": (Verdict.CONFIRMED, "0.3887610234608403"),
+    "egg.doubling.5": (Verdict.CONFIRMED, "0.3925015164860755"),
+    "egg.doubling.6": (Verdict.CORRECTED, "0.3933022270938691"),
+    "egg.saddle_node": (Verdict.CONFIRMED, "0.378121252590090"),
+    "cardioid.slap_expanding": (Verdict.CONFIRMED, "1.506262239365"),
+}
+
+
+@pytest.mark.parametrize("name", LOCATED)
+def test_a_certified_value_judges_the_printed_digits(name: str):
+    """Digits: interval Newton at 20 digits beside mpmath shooting at 60; the slap infimum beside a sampled minimum."""
+    verdict, digits = LOCATED[name]
+    (result,) = verify(name, digits=17)
+
+    assert result.verdict is verdict
+    assert result.value is not None
+    assert result.value.startswith(digits)
+    assert float(result.radius or 1) < 1e-16
+
+
+@pytest.mark.parametrize(
+    "name", ["cuspless.unstable_period4", "cuspless.corner_orbit", "cuspless.slap_no_period4", "cardioid.slap_ergodic"]
+)
+def test_what_the_paper_expects_or_sees_in_a_graph_is_confirmed(name: str):
+    (result,) = verify(name)
+
+    assert result.verdict is Verdict.CONFIRMED
+
+
+def test_period_3_is_excluded_up_to_the_fold_though_not_by_the_papers_argument():
+    (conclusion,) = verify("egg.no_period3_caption")
+    (argument,) = verify("egg.projection_misses")
+
+    assert conclusion.verdict is argument.verdict is Verdict.CORRECTED
+    assert "meets the diagonal" in argument.derived
+
+
+CORNER_ORBIT = {
+    "cuspless.fourth_collision_below": Verdict.CONFIRMED,
+    "cuspless.fourth_collision_above": Verdict.CORRECTED,
+    "cuspless.corner_orbit_unstable": Verdict.CONFIRMED,
+    "cuspless.coexistence": Verdict.CORRECTED,
+    "cuspless.thin_at_birth": Verdict.CONFIRMED,
+    "cuspless.chaotic_above_star": Verdict.SUPPORTED,
+}
+
+
+@pytest.mark.parametrize("name", CORNER_ORBIT)
+def test_what_happens_at_the_corner_orbit_is_proved_as_far_as_the_proof_goes(name: str):
+    (result,) = verify(name)
+
+    assert result.verdict is CORNER_ORBIT[name]
+
+
+def test_a_proof_that_stops_early_leaves_its_claims_without_a_verdict(monkeypatch: pytest.MonkeyPatch):
+    stopped = Birth(None, 0.001, born().steps[:1])
+    monkeypatch.setattr(on_border, "born", lambda: stopped)
+    monkeypatch.setattr(on_border, "kink_falls", lambda lowest, highest: None)
+    verdicts = {name: next(iter(verify(name))).verdict for name in CORNER_ORBIT}
+
+    assert verdicts["cuspless.chaotic_above_star"] is Verdict.OPEN
+    assert verdicts["cuspless.thin_at_birth"] is Verdict.OPEN
+    assert verdicts["cuspless.coexistence"] is Verdict.REFUTED
+    assert verdicts["cuspless.fourth_collision_above"] is Verdict.REFUTED
+    assert verdicts["cuspless.fourth_collision_below"] is Verdict.OPEN
+
+
+def test_a_long_claim_tells_the_share_that_is_done():
+    told: list[tuple[str, float]] = []
+    with heard(lambda about, share: told.append((about, share))):
+        without_triangles.__wrapped__(Rational(1, 20), Rational(1, 32))
+
+    assert {about for about, _ in told} == {"triangles excluded at alpha = 1/20"}
+    assert [share for _, share in told] == sorted(share for _, share in told)
+    assert told[-1][1] > 0.99
+
+
+@pytest.mark.parametrize("name", ["egg.merging_crisis", "egg.boundary_crisis", "egg.cascade"])
+def test_what_sampling_or_extrapolation_shows_is_supported_and_not_confirmed(name: str):
+    (result,) = verify(name)
+
+    assert result.verdict is Verdict.SUPPORTED

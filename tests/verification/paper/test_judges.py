@@ -1,0 +1,200 @@
+"""Canaries: each judge is driven to each of its verdicts."""
+
+import ast
+from pathlib import Path
+
+import pytest
+from sympy import Interval, S, log, pi, sqrt, symbols
+
+from symbolic.proofs.signs import Finding, Outcome, positive
+from symbolic.tables.symbols import alpha, lam
+from verification.paper.cardioid import cardioid as on_cardioid
+from verification.paper.claims.claim import Claim, Judgement, Verdict
+from verification.paper.claims.judges import (
+    answer,
+    by,
+    counterexample,
+    digits,
+    equal,
+    greater,
+    identity,
+    implied,
+    on_range,
+    rounded,
+    zero,
+)
+from verification.paper.ellipse import appendix as on_appendix
+from verification.paper.ellipse import map as on_map
+from verification.paper.ellipse import stability as on_ellipse_stability
+from verification.paper.report.verdicts import catalogue
+
+PROVED = Finding(Outcome.PROVED, "yes")
+REFUTED = Finding(Outcome.REFUTED, "no")
+UNKNOWN = Finding(Outcome.UNKNOWN, "perhaps")
+
+
+def claim(printed: str, over: tuple[tuple[str, str], ...] = ()) -> Claim:
+    return Claim("canary.one", "0", "a sentence", "identity", printed, over)
+
+
+def test_an_identity_is_confirmed_corrected_refuted_or_open():
+    square = lam**2 + 2 * lam + 1
+
+    assert identity(claim("(lam + 1)^2"), square).verdict is Verdict.CONFIRMED
+    assert identity(claim("(lam + 1)^3"), square, ("^3", "^2"), "exponent").verdict is Verdict.CORRECTED
+    assert identity(claim("(lam + 2)^3"), square, ("^3", "^2"), "exponent").verdict is Verdict.REFUTED
+    assert identity(claim("(lam + 1)^3"), square).verdict is Verdict.REFUTED
+
+
+def test_an_identity_stays_open_when_neither_reduction_nor_balls_decide():
+    assert equal(log(6), log(2) + log(3), {}).outcome is Outcome.UNKNOWN
+    assert Judgement(UNKNOWN, "").verdict is Verdict.OPEN
+
+
+def test_a_correction_needs_both_halves():
+    assert Judgement(REFUTED, "", PROVED, "x").verdict is Verdict.CORRECTED
+    assert Judgement(REFUTED, "", UNKNOWN, "x").verdict is Verdict.REFUTED
+    assert Judgement(UNKNOWN, "", PROVED, "x").verdict is Verdict.OPEN
+    assert Judgement(UNKNOWN, "", evidence="sampled").verdict is Verdict.SUPPORTED
+
+
+def test_digits_are_confirmed_corrected_or_refuted():
+    assert digits(claim("1.414"), sqrt(S(2))).verdict is Verdict.CONFIRMED
+    assert digits(claim("1.42"), sqrt(S(2)), ("1.42", "1.41")).verdict is Verdict.CORRECTED
+    assert digits(claim("1.42"), sqrt(S(2)), ("1.42", "1.40")).verdict is Verdict.REFUTED
+
+
+def test_rounding_on_a_tie_is_left_undecided():
+    assert rounded("0.1", S(3) / 20).outcome is Outcome.UNKNOWN
+
+
+def test_a_range_is_judged_with_its_ends():
+    def inverse_is_large(box):
+        return positive(1 - lam, box)
+
+    closed, half_open = claim("x", (("lam", "[0, 1]"),)), claim("x", (("lam", "[0, 1)"),))
+
+    assert on_range(half_open, inverse_is_large, "").verdict is Verdict.CONFIRMED
+    assert on_range(closed, inverse_is_large, "").verdict is Verdict.REFUTED
+    assert on_range(closed, inverse_is_large, "", {lam: Interval.Ropen(0, 1)}, "open end").verdict is Verdict.CORRECTED
+
+
+def test_an_argument_is_as_strong_as_its_weakest_finding():
+    assert by("so", PROVED, PROVED).outcome is Outcome.PROVED
+    assert by("so", PROVED, UNKNOWN).outcome is Outcome.UNKNOWN
+    assert by("so", UNKNOWN, REFUTED).outcome is Outcome.REFUTED
+
+
+def test_a_counterexample_refutes_only_when_it_is_proved():
+    assert counterexample("here", PROVED).outcome is Outcome.REFUTED
+    assert counterexample("here", UNKNOWN).outcome is Outcome.UNKNOWN
+    assert counterexample("here", REFUTED).outcome is Outcome.UNKNOWN
+
+
+def test_a_comparison_of_balls_has_three_answers():
+    assert greater(pi, S(3)).outcome is Outcome.PROVED
+    assert greater(S(3), pi).outcome is Outcome.REFUTED
+    assert greater(log(6), log(2) + log(3)).outcome is Outcome.UNKNOWN
+
+
+def test_zero_is_not_proved_of_what_is_not_zero():
+    assert zero("", lam - lam).outcome is Outcome.PROVED
+    assert zero("", lam).outcome is Outcome.REFUTED
+
+
+def test_a_step_of_logic_is_proved_or_refuted_by_an_assignment():
+    place, angle = symbols("place angle")
+
+    assert implied("", ~place >> ~(place & angle)).outcome is Outcome.PROVED
+    assert implied("", place >> (place & angle)).outcome is Outcome.REFUTED
+
+
+def test_a_proof_that_fails_refutes_nothing():
+    assert [answer(holds, "").outcome for holds in (True, False, None)] == [
+        Outcome.PROVED,
+        Outcome.UNKNOWN,
+        Outcome.UNKNOWN,
+    ]
+
+
+def test_a_refutation_names_its_witness_and_a_proof_none():
+    box = (("lam", "[0, 1]"), ("alpha", "1/10"))
+    wrong = identity(claim("lam + 1/2", box), lam)
+
+    assert wrong.witness(claim("", box)).keys() == {lam, alpha}
+    assert identity(claim("lam", box), lam).witness(claim("", box)) == {}
+    assert on_range(claim("", box), lambda b: positive(lam, b), "").witness(claim("", box))[lam] == 0
+    assert Judgement(counterexample("", PROVED, at={lam: S.One}), "").witness(claim("")) == {lam: 1}
+
+
+JUDGES = sorted((Path(__file__).parents[3] / "verification" / "claims").glob("on_*.py"))
+
+
+@pytest.mark.parametrize("path", JUDGES, ids=lambda path: path.stem)
+def test_no_judge_calls_a_sentence_proved_that_nothing_has_computed(path):
+    """`Finding(Outcome.PROVED, "...")` and `shown("...", True)` are assertions; a finding is computed."""
+    calls = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+    first = {call.lineno: (ast.unparse(call.func), [ast.unparse(given) for given in call.args]) for call in calls}
+    flat = [
+        line
+        for line, (name, given) in first.items()
+        if (name == "Finding" and given[0] == "Outcome.PROVED") or (name in ("shown", "answer") and "True" in given)
+    ]
+
+    assert flat == []
+
+
+COMPUTED = {
+    "cardioid.lyapunov_sum_area": (on_cardioid.exponent_sum, on_cardioid, Verdict.CONFIRMED),
+    "appendix.exponents_growth": (on_appendix.growth, on_appendix, Verdict.CONFIRMED),
+    "appendix.exponents_sum": (on_appendix.exponents_sum, on_appendix, Verdict.CORRECTED),
+}
+
+
+@pytest.mark.parametrize("name", COMPUTED)
+def test_growth_rates_that_do_not_add_up_prove_nothing(name, monkeypatch):
+    judge, module, before = COMPUTED[name]
+    (one,) = [claim for claim in catalogue() if claim.id == name]
+    assert judge(one).verdict is before
+
+    monkeypatch.setattr(module, "growth_defects", lambda: [lam])
+    assert judge(one).verdict is Verdict.REFUTED
+
+
+def test_a_second_pair_of_fixed_points_leaves_the_vertical_orbit_open(monkeypatch):
+    (one,) = [claim for claim in catalogue() if claim.id == "cardioid.vertical_orbit"]
+    assert on_cardioid.vertical_orbit(one).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_cardioid, "fixed_points", lambda: [(-S.One / 5, -S.One / 5)] * 2)
+    assert on_cardioid.vertical_orbit(one).verdict is Verdict.OPEN
+
+
+def test_an_infimum_that_is_not_proved_to_be_the_least_confirms_nothing(monkeypatch):
+    (one,) = [claim for claim in catalogue() if claim.id == "cardioid.slap_expanding"]
+    monkeypatch.setattr(on_cardioid, "infimum_attained", lambda: UNKNOWN)
+
+    assert on_cardioid.expanding(one).verdict is Verdict.OPEN
+
+
+def test_a_table_whose_boundary_does_not_close_is_no_circle_for_the_slap_map(monkeypatch):
+    from symbolic import tables
+
+    (one,) = [claim for claim in catalogue() if claim.id == "map.slap_circle_map"]
+    assert {table.name for table in on_map.ALL} == {"circle", "ellipse", "cardioid", "cuspless", "egg"}
+    assert on_map.slap_circle_map(one).verdict is Verdict.CONFIRMED
+
+    gone = type(tables.cuspless)("half", tables.cuspless.components[:1])
+    monkeypatch.setattr(on_map, "ALL", (tables.circle, gone))
+    assert on_map.slap_circle_map(one).verdict is Verdict.REFUTED
+
+
+def test_an_evolute_is_claimed_of_curved_components_alone(monkeypatch):
+    (one,) = [claim for claim in catalogue() if claim.id == "map.slap_evolute"]
+    assert on_map.slap_evolute(one).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_map, "curved", lambda: [UNKNOWN])
+    assert on_map.slap_evolute(one).verdict is Verdict.OPEN
+
+
+def test_eigenlines_go_to_eigenlines_along_a_cycle():
+    assert all(zero("", defect) for defect in on_ellipse_stability.eigenline_defects())

@@ -1,0 +1,159 @@
+"""Canaries: the judges of exponents, driven to other verdicts by claims that are printed otherwise."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from flint import arb
+from sympy import Rational
+
+from symbolic.cycles.defocusing import away, least_stretch
+from symbolic.proofs.signs import Finding, Outcome
+from symbolic.tables.symbols import lam
+from verification.paper.cardioid import attractor as on_cardioid_attractor
+from verification.paper.cardioid import attractor as on_defocusing
+from verification.paper.claims.claim import Verdict
+from verification.paper.report.verdicts import catalogue
+from verification.paper.shared import attractors as on_attractors
+from verification.paper.shared import contraction as on_contraction
+from verification.paper.shared import exponents as on_exponents
+from verification.paper.shared.samples import Spectrum, spectrum, uneven, visited
+from verification.proofs.slap_map.chaotic_exponent import slap_exponent
+
+CLAIMS = {claim.id: claim for claim in catalogue()}
+
+
+def verdict(judge, name, **changes):
+    return judge(replace(CLAIMS[name], **changes)).verdict
+
+
+def test_a_wrong_exponent_of_a_cycle_is_refuted():
+    assert verdict(on_exponents.period3, "egg.exponent_period3") is Verdict.CONFIRMED
+    assert verdict(on_exponents.period3, "egg.exponent_period3", printed="-0.4") is Verdict.REFUTED
+    assert verdict(on_exponents.period32, "egg.exponent_period32", printed="-0.02") is Verdict.REFUTED
+
+
+def test_chaos_is_not_found_where_the_cascade_has_not_ended():
+    assert verdict(on_exponents.chaos_by, "egg.chaos_by") is Verdict.SUPPORTED
+    assert verdict(on_exponents.chaos_by, "egg.chaos_by", printed="0.39") is Verdict.OPEN
+
+
+def test_an_exponent_with_the_other_sign_is_not_supported(monkeypatch):
+    found = spectrum("cardioid", on_contraction.TENTHS)
+    upside = Spectrum(found.lams, -found.plus, -found.minus)
+    monkeypatch.setattr(on_contraction, "spectrum", lambda *_: upside)
+
+    assert verdict(on_contraction.sum_negative, "cardioid.lyapunov_sum_negative") is Verdict.OPEN
+
+
+ON_THE_CONE = {
+    "cardioid.lyapunov_exist": (on_defocusing.existence, Verdict.SUPPORTED),
+    "cardioid.lyapunov_signs": (on_defocusing.signs, Verdict.CONFIRMED),
+    "cardioid.exponents_bounded_away": (on_defocusing.bounded_away, Verdict.SUPPORTED),
+    "cardioid.nonuniformly_hyperbolic": (on_defocusing.nonuniformly_hyperbolic, Verdict.SUPPORTED),
+    "cardioid.chaotic_attractor": (on_defocusing.chaotic, Verdict.SUPPORTED),
+    "cardioid.attractor_near_cusp": (on_defocusing.near_cusp, Verdict.CONFIRMED),
+}
+
+
+@pytest.mark.parametrize("name", ON_THE_CONE)
+def test_a_cone_that_is_not_proved_confirms_and_supports_nothing(name, monkeypatch):
+    judge, before = ON_THE_CONE[name]
+    monkeypatch.setattr(on_defocusing, "slap_proof", quick_proof)
+    assert verdict(judge, name) is before
+
+    monkeypatch.setattr(on_defocusing, "expands", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+    assert verdict(judge, name) is Verdict.OPEN
+
+
+@cache
+def quick_proof():
+    """The natural measure of the slap map, to few digits."""
+    return slap_exponent(6)
+
+
+def test_every_orbit_of_the_cardioid_stretches_as_much_as_is_proved_and_keeps_off_the_cusp_every_second_bounce():
+    """On 200 orbits in float64, of which none may fall below: `|ds_n|` from the derivative matrices."""
+    from numeric import PinballMap
+    from numeric.pinball.sampling import phase_starts
+
+    for share in (Rational(0), Rational(1, 2), Rational(9, 10)):
+        map = PinballMap("cardioid", lam=str(share))
+        start = phase_starts(map, 200, 3)
+        orbit = map.orbit(start.theta, 0 * start.phi if share == 0 else start.phi, 40)
+        vector = np.stack([np.ones(200), np.zeros(200)])
+        corner = np.cos(orbit.theta / 2)
+        assert np.all(np.maximum(corner[1:-1], corner[2:]) >= float(away().subs(lam, share)))
+        for n in range(1, 21):
+            step = map.derivative(orbit.theta[n - 1], orbit.phi[n - 1])
+            vector = np.einsum("...ij,j...->i...", step, vector)
+            if n >= 2:
+                assert np.all(np.abs(vector[0]) >= float(least_stretch(n).subs(lam, share).n()))
+
+
+def test_a_natural_measure_that_is_not_proved_leaves_its_claims_open(monkeypatch):
+    monkeypatch.setattr(on_cardioid_attractor, "slap_proof", quick_proof)
+    assert verdict(on_cardioid_attractor.slap_ergodic, "cardioid.slap_ergodic") is Verdict.CONFIRMED
+
+    unproved = replace(quick_proof(), checks={**quick_proof().checks, "symmetric": None})
+    monkeypatch.setattr(on_cardioid_attractor, "slap_proof", lambda: unproved)
+    monkeypatch.setattr(on_defocusing, "slap_proof", lambda: unproved)
+    assert verdict(on_cardioid_attractor.slap_ergodic, "cardioid.slap_ergodic") is Verdict.OPEN
+    assert verdict(on_cardioid_attractor.transitive, "cardioid.transitive") is Verdict.OPEN
+    assert verdict(on_defocusing.chaotic, "cardioid.chaotic_attractor") is Verdict.OPEN
+
+
+def test_ellipses_whose_limit_set_is_not_proved_do_not_support_that_the_egg_is_alone(monkeypatch):
+    assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.SUPPORTED
+    monkeypatch.setattr(on_attractors, "two_cycles", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+
+    assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.OPEN
+
+
+def test_the_exponent_of_a_cycle_that_is_not_proved_neither_confirms_nor_refutes(monkeypatch):
+    monkeypatch.setattr(on_exponents, "proved", lambda proof: False)
+
+    assert verdict(on_exponents.period3, "egg.exponent_period3") is Verdict.OPEN
+    assert verdict(on_exponents.weak_dissipation_attracts, "egg.weak_dissipation_attracts") is Verdict.OPEN
+
+
+def test_an_attracting_cycle_without_a_contracting_norm_corrects_nothing(monkeypatch):
+    assert verdict(on_exponents.chaotic_sign, "appendix.chaotic_sign") is Verdict.CORRECTED
+    monkeypatch.setattr(on_exponents, "contracting_norm", lambda: Finding(Outcome.UNKNOWN, "not positive"))
+
+    assert verdict(on_exponents.chaotic_sign, "appendix.chaotic_sign") is Verdict.REFUTED
+
+
+def test_balls_for_one_number_agree_disagree_or_are_too_wide():
+    assert on_exponents.agree(arb("0.5"), arb("0.5")).outcome is Outcome.PROVED
+    assert on_exponents.agree(arb("0.5"), arb("0.6")).outcome is Outcome.REFUTED
+    assert on_exponents.agree(arb("0.5", 1), arb("0.6")).outcome is Outcome.UNKNOWN
+
+
+def test_an_expanding_cycle_that_is_not_proved_refutes_nothing(monkeypatch):
+    monkeypatch.setattr(on_contraction, "expanding_cycle", lambda: (False, on_contraction.arb(2)))
+
+    assert verdict(on_contraction.contraction_implies, "cardioid.contraction_implies") is Verdict.OPEN
+
+
+def test_the_certified_cycle_has_the_determinant_that_its_angles_give():
+    """A second method: the sum rule on float64 angles."""
+    from numeric import PinballMap
+    from numeric.dynamics.cycles import polished
+    from numeric.dynamics.phase_points import places
+
+    map = PinballMap("cardioid", lam="0.9")
+    phi = [-0.484, 0.051, -1.126, -1.151, -1.098, -1.034, -0.962, -0.877, -0.759]
+    cycle = polished(map, places(0, on_contraction.NINE, phi))
+    eta = np.abs(cycle.points.phi) / 0.9
+    _, determinant = on_contraction.expanding_cycle()
+
+    assert np.prod(0.9 * np.cos(0.9 * eta) / np.cos(eta)) == pytest.approx(float(determinant.mid()), rel=1e-9)
+
+
+def test_elastic_orbits_fill_phase_space_evenly_and_damped_ones_do_not():
+    counts = visited("cardioid", (0.5, 1.0), 8, 4000)
+
+    assert uneven(counts[1]) < 0.1 < uneven(counts[0])
+    assert counts.sum() == 2 * 8 * 4001

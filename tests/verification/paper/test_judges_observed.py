@@ -1,0 +1,90 @@
+"""Canaries: the judges of what simulations of the cardioids show, and of domains, driven to other verdicts."""
+
+import numpy as np
+import pytest
+from sympy import S
+
+from symbolic.proofs.signs import Finding, Outcome
+from verification.paper.cardioid import domains as on_domains
+from verification.paper.cardioid import observed as on_observed
+from verification.paper.claims.claim import Verdict
+from verification.paper.ellipse import stability as on_ellipse_stability
+from verification.paper.report.verdicts import catalogue
+from verification.paper.shared.samples import Spectrum
+
+CLAIMS = {claim.id: claim for claim in catalogue()}
+UNPROVED = Finding(Outcome.UNKNOWN, "not proved")
+
+
+def verdict(judge, name):
+    return judge(CLAIMS[name]).verdict
+
+
+def test_a_period_4_orbit_could_be_stable_because_the_coefficient_changes_sign(monkeypatch):
+    assert verdict(on_observed.stable_if_flatter, "cuspless.stable_if_flatter") is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_observed, "coefficient", lambda: (S.One, S.One))
+    assert verdict(on_observed.stable_if_flatter, "cuspless.stable_if_flatter") is not Verdict.CONFIRMED
+
+
+def test_a_ball_from_the_join_that_does_not_settle_is_no_support(monkeypatch):
+    assert verdict(on_observed.below_star, "cuspless.below_star_converges") is Verdict.SUPPORTED
+
+    monkeypatch.setattr(on_observed, "BELOW", ("0.09", "0.2"))
+    assert verdict(on_observed.below_star, "cuspless.below_star_converges") is Verdict.OPEN
+
+
+@pytest.mark.parametrize(("which", "values"), [("BELOW", ("0.08",)), ("ABOVE", ("0.05",))])
+def test_chaos_below_or_none_above_is_no_support(monkeypatch, which, values):
+    monkeypatch.setattr(on_observed, "BELOW", ("0.05",))
+    monkeypatch.setattr(on_observed, "ABOVE", ("0.5",))
+    assert verdict(on_observed.nontrivial_larger, "cuspless.nontrivial_larger") is Verdict.SUPPORTED
+
+    monkeypatch.setattr(on_observed, which, values)
+    assert verdict(on_observed.nontrivial_larger, "cuspless.nontrivial_larger") is Verdict.OPEN
+
+
+def test_a_part_of_the_boundary_that_shrinks_is_no_support(monkeypatch):
+    counts = on_observed.coverage("cuspless")
+    assert verdict(on_observed.visits_more, "cuspless.visits_more_boundary") is Verdict.SUPPORTED
+
+    monkeypatch.setattr(on_observed, "coverage", lambda _: counts[::-1])
+    assert verdict(on_observed.visits_more, "cuspless.visits_more_boundary") is Verdict.OPEN
+
+
+def test_exponents_that_scatter_are_no_support(monkeypatch):
+    assert verdict(on_observed.error_bars, "cardioid.error_bars") is Verdict.SUPPORTED
+
+    noise = np.random.default_rng(0).normal(size=(11, 100))
+    wild = Spectrum(np.linspace(0, 1, 11), noise, noise - 1)
+    monkeypatch.setattr(on_observed, "spectrum", lambda *_: wild)
+    assert verdict(on_observed.error_bars, "cardioid.error_bars") is Verdict.OPEN
+
+
+def test_the_number_of_attractors_hangs_on_the_certificate(monkeypatch):
+    class Failed:
+        certified = False
+
+    monkeypatch.setattr(on_observed, "slap_exponent", Failed)
+    assert verdict(on_observed.finitely_many, "cardioid.finitely_many_attractors") is Verdict.OPEN
+
+
+def test_domains_are_compact_where_the_tangent_is_continuous(monkeypatch):
+    assert verdict(on_domains.noncompact, "map.noncompact_domain") is Verdict.CONFIRMED
+    assert verdict(on_domains.cuspless_noncompact, "cuspless.noncompact") is Verdict.CORRECTED
+
+    monkeypatch.setattr(on_domains, "joined_smoothly", lambda: UNPROVED)
+    assert verdict(on_domains.cuspless_noncompact, "cuspless.noncompact") is Verdict.OPEN
+
+
+def test_a_trajectory_that_misses_the_cusp_leaves_the_domain_whole(monkeypatch):
+    monkeypatch.setattr(on_domains, "pi", S.Half)
+
+    assert verdict(on_domains.noncompact, "map.noncompact_domain") is not Verdict.CONFIRMED
+
+
+def test_the_major_axis_is_the_minor_axis_of_the_inverted_ellipse(monkeypatch):
+    assert verdict(on_ellipse_stability.major_by_inversion, "ellipse.major_by_inversion") is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_ellipse_stability, "minor_axis", on_ellipse_stability.major_axis)
+    assert verdict(on_ellipse_stability.major_by_inversion, "ellipse.major_by_inversion") is not Verdict.CONFIRMED

@@ -1,0 +1,159 @@
+"""The report: complete, ordered as the paper, the same twice, and legible."""
+
+import json
+from dataclasses import dataclass, field
+from enum import Enum
+
+import pytest
+
+from verification.app.commands.verify import write_report
+from verification.app.shell.output import write_whole
+from verification.paper.report.markdown import markdown
+from verification.paper.report.report import VERDICTS, document, section_order, summary
+
+VERSIONS = {"python": "3.11.0", "sympy": "1.13", "machine": "abacus"}
+Verdict = Enum("Verdict", {name.upper(): name for name in VERDICTS})
+
+
+@dataclass(frozen=True)
+class Result:
+    """A stand-in for the engine's."""
+
+    id: str = "ellipse.P1"
+    section: str = "3.3 Stability"
+    quote: str = "the period-$2$ orbit has $P_1 = 1$"
+    printed: str = "1 + lam"
+    derived: str = "1 - lam"
+    verdict: Verdict = field(default_factory=lambda: Verdict("confirmed"))
+    value: str | None = None
+    radius: str | None = None
+    method: str = "both sides reduce to the same polynomial"
+    seconds: float = 0.25
+    erratum: str = ""
+
+    def to_dict(self):
+        return {**self.__dict__, "verdict": self.verdict.value}
+
+
+WRONG = Result(
+    id="egg.mu",
+    section="6.3 Period-2 orbits",
+    verdict=Verdict("corrected"),
+    erratum="the sign of lam is wrong",
+)
+
+
+def test_the_summary_counts_every_verdict():
+    results = [Result(), WRONG, Result(verdict=Verdict("open"))]
+
+    assert summary(results) == "3 claims: 1 confirmed, 1 corrected, 0 refuted, 0 supported, 1 open."
+
+
+def test_what_is_wrong_in_the_paper_is_listed_first_and_ready_to_be_sent():
+    text = markdown([Result(), WRONG], VERSIONS)
+
+    errata, claims = text.split("## 3.3 Stability")
+    assert "1. Section 6.3 Period-2 orbits (`egg.mu`). The sign of lam is wrong." in errata
+    assert "\n\n   > the period-$2$ orbit has $P_1 = 1$\n\n   - printed: `1 + lam`\n   - derived: `1 - lam`" in errata
+    assert "ellipse.P1" not in errata
+    assert "### `ellipse.P1`: confirmed" in claims
+
+
+def test_without_errors_the_list_says_so():
+    assert "## Errata\n\nNone found." in markdown([Result()], VERSIONS)
+
+
+def test_claims_stand_in_the_order_of_the_paper_whatever_order_they_are_judged_in():
+    results = [Result(section=s) for s in ("A.1 Trajectories", "6.2 Slap", "10 End", "Abstract", "6 Egg")]
+
+    headings = [line for line in markdown(results, VERSIONS).splitlines() if line.startswith("## ")]
+    assert headings == ["## Errata", "## Abstract", "## 6 Egg", "## 6.2 Slap", "## 10 End", "## A.1 Trajectories"]
+
+
+def test_claims_of_a_section_keep_the_order_they_are_given_in():
+    text = markdown([Result(id="b.b"), WRONG, Result(id="a.a")], VERSIONS)
+
+    assert text.index("`b.b`") < text.index("`a.a`")
+
+
+@pytest.mark.parametrize("section", ["", "7", "Index", "B.2.1 Deep", "II The egg"])
+def test_any_section_has_a_place(section):
+    assert isinstance(section_order(section), tuple)
+
+
+def test_a_long_number_is_folded_without_losing_a_digit():
+    digits = "0." + "1234567890" * 20
+    text = markdown([Result(value=digits, radius="1e-200")], VERSIONS)
+
+    assert digits in text.replace("\n    ", "").replace("\n  ", "")
+    assert max(len(line) for line in text.splitlines()) < 140
+    assert "- within: 1e-200" in text
+
+
+def test_a_long_formula_is_folded_between_words():
+    formula = " + ".join(f"lam**{k}" for k in range(40))
+    text = markdown([Result(printed=formula)], VERSIONS)
+
+    assert formula in " ".join(text.split())
+    assert max(len(line) for line in text.splitlines()) < 140
+
+
+def test_a_formula_without_dollars_is_shown_as_the_latex_it_is():
+    text = markdown([Result(quote=r"\frac{1}{2} & 0 \\ 0 & 1")], VERSIONS)
+
+    assert "```latex\n\\frac{1}{2} & 0 \\\\\n0 & 1\n```" in text
+
+
+def test_a_sentence_is_not_set_as_a_formula():
+    assert "- printed: The table is a circle.\n" in markdown([Result(printed="The table is a circle.")], VERSIONS)
+
+
+def test_words_are_not_taken_for_markdown():
+    text = markdown([Result(derived="the area is a*b*pi for 1 < a <b [note](x)")], VERSIONS)
+
+    assert r"- derived: the area is a\*b\*pi for 1 < a \<b [note\](x)" in text
+
+
+def test_no_two_blank_lines_follow_each_other():
+    assert "\n\n\n" not in markdown([WRONG, Result(printed="x + " * 40 + "1", value="1" * 200)], VERSIONS)
+
+
+def test_the_report_says_what_it_was_made_with():
+    assert markdown([], VERSIONS).endswith("Made with python 3.11.0, sympy 1.13, machine abacus.\n")
+
+
+def test_json_has_the_keys_of_the_contract_in_order():
+    claim = document([WRONG])["claims"][0]
+
+    assert list(claim) == [
+        "id", "section", "quote", "printed", "derived", "verdict", "value", "radius", "method", "seconds", "erratum",
+    ]  # fmt: skip
+
+
+def test_the_four_files_are_written_and_nothing_else(tmp_path):
+    write_report(tmp_path, [Result(), WRONG])
+
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "report.json", "report.md", "report.tex"]
+    written = json.loads((tmp_path / "report.json").read_text())
+    assert written["schema"] == 1
+    assert {"python", "sympy", "mpmath", "python-flint", "numpy", "machine", "seed"} <= set(written["made_with"])
+
+
+def test_a_write_that_fails_leaves_the_old_text(tmp_path, monkeypatch):
+    path = tmp_path / "report.md"
+    path.write_text("old")
+    monkeypatch.setattr("pathlib.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("no space")))
+
+    with pytest.raises(OSError, match="no space"):
+        write_whole(path, "new")
+    assert path.read_text() == "old"
+    assert [each.name for each in tmp_path.iterdir()] == ["report.md"]
+
+
+def test_writing_through_a_link_keeps_the_link(tmp_path):
+    (tmp_path / "real").write_text("old")
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+
+    write_whole(tmp_path / "link", "new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "real").read_text() == "new"

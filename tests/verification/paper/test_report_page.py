@@ -1,0 +1,165 @@
+"""The HTML and LaTeX forms of the report: whole, faithful, self-contained."""
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from verification.paper.report import verdicts as claims
+from verification.paper.report.mathml import formula, mathml, prose, remark
+from verification.paper.report.page import FOLD, Picture, diagrams, page
+from verification.paper.report.report import escaped, tables
+
+RESULTS = [*claims.verify("ellipse.*"), *claims.verify("circle.*")]
+HTML = page(RESULTS, {"python": "3"})
+VOID = {"meta", "input", "br", "img"}
+
+
+class Reader(HTMLParser):
+    """Every tag closed in the order it was opened, and what each refers to."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.links, self.sources = [], [], [], []
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.ids += [given["id"]] if "id" in given else []
+        self.links += [given["href"]] if "href" in given else []
+        self.sources += [given["src"]] if "src" in given else []
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.handle_starttag(tag, attributes)
+        self.handle_endtag(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def read(text):
+    reader = Reader()
+    reader.feed(text)
+    assert reader.open == []
+    return reader
+
+
+def leaves(text):
+    """The letters, digits and signs of a formula in MathML, in order."""
+    return re.sub(r"\s|&#x02061;", "", re.sub("<[^>]+>", "", str(text)))
+
+
+def test_the_page_is_well_formed_and_its_links_lead_somewhere():
+    found = read(HTML)
+
+    assert len(set(found.ids)) == len(found.ids)
+    assert {link[1:] for link in found.links} <= set(found.ids)
+
+
+def test_the_page_needs_no_network():
+    found = read(page(RESULTS, {}, [Picture("x", "y", "7", b"z")]))
+
+    assert all(link.startswith("#") for link in found.links)
+    assert all(source.startswith("data:") for source in found.sources)
+    assert not re.search(r"url\(|@import|<link|<script src", HTML)
+
+
+def test_every_claim_and_every_erratum_is_on_the_page():
+    assert HTML.count("<article") == len(RESULTS)
+    assert HTML.count('class="erratum') == sum(r.verdict.value in ("corrected", "refuted") for r in RESULTS) > 0
+
+
+def test_two_runs_differ_in_nothing():
+    assert page(RESULTS, {"python": "3"}) == HTML
+
+
+@pytest.mark.parametrize("claim", claims.catalogue(), ids=lambda claim: claim.id)
+def test_every_quotation_of_the_paper_is_set_whole(claim):
+    shown = prose(claim.quote)
+
+    assert "\\" not in re.sub(r'alttext="[^"]*"', "", str(shown))
+    assert "$" not in shown
+
+
+def test_a_formula_is_set_as_it_is_written_and_not_evaluated():
+    assert leaves(formula("2*(lam + lam) - 0")) == "2(&#x003BB;+&#x003BB;)&#x02212;0".replace("(", "&#x00028;").replace(
+        ")", "&#x00029;"
+    ).replace("+", "&#x0002B;")
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("-(a + b)*c", r"-\left(a + b\right) \, c"),
+        ("a - (b - c)", r"a - \left(b - c\right)"),
+        ("(a + b)^2/c", r"\frac{\left(a + b\right)^{2}}{c}"),
+        ("(-a)^2", r"\left(-a\right)^{2}"),
+        ("a/b/c", r"\frac{\frac{a}{b}}{c}"),
+        ("a*(b*c)", r"a \, \left(b \, c\right)"),
+        ("2*3", r"2 \cdot 3"),
+        ("0 <= lam < 1", r"0 \leq \lambda < 1"),
+    ],
+)
+def test_parentheses_stand_where_the_formula_needs_them(text, latex):
+    assert f'alttext="{latex.replace("<", "&lt;")}"' in str(formula(text))
+
+
+@pytest.mark.parametrize("text", ["the table is a circle", "a b", "", "lambda: 0", "x.y", "[a for a in b]"])
+def test_what_is_no_formula_is_left_to_words(text):
+    assert formula(text) is None
+
+
+def test_words_cannot_become_markup():
+    assert "<script>" not in remark("<script>alert(1)</script>")
+    assert "<script>" not in prose("it is <script> and $a<b$")
+    assert "<b>" not in mathml("a <b> c")
+
+
+def test_long_digits_fold_and_none_is_lost():
+    result = next(r for r in claims.verify("cuspless.lambda_c", 100) if r.value)
+    html = page([result], {})
+
+    assert f"<p>{result.value}</p>" in html
+    assert f"<summary>{result.value[:FOLD]}…</summary>" in html
+
+
+def test_a_picture_stands_by_the_first_claim_that_quotes_its_caption_else_by_the_first_of_its_section():
+    claim = next(result for result in RESULTS if result.id == "ellipse.P2")
+    first = next(result for result in RESULTS if result.section == claim.section)
+
+    assert Picture("x", f"In (a), {claim.quote}, and so on.", claim.section, b"z").stands_by(RESULTS) == claim.id
+    assert Picture("x", "Something else.", claim.section, b"z").stands_by(RESULTS) == first.id
+    assert Picture("x", "Something else.", "9", b"z").stands_by(RESULTS) == ""
+
+
+def test_latex_tables_are_balanced_and_plain():
+    text = tables(RESULTS)
+
+    assert text.count(r"\begin{longtable}") == text.count(r"\end{longtable}") == 3
+    bare = re.sub(r"\\[{}]", "", text)
+    assert bare.count("{") == bare.count("}")
+    assert not re.search(r"(?<!\\)[$#_^]", text.split("\n", 1)[1])
+
+
+def test_every_character_that_latex_acts_on_is_escaped():
+    assert escaped(r"\a{b}$&#_%~^") == (r"\textbackslash{}a\{b\}\$\&\#\_\%\textasciitilde{}\textasciicircum{}")
+
+
+def test_measured_diagrams_end_the_page():
+    found = diagrams(Path(__file__).parents[3] / "docs" / "work_precision.json")
+
+    assert len(found) >= 10
+    html = page(RESULTS, {}, found[:1])
+    assert html.index("Error against run time</h2>") > html.rindex("<article")
+    assert found[0].caption in html
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"questions": 3, "rows": [], "machine": {}}'])
+def test_a_file_of_something_else_is_refused_in_one_sentence(text, tmp_path):
+    path = tmp_path / "other.json"
+    path.write_text(text)
+
+    with pytest.raises(ValueError, match="accepted: what `pinball work"):
+        diagrams(path)

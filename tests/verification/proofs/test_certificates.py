@@ -1,0 +1,192 @@
+"""Proofs by balls: sound, three-valued, and refusing what is not so."""
+
+import math
+from dataclasses import replace
+
+import flint
+import pytest
+from flint import arb
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from sympy import Rational
+
+from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
+from verification.arithmetic.words import balls, working
+from verification.cycles.shooting.newton import refined
+from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.cycles.shooting.small import corner
+from verification.maps.admissible import convex, inside, minimal
+from verification.named.locate import certify
+from verification.proofs.periodic.bifurcation import Claim, proved
+from verification.proofs.periodic.interval_newton import Status, contraction, exact_balls
+
+AXIS = Problem(ellipse.at(a=Rational(3, 2)), (0, 0), lam=Rational(1, 3))
+EGG = egg(3).at(alpha=Rational(2, 25))
+
+
+TRIANGLES = Problem(EGG, (0, 0, 0), Kind.FOLD, "lam")
+FOLD = TRIANGLES, exact_balls(refined(TRIANGLES, [-0.55, 1.54, 3.63, 0.378], 40).z)
+
+
+def half_pi(bits: int) -> arb:
+    with working(bits):
+        return (arb.pi() / 2).mid()
+
+
+SCENES = {  # table, the letter that is free, and its range
+    "egg": (egg(3), "alpha", 0.001, 0.1),
+    "pentagon": (egg(5), "alpha", 0.001, 0.03),
+    "ellipse": (ellipse, "a", 1.01, 4.0),
+    "cardioid": (cardioid, "lam", 0.01, 0.99),
+    "cuspless": (cuspless, "lam", 0.01, 0.99),
+}
+SHARES = st.floats(0.01, 0.99)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from(sorted(SCENES)), st.sampled_from([Kind.FOLD, Kind.FLIP]), SHARES, st.lists(SHARES, min_size=3))
+@example("egg", Kind.FLIP, 0.5, [0.5, 0.5, 0.5])
+@example("cardioid", Kind.FOLD, 0.01, [0.99, 0.01, 0.5, 0.5])
+def test_the_ball_at_128_bits_contains_the_one_at_1024_bits_and_never_the_other_way(scene, kind, share, gaps):
+    table, letter, low, high = SCENES[scene]
+    gaps = gaps[:5]
+    reach = 2.0 if scene == "cuspless" else math.pi
+    theta = [reach * (2 * sum(gaps[:i]) / sum(gaps) - 1) + 1e-3 for i in range(len(gaps))]
+    lam = None if letter == "lam" else arb(share)
+    problem = Problem(table, (0,) * len(gaps), kind, letter, lam)
+    z = [arb(x) for x in (*theta, low + share * (high - low))]
+    found = []
+    for bits in (128, 1024):
+        with working(bits):
+            at = Linearised(Rows(problem, balls(bits)), z)
+            found.append([*at.value, *at.solve(at.value), at.corner])
+    for wide, narrow in zip(*found, strict=True):
+        if wide.is_finite():
+            assert wide.contains(narrow)
+            assert wide.is_exact() or not narrow.contains(wide)
+
+
+@settings(max_examples=60)
+@given(st.floats(1e-6, 0.4), st.floats(-1, 1), st.floats(-1, 1), st.floats(1e-12, 1e-2))
+def test_a_wrong_box_is_never_certified(distance, u, v, radius):
+    if max(abs(u), abs(v)) < 0.1:
+        u = 1.0
+    shift = distance + 2 * radius
+    scale = shift / max(abs(u), abs(v))
+    x = half_pi(100)
+    with working(100):
+        centre = [(x + u * scale).mid(), (-x + v * scale).mid()]
+        holds = all(abs(c - e) < radius for c, e in zip(centre, (x, -x), strict=True))
+    found = contraction(AXIS, centre, arb(radius), 100)
+
+    assert not holds
+    if found.status is Status.UNIQUE:  # there is another zero: the other axis is one
+        with working(100):
+            assert not all(abs(c - e) < radius for c, e in zip(found.zero, (x, -x), strict=True))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.floats(-1, 1), min_size=4, max_size=4), st.floats(1e-9, 1e-3), st.floats(1.5, 20))
+def test_a_wrong_box_of_a_fold_is_never_certified(way, radius, distance):
+    """The fold of the egg's triangles, from 40 digits in mpmath, outside the box by half its radius at least."""
+    problem, solution = FOLD
+    size = max(abs(x) for x in way)
+    if size < 0.1:
+        way, size = [1.0, 0.0, 0.0, 0.0], 1.0
+    with working(160):
+        off = [(x + w / size * distance * radius).mid() for x, w in zip(solution, way, strict=True)]
+        found = contraction(problem, off, arb(radius), 160)
+
+        assert found.status is not Status.UNIQUE or not all(
+            z.overlaps(x) for z, x in zip(found.zero, solution, strict=True)
+        )
+
+
+def test_the_three_answers_all_occur():
+    x = half_pi(100)
+    with working(100):
+        centre = [x, (-x).mid()]
+        off = [(x + 0.01).mid(), (-x).mid()]
+
+    assert contraction(AXIS, centre, arb("1e-3"), 100).status is Status.UNIQUE
+    assert contraction(AXIS, off, arb("1e-3"), 100).status is Status.EMPTY
+    assert contraction(AXIS, centre, arb(2), 100).status is Status.UNKNOWN
+
+
+def test_the_enclosure_contains_the_exact_cycle():
+    x = half_pi(200)
+    with working(200):
+        found = contraction(AXIS, [x, (-x).mid()], arb("1e-9"), 200)
+        exact = arb.pi() / 2
+
+        assert found.zero[0].overlaps(exact)
+        assert found.zero[1].overlaps(-exact)
+
+
+def test_no_precision_is_left_behind():
+    before = flint.ctx.prec
+    certify(Problem(cuspless, (1, 0), Kind.FLIP, "lam"), [0.0, 0.0, 0.0934], 40)
+
+    assert flint.ctx.prec == before
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        (circle, True),
+        (ellipse.at(a=5), True),
+        (cuspless, True),
+        (EGG, True),
+        (egg(3).at(alpha=Rational(1, 10)), True),
+        (egg(5).at(alpha=Rational(1, 26)), True),
+        (cardioid, None),
+    ],
+)
+def test_convexity_is_proved_where_it_holds_and_left_open_at_a_cusp(table, expected):
+    assert convex(table) is expected
+
+
+def test_a_bounce_outside_its_component_is_not_admissible():
+    assert inside(cuspless, (0, 0), [arb(1), arb("2.5")]) is False
+    assert inside(cuspless, (1, 0), [arb(0), arb(1)]) is True
+    with working(64):
+        assert inside(cuspless, (0,), [2 * arb.pi() / 3]) is None
+
+
+def test_a_cycle_run_through_twice_is_not_of_minimal_period():
+    assert minimal(EGG, (0,) * 4, [arb(0), arb(3), arb(0), arb(3)]) is None
+    assert minimal(EGG, (0,) * 4, [arb(0), arb(3), arb("0.1"), arb(3)]) is True
+
+
+def test_the_cuspless_orbit_doubles_subcritically():
+    proof = certify(Problem(cuspless, (1, 0), Kind.FLIP, "lam"), [0.0, 0.0, 0.0934], 30)
+
+    assert proof.certified
+    assert proof.supercritical is False
+
+
+def test_a_fold_is_no_flip():
+    fold = certify(Problem(EGG, (0, 0, 0), Kind.FOLD, "lam"), [-0.55, 1.54, 3.63, 0.378], 30)
+    as_flip = replace(fold.claim, problem=replace(fold.claim.problem, kind=Kind.FLIP))
+
+    assert fold.certified
+    assert proved(as_flip).checks["unique"] is not True
+
+
+def test_a_claim_with_too_few_bits_is_unknown_and_not_refuted():
+    solution = refined(corner(), [0.25, 0.07], 30)
+    centre = exact_balls(solution.z)
+    proof = contraction(corner(), centre, arb("1e-28"), 60)
+
+    assert proof.status is Status.UNKNOWN
+
+
+def test_a_proof_needs_every_item():
+    x = half_pi(120)
+    with working(120):
+        claim = Claim(AXIS, (x, (-x).mid()), arb("1e-6"), 120, 200)
+    proof = proved(claim)
+
+    assert proof.checks["unique"] is True
+    assert proof.checks["precise"] is not True
+    assert not proof.certified

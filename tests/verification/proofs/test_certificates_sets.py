@@ -1,0 +1,218 @@
+"""Proofs over sets: exclusion, periodic points of a slap map, the projection argument, the ladder's end."""
+
+import math
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+from flint import arb
+from sympy import Rational, acos
+
+from numeric import PinballMap
+from symbolic.cycles.polygons import saddle_node
+from symbolic.proofs.signs import Outcome
+from symbolic.tables.symbols import alpha as letter
+from verification.arithmetic.words import working
+from verification.cycles.shooting.newton import refined
+from verification.cycles.shooting.small import polygon_fold
+from verification.named.feigenbaum import DELTA, aitken, limit, ratio, wynn
+from verification.named.locate import closed_form
+from verification.paper.egg.sets import points_of_period_4, without_triangles
+from verification.proofs.corner.flights import ARC, BITS, WALL, Flights, Piece, fourth_on_wall
+from verification.proofs.corner.half_return import birth
+from verification.proofs.corner.return_map import minimum_at_kink
+from verification.proofs.periodic.branch import flips_nowhere
+from verification.proofs.periodic.curve import doubling_curve
+from verification.proofs.periodic.exclusion import no_triangles
+from verification.proofs.periodic.interval_newton import Status, contraction, exact_balls
+from verification.proofs.periodic.projection import PRODUCED, SLAP, witness
+from verification.proofs.slap_map import periodic_points as slap
+from verification.proofs.slap_map.periodic_points import periodic_points
+
+ALPHA = Rational(2, 25)
+LADDER = [  # lambda_3 to lambda_12 at alpha = 2/25, each certified by `pinball locate doubling`
+    "0.371235502527919523578336532324050275102188525622321165344497",
+    "0.388761023460840300793370106076533294454826453523904186833767",
+    "0.392501516486075505022985915339702278914873717285746295287448",
+    "0.393302227093869130725330359607485970048944219553467466096273",
+    "0.393473727302274657497533299069879636401126234562683438000395",
+    "0.393510457806534967868224391633800585520740198839762609461142",
+    "0.393518324384185952563141252710603892261699790023154867016722",
+    "0.393520009165315133620037665117809277662839690313352616059054",
+    "0.393520369993896232548858405166321589370418783260980296487933",
+    "0.393520447272331094885770321804636356347020367373638639307504",
+]
+
+
+def test_the_egg_has_no_period_3_cycle_below_the_fold():
+    assert without_triangles(ALPHA, Rational(378, 1000)).outcome is Outcome.PROVED  # proved once a run
+    assert saddle_node().subs(letter, ALPHA) > Rational(378, 1000)
+
+
+def test_what_exists_is_never_excluded():
+    found = no_triangles(ALPHA, Rational(45, 100), budget=8_000)
+
+    assert found.excluded is None
+    assert found.share < 1
+
+
+def test_a_box_that_cannot_be_halved_exactly_ends_the_proof():
+    found = no_triangles(ALPHA, Rational(45, 100), budget=10**6)  # the cycles that exist are met by going deep
+
+    assert found.excluded is None
+    assert found.boxes < 10**5
+
+
+def test_a_budget_that_ends_is_unknown_and_says_how_far_it_came():
+    found = no_triangles(ALPHA, Rational(3, 10), budget=1000)
+
+    assert found.excluded is None
+    assert 0 < found.share < 1
+    assert found.boxes == 1000
+
+
+def test_every_subdivision_whose_budget_ends_leaves_its_question_open():
+    assert periodic_points(4, budget=50).stretches is None
+    assert doubling_curve(budget=3).supercritical is None
+    assert fourth_on_wall(0.04, 0.0, 0.06, budget=10).on_wall is None
+    assert flips_nowhere(ALPHA, budget=1) is None
+
+
+@pytest.mark.parametrize(
+    "proof",
+    [
+        lambda tick: no_triangles(ALPHA, Rational(1, 16), tick=tick),
+        lambda tick: periodic_points(2, tick=tick),
+        lambda tick: doubling_curve(tick=tick),
+        lambda tick: fourth_on_wall(0.02, 0.0, 0.02, tick=tick),
+        lambda tick: birth(0.073, tick=tick),
+        lambda tick: minimum_at_kink(0.03, 0.0712, 0.0713, tick=tick),
+    ],
+)
+def test_the_shares_that_a_proof_tells_add_up_to_all_of_it(proof):
+    shares = []
+    proof(shares.append)
+
+    assert min(shares) > 0
+    assert abs(sum(shares) - 1) < 1e-6
+
+
+def test_the_cuspless_slap_map_has_no_cycle_of_period_4():
+    ends_of_period_2 = {(0, -mpmath.pi / 3), (0, 0), (0, mpmath.pi / 3), (1, 0)}
+    stretches = points_of_period_4().stretches
+
+    assert len(stretches) == 4
+    for component, low, high in stretches:
+        assert sum(c == component and low <= x <= high for c, x in ends_of_period_2) == 1
+    assert periodic_points(1).stretches == []
+
+
+class Kinked:
+    """In the place of flights, a map of the arc with a kink at 0, where it is 0.002 below the diagonal."""
+
+    def __init__(self):
+        self.ends = {ARC: arb(1), WALL: arb(1)}
+
+    def iterated(self, pieces, n):
+        (piece,) = pieces
+        left = piece.theta.mid() < 0
+        slope = arb("0.5") if left else arb("1.5")
+        return [replace(piece, theta=slope * piece.theta - arb("0.002"), slope=slope)]
+
+
+def test_stretches_are_joined_only_where_the_slope_stays_on_one_side_of_the_diagonals(monkeypatch):
+    """On either side of the kink is a fixed point: -0.004 and 0.004, in stretches that touch at 0."""
+    monkeypatch.setattr(slap, "Flights", Kinked)
+    on_arc = [(low, high) for component, low, high in periodic_points(1).stretches if component == ARC]
+
+    for low, high in on_arc:
+        assert sum(low <= x <= high for x in (-0.004, 0.004)) <= 1
+    assert on_arc[0][0] <= -0.004 <= on_arc[0][1] <= 0 <= on_arc[-1][0] <= 0.004 <= on_arc[-1][1]
+
+
+def test_a_landing_is_on_any_part_of_the_boundary_that_the_ball_may_reach(monkeypatch):
+    """A wall whose both ends lie in the ball of the ray's crossing: upper arc, wall and lower arc."""
+    flights = Flights()
+    roots = {ARC: {1: arb(2.2, 0.3), -1: arb(-2.2, 0.3)}, WALL: {1: arb(0.01, 0.5), -1: arb(0.01, 0.5)}}
+
+    def enclosed(piece, target, low, high):
+        return Piece(target, roots[target][1 if low < math.pi / 2 else -1], arb(1), arb(0))
+
+    monkeypatch.setattr(flights, "_root", enclosed)
+    for at, to in ((0.3, 0.0), (0.3, 0.2), (-0.3, -0.2)):  # from here the middle of the ball is on the wall or an arc
+        found = flights.landing(Piece(ARC, arb(at), arb(1), arb(to, 0.3)))
+        assert {(p.component, bool(p.theta > 0.1), bool(p.theta < -0.1)) for p in found} == {
+            (ARC, True, False),
+            (WALL, False, False),
+            (ARC, False, True),
+        }
+
+
+def test_a_landing_that_may_be_on_either_side_of_a_join_is_told_as_both():
+    flights, random, both = Flights(), np.random.default_rng(2), 0
+    for _ in range(150):
+        theta, size, turn = random.uniform(-2, 2), *10 ** random.uniform(-6, -2.5, 2)
+        with working(BITS):
+            corner = flights.balls[ARC, ARC](arb(theta), random.choice([-1, 1]) * flights.ends[ARC])[0]
+            phi = float(corner.mid())
+            found = flights.landing(Piece(ARC, arb(theta, size), arb(1), arb(phi, turn)))
+        if found is None:
+            continue
+        both += len(found) > 1
+        starts, angles = theta + size * random.uniform(-1, 1, 20), phi + turn * random.uniform(-1, 1, 20)
+        orbit = PinballMap("cuspless", lam=0.0).orbit(starts, angles, 1, np.zeros(20, int))
+        for component, at in zip(orbit.component[1], orbit.theta[1], strict=True):
+            assert any(p.component == component and abs(p.theta - at).lower() < 1e-9 for p in found)
+    assert both > 50
+
+
+def test_the_projection_meets_the_diagonal_where_the_paper_says_that_it_misses():
+    free = witness(ALPHA, Rational(0), *SLAP)
+    produced = witness(ALPHA, Rational(3, 10), *PRODUCED)
+
+    assert free.exists
+    assert produced.exists
+    assert produced.produced
+
+
+def test_the_ladder_ends_at_feigenbaums_constant():
+    found = ratio(LADDER)
+
+    assert abs(found.value - mpmath.mpf(DELTA)) < found.error < 1e-6
+
+
+def test_more_rungs_agree_with_the_stated_error():
+    short, long = limit(LADDER[:-2]), limit(LADDER)
+
+    assert abs(short.value - long.value) < 10 * short.error
+    assert long.error < 1e-18
+    assert mpmath.nstr(long.value, 18) == "0.39352046833370729"
+
+
+def test_below_lambda_star_the_fourth_collision_is_on_the_wall():
+    assert fourth_on_wall(0.06, 0.0, 0.03).on_wall is True
+    assert fourth_on_wall(0.06, 0.0712, 0.0713, budget=1000).on_wall is None  # lambda-star lies between
+
+
+def test_the_diameters_double_supercritically_along_the_whole_curve():
+    assert doubling_curve().supercritical is True
+
+
+@pytest.mark.parametrize(("K", "p", "q"), [(3, 1, 3), (4, 1, 4), (5, 1, 5), (5, 2, 5), (6, 1, 3), (6, 1, 6)])
+def test_the_fold_of_every_polygon_is_where_the_closed_form_says(K, p, q):
+    shape = Rational(1, 2 * (1 + K * K))
+    exact = saddle_node(K, p, q).subs(letter, shape)
+    where = -float(acos(-shape)) / K
+    found = refined(polygon_fold(K, shape, p, q), [where, float(exact)], 30)
+
+    proof = contraction(polygon_fold(K, shape, p, q), exact_balls(found.z), arb("1e-25"), 200)
+
+    assert proof.status is Status.UNIQUE
+    assert proof.zero[1].overlaps(closed_form(exact, 30))
+    assert proof.zero[1].rad() < arb("1e-30")
+
+
+@pytest.mark.parametrize("process", [wynn, aitken])
+def test_a_geometric_sequence_is_summed_exactly(process):
+    assert process([2 - mpmath.mpf(2) ** -n for n in range(5)]) == 2

@@ -1,0 +1,250 @@
+"""Manifolds: series solve the map's own rule, images of a manifold lie on it, tangencies are the published ones."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sympy import Rational
+
+from symbolic import tables
+from verification.arithmetic.words import ARRAYS, FLOAT64
+from verification.cycles.shooting.cascade import ladder
+from verification.plots.manifolds import portrait
+from verification.proofs.manifolds.grow import branch, far
+from verification.proofs.manifolds.known import (
+    CONTACTS,
+    MIRRORED,
+    SHAPE,
+    TRIANGLE,
+    contact,
+    crisis,
+    heteroclinic_exponent,
+    homoclinic_exponent,
+    table,
+)
+from verification.proofs.manifolds.recurrence import Henon, Pinball
+from verification.proofs.manifolds.saddle import Orbit, saddle
+from verification.proofs.manifolds.series import local
+from verification.proofs.manifolds.shadows import shadow
+from verification.proofs.manifolds.tangency import Contact, Gap, tangency
+
+INNER, OUTER = Orbit("inner fixed point", (0.63,)), Orbit("outer fixed point", (-1.13,))
+EGG = table(SHAPE)
+CASES = [
+    (Henon(Rational(3, 10)), INNER, 1.4),
+    (Henon(Rational(3, 10)), OUTER, 1.4),
+    (EGG, TRIANGLE, 0.66),
+    (EGG, MIRRORED, 0.4434),
+    (EGG, Orbit("diameter", (0.0, 3.1416)), 0.5),
+    (EGG, Orbit("parallel tangents", (0.3326,), -1, (2, 3)), 0.4434),
+]
+# [AraiMischaikow2006]: quadratic homoclinic tangencies proved in these
+# intervals. [GrebogiOttRomeirasYorke1987]: the boundary crisis of the Henon map.
+PUBLISHED = {
+    "inner, homoclinic, b = 0.3": (
+        Contact(INNER, INNER, 4, 1, -0.635006, -1.319803, 1.3924),
+        Rational(3, 10),
+        (1.392419807915, 1.392419807931),
+    ),
+    "outer, homoclinic, b = -0.3": (
+        Contact(
+            Orbit("outer fixed point", (-1.5,)), Orbit("outer fixed point", (-1.5,)), 1, 1, 7.206345, 0.23941, 1.3145
+        ),
+        Rational(-3, 10),
+        (1.314527109319, 1.314527109334),
+    ),
+    "crisis, b = 0.3": (
+        Contact(INNER, OUTER, 1, 1, -0.627005, 2.211054, 1.4269),
+        Rational(3, 10),
+        (1.42692, 1.42693),
+    ),
+}
+
+
+@pytest.mark.parametrize("unstable", [True, False])
+@pytest.mark.parametrize(("map", "orbit", "letter"), CASES, ids=lambda case: getattr(case, "name", None))
+def test_a_series_leaves_a_residual_of_rounding_size(map, orbit, letter, unstable):
+    made = local(saddle(orbit, map.over(FLOAT64), letter), unstable)
+
+    assert made.residual < 2e-14
+
+
+@pytest.mark.parametrize(("map", "orbit", "letter"), CASES, ids=lambda case: getattr(case, "name", None))
+def test_multipliers_are_those_of_the_derivative_matrix(map, orbit, letter):
+    """For the egg: `PinballMap.derivative` along the cycle; for Henon: the matrix by hand."""
+    found = saddle(orbit, map.over(FLOAT64), letter)
+    if isinstance(map, Pinball):
+        from numeric import PinballMap
+
+        bounces = PinballMap("egg", lam=letter, alpha=SHAPE)
+        product = np.eye(2)
+        ring = found.around()
+        for here, following in pairwise(ring[1:]):
+            phi = found.map.angle(here, following)[0]
+            product = bounces.derivative(math.remainder(here, 2 * math.pi), phi) @ product
+        product *= orbit.sign
+    else:
+        product = np.array([[-2 * letter * found.points[0], 1], [0.3, 0]])
+    expected = sorted(np.linalg.eigvals(product).real, key=abs)
+
+    assert found.stable == pytest.approx(expected[0], rel=1e-8, abs=1e-12)
+    assert found.unstable == pytest.approx(expected[1], rel=1e-10)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-0.9, 0.9), st.sampled_from(CASES), st.booleans())
+def test_the_map_acts_on_the_parameter_as_multiplication(z, case, unstable):
+    map, orbit, letter = case
+    made = local(saddle(orbit, map.over(FLOAT64), letter), unstable)
+    z = np.array([z if unstable else z * float(made.factor)])
+    there = z * float(made.factor) if unstable else z / float(made.factor)
+
+    near, image = far(made, there, 1), made.points(there)
+
+    assert np.allclose(np.cos(near), np.cos(image), atol=3e-12)
+    assert np.allclose(np.sin(near), np.sin(image), atol=3e-12)
+
+
+def test_backwards_undoes_forwards():
+    map, lam = EGG.over(ARRAYS), 0.6
+    here, following = np.array([0.3, 1.0, -2.0]), np.array([3.0, 4.5, 1.4])
+    after = map.following(here, following, lam)
+
+    assert np.allclose(map.previous(following, after, lam), following - np.remainder(following - here, 2 * np.pi))
+
+
+def test_a_ball_that_could_not_have_come_is_nan():
+    steep = EGG.over(ARRAYS).previous(np.array([0.0]), np.array([0.7]), 0.2)
+
+    assert np.isnan(steep).all()
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_the_tangencies_of_the_henon_map_are_the_published_ones(name):
+    where, b, (low, high) = PUBLISHED[name]
+    found = tangency(where, Henon(b), 10)
+
+    assert low <= found.letter <= high
+    assert abs(found.bend) > 1e-3
+    assert abs(found.speed) > 1e-3
+
+
+@pytest.mark.parametrize(("kind", "digits"), [("merging", 11), ("boundary", 15), ("symmetry-restoring", 9)])
+def test_two_methods_and_more_digits_agree_on_a_crisis(kind, digits):
+    few, many = crisis(kind, SHAPE, 6), crisis(kind, SHAPE, digits)
+
+    assert few.agrees
+    assert many.agrees
+    assert abs(few.letter - many.letter) <= few.error
+    assert many.error < few.error / 100
+
+
+def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_multiplier():
+    """Three rounds of the triangle more bring the fold nearer by the cube of its unstable multiplier."""
+    from verification.cycles.shooting.newton import floats
+
+    where = contact("boundary", SHAPE)
+    at = tangency(where, EGG, 8)
+    gaps = []
+    for rounds in (6, 8, 10):
+        cycle = shadow(where, EGG, float(at.letter), rounds)
+        gaps.append(float(floats(cycle.problem, cycle.start)[-1] - at.letter))
+
+    assert gaps[0] / gaps[1] == pytest.approx(at.multipliers[1] ** 3, rel=0.05)
+    assert gaps[1] / gaps[2] == pytest.approx(at.multipliers[1] ** 3, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "kind", ["window-end-9", "window-end-15", "family-end-8", "family-merging-8", "interior-crisis-12"]
+)
+def test_the_folds_of_shadowing_cycles_approach_the_ends_of_windows_at_the_rate_of_the_saddle(kind):
+    """Two methods: each round of the saddle more brings the fold nearer by its unstable multiplier."""
+    from verification.cycles.shooting.newton import floats
+
+    where = contact(kind, SHAPE)
+    at = tangency(where, EGG, 8)
+    gaps, periods = [], []
+    for rounds in (4, 6):
+        cycle = shadow(where, EGG, float(at.letter), rounds)
+        gaps.append(floats(cycle.problem, cycle.start)[-1] - at.letter)
+        periods.append(cycle.problem.period)
+    more = (periods[1] - periods[0]) // len(where.unstable.start)
+
+    assert gaps[0] / gaps[1] == pytest.approx(at.multipliers[1] ** more, rel=0.05)
+
+
+def test_bands_merge_at_distances_from_the_end_of_the_cascade_that_fall_by_feigenbaums_ratio():
+    """The end is from the certified doublings, with which the contacts share only the chord."""
+    rungs = ladder(SHAPE)
+    values = [next(rungs).lam for _ in range(8)]
+    end = values[-1] + (values[-1] - values[-2]) / (4.669201609 - 1)
+    joined = [CONTACTS[f"band-merging-{period}"].letter - end for period in (4, 8, 16)]
+    ratios = [far / near for far, near in pairwise(joined)]
+
+    assert ratios == pytest.approx([4.669201609] * 2, rel=3e-3)
+    assert abs(ratios[1] / 4.669201609 - 1) < abs(ratios[0] / 4.669201609 - 1)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in CONTACTS if name.endswith(("14", "15", "18")) or "family-end" in name]
+)
+def test_a_small_attractor_joins_its_bands_before_it_ends(name):
+    end = CONTACTS[name.replace("merging", "end")]
+    merging = CONTACTS[name.replace("end", "merging")]
+
+    assert merging.letter < end.letter
+    assert len(merging.unstable.start) == len(end.unstable.start)
+    assert tangency(CONTACTS[name], EGG, 8).letter == pytest.approx(CONTACTS[name].letter, abs=1e-12)
+
+
+def test_below_the_boundary_crisis_the_manifolds_are_apart_and_above_they_cross():
+    where = contact("boundary", SHAPE)
+    below, above = (
+        Gap(where, EGG.over(FLOAT64), where.letter + step, 24, 1e-16).extremum()[1].c for step in (-1e-5, 1e-5)
+    )
+
+    assert below[0] > 0 > above[0]
+    assert below[2] > 0
+
+
+def test_a_grown_branch_is_as_long_and_as_fine_as_asked():
+    made = branch(local(saddle(TRIANGLE, EGG.over(FLOAT64), 0.66), True), 1, 4.0, spacing=0.03)
+    steps = np.hypot(np.diff(made.x), np.diff(made.y))
+
+    assert 4 <= made.length < 4.04
+    assert np.max(steps) <= 0.03
+    assert np.all(np.diff(made.parameter) > 0)
+
+
+def test_a_branch_that_falls_into_a_sink_ends():
+    made = branch(local(saddle(TRIANGLE, EGG.over(FLOAT64), 0.66), True), -1, 1e6, spacing=0.05)
+
+    assert made.length < 20
+
+
+def test_the_exponents_are_those_of_grebogi_ott_and_yorke():
+    assert homoclinic_exponent(0.01, 3) == pytest.approx(math.log(0.01) / math.log((0.01 * 3) ** 2))
+    assert heteroclinic_exponent(0.01, 3) == pytest.approx(0.5 + math.log(3) / -math.log(0.01))
+
+
+def test_bad_requests_are_one_sentence():
+    with pytest.raises(ValueError, match="accepted: merging, boundary"):
+        contact("other", SHAPE)
+    with pytest.raises(ValueError, match="accepted: up to 500"):
+        crisis("merging", SHAPE, 501)
+    with pytest.raises(ValueError, match="side 1 or -1"):
+        branch(local(saddle(TRIANGLE, EGG.over(FLOAT64), 0.66), True), 2, 1.0)
+    with pytest.raises(ValueError, match="heteroclinic"):
+        shadow(PUBLISHED["crisis, b = 0.3"][0], Pinball(tables.circle), 1.4, 4)
+    with pytest.raises(ValueError, match="no saddle"):
+        saddle(Orbit("triangle of the flat points", (-0.905,), 1, (1, 3)), EGG.over(FLOAT64), 0.66)
+
+
+def test_a_portrait_shows_both_panels():
+    figure = portrait("boundary", SHAPE, share=0.1)
+
+    assert len(figure.axes) == 2
+    assert figure.axes[0].get_legend() is not None

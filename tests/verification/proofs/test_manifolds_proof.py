@@ -1,0 +1,212 @@
+"""Proofs of tangencies: they hold where cycles and published proofs say, and nowhere else; derivatives are right."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+from flint import arb, arb_mat
+from sympy import Rational
+
+from symbolic.tables import cardioid
+from verification.arithmetic.words import FLOAT64, multiprecision, working
+from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
+from verification.proofs.manifolds.pair import Precision
+from verification.proofs.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
+from verification.proofs.manifolds.recurrence import Henon, Pinball
+from verification.proofs.manifolds.saddle import Orbit, saddle
+from verification.proofs.manifolds.series import local
+from verification.proofs.manifolds.tangency import Contact, Gap, tangency
+from verification.proofs.manifolds.touching import Point, Touching, flight
+
+EGG = table(SHAPE)
+# Folds of cycles that shadow the tangencies, which use no manifold: docs/crises.md.
+BY_CYCLES = {
+    "merging": "0.443435246081851218248509",
+    "boundary": "0.662144273358224419482535",
+    "symmetry-restoring": "0.410268249231453618995790",
+    "band-merging-4": "0.397687368992791390776823",
+    "window-merging-9": "0.504527312767549985147168",
+    "interior-crisis-12": "0.428419190754595226515935",
+}
+
+
+@cache
+def proof(kind, shift):
+    """The proof within 1e-20 of the value of the cycles, moved by `shift` intervals."""
+    context = mpmath.MPContext()
+    context.dps = 40
+    value = context.mpf(BY_CYCLES[kind]) + shift * context.mpf(10) ** -20
+    return tangency_proved(contact(kind, SHAPE), EGG, str(value), 20)
+
+
+@pytest.mark.parametrize("kind", BY_CYCLES)
+def test_each_tangency_is_proved_where_the_cycles_say(kind):
+    found = proof(kind, 0)
+
+    assert found.holds
+    assert tuple(found.checks) == ITEMS
+    with working(100):
+        assert abs(found.letter - arb(BY_CYCLES[kind])) < 1e-23
+
+
+@pytest.mark.parametrize("kind", BY_CYCLES)
+def test_each_saddle_is_dissipative_with_the_multipliers_of_mpmath(kind):
+    """The product of the multipliers is below 1 in balls: the hypothesis of Newhouse and Robinson."""
+    stable, unstable = proof(kind, 0).multipliers
+    context = mpmath.MPContext()
+    context.dps = 30
+    found = saddle(CONTACTS[kind].unstable, EGG.over(multiprecision(context)), context.mpf(BY_CYCLES[kind]))
+
+    assert abs(stable * unstable) < 1
+    with working(100):
+        assert abs(stable - arb(str(found.stable))) < 1e-10
+        assert abs(unstable - arb(str(found.unstable))) < 1e-8
+
+
+@pytest.mark.parametrize("shift", [-3, 3])
+@pytest.mark.parametrize("kind", ["merging", "boundary"])
+def test_no_tangency_is_proved_beside_it(kind, shift):
+    found = proof(kind, shift)
+
+    assert found.checks["remainder"] is True
+    assert found.checks["exists"] is False
+    assert not found.touches
+
+
+@pytest.mark.parametrize("kind", ["symmetry-restoring", "boundary"])
+def test_bend_and_speed_are_those_of_the_gap_in_float64(kind):
+    """Their ratio, at one scale of `z`, depends neither on the rounds near the saddle nor on the gap's unit."""
+    touch = tangency(CONTACTS[kind], EGG, 10)
+    gap = Gap(CONTACTS[kind], EGG.over(FLOAT64), float(touch.letter), 28, 1e-16)
+    precision = Precision(20)
+    with working(precision.bits):
+        z = settled(Touching(CONTACTS[kind], EGG, arb(BY_CYCLES[kind]).mid(), precision), precision).orbit[0]
+    share = gap.scales[0] / (gap.contact().z / float(z))
+    found = proof(kind, 0)
+
+    assert float(found.bend / found.speed) * share**2 == pytest.approx(touch.bend / touch.speed, rel=1e-4)
+
+
+def test_sharpened_values_do_not_depend_on_where_they_start():
+    few, many = (sharpened(CONTACTS["boundary"], EGG, start, 20) for start in ("0.66214427", "0.662144273358224"))
+
+    assert few[:24] == many[:24] == BY_CYCLES["boundary"][:24]
+
+
+@pytest.mark.parametrize("kind", BY_CYCLES)
+def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
+    """The symmetry at the end of the orbit takes the cycle into itself, so the tangency is homoclinic as it stands."""
+    precision = Precision(20)
+    with working(precision.bits):
+        system = Touching(CONTACTS[kind], EGG, arb(CONTACTS[kind].letter), precision)
+    orbit = CONTACTS[kind].unstable
+    points = list(orbit.start)
+    while len(points) < 6 * len(orbit.start):
+        points.append(orbit.sign * points[-len(orbit.start)] + 2 * math.pi * orbit.shift[0] / orbit.shift[1])
+    image = system.sign * (points[0] + system.turns * 2 * math.pi / 3)
+
+    assert min(abs(math.remainder(image - x, 2 * math.pi)) for x in points) < 1e-4
+
+
+@pytest.mark.parametrize("kind", CONTACTS)
+@pytest.mark.parametrize(("early", "late"), [(2, 2), (3, 5)])
+def test_a_flight_obeys_the_rule_however_far_it_goes_into_the_manifolds(kind, early, late):
+    """All rules to rounding, but the two where the orbit meets the stable series, which hold as well as the start."""
+    where, map = CONTACTS[kind], EGG.over(FLOAT64)
+    out, into = (local(saddle(where.unstable, map, where.letter), unstable) for unstable in (True, False))
+    points = [x.c[0] for x in flight(where, map, out, into, early, late).bounces]
+    rules = sorted(abs(map.rule(points[k : k + 3], where.letter)) for k in range(len(points) - 2))
+
+    assert len(points) == 3 + where.bounces + (early + late) * len(where.unstable.start)
+    assert rules[-3] < 1e-12
+    assert rules[-1] < 1e-5
+
+
+@cache
+def system():
+    """The merging crisis' system near its zero, and the zero."""
+    precision = Precision(20)
+    with working(precision.bits):
+        made = Touching(CONTACTS["merging"], EGG, arb(BY_CYCLES["merging"]).mid(), precision)
+        return made, settled(made, precision)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_matrix_of_the_system_holds_its_difference_quotients(seed):
+    """Along random directions, by central differences; the manifolds are affine in the letter up to the step."""
+    made, zero = system()
+    with working(Precision(20).bits):
+        step, here = (arb(10) ** -21).mid(), [*zero.unknowns[:-1], made.letter]
+        random = np.random.default_rng(seed).uniform(-1, 1, len(here))
+        beside = []
+        for move in (step, -step):
+            linear = made.linear(Point.of([x + move * arb(float(r)) for x, r in zip(here, random, strict=True)]))
+            beside.append([x.mid() for x in (*linear.values, *linear.along)])
+        product = made.linear(Point.of(here)).matrix().mid() * arb_mat([[arb(float(r))] for r in random])
+        for i, (high, low) in enumerate(zip(*beside, strict=True)):
+            assert abs((high - low) / (2 * step) - product[i, 0].mid()) <= 1e-18
+
+
+def test_the_vector_along_a_tangency_is_the_tangent_of_the_orbits_on_the_manifold():
+    made, zero = system()
+    with working(Precision(20).bits):
+        step = (arb(10) ** -20).mid()
+        moved = Point([x + step * v for x, v in zip(zero.orbit, zero.along, strict=True)], zero.along, zero.letter)
+        apart = [x.mid() for x in made.linear(moved).values]
+
+    assert max(abs(float(x)) for x in apart) < 1e-33  # of second order in the step; of first order it would be 1e-20
+
+
+INNER, FAR = Orbit("inner fixed point", (0.63,)), Orbit("outer fixed point", (-1.13,))
+# [AraiMischaikow2006] proved the first two intervals in another way.
+# [GrebogiOttRomeirasYorke1987]: the boundary crisis, a heteroclinic tangency.
+HENON = {
+    "inner, homoclinic": (
+        Contact(INNER, INNER, 4, 1, -0.635006, -1.319803, 1.3924),
+        Rational(3, 10),
+        (1.392419807915, 1.392419807931),
+    ),
+    "outer, homoclinic": (
+        Contact(
+            Orbit("outer fixed point", (-1.5,)), Orbit("outer fixed point", (-1.5,)), 1, 1, 7.206345, 0.23941, 1.3145
+        ),
+        Rational(-3, 10),
+        (1.314527109319, 1.314527109334),
+    ),
+    "crisis": (Contact(INNER, FAR, 1, 1, -0.627005, 2.211054, 1.4269), Rational(3, 10), (1.42692, 1.42693)),
+}
+
+
+@pytest.mark.parametrize("name", HENON)
+def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(name):
+    where, b, (low, high) = HENON[name]
+    map = Henon(b)
+    value = sharpened(where, map, str(tangency(where, map, 10).letter), 20)
+    found = tangency_proved(where, map, value, 20)
+
+    assert found.holds
+    assert low <= found.letter <= high
+
+
+@pytest.mark.parametrize(
+    ("changed", "value", "known"),
+    [
+        ({}, "0.66", ["saddle", "remainder", "admissible"]),  # no tangency near this letter
+        ({"bounces": 7, "z": 0.02}, BY_CYCLES["boundary"], ["saddle", "remainder"]),  # nor near this orbit
+        ({"unstable": Orbit("flat points", (-0.905,), 1, (1, 3))}, BY_CYCLES["boundary"], []),  # no saddle
+    ],
+)
+def test_where_a_proof_fails_its_checks_say_how_far_it_came(changed, value, known):
+    found = tangency_proved(replace(CONTACTS["boundary"], **changed), EGG, value, 20)
+
+    assert [item for item in ITEMS if found.checks[item]] == known
+    assert not found.touches
+
+
+def test_chords_are_admissible_in_convex_tables_only():
+    assert admissible(EGG) is True
+    assert admissible(Pinball(cardioid)) is None
+    assert admissible(Henon(Rational(3, 10))) is True

@@ -1,0 +1,1 @@
+"""The commands, found by name when they are called."""

@@ -1,0 +1,275 @@
+"""`pinball follow`: what becomes of this cycle as lambda, or the table's shape, changes?"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
+from verification.app.shell.cli import DONE, FAILED
+from verification.app.shell.output import Output, json_option
+from verification.app.shell.scene import table_options
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from rich.console import Console
+    from sympy import Expr
+
+    from verification.cycles.continuation.branch import Branch
+
+ROWS = 12  # points of a branch shown to people, and all its events
+
+
+@click.command(epilog="Example: pinball follow egg --alpha 0.08 --cycle triangle --lam 0.37:1 --digits 20")
+@table_options
+@click.option("--lam", "interval", required=True, metavar="LOW:HIGH", help="The contractions, between 0 and 1.")
+@click.option(
+    "--shape", metavar="LOW:HIGH", help="Vary the table's shape in place of lambda; --lam is then one number."
+)
+@click.option("--cycle", metavar="NAME", help="A cycle of the paper: diameter, triangle, horizontal, ...")
+@click.option("--start", metavar="THETA,...", help="Or the bounces of one, roughly.")
+@click.option("--components", metavar="NAME,...", help="Where the bounces of --start lie, on a table of several parts.")
+@click.option("--at", metavar="NUMBER", help="The contraction of the start; LOW, or the named cycle's own.")
+@click.option("--points", type=click.IntRange(2, 100_000), default=400, show_default=True, help="At most, each way.")
+@click.option("--switch", type=click.IntRange(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
+@click.option("--curves", is_flag=True, help="Follow the egg's events on, as curves in (alpha, lam).")
+@click.option("--digits", type=click.IntRange(1, 1000), help="Certify the events to so many digits.")
+@click.option("--plot", metavar="FILE", help="Draw the branches, as PNG, PDF or SVG.")
+@json_option
+def command(
+    scene: Scene,
+    interval: str,
+    shape: str | None,
+    cycle: str | None,
+    start: str | None,
+    components: str | None,
+    at: str | None,
+    points: int,
+    switch: int,
+    curves: bool,
+    digits: int | None,
+    plot: str | None,
+    output: Output,
+) -> int:
+    """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
+
+    With --shape the letter is the ellipse's --a or the egg's --alpha, whose number is the start's. Exit status 1 when
+    a branch stops inside the interval; what was found is kept.
+    """
+    from verification.cycles.continuation.arc import Steps
+    from verification.cycles.continuation.branch import branch
+    from verification.cycles.continuation.starts import at_contraction, freed, named, record, typed
+
+    if curves and (scene.name != "egg" or shape):
+        given = "--shape" if shape else scene.name
+        raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
+    if (cycle is None) == (start is None):
+        raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
+    letter = varied(scene) if shape else "lam"
+    low, high = interval_of(f"--{'shape' if shape else 'lam'}", shape or interval)
+    lam = contraction(interval) if shape else None
+    table = scene.table
+    if cycle is not None:
+        ring, x, own = named(cycle, table)
+    else:
+        names = components.split(",") if components else None
+        (ring, x), own = typed(table, [float(exact("--start", t)) for t in str(start).split(",")], names), None
+    first = low if lam is None else float(lam)
+    value, fixed = float(exact("--at", at)) if at is not None else first if own is None else own, {}
+    if lam is not None:
+        x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
+        ring = freed(ring, scene.K, letter, [exact("--shape", part) for part in str(shape).split(":")])
+        value = float(scene.shape[letter])
+    steps = Steps(most=points)
+    with output.progress("Following", points) as tick:
+        found = [branch(ring, x, letter, value, (low, high), fixed, steps, lambda p: tick(f"{letter} = {p.z[-1]:.4f}"))]
+        found += turned_off(found[0], (low, high), steps, switch)
+    certificates = {}
+    if digits:
+        events = [event for one in found for event in one.events]
+        with output.progress("Certifying", len(events)) as tick:
+            for event in events:
+                certificates[id(event)] = certificate(event, digits, letter, lam)
+                tick(event.what.value)
+    documents = []
+    for one in found:
+        document = record(one)
+        document["events"] = [noted(event, letter, certificates.get(id(event))) for event in one.events]
+        documents.append(document)
+    drawn_on = curves_of(found, scene, output) if curves else []
+    output.write({"table": scene.name, "branches": documents, "curves": drawn_on})
+    if plot:
+        drawn(found, plot)
+    for document in documents:
+        show(output.console, document)
+    for row in drawn_on:
+        show_curve(output.console, row)
+    return told(output.console, found)
+
+
+def interval_of(option: str, text: str) -> tuple[float, float]:
+    """`LOW:HIGH` as two numbers.
+
+    >>> interval_of("--lam", "0.25:1/2")
+    (0.25, 0.5)
+    """
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise ValueError(f"{option} {text!r} is no interval; accepted: LOW:HIGH such as 0.37:1")
+    low, high = (float(exact(option, part)) for part in parts)
+    if option == "--lam" and not 0 <= low < high <= 1:
+        raise ValueError(f"--lam {text} is no interval of contractions; accepted: LOW:HIGH with 0 <= LOW < HIGH <= 1")
+    if not low < high:
+        raise ValueError(f"{option} {text} is no interval; accepted: LOW:HIGH with LOW < HIGH")
+    return low, high
+
+
+def varied(scene: Scene) -> str:
+    """The letter of the table's shape."""
+    if not scene.shape:
+        raise ValueError(f"--shape: {scene.name} has none; accepted: the ellipse and the egg")
+    (letter,) = scene.shape
+    return letter
+
+
+def contraction(text: str) -> "Fraction | Expr":
+    """The one contraction at which the shape varies."""
+    lam = exact("--lam", text) if ":" not in text else -1
+    if not 0 <= lam <= 1:
+        raise ValueError(f"--lam {text} with --shape is no contraction; accepted: one number between 0 and 1")
+    return lam
+
+
+def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth: int) -> list["Branch"]:
+    """The branches that leave at events, and at theirs, `depth` deep."""
+    from verification.cycles.continuation.arc import LostError
+    from verification.cycles.continuation.switching import switched
+
+    found, newest = [], [first]
+    for _ in range(depth):
+        following = []
+        for one in newest:
+            for event in one.events:
+                try:
+                    following += switched(one, event, interval, steps)
+                except LostError:
+                    continue
+        found += following
+        newest = following
+    return found
+
+
+def certificate(event: Any, digits: int, letter: str, lam: Any) -> dict[str, Any] | None:
+    """Value, radius and checklist of an event, or None where there is no certificate."""
+    from verification.arithmetic.balls import decimal
+    from verification.named.events import proof_of
+
+    try:
+        proof = proof_of(event, digits, letter, lam)
+    except ValueError:
+        return None
+    if proof is None:
+        return None
+    value, radius = decimal(proof.value, digits + 1)
+    return {"value": value, "radius": radius, "certified": proof.certified, "checks": proof.checks}
+
+
+def noted(event: Any, letter: str, proof: dict[str, Any] | None) -> dict[str, Any]:
+    """An event for JSON."""
+    form = event.form
+    return {
+        "event": event.what.value,
+        letter: event.value,
+        "located": event.located,
+        "theta": [float(x) for x in event.point.z[:-1]],
+        "branch_coefficient": form.branch if form else None,
+        "supercritical": form.supercritical if form else None,
+        "certificate": proof,
+    }
+
+
+def curves_of(branches: list["Branch"], scene: Scene, output: Output) -> list[dict[str, Any]]:
+    """The curves that the events of the egg draw, each with its points of codimension two."""
+    from verification.named.events import curve_of
+
+    events = [(one.system.recurrence.period, event) for one in branches for event in one.events]
+    alpha, rows = float(scene.shape["alpha"]), []
+    with output.progress("Drawing", len(events)) as tick:
+        for period, event in events:
+            found = curve_of(event, alpha, scene.K)
+            tick(event.what.value)
+            if found is not None:
+                special = [
+                    {"what": point.what.value, "alpha": point.letters[0], "lam": point.letters[1]}
+                    for point in found.special
+                ]
+                plane = [[float(x) for x in row] for row in found.plane]
+                rows.append({"event": event.what.value, "period": period, "alpha_lam": plane, "special": special})
+    return rows
+
+
+def show_curve(console: "Console", row: dict[str, Any]) -> None:
+    """Where a curve runs from and to, and its special points."""
+    first, last = row["alpha_lam"][0], row["alpha_lam"][-1]
+    console.print(
+        f"curve of the {row['event']} of period {row['period']}: (alpha, lam) from ({first[0]:.6f}, {first[1]:.6f}) "
+        f"to ({last[0]:.6f}, {last[1]:.6f})"
+    )
+    for point in row["special"]:
+        console.print(f"  {point['what']} at ({point['alpha']:.9f}, {point['lam']:.9f})")
+
+
+def drawn(branches: list["Branch"], path: str) -> None:
+    """Writes the picture."""
+    from verification.plots.branches import plotted
+
+    if Path(path).suffix not in (".png", ".pdf", ".svg"):
+        raise ValueError(f"--plot {path} has no known ending; accepted: .png, .pdf, .svg")
+    try:
+        plotted(branches).savefig(path)
+    except OSError as error:
+        raise ValueError(f"--plot {path} cannot be written ({error.strerror or error})") from None
+
+
+def show(console: "Console", document: dict[str, Any]) -> None:
+    """Some points of a branch, and its events."""
+    points, letter = document["points"], document["letter"]
+    stride = max(1, len(points) // ROWS)
+    console.print(f"{document['cycle']}: {len(points)} points")
+    console.print(f"  {letter:<14}  multipliers                            stable  event")
+    for i, point in enumerate(points):
+        if i % stride and not point["event"] and i != len(points) - 1:
+            continue
+        shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
+        console.print(f"  {point[letter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
+    for event in document["events"]:
+        proof = event["certificate"]
+        said = (
+            f"{proof['value']} +- {proof['radius']} ({'' if proof['certified'] else 'not '}certified)"
+            if proof
+            else (f"{event[letter]:.12g}")
+        )
+        side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
+        console.print(f"  {event['event']} at {letter} = {said}{side}")
+
+
+def said_stable(point: dict[str, Any]) -> str:
+    """Whether a point of a branch is stable; at an event it is on the edge."""
+    return "-" if point["event"] else "yes" if point["stable"] else "no"
+
+
+def told(console: "Console", branches: list["Branch"]) -> int:
+    """Says where and why branches stopped inside the interval; the exit status."""
+    from verification.cycles.continuation.arc import End
+
+    status = DONE
+    for one in branches:
+        for point, (end, why) in zip((one.points[0], one.points[-1]), one.ends, strict=True):
+            if end in (End.OBSTACLE, End.LOST, End.ENOUGH):
+                console.print(
+                    f"{one.system.label}: the branch stopped at {one.system.letter} = {point.z[-1]:.9g}: {why}"
+                )
+                status = DONE if end is End.ENOUGH and status == DONE else FAILED
+    return status

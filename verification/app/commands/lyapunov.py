@@ -1,0 +1,170 @@
+"""`pinball lyapunov`: the two exponents, with error bars, for every attractor found."""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symbolic.tables.scene import Scene
+from verification.app.shell.cli import DONE, FAILED, INTERRUPTED
+from verification.app.shell.output import Output, json_option
+from verification.app.shell.scene import scene_options
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from numeric import PinballMap
+    from numeric.dynamics.exponents import Survey
+
+LAWS = {
+    "interior": "points uniform in the table, directions uniform, first collision elastic",
+    "phase": "uniform in arc length and in sin(phi)",
+}
+SIZE = 1_000_000_000
+LONG = 10_000  # bounces of a transient, unless it is given
+
+
+@click.command(epilog="Example: pinball lyapunov cuspless --lam 0.8 --bounces 10000 --orbits 100 --seed 1")
+@scene_options
+@click.option("--bounces", type=click.IntRange(10, SIZE), required=True, help="Bounces that count, each.")
+@click.option("--orbits", type=click.IntRange(2, 10_000_000), required=True, help="How many random starts.")
+@click.option("--seed", type=click.IntRange(0), required=True, help="Of the random starts.")
+@click.option("--transient", type=click.IntRange(0, SIZE), help="Bounces before; if left out --bounces, at most 10000.")
+@click.option(
+    "--start-law", type=click.Choice(list(LAWS)), default="interior", show_default=True, help="Of the starts."
+)
+@click.option("--until-error", type=float, help="Go on, twice as long each time, until every error is at most this.")
+@click.option("--budget", type=click.IntRange(1), default=SIZE, show_default=True, help="Bounces of all balls, then.")
+@click.option("--certified", is_flag=True, help="Also the proved ones: of cycles; of the cardioid's chaos at --lam 0.")
+@json_option
+def command(
+    scene: Scene,
+    bounces: int,
+    orbits: int,
+    seed: int,
+    transient: int | None,
+    start_law: str,
+    until_error: float | None,
+    budget: int,
+    certified: bool,
+    output: Output,
+) -> int:
+    """The two exponents per bounce, in the coordinates (s, phi), with standard errors, for each attractor.
+
+    Starts are those of the paper's appendix: points uniform in the table, directions uniform, the first collision
+    elastic; or uniform in arc length and sin(phi). Nothing is averaged across attractors. Ctrl-C ends a long count,
+    and what was counted is reported.
+    """
+    if until_error is not None and not until_error > 0:
+        raise ValueError(f"--until-error = {until_error} is no error; give a positive number such as 1e-4")
+    from numeric.dynamics.account import account
+    from numeric.dynamics.exponents import surveyed
+    from numeric.pinball import sampling
+
+    map = PinballMap(scene)
+    starts = {"interior": sampling.interior_starts, "phase": sampling.phase_starts}[start_law](map, orbits, seed)
+    with output.progress("Counting", 1000) as step:
+        heard = 0
+
+        def say(part: float) -> None:
+            nonlocal heard
+            while heard < min(part, 1.0) * 1000:
+                heard += 1
+                step("")
+
+        transient = min(bounces, LONG) if transient is None else transient
+        survey = surveyed(map, starts, bounces, transient, until_error, budget, say)
+    survey = with_families(scene, map, survey)
+    document = {**account(map, survey), "bounces": bounces, "seed": seed, "start_law": start_law}
+    if until_error is not None:
+        document |= {"until_error": until_error, "reached": survey.ended == "error"}
+    if certified:
+        with output.progress("Proving", 1) as step:
+            certify(scene, survey, document)
+            step("")
+    output.write(document)
+    show(output.console, document)
+    if survey.ended == "interrupted":
+        return INTERRUPTED
+    return (
+        FAILED
+        if survey.ended == "budget" or any(g.get("certified", True) is None for g in document["groups"])
+        else DONE
+    )
+
+
+def with_families(scene: Scene, map: "PinballMap", survey: "Survey") -> "Survey":
+    """The survey with attractors that are symmetry images of each other numbered alike."""
+    from dataclasses import replace
+
+    found = [group.attractor for group in survey.groups if group.attractor is not None]
+    if len(found) < 2:
+        return survey
+    from numeric.dynamics.symmetry import with_images
+    from symbolic.tables.symmetry import group
+
+    joined = iter(with_images(map, found, group(scene.table)))
+    groups = [one if one.attractor is None else one._replace(attractor=next(joined)) for one in survey.groups]
+    return replace(survey, groups=tuple(groups))
+
+
+def certify(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
+    """Adds the proved exponents of each cycle to its group, null where the proof failed; and those of chaos."""
+    from sympy import S
+
+    from verification.named.attractors import certified_exponents, chaotic_exponents
+
+    for one, described in zip(survey.groups, document["groups"], strict=True):
+        if described.get("period") and one.attractor is not None:
+            described["certified"] = certified_exponents(scene.table, S(scene.lam), one.attractor.points)
+        elif described["kind"] == "chaotic" and (found := chaotic_exponents(scene.table, S(scene.lam))):
+            described["certified"] = found
+
+
+def show(console: "Console", document: dict[str, Any]) -> None:
+    """The result of the one attractor, or of each, and where the error bars come from."""
+    if document["nu_plus"] is None:
+        console.print(f"{document['attractors']} attractors: nothing is averaged across them")
+    else:
+        console.print(f"nu_plus  = {_measured(document, 'nu_plus')}")
+        console.print(f"nu_minus = {_measured(document, 'nu_minus')}")
+        console.print(f"sum      = {_measured(document, 'sum')}")
+    law = LAWS[document["start_law"]]
+    console.print(f"over {document['orbits']} orbits of {document['counted']} bounces, per bounce; starts: {law}")
+    for group in document["groups"]:
+        line = f"{group['orbits']:>8} orbits: {group['kind']}"
+        if group["nu_plus"] is not None:
+            line += f"  nu_plus = {_measured(group, 'nu_plus')}  nu_minus = {_measured(group, 'nu_minus')}"
+        console.print(line)
+        if group.get("naive_stderr"):
+            ratio = group["nu_plus_stderr"] / group["naive_stderr"]
+            console.print(
+                f"{'':>17} memory {group['autocorrelation_time']:.3g} bounces; the error is {ratio:.3g} times that of "
+                "independent bounces"
+            )
+        if group.get("trusted") is False:
+            console.print(f"{'':>17} too short for its memory: the error bar is rough")
+        if group.get("along_orbits"):
+            console.print(
+                f"{'':>17} from its multipliers; along the orbits nu_plus = {group['along_orbits']['nu_plus']:.6g}"
+            )
+        if group.get("certified"):
+            lower = group["certified"]["nu_minus"]
+            console.print(f"{'':>17} proved: {group['certified']['nu_plus']}, {'-oo' if lower is None else lower}")
+    rule = document["sum_rule"]
+    if rule["difference"] is not None:
+        console.print(
+            f"log|det| by kernel and from angles differ by {rule['difference']:.1g} after {rule['bounces']} bounces"
+        )
+    if document["ended"] == "interrupted":
+        console.print("interrupted: this is what was counted so far")
+    if document.get("reached") is False and document["ended"] == "budget":
+        console.print(
+            f"the error {document['until_error']:g} was not reached within the budget; give a larger --budget"
+        )
+
+
+def _measured(document: dict[str, Any], name: str) -> str:
+    value, error = document[name], document[f"{name}_stderr"]
+    if value is None:
+        return "-oo"
+    return f"{value:.12g}" if error == 0 else f"{value:.6g}" + ("" if error is None else f" +- {error:.1g}")

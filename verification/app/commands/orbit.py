@@ -1,0 +1,192 @@
+"""`pinball orbit`: where does this ball go?
+
+`pinball slap`: the slap map and its iterates, as numbers.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symbolic.tables.scene import Scene
+from verification.app.shell.cli import DONE, FAILED
+from verification.app.shell.output import Output, json_option
+from verification.app.shell.scene import scene_options, start_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+from typing import TYPE_CHECKING
+
+from verification.app.shell.scene import table_options
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+MOST = 40  # bounces shown to people
+WAYS = ("float64", "mpmath", "arb", "auto")
+FEW, MANY = 12, 50  # digits, where nothing is said: for auto, and for mpmath and arb
+PROVED = "arb, each landing proved to be the first hit"
+KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
+
+
+@click.command(epilog="Example: pinball orbit ellipse --a 1.5 --lam 0.9 --start 0.5,-0.2 --bounces 10")
+@scene_options
+@click.option("--start", required=True, metavar="THETA,PHI", help="Boundary parameter and exit angle, in radians.")
+@click.option("--component", metavar="NAME", help="The component of the start; the first one if left out.")
+@click.option("--bounces", type=click.IntRange(1, 10_000_000), required=True, help="How many.")
+@click.option("--arithmetic", type=click.Choice(WAYS), default="float64", show_default=True)
+@click.option("--digits", type=click.IntRange(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
+@click.option("--tolerance", metavar="T", help="In place of --digits: so many that the error is below it.")
+@json_option
+def command(
+    scene: Scene,
+    start: str,
+    component: str | None,
+    bounces: int,
+    arithmetic: str,
+    digits: int | None,
+    tolerance: str | None,
+    output: Output,
+) -> int:
+    """Where does this ball go? Exit status 1 when it stops at a join, a cusp or a tangency.
+
+    In arb the last digit shown is off by one at most, and every landing is proved to be the first hit; an orbit
+    that goes on where that cannot be proved ends as `unproved`. The other outcomes are found, and not proved.
+    `auto` takes what is cheapest for the digits asked of the last bounce, and says why: float64 as long as the orbit
+    leaves it enough of its own, then arb.
+    """
+    from numeric import PinballMap
+
+    map = PinballMap(scene)
+    names = [part.name for part in map.blueprint.parts]
+    if component is not None and component not in names:
+        raise ValueError(f"--component = {component} is not on this table; accepted: {', '.join(names)}")
+    index = names.index(component) if component else 0
+    theta, phi = start_of(start)
+    digits = wanted(digits, tolerance)
+    picked: dict[str, str] = {}
+    if arithmetic != "float64":
+        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
+    if arithmetic == "auto":
+        from verification.measure.work.choice import for_orbit
+
+        choice = for_orbit(map, (index, float(theta), float(phi)), bounces, digits := digits or FEW)
+        arithmetic = choice.arithmetic
+        picked = {"arithmetic": arithmetic, "why": choice.why}
+    digits = digits or MANY
+    if arithmetic == "float64":
+        entries = in_float64(map, index, float(theta), float(phi), bounces)
+    else:
+        from verification.maps.orbits import in_balls, in_multiprecision
+
+        follow = in_multiprecision if arithmetic == "mpmath" else in_balls
+        with output.progress("Bouncing", bounces) as step:
+            entries = follow(map, scene.lam, (index, theta, phi), bounces, digits, step)
+    output.write({"bounces": entries} | picked)
+    show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
+    if picked:
+        output.console.print(f"{arithmetic}: {picked['why']}")
+    if entries[-1]["status"] == "unproved":
+        output.console.print("no proof that the next flight meets nothing before it lands; it is not given")
+    return DONE if all(entry["status"] == "regular" for entry in entries) else FAILED
+
+
+def wanted(digits: int | None, tolerance: str | None) -> int | None:
+    """The digits asked for, in either way; None where nothing was said."""
+    if tolerance is None:
+        return digits
+    if digits is not None:
+        raise ValueError(f"--tolerance = {tolerance} and --digits = {digits} ask for the same thing; give one of them")
+    from verification.measure.work.choice import digits_for
+
+    return digits_for(tolerance)
+
+
+def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> list[dict[str, Any]]:
+    """The orbit from the kernels, as far as it goes."""
+    orbit = map.orbit(theta, phi, bounces, index)
+    names = [part.name for part in map.blueprint.parts]
+    s = map.arclength.s(orbit.theta, orbit.component)
+    statuses = [status.name.lower() for status in orbit.status]
+    end = next((i for i, status in enumerate(statuses) if status != "regular"), len(statuses) - 1)
+    entries = []
+    for i in range(end + 1):
+        eta = float(orbit.eta[i])
+        values = (names[orbit.component[i]], *(float(row[i]) for row in (orbit.theta, s, orbit.x, orbit.y)))
+        entries.append(
+            dict(zip(KEYS, (*values, None if eta != eta else eta, float(orbit.phi[i]), statuses[i]), strict=True))
+        )
+    return entries
+
+
+def show(console: "Console", entries: list[dict[str, Any]], how: str) -> None:
+    """The first bounces, a line each."""
+    rows = [list(KEYS), *([_text(entry[key]) for key in KEYS] for entry in entries[:MOST])]
+    wide = [max(len(text) for text in column) + 2 for column in zip(*rows, strict=True)]
+    for i, row in enumerate(rows):
+        texts = "".join(text.ljust(width) for text, width in zip(row, wide, strict=True))
+        console.print(f"{i - 1 if i else 'bounce':<8}{texts.rstrip()}")
+    if len(entries) > MOST:
+        console.print(f"... and {len(entries) - MOST} more; --json FILE has them all")
+    console.print(f"{len(entries) - 1} bounces ({how})")
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.16g}" if isinstance(value, float) else str(value)
+
+
+ROWS = 33  # points shown to people
+
+
+@click.command(epilog="Example: pinball slap egg --alpha 0.08 --iterates 4 --points 1000 --json slap.json")
+@table_options
+@click.option("--iterates", type=click.IntRange(1, 1000), default=1, show_default=True, help="Up to which power.")
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=200, show_default=True, help="On each component.")
+@json_option
+def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> int:
+    """The slap map: what remains at lambda = 0, where every exit is along the normal."""
+    import numpy as np
+
+    from numeric import PinballMap
+
+    map = PinballMap(scene, lam=0)
+    names = [part.name for part in map.blueprint.parts]
+    component = np.repeat(np.arange(len(names)), points)
+    ends = np.array(map.states.ends)
+    share = (np.tile(np.arange(points), len(names)) + 0.5) / points
+    theta = ends[component, 0] + (ends[component, 1] - ends[component, 0]) * share
+    values = map.slap(theta, iterates, component)
+    document = {
+        "iterates": iterates,
+        "points": [
+            {
+                "component": names[component[i]],
+                "theta": float(theta[i]),
+                "images": [
+                    {"component": names[values.component[k, i]], "theta": float(values.theta[k, i])}
+                    if values.code[k, i] == 0
+                    else None
+                    for k in range(1, iterates + 1)
+                ],
+                "slope": float(values.slope[i]),
+            }
+            for i in range(theta.size)
+        ],
+    }
+    output.write(document)
+    rows = range(0, theta.size, max(1, theta.size // ROWS))
+    show_slap(
+        output.console,
+        [(float(theta[i]), [float(x) for x in values.theta[1:, i]], float(values.slope[i])) for i in rows],
+    )
+    return DONE
+
+
+def show_slap(console: "Console", rows: list[tuple[float, list[float], float]]) -> None:
+    """Some points, their images and the slope `T0'(s)`."""
+    console.print("theta        slope        images")
+    for theta, images, slope in rows:
+        console.print(f"{theta:<13.6f}{slope:<13.6f}" + "  ".join(f"{image:.6f}" for image in images[:8]))

@@ -1,0 +1,258 @@
+"""`pinball basins`: which attractor each start reaches.
+
+`pinball bifurcation`: the attractors against the contraction.
+
+`pinball sweep KIND`: grids of independent tasks, on all cores or on a Dask cluster, into a Zarr store.
+"""
+
+from typing import TYPE_CHECKING
+
+import click
+
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
+from verification.app.shell.scene import scene_options
+from verification.app.shell.sweeping import How, carried_out, sweep_options
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+from typing import TYPE_CHECKING
+
+from verification.app.shell.scene import table_options
+from verification.app.shell.sweeping import lams_option, over, seed_option
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from verification.app.shell.sweeping import span
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+COLUMNS, ROWS = 96, 24  # of the picture in letters
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
+
+@click.command(epilog="Example: pinball basins cuspless --lam 0.09 --columns 400 --rows 400 --store basins.zarr")
+@scene_options
+@click.option("--columns", type=click.IntRange(1, 100_000), required=True, help="Cells along the boundary.")
+@click.option("--rows", type=click.IntRange(1, 100_000), required=True, help="Cells in sin(phi).")
+@click.option(
+    "--window", nargs=4, metavar="S S SIN SIN", help="Ends of s and of sin(phi); all of phase space if not given."
+)
+@click.option("--starts", type=click.IntRange(1, 10**7), default=1000, show_default=True, help="To find attractors.")
+@click.option("--transient", type=click.IntRange(10, 10**8), default=1000, show_default=True, help="Bounces of each.")
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the starts.")
+@sweep_options
+def basins_command(
+    scene: Scene,
+    columns: int,
+    rows: int,
+    window: tuple[str, str, str, str] | None,
+    starts: int,
+    transient: int,
+    seed: int,
+    how: How,
+) -> int:
+    """The attractor that each cell of phase space reaches; attractors are found from random starts first."""
+    from numeric.dynamics.basins import Window
+    from numeric.sweeps.basins import basins
+    from numeric.sweeps.scenes import text_of
+
+    ends = None
+    if window is not None:
+        left, right, low, high = (float(exact("--window", text)) for text in window)
+        if not (left < right and -1 <= low < high <= 1):
+            raise ValueError(
+                f"--window {' '.join(window)} is no window; accepted: two values of s and two of sin(phi) in [-1, 1], "
+                "the smaller first"
+            )
+        ends = Window((left, right), (low, high))
+    lam = float(scene.lam)
+    known = () if how.dry_run else None  # what the sweep costs does not depend on them
+    sweep = basins(text_of(scene), lam, columns, rows, ends, starts, transient, seed, scene.table, known)
+    return carried_out(sweep, how, basins_lines)
+
+
+def basins_lines(found: "xr.Dataset") -> list[str]:
+    """What share of the cells each attractor takes, and a small picture in letters."""
+    import numpy as np
+
+    from numeric.sweeps.basins import attractors_of
+
+    label = found.label.values
+    shown = []
+    for i, attractor in enumerate(attractors_of(found.attrs["settings"])):
+        kind = f"cycle of period {attractor['period']}" if attractor["kind"] == "cycle" else attractor["kind"]
+        shown.append(
+            f"{letter(i)}  {np.mean(label == i):7.2%}  {kind} near theta = {round(attractor['theta'], 4) + 0.0:.4f}"
+        )
+    if np.any(label < 0):
+        shown.append(f".  {np.mean(label < 0):7.2%}  none of these")
+    down = np.linspace(0, label.shape[0] - 1, min(ROWS, label.shape[0])).round().astype(int)
+    across = np.linspace(0, label.shape[1] - 1, min(COLUMNS, label.shape[1])).round().astype(int)
+    shown += ["".join(letter(i) for i in row) for row in label[np.ix_(down[::-1], across)]]
+    return shown
+
+
+def letter(index: int) -> str:
+    """The letter of an attractor.
+
+    >>> letter(0), letter(-1)
+    ('A', '.')
+    """
+    return "." if index < 0 else LETTERS[min(index, len(LETTERS) - 1)]
+
+
+BIFURCATION_ROWS = 24  # contractions shown to people
+DISTINCT = 1e-6  # between points of phase space, to tell one from another
+MANY = 64  # distinct points; more are not counted
+
+
+@click.command(
+    epilog="Example: pinball bifurcation egg --alpha 0.08 --lams 0.35:0.45:101 --orbits 20 --json diagram.json"
+)
+@table_options
+@lams_option
+@click.option("--orbits", type=click.IntRange(1, 100_000), default=20, show_default=True, help="Random balls for each.")
+@click.option("--points", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Bounces kept of each.")
+@click.option("--transient", type=click.IntRange(0, 10**9), default=4000, show_default=True, help="Bounces before.")
+@click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="For the exponents.")
+@seed_option
+@sweep_options
+def bifurcation_command(
+    scene: Scene, lams: str, orbits: int, points: int, transient: int, bounces: int, seed: int, how: How
+) -> int:
+    """Where random balls are after a long time, for each contraction; starts as in the paper's appendix."""
+    from numeric.sweeps.bifurcation import bifurcation
+
+    text, values = over(scene, lams)
+    sweep = bifurcation(text, values, orbits, points, bounces, transient, seed)
+    return carried_out(sweep, how, bifurcation_lines)
+
+
+def bifurcation_lines(found: "xr.Dataset") -> list[str]:
+    """For some contractions, how many orbits are chaotic and how many points the attractors show."""
+    import numpy as np
+
+    shown = ["lam        chaotic  nu_plus max  points"]
+    for i in range(0, found.lam.size, max(1, found.lam.size // BIFURCATION_ROWS)):
+        one = found.isel(lam=i)
+        places = np.stack([one.s.values.ravel(), one.phi.values.ravel()], axis=1)
+        count = len(np.unique(np.round(places / DISTINCT), axis=0))
+        shown.append(
+            f"{float(one.lam):<11.6g}{int(one.chaotic.sum()):<9d}{float(one.nu_plus.max()):<13.4f}"
+            + (f"{count}" if count <= MANY else "many")
+        )
+    return shown
+
+
+TEXT_WIDTH = 100  # letters of the picture shown to people
+SWEEP_ROWS = 24  # contractions shown to people
+
+
+class Kinds(click.Group):
+    """A group that says which kinds there are when another is asked for."""
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
+        if cmd_name not in self.commands:
+            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {', '.join(self.commands)}")
+        return self.commands[cmd_name]
+
+
+@click.group(
+    cls=Kinds,
+    no_args_is_help=False,
+    epilog="Example: pinball sweep parameter-space --alphas 0:0.1:21 --lams 0:1:41 --dry-run",
+)
+def command() -> None:
+    """Parameter space, exponents, basins and bifurcation diagrams.
+
+    The bits of the results depend on the seed and on nothing else, and a sweep with a --store that was stopped goes
+    on from there when the same command is given again.
+    """
+
+
+@command.command(
+    "parameter-space",
+    epilog="Example: pinball sweep parameter-space --alphas 0:0.1:101 --lams 0:1:101 --store parameter-space.zarr",
+)
+@click.option(
+    "--alphas", metavar="LOW:HIGH:N", required=True, help="Shapes of the egg, equally spaced, with both ends."
+)
+@lams_option
+@click.option("--K", "K", type=click.IntRange(2, 100), default=3, show_default=True, help="Points of the egg.")
+@click.option("--starts", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Random balls a pair.")
+@click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="That count, each.")
+@click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
+@seed_option
+@sweep_options
+def parameter_space(
+    alphas: str, lams: str, K: int, starts: int, bounces: int, transient: int, seed: int, how: How
+) -> int:
+    """Chaos or none in the egg, for each pair of shape and contraction.
+
+    An orbit counts as chaotic when its exponent is positive beyond two standard errors and beyond what shear shows.
+    """
+    import numpy as np
+
+    from numeric.sweeps import parameter_space as space
+
+    shapes = np.array(span("--alphas", alphas, high=Fraction(1, K * K + 1)))
+    sweep = space.parameter_space(shapes, np.array(span("--lams", lams)), starts, bounces, transient, K, seed)
+    return carried_out(sweep, how, picture)
+
+
+def picture(found: "xr.Dataset") -> list[str]:
+    """The parameter space in letters: `#` where some orbit is chaotic, `.` where none is. Paper: section 6.5."""
+    step = max(1, -(-found.lam.size // TEXT_WIDTH))
+    shown = [f"alpha down, lam from {float(found.lam[0]):g} to {float(found.lam[-1]):g} across; # chaos, . none"]
+    for alpha, counts in zip(found.alpha.values, found.chaotic.values[:, ::step], strict=True):
+        shown.append(f"{alpha:<9.5g}" + "".join("#" if count else "." for count in counts))
+    return shown
+
+
+@command.command(
+    "exponents", epilog="Example: pinball sweep exponents cuspless --lams 0:1:51 --orbits 100 --json exponents.json"
+)
+@table_options
+@lams_option
+@click.option("--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random balls for each.")
+@click.option("--groups", type=click.IntRange(1, 64), default=6, show_default=True, help="Attractors kept for each.")
+@click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
+@click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
+@seed_option
+@sweep_options
+def exponents(
+    scene: Scene, lams: str, orbits: int, groups: int, bounces: int, transient: int, seed: int, how: How
+) -> int:
+    """Both Lyapunov exponents against the contraction, with standard errors, for each attractor."""
+    from numeric.sweeps import exponents as kind
+
+    text, values = over(scene, lams)
+    return carried_out(kind.exponents(text, values, orbits, groups, bounces, transient, seed), how, table_of_groups)
+
+
+def table_of_groups(found: "xr.Dataset") -> list[str]:
+    """For some contractions, a line for each attractor."""
+    shown = ["lam        orbits  period  nu_plus               nu_minus"]
+    for i in range(0, found.lam.size, max(1, found.lam.size // SWEEP_ROWS)):
+        one = found.isel(lam=i).load()
+        for j in range(found.group.size):
+            group = one.isel(group=j)
+            if int(group.orbits) > 0:
+                shown.append(
+                    f"{float(one.lam):<11.6g}{int(group.orbits):<8d}{int(group.period) or '-':<8}"
+                    f"{float(group.nu_plus):<11.6f}+- {float(group.nu_plus_error):<8.1g}"
+                    f"{float(group.nu_minus):<11.6f}+- {float(group.nu_minus_error):.1g}"
+                )
+    return shown
+
+
+command.add_command(bifurcation_command, "bifurcation")
+command.add_command(basins_command, "basins")

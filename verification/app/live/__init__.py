@@ -1,0 +1,1 @@
+"""The live table: a page of this machine."""

@@ -1,0 +1,1 @@
+"""What every command needs: the group, scenes as options, output, sweeps."""

@@ -1,0 +1,149 @@
+"""Exact expressions to complex balls: enclosures that contain the true value, at a stated precision.
+
+Stretches of a line as balls: cut into touching pieces, halved, joined.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from itertools import pairwise
+
+from flint import acb, arb, ctx, fmpq
+from sympy import (
+    Abs,
+    Add,
+    CRootOf,
+    Expr,
+    I,
+    Integer,
+    Mul,
+    Pow,
+    Rational,
+    Symbol,
+    acos,
+    asin,
+    atan,
+    cos,
+    exp,
+    log,
+    pi,
+    sin,
+    tan,
+)
+
+FUNCTIONS: Mapping[type, Callable[[acb], acb]] = {
+    sin: acb.sin,
+    cos: acb.cos,
+    tan: acb.tan,
+    atan: acb.atan,
+    acos: acb.acos,
+    asin: acb.asin,
+    exp: acb.exp,
+    log: acb.log,
+    Abs: lambda z: acb(abs(z)),
+}
+
+
+def enclose(expression: Expr, values: Mapping[Symbol, Expr] | None = None, digits: int = 30) -> acb:
+    """A ball that contains `expression` at the exact `values`, computed with about `digits` digits.
+
+    >>> from sympy import sqrt
+    >>> (enclose(sqrt(Integer(2))) ** 2 - 2).contains(0)
+    True
+    """
+    with ctx.workprec(int(3.33 * digits) + 20):
+        return _ball(expression.subs(values or {}))
+
+
+def real_ball(number: Expr | Callable[[int], arb], digits: int = 30) -> arb:
+    """A real number, exact or given as balls of any number of digits, as a ball.
+
+    >>> real_ball(Integer(2)) == 2
+    True
+    """
+    return enclose(number, digits=digits).real if isinstance(number, Expr) else number(digits)
+
+
+def _ball(e: Expr) -> acb:
+    if isinstance(e, Rational):
+        return acb(arb(_fraction(e)))
+    if e == pi:
+        return acb(arb.pi())
+    if e == I:
+        return acb(0, 1)
+    if isinstance(e, CRootOf):
+        error = Rational(1, 2**ctx.prec)
+        return acb(arb(_fraction(e.eval_rational(dx=error)), _fraction(error)))
+    if isinstance(e, Add):
+        return sum((_ball(term) for term in e.args), acb(0))
+    if isinstance(e, Mul):
+        product = acb(1)
+        for factor in e.args:
+            product *= _ball(factor)
+        return product
+    if isinstance(e, Pow):
+        base, power = e.args
+        if isinstance(power, Integer):
+            return _ball(base) ** int(power)
+        if isinstance(power, Rational) and power.q == 2:
+            return _ball(base).sqrt() ** int(power.p)
+        return (_ball(power) * _ball(base).log()).exp()
+    if type(e) in FUNCTIONS:
+        return FUNCTIONS[type(e)](_ball(e.args[0]))
+    raise ValueError(f"no enclosure is known for {type(e).__name__} in {e}")
+
+
+def _fraction(e: Rational) -> fmpq:
+    return fmpq(int(e.p), int(e.q))
+
+
+def decimal(value: arb, digits: int) -> tuple[str, str]:
+    """`(midpoint, radius)` as decimal strings; the true value lies within the radius of the midpoint.
+
+    >>> decimal(arb(1) / 3, 5)
+    ('0.33333', '3.5e-6')
+    """
+    with ctx.workprec(int(3.33 * digits) + 64):
+        known = digits if value.is_exact() else max(int(0.302 * value.rel_accuracy_bits()) + 2, 1)
+        shown = value.mid().str(min(digits, known), radius=False)
+        gap = abs(value - arb(shown))
+        bound = (arb(gap.abs_upper()) * arb("1.05")).str(2, radius=False)
+    return shown, bound
+
+
+def between(low: float, high: float) -> arb:
+    """A ball that holds all numbers between two floats.
+
+    >>> ball = between(0.1, 0.3)
+    >>> ball.contains(arb(0.1)), ball.contains(arb(0.3)), ball.contains(arb(0.31))
+    (True, True, False)
+    """
+    return arb(low).union(arb(high))
+
+
+def cuts(low: float, high: float, longest: float) -> list[arb]:
+    """A stretch as touching balls, none of them much longer than `longest`.
+
+    >>> len(cuts(0.0, 1.0, 0.3))
+    4
+    """
+    parts = max(1, math.ceil((high - low) / longest))
+    ends = [low + (high - low) * i / parts for i in range(parts)] + [high]
+    return [between(a, b) for a, b in pairwise(ends)]
+
+
+def halves(x: arb) -> list[arb]:
+    """Two touching balls that hold a ball."""
+    low, middle, high = x.lower(), arb(x.mid()), x.upper()
+    return [low.union(middle), middle.union(high)]
+
+
+def joined(values: Iterable[arb]) -> arb:
+    """A ball that holds all the balls given, at least one.
+
+    >>> joined([arb(1), arb(3)]).contains(arb(2))
+    True
+    """
+    whole, *others = values
+    for value in others:
+        whole = whole.union(value)
+    return whole

@@ -1,0 +1,194 @@
+"""Truncated Taylor series over any kind of number, and their remainders in balls.
+
+Jets carry a few coefficients through the generated functions; Taylor models add what the truncation leaves out."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_series, ctx
+
+from verification.arithmetic.words import FUNCTIONS, Arithmetic, balls
+
+
+class Jet:
+    """`c[0] + c[1]*e + ... + c[n]*e**n`, higher powers dropped."""
+
+    __slots__ = ("c",)
+
+    def __init__(self, *c: Any) -> None:
+        self.c = c
+
+    def __add__(self, other: Any) -> "Jet":
+        if isinstance(other, Jet):
+            return Jet(*(a + b for a, b in zip(self.c, other.c, strict=True)))
+        return Jet(self.c[0] + other, *self.c[1:])
+
+    __radd__ = __add__
+
+    def __neg__(self) -> "Jet":
+        return Jet(*(-a for a in self.c))
+
+    def __sub__(self, other: Any) -> "Jet":
+        total: Jet = self + (-other)
+        return total
+
+    def __rsub__(self, other: Any) -> "Jet":
+        total: Jet = (-self) + other
+        return total
+
+    def __mul__(self, other: Any) -> "Jet":
+        if not isinstance(other, Jet):
+            return Jet(*(a * other for a in self.c))
+        a, b = self.c, other.c
+        return Jet(*(_convolution(a, b, k, 0) for k in range(len(a))))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> "Jet":
+        """The quotient, order by order.
+
+        >>> (Jet(6, 5, 1) / Jet(2, 1, 0)).c
+        (3.0, 1.0, 0.0)
+        """
+        if not isinstance(other, Jet):
+            return Jet(*(a / other for a in self.c))
+        found: list[Any] = []
+        for k, a in enumerate(self.c):
+            for j, c in enumerate(found):
+                a = a - c * other.c[k - j]
+            found.append(a / other.c[0])
+        return Jet(*found)
+
+    def __rtruediv__(self, other: Any) -> "Jet":
+        return Jet(other, *([0] * (len(self.c) - 1))) / self
+
+
+def jets(base: Arithmetic) -> Arithmetic:
+    """The words of the kernels for jets over the numbers of `base`.
+
+    >>> from verification.arithmetic.words import FLOAT64
+    >>> jets(FLOAT64)["atan"](Jet(0.0, 1.0, 0.0, 0.0)).c[3] * 3
+    -1.0
+    """
+
+    def sine_and_cosine(x: Jet) -> tuple[list[Any], list[Any]]:
+        s, c = [base["sin"](x.c[0])], [base["cos"](x.c[0])]
+        for k in range(1, len(x.c)):
+            terms = [(j, j * x.c[j]) for j in range(1, k + 1)]
+            s.append(_sum(d * c[k - j] for j, d in terms) / k)
+            c.append(-_sum(d * s[k - j] for j, d in terms) / k)
+        return s, c
+
+    def integrated(word: str, slope: Callable[[Jet], Jet]) -> Callable[[Any], Any]:
+        def function(x: Any) -> Any:
+            if not isinstance(x, Jet):
+                return base[word](x)
+            derivative = slope(x) * Jet(*((k + 1) * a for k, a in enumerate(x.c[1:])), 0)
+            return Jet(base[word](x.c[0]), *(d / (k + 1) for k, d in enumerate(derivative.c[:-1])))
+
+        return function
+
+    def root(x: Any) -> Any:
+        if not isinstance(x, Jet):
+            return base["sqrt"](x)
+        found = [base["sqrt"](x.c[0])]
+        for k in range(1, len(x.c)):
+            inner = _sum(found[j] * found[k - j] for j in range(1, k))
+            found.append((x.c[k] - inner) / (2 * found[0]))
+        return Jet(*found)
+
+    def exponential(x: Any) -> Any:
+        if not isinstance(x, Jet):
+            return base["exp"](x)
+        found = [base["exp"](x.c[0])]
+        for k in range(1, len(x.c)):
+            found.append(_sum(j * x.c[j] * found[k - j] for j in range(1, k + 1)) / k)
+        return Jet(*found)
+
+    return {
+        "q": base["q"],
+        "pi": base["pi"],
+        "sin": lambda x: Jet(*sine_and_cosine(x)[0]) if isinstance(x, Jet) else base["sin"](x),
+        "cos": lambda x: Jet(*sine_and_cosine(x)[1]) if isinstance(x, Jet) else base["cos"](x),
+        "atan": integrated("atan", lambda x: 1 / (x * x + 1)),
+        "log": integrated("log", lambda x: 1 / x),
+        "sqrt": root,
+        "exp": exponential,
+    }
+
+
+def _convolution(a: Any, b: Any, k: int, start: int) -> Any:
+    return _sum(a[j] * b[k - j] for j in range(start, k + 1 - start))
+
+
+def _sum(terms: Any) -> Any:
+    total: Any = 0
+    for term in terms:
+        total = total + term
+    return total
+
+
+Function = Callable[[arb_series], arb_series]
+
+
+@contextmanager
+def taylor(order: int) -> Iterator[None]:
+    """Series have `order` coefficients inside, and outside as many as before."""
+    before = ctx.cap
+    ctx.cap = order
+    try:
+        yield
+    finally:
+        ctx.cap = before
+
+
+def series(bits: int) -> Arithmetic:
+    """The words of a kernel for power series with balls for coefficients."""
+    return {**balls(bits), **{word: getattr(arb_series, word) for word in FUNCTIONS}}
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """A function of `t` between `low < 0` and `high > 0`: the coefficients, the last of them over the whole stretch."""
+
+    low: arb
+    high: arb
+    terms: tuple[arb, ...]
+
+    def size(self) -> arb:
+        """An upper bound of its absolute value."""
+        return self._upper(self.terms)
+
+    def slope(self) -> arb:
+        """An upper bound of the absolute value of its derivative."""
+        return self._upper([k * c for k, c in enumerate(self.terms)][1:])
+
+    def integral(self) -> arb:
+        """The integral over the stretch."""
+        *known, last = self.terms
+        count = len(self.terms)
+        found = sum((c * (self.high ** (k + 1) - self.low ** (k + 1)) / (k + 1) for k, c in enumerate(known)), arb(0))
+        return found + last * (self.high**count + abs(self.low) ** count) / count * arb(0, 1)
+
+    def _upper(self, terms: "tuple[arb, ...] | list[arb]") -> arb:
+        farthest = self.high.max(-self.low)
+        return arb(sum((abs(c) * farthest**k for k, c in enumerate(terms)), arb(0)).abs_upper())
+
+
+def expanded(function: Function, low: arb, high: arb, order: int) -> Expansion:
+    """The expansion of a function between two exact points.
+
+    >>> found = expanded(arb_series.exp, arb(0), arb(1), 12)
+    >>> (found.integral() - (arb(1).exp() - 1)).contains(0), found.integral().rad() < 1e-9
+    (True, True)
+    >>> found.size() >= arb(1).exp() and found.slope() >= arb(1).exp()
+    True
+    """
+    middle = ((low + high) / 2).mid()
+    with taylor(order):
+        known = list(function(arb_series([middle, 1])))
+        over = list(function(arb_series([low.union(high), 1])))
+    terms, whole = ([*made, *[arb(0)] * order][:order] for made in (known, over))
+    return Expansion(low - middle, high - middle, (*terms[:-1], whole[-1]))

@@ -1,0 +1,1 @@
+"""Periodic orbits: search, Newton iteration, continuation, normal forms, cascades."""

@@ -1,0 +1,1 @@
+"""Branches of cycles: what becomes of one as a parameter changes."""

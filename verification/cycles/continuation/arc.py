@@ -1,0 +1,242 @@
+"""Pseudo-arclength continuation: a curve of solutions of `n` equations in `n + 1` unknowns, point by point.
+
+A step goes along the tangent and comes back to the curve in the plane across it, so folds are passed
+like any other point. The step grows where Newton's method is quick and shrinks where it is slow or
+where the curve turns; it never leaves the box of `limits`, at whose sides the last point lies.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.optimize import brentq
+
+from verification.cycles.continuation.linear import above, solved
+from verification.cycles.continuation.recurrence import Array
+
+NEWTON = 9  # steps before a corrector gives up
+CLOSE = 1e-11  # a correction that small is the last one, in units of the unknowns
+TURNED = 0.95  # the least cosine between successive tangents
+QUICK, SLOW = 3, 5  # corrector steps that lengthen and shorten the next arc
+
+
+class End(Enum):
+    """Why a path has no further point."""
+
+    INTERVAL = "an end of the interval"
+    CLOSED = "the branch is closed"
+    ENOUGH = "as many points as were asked for"
+    OBSTACLE = "no cycle beyond"
+    LOST = "the branch was lost"
+
+
+class System(Protocol):
+    """Equations whose solutions are a curve."""
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+
+    @property
+    def weights(self) -> Array:
+        """What each unknown counts in the length of the curve."""
+
+    def linear(self, z: Array) -> tuple[Array, Any]:
+        """The values of the equations and their matrix of derivatives, one column more than rows."""
+
+    def tests(self, z: Array) -> dict[str, float]:
+        """Functions whose zeros on the curve are events."""
+
+    def obstacle(self, z: Array) -> str:
+        """Why `z` is no solution although the equations hold; empty when nothing is in the way."""
+
+    def renewed(self, z: Array) -> "System":
+        """The same equations, prepared for the surroundings of `z`."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Lengths of arc, and the largest number of points."""
+
+    first: float = 0.01
+    smallest: float = 1e-8
+    largest: float = 0.05
+    most: int = 400
+
+
+@dataclass(frozen=True)
+class Point:
+    """A solution with its tangent, the arc length so far, and the test functions there."""
+
+    z: Array = field(repr=False)
+    tangent: Array = field(repr=False)
+    s: float
+    tests: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Path:
+    """The points in order, and how they end."""
+
+    system: System = field(repr=False)
+    points: tuple[Point, ...] = field(repr=False)
+    end: End
+    why: str
+
+
+class LostError(ValueError):
+    """The corrector did not come back to the curve."""
+
+
+def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[Array, int]:
+    """The solution near `guess` on which `row . z = level`, and the Newton steps it took."""
+    z, before = guess.copy(), np.inf
+    for count in range(1, NEWTON + 1):
+        value, matrix = system.linear(z)
+        whole = above(matrix, row)
+        right = np.append(value, row @ z - level)
+        if not (np.all(np.isfinite(getattr(whole, "data", whole))) and np.all(np.isfinite(right))):
+            break
+        if not np.any(right):
+            return z, count  # exact, and perhaps a crossing of branches, where the matrix is singular
+        try:
+            correction = solved(whole, right)
+        except ValueError:
+            break
+        z = z - correction
+        size = float(np.max(np.abs(correction)))
+        if size < CLOSE or (count > 2 and before < 1e-7 and size >= before / 4):
+            return z, count
+        if size > 1e3:
+            break
+        before = size
+    raise LostError(f"{system.label}: Newton's method no longer converges")
+
+
+def tangent_at(system: System, z: Array, along: Array) -> Array:
+    """The unit tangent at `z` that points the way of `along`."""
+    _, matrix = system.linear(z)
+    found = solved(above(matrix, along * system.weights), np.append(np.zeros(len(z) - 1), 1.0))
+    length = float(np.sqrt(found @ (system.weights * found)))
+    if not np.isfinite(length) or length == 0:
+        raise LostError(f"{system.label}: the curve has no tangent there")
+    return found / length
+
+
+def arc(system: System, start: Point, length: float) -> tuple[Array, int]:
+    """The point of the curve in the plane `length` ahead of `start`."""
+    row = start.tangent * system.weights
+    guess = start.z + length * start.tangent
+    return corrected(system, guess, row, float(row @ guess))
+
+
+def started(system: System, z: Array, direction: Array) -> Point:
+    """The first point of a path: on the curve, in the plane across `direction`."""
+    weighted = direction * system.weights
+    place, _ = corrected(system, z, weighted, float(weighted @ z))
+    return Point(place, tangent_at(system, place, direction), 0.0, system.tests(place))
+
+
+def follow(
+    system: System,
+    first: Point,
+    limits: Mapping[int, tuple[float, float]],
+    steps: Steps | None = None,
+    tick: Callable[[Point], None] | None = None,
+) -> Path:
+    """The path from `first` in the direction of its tangent, as far as it goes."""
+    steps = steps or Steps()
+    points, step = [first], steps.first
+    while len(points) < steps.most:
+        here = points[-1]
+        try:
+            z, count = arc(system, here, step)
+            tangent = tangent_at(system, z, here.tangent)
+            if tangent @ (system.weights * here.tangent) < TURNED:
+                raise LostError(f"{system.label}: the curve turns faster than the step")
+            if sides := _beyond(here.z, z, limits):
+                last = _landed(system, here, z, sides, limits)
+                return Path(system, (*points, last), End.INTERVAL, "the end of the interval was reached")
+            why = system.obstacle(z)
+            tests = system.tests(z)
+        except ValueError as error:
+            step /= 2
+            if step < steps.smallest:
+                return Path(system, tuple(points), End.LOST, _lost(here, str(error)))
+            continue
+        if why:
+            if step > 64 * steps.smallest:
+                step /= 4  # come close before giving up
+                continue
+            return Path(system, tuple(points), End.OBSTACLE, why)
+        points.append(Point(z, tangent, here.s + step, tests))
+        if tick is not None:
+            tick(points[-1])
+        if _closed(system, points, step):
+            return Path(system, (*points, first), End.CLOSED, "the branch came back to its start")
+        system = system.renewed(z)
+        step = min(steps.largest, step * (1.5 if count <= QUICK else 1.0 if count <= SLOW else 0.6))
+    return Path(system, tuple(points), End.ENOUGH, f"{steps.most} points were asked for")
+
+
+def zero(system: System, start: Point, end: Point, name: str) -> Point:
+    """The point between two neighbours where the test function `name` vanishes."""
+
+    def value(length: float) -> float:
+        return system.tests(arc(system, start, length)[0])[name] if length else start.tests[name]
+
+    row = start.tangent * system.weights
+    whole = float(row @ (end.z - start.z))
+    length = float(brentq(value, 0.0, whole, xtol=1e-13 + 1e-11 * abs(whole), rtol=1e-13))
+    z, _ = arc(system, start, length)
+    try:
+        tangent = tangent_at(system, z, start.tangent)
+    except ValueError:
+        tangent = start.tangent  # branches cross there and have no common tangent
+    return Point(z, tangent, start.s + length, system.tests(z))
+
+
+def _beyond(here: Array, z: Array, limits: Mapping[int, tuple[float, float]]) -> list[tuple[int, float]]:
+    """The sides of the box that are crossed on the way from `here` to `z`, the first one first."""
+    crossed = []
+    for index, (low, high) in limits.items():
+        if not low <= z[index] <= high:
+            side = low if z[index] < low else high
+            crossed.append(((side - here[index]) / (z[index] - here[index]), index, side))
+    return [(index, side) for _, index, side in sorted(crossed)]
+
+
+def _landed(
+    system: System, here: Point, z: Array, sides: list[tuple[int, float]], limits: Mapping[int, tuple[float, float]]
+) -> Point:
+    """The point of the curve on the side that it leaves the box by."""
+    for index, side in sides:
+        last = _at_side(system, here, z, index, side)
+        if not _beyond(here.z, last.z, limits):
+            return last
+    raise LostError(f"{system.label}: the side of the box was missed")
+
+
+def _at_side(system: System, here: Point, beyond: Array, index: int, side: float) -> Point:
+    """The point of the curve on a side of the box."""
+    share = (side - here.z[index]) / (beyond[index] - here.z[index])
+    row = np.zeros(len(beyond))
+    row[index % len(beyond)] = 1.0
+    z, _ = corrected(system, here.z + share * (beyond - here.z), row, side)
+    z[index] = side
+    tangent = tangent_at(system, z, here.tangent)
+    length = float((here.tangent * system.weights) @ (z - here.z))
+    return Point(z, tangent, here.s + length, system.tests(z))
+
+
+def _closed(system: System, points: list[Point], step: float) -> bool:
+    first, last = points[0], points[-1]
+    gap = last.z - first.z
+    near = float(np.sqrt(gap @ (system.weights * gap)))
+    return len(points) > 6 and near < step and float(first.tangent @ (system.weights * last.tangent)) > TURNED
+
+
+def _lost(here: Point, error: str) -> str:
+    return f"{error}, next to the last point, with any step down to the smallest"

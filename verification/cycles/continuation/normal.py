@@ -1,0 +1,75 @@
+"""The coefficients of normal forms in float64, for any recurrence, from Taylor series along the null vector.
+
+As in `verification.cycles.shooting.normal_form`, which has the certified ones: with `v` and `w` the vectors of
+the singular ring, `e` the amplitude along `v` and `F` the rules,
+
+    fold:  letter = critical - ([e**2] w.F)/(w.dF/dletter) * e**2,
+    flip:  letter = critical - ([e**3] w.F)/speed * e**2,   speed = d(w A v)/dletter along the cycle.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.words import ARRAYS
+from verification.cycles.continuation.linear import along, null_vectors, ring_matrix, solved
+from verification.cycles.continuation.recurrence import Array, Letters, Recurrence
+from verification.cycles.shooting.problem import Kind
+
+JETS = jets(ARRAYS)
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """`branch` of `letter = critical + branch*e**2`, `e` the root mean square amplitude, and what it means.
+
+    `supercritical` is that of a flip: the doubled cycle is born on the side where the old one is unstable.
+    """
+
+    branch: float
+    bend: float
+    speed: float
+    supercritical: bool | None = None
+
+
+def bend_of(recurrence: Recurrence, x: Array, at: Letters, kind: Kind, v: Array, w: Array) -> float:
+    """`[e**2] w.F` at a fold; at a flip `[e**3] w.F` on the curve whose second order is solved for."""
+    second = _series(recurrence, x, at, int(kind), [v])
+    if kind is Kind.FOLD:
+        return float(w @ second[2])
+    matrix = ring_matrix(recurrence.terms(x, at, 1), recurrence.ends)
+    bent = solved(matrix, -second[2])
+    return float(w @ _series(recurrence, x, at, int(kind), [v, bent])[3])
+
+
+def coefficients(recurrence: Recurrence, x: Array, at: Letters, kind: Kind, letter: str) -> Coefficients:
+    """The normal form of a cycle where it folds or flips in `letter`."""
+    terms = recurrence.terms(x, at, 2)
+    v, w = null_vectors(ring_matrix(terms, recurrence.ends, int(kind)))
+    bend = bend_of(recurrence, x, at, kind, v, w)
+    if kind is Kind.FOLD:
+        speed = float(w @ terms.by[letter])
+        return Coefficients(-bend / speed, bend, speed)
+    by_bounce, by_letter = along(terms, recurrence.ends, v, w, int(kind))
+    motion = solved(ring_matrix(terms, recurrence.ends), -terms.by[letter])
+    speed = float(by_letter[letter] + by_bounce @ motion)
+    lower, _, upper = terms.slope
+    turn = recurrence.ends.turn * float(w[-1] * upper[-1] * v[0] - w[0] * lower[0] * v[-1])
+    return Coefficients(-bend / speed, bend, speed, bend * turn < 0 if turn else None)
+
+
+def _series(recurrence: Recurrence, x: Array, at: Letters, sign: int, directions: list[Array]) -> tuple[Any, ...]:
+    """Taylor coefficients of the rules on `x + directions[0]*e + directions[1]*e**2`, one order more than given."""
+    order = len(directions) + 1
+    rows = [x, *directions, *([np.zeros_like(x)] * (order - len(directions)))]
+    ends = recurrence.ends
+    around = [ends.padded(x)]
+    for k, row in enumerate(rows[1:], 1):
+        close = ends.turn * sign**k
+        around.append(np.concatenate([[close * row[-1]], row, [close * row[0]]]))
+    before, here, after = (Jet(*(a[part] for a in around)) for part in (slice(0, -2), slice(1, -1), slice(2, None)))
+    return tuple(
+        np.asarray(c, dtype=float) + np.zeros_like(x) for c in recurrence.rule(JETS, (before, here, after), at).c
+    )

@@ -1,0 +1,150 @@
+"""From an event onto the other branch that passes through it.
+
+A fold is no crossroads: the branch itself goes on. At a period doubling and at a pitchfork the other
+branch leaves along the null vector: the next cycle is sought in the plane that lies a small amplitude
+away, which the old branch does not meet. At a border collision the bounce on the join is taken to lie
+on the neighbouring part of the boundary; whether a cycle is admissible there, and for which contractions,
+says whether the collision carries it on, ends it, or ends a pair.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from verification.cycles.continuation import arc
+from verification.cycles.continuation.arc import LostError, Point, Steps
+from verification.cycles.continuation.branch import Branch, Event, Interval, What, through
+from verification.cycles.continuation.linear import null_vectors, ring_matrix
+from verification.cycles.continuation.recurrence import Array, Chords
+from verification.cycles.continuation.symmetry import whole
+from verification.cycles.continuation.systems import Cycles
+
+AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
+NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
+Tick = Callable[[Point], None]
+TOUCHING = 1e-7  # a bounce that close to a join, in its parameter, collides with it
+
+
+def switched(
+    branch: Branch, event: Event, interval: Interval, steps: Steps | None = None, tick: Tick | None = None
+) -> list[Branch]:
+    """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
+
+    >>> from verification.cycles.continuation.branch import branch
+    >>> from verification.cycles.continuation.recurrence import logistic
+    >>> one = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4))
+    >>> (two,) = switched(one, one.events[0], (2.0, 3.6))
+    >>> [(event.what.value, round(event.value, 9)) for event in two.events]
+    [('period doubling', 3.449489743)]
+    """
+    if event.what in (What.FLIP, What.PITCHFORK):
+        return _along_the_null_vector(branch, event, interval, steps, tick)
+    if event.what is What.BRANCHING:
+        return _across(branch, event, interval, steps, tick)
+    if event.what is What.BORDER:
+        return _over_the_join(branch, event, interval, steps, tick)
+    return []
+
+
+def _along_the_null_vector(
+    branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None
+) -> list[Branch]:
+    letter, fixed = branch.system.letter, branch.system.fixed
+    part, x = event.ring, event.x
+    at = {**fixed, letter: event.value}
+    v, _ = null_vectors(ring_matrix(part.terms(x, at, 1), part.ends, -1))
+    ring, image = part.doubled(), part.ends.turn * x + part.ends.shift
+    both, away = np.concatenate([x, image]), np.concatenate([v, -part.ends.turn * v])
+    if isinstance(ring, Chords) and isinstance(part, Chords) and event.what is What.PITCHFORK:
+        n = branch.system.recurrence.period
+        ring, both = whole(replace(part, ends=part.ends), x, n)
+        away = _repeated(part, v, n)
+    ways = (1, -1) if event.what is What.PITCHFORK else (1,)
+    system = Cycles(ring, letter, fixed)
+    z = np.append(both, event.value)
+    return [_leaving(system, z, np.append(way * away, 0.0), interval, steps, tick) for way in ways]
+
+
+def _repeated(part: Chords, v: Array, n: int) -> Array:
+    """A vector of a part that flips, along the whole cycle."""
+    pieces, piece = [v], v
+    while len(pieces) * part.period < n:
+        piece = -part.ends.turn * piece
+        pieces.append(piece)
+    return np.concatenate(pieces)
+
+
+def _leaving(
+    system: Cycles, z: Array, away: Array, interval: Interval, steps: Steps | None, tick: Tick | None
+) -> Branch:
+    """The branch that leaves `z` along `away`; `z` itself is its first point."""
+    crossing = Point(z, away, 0.0, system.tests(z))
+    size = AMPLITUDE
+    for _ in range(8):
+        try:
+            near, _ = arc.arc(system, crossing, size)
+            if abs(system.tests(near)["one"]) > NEARBY:
+                size /= 3
+                continue
+            found = through(system, near, near - z, interval, steps, tick, ways=(1,))
+        except LostError:
+            size /= 3
+            continue
+        points = (crossing, *(replace(p, s=p.s + size) for p in found.points))
+        events = tuple(replace(event, point=replace(event.point, s=event.point.s + size)) for event in found.events)
+        return replace(found, points=points, events=events)
+    raise LostError(f"{system.label}: no branch was found that leaves at {system.letter} = {z[-1]:.9g}")
+
+
+def _across(branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None) -> list[Branch]:
+    """Both ways along the null vector that is not the branch's own tangent."""
+    system, z = branch.system, event.point.z
+    matrix = ring_matrix(system.terms(z), system.recurrence.ends)
+    v = np.append(null_vectors(matrix)[0], 0.0)
+    own = event.point.tangent
+    v = v - (v @ (system.weights * own)) * own
+    v /= np.sqrt(v @ (system.weights * v))
+    return [_leaving(system, z, way * v, interval, steps, tick) for way in (1, -1)]
+
+
+def _over_the_join(
+    branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None
+) -> list[Branch]:
+    """The cycles whose colliding bounces, some or all of them, lie on the neighbouring components."""
+    ring, x = branch.system.recurrence, event.x
+    if not isinstance(ring, Chords):
+        return []
+    joins = [(i, end) for i, end in enumerate(ring.nearest_joins(x)) if end is not None and abs(end - x[i]) < TOUCHING]
+    found = []
+    for some in (some for size in range(1, len(joins) + 1) for some in combinations(joins, size)):
+        parts, moved, inwards = list(ring.components), x.copy(), {}
+        for bounce, end in some:
+            own = ring.table.components[parts[bounce]]
+            after = abs(end - float(own.end)) < TOUCHING
+            parts[bounce] = (parts[bounce] + (1 if after else -1)) % len(ring.table.components)
+            entered = ring.table.components[parts[bounce]]
+            moved[bounce] = float(entered.start if after else entered.end)
+            inwards[bounce] = 1.0 if after else -1.0  # parameters grow counterclockwise, from the join inwards
+        system = Cycles(replace(ring, components=tuple(parts)), branch.system.letter, branch.system.fixed)
+        other = _inwards(system, np.append(moved, event.value), inwards, interval, steps, tick)
+        found += [other] if other else []
+    return found
+
+
+def _inwards(
+    system: Cycles, z: Array, inwards: dict[int, float], interval: Interval, steps: Steps | None, tick: Tick | None
+) -> Branch | None:
+    """The branch from a border collision on which the named bounces leave their joins; None when there is none."""
+    bounce = next(iter(inwards))
+    row = np.zeros(len(z))
+    row[bounce] = 1.0
+    for size in (1e-6, 1e-4):
+        try:
+            near, _ = arc.corrected(system, z + inwards[bounce] * size * row, row, z[bounce] + inwards[bounce] * size)
+        except LostError:
+            continue
+        if not system.obstacle(near) and abs(near[-1] - z[-1]) < 1e3 * size:
+            return through(system, near, near - z, interval, steps, tick, ways=(1,))
+    return None

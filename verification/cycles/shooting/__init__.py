@@ -1,0 +1,1 @@
+"""One cycle at a time, to any precision: its equations, Newton iteration, condition and normal form."""

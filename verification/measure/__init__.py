@@ -1,0 +1,1 @@
+"""Error and run time: benchmark problems, extreme cases, speed."""

@@ -1,0 +1,1 @@
+"""Extreme and stiff cases, measured against 50 digits and recorded."""

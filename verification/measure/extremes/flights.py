@@ -1,0 +1,175 @@
+"""Errors and condition of one bounce, against a proved enclosure of the truth with a hundred digits.
+
+Data and result are `(theta, psi)`, the parameter and the direction of flight in the plane: turning with the boundary,
+which `phi` does, would count the curvature twice. A shape that no double is counts as rounded data too.
+"""
+
+from copy import copy
+from dataclasses import replace
+from fractions import Fraction
+from math import inf
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from numeric import PinballMap, Status
+from verification.arithmetic.words import bits_of
+from verification.maps.enclosed import EnclosedMap, Refusal, as_ball
+from verification.maps.exact import Ball, ExactMap, exact_ball
+from verification.measure.extremes.cases import HALF_HEIGHT, Aim, Case, Ulps
+from verification.measure.extremes.kernels import DOUBLE, GOES_ON, KERNELS, TEXTBOOK, Kernel
+from verification.measure.extremes.near import WRONG, Finding, Measured, Stability
+
+DIGITS = 100
+CANCELS = "-q + sqrt(q*q - p*r) cancels where the flight is short"
+SMALLER = mpmath.mpf(10) ** -35  # step of the difference quotients: 30 digits are lost, 35 are left
+
+
+class Truth:
+    """The map of a case's exact table, in balls and where they refuse in mpmath numbers."""
+
+    def __init__(self, case: Case) -> None:
+        self.map = PinballMap(case.scene, lam=case.lam, **case.shapes)
+        self.lam = Fraction(float(self.map.lam.flat[0]))
+        exact = copy(self.map)
+        self.shape = exact.exact_shape = list(case.shapes.values())
+        self.exact = ExactMap(exact, DIGITS, self.lam)
+        self.mp = self.exact.context
+        self.balls = EnclosedMap(exact, self.lam, bits_of(DIGITS + 20))
+        self.rounded = [
+            value != Fraction(shown) for value, shown in zip(exact.exact_shape, self.map.shape, strict=True)
+        ]
+        self.nearby = self._nearby(exact) if any(self.rounded) else None
+
+    def starts(self, case: Case) -> list[list[Any]]:
+        """The kernels' fields of every start."""
+        states = self.map.states
+        made = []
+        for component, theta, phi in case.starts:
+            low, high = states.ends[component]
+            if isinstance(theta, Ulps):
+                theta = _ulps(high if theta.side > 0 else low, -theta.side * theta.count)
+            place = np.array([component]), np.array([float(theta)])
+            if isinstance(phi, Aim):
+                x, y = states.point(*place)
+                towards = states.angle_to_normal(*place, -0.25 - x, phi.side * HALF_HEIGHT - y)
+                phi = _ulps(float(towards[0]), phi.count)
+            rows = states.enter(*place, np.array([float(phi)]), self.map.law)
+            made.append([row[0] for row in rows])
+        return made
+
+    def bounce(self, ball: Ball, balls: EnclosedMap | None = None) -> Ball:
+        """The landing: enclosed and proved the first hit, or by the definition with a hundred digits."""
+        balls = balls or self.balls
+        found = balls.bounce(balls.ball(ball.component, as_ball(ball.theta), as_ball(ball.phi)))
+        if isinstance(found, Refusal):
+            return self.exact.bounce(ball)
+        if found.code == Status.JOIN.code:  # a landing all the same, only one that may be on either part
+            return replace(self.exact.bounce(ball), code=0)
+        if found.code:
+            return found
+        middle = self.exact.middle
+        return self.exact.ball(found.component, middle(found.theta), middle(found.phi))
+
+    def derivative(self, ball: Ball, landed: Ball) -> Any:
+        """The matrix of `(theta, psi)` by `(theta, psi)`, and by the logarithm of a rounded shape."""
+        mp, exact = self.mp, self.exact
+        columns = []
+        if self.map.law == "slap":
+            shifted = [exact.ball(ball.component, ball.theta + SMALLER, 0)]
+        else:
+            c, s = mp.cos(SMALLER), mp.sin(SMALLER)
+            vx, vy = ball.v
+            turned = exact.along(ball.component, ball.theta, (c * vx - s * vy, s * vx + c * vy))
+            shifted = [exact.along(ball.component, ball.theta + SMALLER, ball.v), turned]
+        for one in shifted:
+            columns.append([x / SMALLER for x in self.gap(self.bounce(one), landed)])
+        if self.nearby is not None:
+            columns.append([x / SMALLER for x in self.gap(self.bounce(ball, self.nearby), landed)])
+        return mp.matrix(columns).T
+
+    def gap(self, one: Ball, other: Ball) -> list[Any]:
+        """`one - other` in `(theta, psi)`; of a slap only the parameter. Between parts, their distance in the plane."""
+        mp = self.mp
+        theta = one.theta - other.theta
+        if one.component != other.component:
+            theta = mp.hypot(one.x - other.x, one.y - other.y)
+        if len(self.map.blueprint.parts) == 1:
+            theta -= 2 * mp.pi * mp.nint(theta / (2 * mp.pi))
+        if self.map.law == "slap":
+            return [theta]
+        (x, y), (u, v) = one.v, other.v
+        return [theta, mp.atan2(y * u - x * v, x * u + y * v)]
+
+    def _nearby(self, exact: PinballMap) -> EnclosedMap:
+        other = copy(exact)
+        step = Fraction(1, 10**35)
+        other.exact_shape = [value * (1 + step) for value in exact.exact_shape]
+        return EnclosedMap(other, self.lam, bits_of(DIGITS + 20))
+
+
+class Asked:
+    """A state that kernels hold, with its true landing and the derivative there, computed once."""
+
+    def __init__(self, truth: Truth, state: list[Any]) -> None:
+        self.truth, self.state = truth, state
+        self.ball = ball = exact_ball(truth.map, truth.exact, state)
+        self.landed = truth.bounce(ball)
+        if self.landed.code:
+            return
+        mp, matrix = truth.mp, truth.derivative(ball, self.landed)
+        self.spread = matrix * matrix.T + mp.eye(matrix.rows)  # of what one unit in data and result can do
+        self.condition = mp.sqrt(max(mp.eigsy(self.spread, eigvals_only=True)))
+
+    def why(self, status: str) -> tuple[float, str]:
+        """What the truth has to say of the outcome that a kernel named: how far it is from that, and in words."""
+        mp, landed, (vx, vy) = self.truth.mp, self.landed, self.ball.v
+        if status == Status.JOIN.name:
+            x, height = -mp.mpf(1) / 4 - self.ball.x, mp.sqrt(3) / 4
+            miss = float(min(abs(vx * (y - self.ball.y) - vy * x) for y in (height, -height)) / DOUBLE)
+            return miss, f"the true flight passes the join {miss:.2g} units off"
+        if status == Status.GRAZING.name and landed.eta is not None:
+            cosine = float(mp.cos(landed.eta))
+            return cosine, f"the true cos(eta) is {cosine:.2g}, the border 2^-50"
+        return (0.0, "the truth stops there too") if landed.code else (1.0, "the truth goes on")
+
+    def measured(self, fields: list[Any], unit: float) -> Measured:
+        """What a kernel made of it."""
+        truth, mp = self.truth, self.truth.mp
+        if self.landed.code or not all(np.isfinite(float(field)) for field in fields):
+            return WRONG
+        found = exact_ball(truth.map, truth.exact, fields)
+        gap = mp.matrix(truth.gap(found, self.landed))
+        backward = mp.sqrt((gap.T * mp.lu_solve(self.spread, gap))[0])
+        return Measured(*(float(x) for x in (mp.norm(gap) / unit, backward / unit, self.condition)))
+
+
+def findings(case: Case, starts: int | None = None) -> list[Finding]:
+    """Every kernel on a case: its worst start."""
+    truth = Truth(case)
+    asked = [Asked(truth, state) for state in truth.starts(case)[:starts]]
+    return [_finding(case, truth, kernel, asked) for kernel in (*KERNELS, TEXTBOOK) if kernel.runs(truth.map)]
+
+
+def _finding(case: Case, truth: Truth, kernel: Kernel, asked: list[Asked]) -> Finding:
+    worst: Measured | None = None
+    stopped: dict[str, list[tuple[float, str]]] = {}
+    for one in asked:
+        fields, status = kernel.bounce(truth.map, one.state, truth.shape)
+        if status != GOES_ON:
+            stopped.setdefault(status, []).append(one.why(status))
+            continue
+        found = one.measured(fields, kernel.unit)
+        worst = found if worst is None or found.backward > worst.backward else worst
+    said = [max(stopped[status])[1] for status in sorted(stopped)]
+    if worst is not None and worst.stability is Stability.UNSTABLE:
+        said.append(CANCELS if kernel is TEXTBOOK else "the backward error")
+    return Finding(case.name, kernel.name, worst, ", ".join(sorted(stopped)), reason="; ".join(said))
+
+
+def _ulps(end: float, count: int) -> float:
+    """The double so many ulps above (or, negative, below) another one."""
+    for _ in range(abs(count)):
+        end = float(np.nextafter(end, inf if count > 0 else -inf))
+    return end

@@ -1,0 +1,244 @@
+"""What is measured of an answer, and the verdict on whoever gave it.
+
+With data `x`, truth `f(x)` and answer `y`, the *forward error* is `|y - f(x)|`. The *backward error* is the smallest
+`(dx, dy)` with `y + dy = f(x + dx)`, to first order: what the data and the result would have to be off by for the
+answer to be right ([Higham2002], section 1.5, calls this the mixed error).
+The *condition number* is the largest factor between the two. Errors are absolute, in units of rounding of one.
+
+Cycles next to a bifurcation and very long ones: Newton's method on the chord system where it is nearly singular.
+
+The backward error is the residual of the collision rule, the largest of the angles at the bounces, as the forward error
+is the largest of the errors; the condition number is the one that a `Solution` has, taken at the truth. Where a
+multiplier is `1 + d` it is of the size of `1/d`. The truth is the solution with 100 digits.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from math import inf, isfinite, log10, ulp
+from typing import Any
+
+import mpmath
+from sympy import Expr, N, Rational, acos, pi, sqrt, tan
+
+from symbolic import tables
+from symbolic.cycles import polygons
+from symbolic.cycles.thresholds import alpha_tilde
+from symbolic.tables.symbols import alpha as alpha_letter
+from symbolic.tables.symbols import lam as lam_letter
+from verification.arithmetic.words import bits_of, multiprecision
+from verification.cycles.shooting.attracting import doubled
+from verification.cycles.shooting.cascade import rung
+from verification.cycles.shooting.condition import ROUNDINGS, Conditioning, costs_half, norm_of_inverse
+from verification.cycles.shooting.newton import Solution, UnsettledError, in_floats, refined
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.measure.extremes.kernels import DOUBLE
+
+SMALL = ROUNDINGS  # units: a dozen roundings, each of them explained by the data
+UNIT, DIGITS = 2.0**-52, 15  # of a float64
+
+
+class Stability(Enum):
+    """The verdict; the value says what it means for whoever asks."""
+
+    STABLE = "as right as rounded data allow"
+    SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
+    STOPPED = "no number: the kernel stops the ball and names the outcome"
+    UNSTABLE = "wrong by more than rounded data explain; use what is named in its place"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Forward and backward error in units of rounding, and the condition number between them."""
+
+    forward: float
+    backward: float
+    condition: float
+
+    @property
+    def ratio(self) -> float:
+        """`error / (cond * eps)`; at most 1 means that one rounding of the data would have done as much."""
+        return self.forward / self.condition if isfinite(self.condition) else 0.0
+
+    @property
+    def stability(self) -> Stability:
+        """The verdict.
+
+        >>> Measured(forward=4e3, backward=2, condition=1e4).stability.name
+        'STABLE'
+        >>> Measured(forward=4e3, backward=2e3, condition=2).stability.name
+        'UNSTABLE'
+        """
+        if not self.backward <= SMALL:
+            return Stability.UNSTABLE
+        return Stability.SENSITIVE if costs_half(self.condition, UNIT, DIGITS) else Stability.STABLE
+
+
+WRONG = Measured(inf, inf, 1.0)  # another component, or no number at all
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One kernel on one case: the worst answer of all starts, what stopped, and what to do instead.
+
+    `named` is what the kernel itself says of its condition number, where it says anything; `reason` is what the
+    verdict is due to, where it is not plainly stable.
+    """
+
+    case: str
+    kernel: str
+    measured: Measured | None
+    status: str = ""
+    instead: str = ""
+    named: Conditioning | None = None
+    reason: str = ""
+
+    @property
+    def stability(self) -> Stability:
+        """The verdict on the worst start; a kernel that gave no number at all has stopped.
+
+        How sensitive the answer is is taken from what the kernel names, not from what was measured of it.
+
+        >>> Finding("fold", "Newton", Measured(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
+        'SENSITIVE'
+        """
+        if self.measured is None:
+            return Stability.STOPPED
+        if self.named is None or self.measured.stability is Stability.UNSTABLE:
+            return self.measured.stability
+        return Stability.STABLE if self.named is Conditioning.SOUND else Stability.SENSITIVE
+
+
+NEAR_DIGITS = 100
+Sought = tuple[Problem, list[float]]
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A system of the chord method with a start for Newton's method."""
+
+    name: str
+    group: str
+    sought: Callable[[], Sought]
+
+
+def nearly_round(gap: Expr) -> Sought:
+    """The short axis of the ellipse `a = 1 + gap`: in the circle every diameter is a cycle, and a multiplier is 1."""
+    return Problem(tables.ellipse.at(a=1 + gap), (0, 0), lam=Rational(1, 3)), [1.5707963, -1.5707964]
+
+
+def nearly_flipped(gap: Expr, twice: bool) -> Sought:
+    """The egg's diameter next to where its multiplier is -1, as period 2, or run twice as period 4."""
+    shape = alpha_tilde().subs(lam_letter, Rational(1, 3)) + gap
+    table = tables.egg(3).at(alpha=Rational(float(N(shape, 30))))
+    times = 2 if twice else 1
+    return Problem(table, (0, 0) * times, lam=Rational(1, 3)), [1e-7, 3.1415926] * times
+
+
+def folded(ulps: int | None) -> Sought:
+    """The egg's triangle, `ulps` doubles above the contraction where it is born, or (None) that contraction itself."""
+    shape = Rational(2, 25)
+    table = tables.egg(3).at(alpha=shape)
+    exact = float(N(polygons.saddle_node().subs(alpha_letter, shape), 30))
+    turn = -float(N(acos(-shape))) / 3
+    start = [turn + float(N(2 * pi / 3)) * k for k in range(3)]
+    if ulps is None:
+        return Problem(table, (0, 0, 0), Kind.FOLD, "lam"), [*start, exact]
+    lam = exact + ulps * ulp(exact)
+    aside = (ulps * ulp(exact)) ** 0.5
+    return Problem(table, (0, 0, 0), lam=Rational(lam)), [x + aside for x in start]
+
+
+def touching(gap: Expr) -> Sought:
+    """The egg's triangle at a contraction that is a double, the shape such that its fold lies `gap` below."""
+    lam = Rational(float(N(polygons.saddle_node().subs(alpha_letter, Rational(2, 25)), 30)))
+    tilt = pi / 6 * (1 - lam + gap) / (1 + lam - gap)  # the closed form of the fold, solved for the shape
+    shape = Rational(str(N(tan(tilt) / sqrt(9 + tan(tilt) ** 2), 60)))
+    turn = -acos(-shape) / 3
+    start = [float(N(turn + 2 * pi * k / 3, 30)) + float(sqrt(gap)) for k in range(3)]
+    return Problem(tables.egg(3).at(alpha=shape), (0, 0, 0), lam=lam), start
+
+
+def laddered(power: int) -> Sought:
+    """A cycle of period `2**power` of the egg, a third of the way from its birth to its own doubling."""
+    below = rung(Rational(2, 25), power)
+    gap = (rung(Rational(2, 25), power + 1).lam - below.lam) / 3
+    theta, lam = doubled(below.problem, below.start, gap)
+    return Problem(below.problem.table, (0,) * 2**power, lam=Rational(lam)), theta
+
+
+UNSETTLED = "did not settle"
+FLOAT64, SIXTEEN = "Newton, float64", "Newton, mpmath, 16 digits"
+
+
+def findings(cycle: Cycle) -> list[Finding]:
+    """Both arithmetics on a cycle: the forward error, the residual, and the condition number."""
+    problem, start = cycle.sought()
+    truth = solution(problem, start)
+    context = mpmath.MPContext()
+    context.dps = NEAR_DIGITS + 20
+    wide = multiprecision(context)
+    condition = norm_of_inverse(problem, wide, truth)
+    made = []
+    for kernel, solve in ((FLOAT64, in_floats), (SIXTEEN, settled)):
+        try:
+            found, stopped = solve(problem, start), False
+        except UnsettledError as error:
+            found, stopped = error.last, True
+        said = found.conditioning
+        status = [UNSETTLED] * stopped + ([] if said is Conditioning.SOUND else [said.name])
+        z = [context.mpf(x) for x in found.z]
+        residual = max(abs(x) for x in problem.value(wide, z))
+        forward = max(abs(one - two) for one, two in zip(z, truth, strict=True))
+        sizes = Measured(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
+        measured = None if stopped else sizes if sizes.forward < 1 / DOUBLE else WRONG
+        why = f"condition number {found.condition:.2g}, {found.digits_sure} digits sure" if found.advice else ""
+        made.append(Finding(cycle.name, kernel, measured, ", ".join(status), found.advice, said, why))
+    return made
+
+
+def solution(problem: Problem, start: list[float]) -> list[Any]:
+    """The truth: by doubling the digits, or where the float64 start does not settle with all digits at once."""
+    try:
+        return refined(problem, start, NEAR_DIGITS).z
+    except ValueError:
+        return settled(problem, start, bits_of(NEAR_DIGITS + 20)).z
+
+
+def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
+    """Newton's method in mpmath, by default with the bits of a float64, until the corrections shrink no more."""
+    context = mpmath.MPContext()
+    context.prec = bits
+    arithmetic, z, last = multiprecision(context), [context.mpf(x) for x in start], context.inf
+    for _ in range(60):
+        try:
+            correction = problem.newton(arithmetic, z)
+        except ZeroDivisionError:
+            break
+        size = max(abs(x) for x in correction)
+        if size < 1e-6 and size >= last:  # at a fold they halve, which is still shrinking
+            break
+        z, last = [x - d for x, d in zip(z, correction, strict=True)], size
+    return Solution(problem, z, int((bits - 1) * log10(2)), ())
+
+
+ONE, MINUS, LONG = "Multipliers next to +1", "Multipliers next to -1", "Long cycles"
+COARSE_GAP, FINE_GAP = Rational(1, 10**6), Rational(1, 2 * 10**13)
+FLIP_GAP, FOLD_GAP = Rational(1, 10**14), Rational(1, 10**27)
+CYCLES = (
+    Cycle("short axis, a = 1 + 1e-6: 1.6e-5 from +1", ONE, lambda: nearly_round(COARSE_GAP)),
+    Cycle("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP)),
+    Cycle("triangle, 1e6 ulp above its fold", ONE, lambda: folded(10**6)),
+    Cycle("triangle, 4 ulp above its fold", ONE, lambda: folded(4)),
+    Cycle("triangle, lam 1e-27 above its fold: 9e-13 from +1", ONE, lambda: touching(FOLD_GAP)),
+    Cycle("the fold itself, lam unknown", ONE, lambda: folded(None)),
+    Cycle(
+        "egg's diameter, alpha 1e-14 from its flip: 8e-13 from -1", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=False)
+    ),
+    Cycle("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True)),
+    Cycle("period 2^4 of the egg's ladder", LONG, lambda: laddered(4)),
+)
+LONGER = (
+    Cycle("period 2^8 of the egg's ladder", LONG, lambda: laddered(8)),
+    Cycle("period 2^12 of the egg's ladder", LONG, lambda: laddered(12)),
+)

@@ -1,0 +1,199 @@
+"""Very long orbits, each with a truth that exists, whatever chaos has done to the digits of the start.
+
+An invariant of the elastic ellipse, to which each bounce adds one rounding: `n` of them that know nothing of one
+another amount to `sqrt(n)`, and a drift would be of order `n`. The elastic circle, where `theta` after `n` bounces is
+known, with the `2*n` roundings of `phi` that it adds up. A cycle that attracts, enclosed in balls. Chaotic orbits: two
+that start as mirror images and must stay so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to
+which time averages tend because the elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard
+errors. (That its exponents are not 0 was known before [Wojtkowski1986].)
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Rational
+
+from numeric import PinballMap
+from numeric.dynamics.phase_points import places
+from numeric.kernels.spec import KernelSpec
+from symbolic.tables import egg
+from verification.cycles.shooting.newton import floats, given
+from verification.cycles.shooting.problem import Problem
+from verification.measure.extremes.kernels import DOUBLE, made_unit
+from verification.measure.extremes.near import WRONG, Finding, Measured
+from verification.named.attractors import certificate
+
+Array = NDArray[np.float64]
+BALLS, SEED, SHORT = 256, 5, 2_560_000
+PART = 2**20  # bounces in one call
+BLOCK = 1000  # bounces whose states are kept at once for a mean
+MEAN = "more balls or longer orbits: a mean is known to its standard error and no better"
+
+
+@dataclass(frozen=True)
+class Long:
+    """So many balls for so many bounces each."""
+
+    name: str
+    measure: Callable[["Long"], list[Finding]]
+    balls: int
+    bounces: int
+
+    def found(self, what: str, measured: Measured | None, status: str, reason: str = "", instead: str = "") -> Finding:
+        """What the engine's kernels made of it."""
+        return Finding(f"{self.name}{what}", "llvm", measured, status, instead, reason=reason)
+
+
+def findings(asked: Long) -> list[Finding]:
+    """The engine on the case."""
+    return asked.measure(asked)
+
+
+def orbits(collisions: int = SHORT, balls: int = BALLS) -> tuple[Long, ...]:
+    """Every long orbit, so many collisions of all balls together."""
+    each = max(1, collisions // balls)
+    kinds: tuple[tuple[str, Callable[[Long], list[Finding]]], ...] = (
+        ("elastic ellipse a = 3/2", lambda asked: invariant(asked, "3/2")),
+        ("elastic ellipse a = 3", lambda asked: invariant(asked, "3")),
+        ("elastic circle", turning),
+        ("egg at lam = 7/10, where two triangles attract", attracted),
+        ("cardioid at lam = 4/5, starts that are mirror images", mirrored),
+        ("elastic cardioid", ergodic),
+    )
+    shown = f"{balls} balls, {each:.0e} bounces each"
+    return tuple(Long(f"{name}, {shown}", measure, balls, each) for name, measure in kinds)
+
+
+def starts(balls: int) -> tuple[Array, Array]:
+    """Parameters and exit angles of random balls."""
+    rng = np.random.default_rng(SEED)
+    return rng.uniform(-np.pi, np.pi, balls), np.arcsin(rng.uniform(-1, 1, balls) * 0.999)
+
+
+def entered(map: PinballMap, theta: Array, phi: Array) -> list[Array]:
+    """The rows of balls on the first component."""
+    return [np.asarray(row) for row in map.states.enter(np.zeros(theta.size, dtype=np.int64), theta, phi, map.law)]
+
+
+def advanced(map: PinballMap, rows: list[Array], bounces: int) -> tuple[list[Array], str]:
+    """The rows after so many bounces, and what went wrong on the way: a stop by its name, or a number that is none."""
+    own, said = rows, ""
+    for done in range(0, bounces, PART):
+        lam = np.full(own[0].size, float(map.lam))
+        after = map.engine.run(KernelSpec(map.law), own, lam, map.shape, min(PART, bounces - done), threads=1).rows
+        own = [np.ascontiguousarray(after[field]) for field in map.family.fields(map.law)]
+        if "code" in after and np.any(after["code"]):
+            said = "a ball stopped"
+        if not all(np.all(np.isfinite(row)) for row in own):
+            said = "not a number"
+    return own, said
+
+
+def root_mean_square(x: Any) -> float:
+    """Of an array in any kind of number."""
+    return float(np.sqrt(np.mean(x * x)))
+
+
+def invariant(asked: Long, a: str) -> list[Finding]:
+    """The product of the angular momenta about the foci of the elastic ellipse."""
+    map = PinballMap("ellipse", lam=1, a=a)
+    rows = entered(map, *starts(asked.balls))
+    after, said = advanced(map, rows, asked.bounces)
+    error = root_mean_square(momenta(map, after) - momenta(map, rows)) / DOUBLE
+    condition = float(np.sqrt(asked.bounces)) + 1
+    return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said)]
+
+
+def momenta(map: PinballMap, rows: list[Any]) -> Any:
+    """The product of the angular momenta about both foci, in 80 bits, of the exact balls behind the rounded rows."""
+    ux, uy, vx, vy = made_unit(map.family, [row.astype(np.longdouble) for row in rows])
+    a = np.longdouble(map.shape[0])
+    momentum = a * ux * vy - uy * vx
+    return momentum * momentum - (a * a - 1) * vy * vy
+
+
+def turning(asked: Long) -> list[Finding]:
+    """`theta + n*(pi - 2*phi)` in the elastic circle, of the exact doubles, with 50 digits."""
+    map = PinballMap("circle", lam=1)
+    rows = entered(map, *starts(asked.balls))
+    (theta, phi), said = advanced(map, rows, asked.bounces)
+    context = mpmath.MPContext()
+    context.dps = 50
+    gaps = []
+    for start, exit, end in zip(rows[0], rows[1], theta, strict=True):
+        gap = (
+            context.mpf(float(start))
+            + asked.bounces * (context.pi - 2 * context.mpf(float(exit)))
+            - context.mpf(float(end))
+        )
+        gaps.append(float(gap - 2 * context.pi * context.nint(gap / (2 * context.pi))))
+    if not np.array_equal(phi, rows[1]):
+        said = "phi changed"
+    error, condition = root_mean_square(np.array(gaps)) / DOUBLE, 2.0 * asked.bounces + 1
+    reason = f"theta adds up 2*n = {2 * asked.bounces:.0e} roundings of phi"
+    return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said, reason)]
+
+
+def attracted(asked: Long) -> list[Finding]:
+    """The distance of balls from the attracting triangles of the egg, which are proved."""
+    table, lam = egg(3).at(alpha="2/25"), Rational(7, 10)
+    map = PinballMap("egg", alpha="2/25", lam="7/10")
+    problem = Problem(table, (0, 0, 0), lam=lam)
+    corner = [-0.65 + 2 * np.pi * k / 3 for k in range(3)]
+    triangle = floats(problem, corner)
+    proof = certificate(table, lam, places(0, triangle, 0.0))
+    if not proof.proved:
+        raise ValueError(f"{asked.name}: the triangle is not proved to attract: {dict(proof.checks)}")
+    (ux, uy, *_), said = advanced(map, entered(map, *starts(asked.balls)), asked.bounces)
+    context = mpmath.MPContext()
+    context.dps = 40
+    proved = [context.mpf(x.str(35, radius=False)) for x in proof.theta]
+    exact = [sign * x for x in proved for sign in (1, -1)]  # the mirror image attracts as well
+    gaps = []
+    for x, y in zip(ux, uy, strict=True):
+        here = context.atan2(context.mpf(float(y)), context.mpf(float(x)))
+        away = [here - one - 2 * context.pi * context.nint((here - one) / (2 * context.pi)) for one in exact]
+        gaps.append(float(min(away, key=abs)))
+    error, condition = float(np.max(np.abs(gaps))) / DOUBLE, given(problem, triangle).condition
+    return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said)]
+
+
+def mirrored(asked: Long) -> list[Finding]:
+    """The largest gap between chaotic orbits and the mirror images of those that started as their mirror images."""
+    map = PinballMap("cardioid", lam="4/5")
+    theta, phi = starts(asked.balls // 2)
+    both = np.concatenate([theta, -theta]), np.concatenate([phi, -phi])
+    (p, q, c, s), said = advanced(map, entered(map, *both), asked.bounces)
+    half, gap = theta.size, 0.0
+    for row, sign in ((p, 1), (q, -1), (c, 1), (s, -1)):
+        gap = max(gap, float(np.max(np.abs(row[:half] - sign * row[half:]))))
+    return [asked.found("", WRONG if said else Measured(gap / DOUBLE, gap / DOUBLE, 1.0), said)]
+
+
+def ergodic(asked: Long) -> list[Finding]:
+    """Means over chaotic orbits: `cos(phi)` is pi/4, and `sin(theta/2)**2`, a share of the length squared, 1/3."""
+    map = PinballMap("cardioid", lam=1)
+    rows, said, sums = entered(map, *starts(asked.balls)), "", np.zeros((2, asked.balls))
+    for done in range(0, asked.bounces, BLOCK):
+        count = min(BLOCK, asked.bounces - done)
+        lam = np.ones(asked.balls)
+        result = map.engine.run(KernelSpec(map.law, record=True), rows, lam, map.shape, count, threads=1)
+        assert result.record is not None
+        rows = [np.ascontiguousarray(row) for row in result.record[-1]]
+        if np.any(result.rows["code"]) or not np.all(np.isfinite(result.record[-1])):
+            said = "a ball stopped"
+        sums += result.record[:, 2].sum(axis=0), (result.record[:, 1] ** 2).sum(axis=0)
+    made = []
+    for what, mean, truth in zip(
+        (", mean of cos(phi)", ", mean of sin(theta/2)^2"), sums, (np.pi / 4, 1 / 3), strict=True
+    ):
+        mean = mean / asked.bounces  # of each ball
+        error = abs(float(np.mean(mean)) - truth) / DOUBLE
+        doubt = float(np.std(mean, ddof=1) / np.sqrt(asked.balls)) / DOUBLE
+        reason = f"{error / doubt:.1f} standard errors of {doubt * DOUBLE:.1e}"
+        made.append(asked.found(what, WRONG if said else Measured(error, error / doubt, doubt), said, reason, MEAN))
+    return made

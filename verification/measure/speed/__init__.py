@@ -1,0 +1,1 @@
+"""Speed and accuracy of the kernels beside other ways, on labelled cases."""

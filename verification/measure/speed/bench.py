@@ -1,0 +1,240 @@
+"""What `pinball bench` measures: error and time of every arithmetic and every kernel, and what a kernel leaves out."""
+
+import os
+import platform
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import flint
+import mpmath
+import numpy as np
+from flint import arb
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from numeric.kernels import machine
+from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.text import kernel_text, operations
+from numeric.pinball.sampling import phase_starts
+from verification.arithmetic.words import bits_of, working
+from verification.maps.enclosed import EnclosedMap
+from verification.maps.exact import ExactMap, errors
+from verification.measure.speed.labelled import DIGITS, SCENES
+
+Array = NDArray[np.float64]
+LAWS = {"slap": 0, "pinball": "19/20", "elastic": 1}
+BALLS, RUNS = 4096, 5
+WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
+CHECKED = 24  # balls whose errors are measured
+FEW = 8  # in multiprecision
+MORE = 30  # digits of the truth, beyond those that are checked
+SMALLEST = Decimal("1e-300")  # of the errors written as floats
+UNIT = "2**-52, largest of position and direction"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One way to bounce one scene: its largest error over random balls, and its time for one bounce.
+
+    Errors span a thousand decades, which no float does. `lam` is not among the data: `kernel` says it where it differs.
+    """
+
+    scene: str
+    arithmetic: str
+    kernel: str
+    error: Decimal | None
+    seconds_per_bounce: float
+    runs: int
+    lam: Any = LAWS["pinball"]
+
+    def as_data(self) -> dict[str, Any]:
+        """The row as contract.md has it; an error that no float holds is a decimal string."""
+        small = self.error is not None and 0 < self.error < SMALLEST
+        error = None if self.error is None else str(self.error) if small else float(self.error)
+        names = ("scene", "arithmetic", "kernel", "seconds_per_bounce", "runs")
+        return {name: getattr(self, name) for name in names} | {"error": error, "error_unit": UNIT}
+
+
+def machine_facts() -> dict[str, str]:
+    """The machine and the versions, for a footer."""
+    import llvmlite
+    import scipy
+
+    facts = {"python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
+    facts |= {"numpy": np.__version__, "scipy": scipy.__version__, "llvmlite": llvmlite.__version__}
+    facts |= {
+        "mpmath": mpmath.__version__,
+        "mpmath's integers": mpmath.libmp.BACKEND,
+        "python-flint": flint.__version__,
+    }
+    if machine.available():
+        import llvmlite.binding as llvm
+
+        facts["processor"] = llvm.get_host_cpu_name()
+    return facts | {"processors": str(os.cpu_count())}
+
+
+def best(action: Callable[[], object], runs: int = RUNS) -> float:
+    """The shortest of some runs, in seconds: the one that was disturbed least."""
+    times = []
+    for _ in range(runs):
+        start = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
+    """LLVM kernels, with and without exponents and with two threads, and the same step on NumPy arrays."""
+    for kernels, kernel, balls, bounces in ((True, "llvm", BALLS, 1000), (False, "numpy", BALLS, 10)):
+        map = PinballMap(name, lam=LAWS["pinball"], kernels=kernels, **_shape(name))
+        own = attracted(map, balls)
+        lam = np.full(balls, float(map.lam))
+        error = worst(map, own)
+
+        def run(
+            question: KernelSpec,
+            tangent: tuple[Array, ...] = (),
+            threads: int = 1,
+            map: PinballMap = map,
+            own: list[Array] = own,
+            lam: Array = lam,
+            bounces: int = bounces,
+        ) -> float:
+            def once() -> object:
+                return map.engine.run(question, own, lam, map.shape, bounces, tangent, threads)
+
+            once()
+            return best(once, runs) / bounces / own[0].size
+
+        nought = np.zeros(balls)
+        alone = run(KernelSpec(map.law))
+        yield Row(name, "float64", kernel, error, alone, runs)
+        if kernels:
+            copies = 1 + int(WORTH_A_THREAD / (alone * balls * bounces))  # more balls, for more bounces would underflow
+            many = [np.tile(field, copies) for field in own]
+            tangent = tuple(starting(nought + 1, nought, nought + 1))
+            yield Row(
+                name, "float64", "llvm, exponents", error, run(KernelSpec(map.law, exponents=True), tangent), runs
+            )
+            both = run(KernelSpec(map.law), threads=2, own=many, lam=np.tile(lam, copies))
+            yield Row(name, "float64", "llvm, 2 threads", error, both, runs)
+            recorded = run(KernelSpec(map.law, record=True), bounces=100)
+            yield Row(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
+            yield Row(name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs)
+    for law in ("slap", "elastic"):
+        map = PinballMap(name, lam=LAWS[law], **_shape(name))
+        own, lam = attracted(map, BALLS, 1), np.full(BALLS, float(map.lam))
+        alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
+        yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
+
+
+def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
+    """Seconds for one bounce of an orbit that is told in full."""
+    component, theta = map.states.place(own)
+    phi = map.states.exit(component, theta, own, map.law)
+
+    def once() -> object:
+        return map.orbit(theta, phi, bounces, component, threads=1)
+
+    once()
+    return best(once, runs) / bounces / theta.size
+
+
+def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[Row]:
+    """mpmath and balls, rounded to their digits, against a proved enclosure with 30 digits more."""
+    map, lam = PinballMap(name, lam=LAWS["pinball"], **_shape(name)), Fraction(str(LAWS["pinball"]))
+    component, theta, phi, *_ = phase_starts(map, FEW, seed=3)
+    balls = [(int(c), float(t), float(p)) for c, t, p in zip(component, theta, phi, strict=True)]
+    for wanted in digits:
+        truth = EnclosedMap(map, lam, bits_of(wanted + MORE, 64))
+        landed = [truth.bounce(truth.ball(*ball)) for ball in balls]
+        ways = (("mpmath", ExactMap(map, wanted, lam)), ("arb", EnclosedMap(map, lam, bits_of(wanted, 64))))
+        for arithmetic, way in ways:
+            starts = [way.ball(*ball) for ball in balls]
+            found = [way.bounce(ball) for ball in starts]
+            error = max(distance(one, two, wanted) for one, two in zip(found, landed, strict=True))
+
+            def all_of_them(way: Any = way, starts: Any = starts) -> object:
+                return [way.bounce(ball) for ball in starts]
+
+            yield Row(name, arithmetic, f"{wanted} digits", error, best(all_of_them, runs) / FEW, runs)
+
+
+def distance(found: Any, truth: Any, digits: int) -> Decimal:
+    """How far parameter and exit angle, written with these digits, may be from enclosed ones, in units of 2**-52."""
+    largest = arb(0)
+    with working(bits_of(digits + 2 * MORE)):
+        for one, two in ((found.theta, truth.theta), (found.phi, truth.phi)):
+            written = one.mid().str(digits, radius=False) if isinstance(one, arb) else mpmath.nstr(one, digits)
+            largest = largest.max(arb(abs(arb(written) - two).upper()))
+        return Decimal((largest * 2**52).upper().str(3, radius=False))
+
+
+def attracted(map: PinballMap, balls: int, transient: int = 100) -> list[Array]:
+    """Fields of random balls after some bounces."""
+    starts = phase_starts(map, balls, seed=1)
+    own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
+    rows = map.engine.run(KernelSpec(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows
+    return [np.ascontiguousarray(rows[field]) for field in map.family.fields(map.law)]
+
+
+def worst(map: PinballMap, own: list[Array]) -> Decimal:
+    """The largest error of one bounce over the first balls, in units of 2**-52, against 50 digits."""
+    first = [field[:CHECKED].copy() for field in own]
+    lam = np.full(CHECKED, float(map.lam))
+    after = map.engine.run(KernelSpec(map.law, record=True), first, lam, map.shape, 1).record
+    assert after is not None
+    position, direction = errors(map, ExactMap(map, DIGITS), first, list(after[0]))
+    return Decimal(f"{max(position.max(), direction.max()):.3g}")
+
+
+def frontier(rows: list[Row]) -> set[int]:
+    """The rows that no other way to do the same beats in both error and time: the Pareto front.
+
+    >>> row = lambda error, seconds: Row("s", "a", "k", Decimal(error), seconds, 1)
+    >>> sorted(frontier([row(1, 1.0), row(2, 2.0), row(0, 3.0)]))
+    [0, 2]
+    """
+    front = set()
+    for i, row in enumerate(rows):
+        if (
+            row.error is not None
+            and row.lam == LAWS["pinball"]
+            and not any(
+                other.error is not None
+                and other.lam == row.lam
+                and other.error <= row.error
+                and other.seconds_per_bounce <= row.seconds_per_bounce
+                and (other.error, other.seconds_per_bounce) != (row.error, row.seconds_per_bounce)
+                for other in rows
+            )
+        ):
+            front.add(i)
+    return front
+
+
+def operation_table() -> str:
+    """The vector instructions of one bounce, for every scene and question, as a table in Markdown."""
+    lines = ["| scene | law | question | fma | add | mul | div | sqrt | compare | select |", "|" + "---|" * 10]
+    for name in SCENES:
+        for law, lam in LAWS.items():
+            map = PinballMap(name, lam=lam, **_shape(name))
+            for question in (KernelSpec(law), KernelSpec(law, record=True), KernelSpec(law, exponents=True)):
+                counts = operations(kernel_text(map.family, map.engine.names, question))
+                asked = question.text.partition("-")[2] or "end"
+                lines.append(f"| {name} | {law} | {asked} | " + " | ".join(map_str(counts.values())) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def map_str(numbers: Iterable[int]) -> list[str]:
+    """Numbers as text."""
+    return [str(number) for number in numbers]
+
+
+def _shape(name: str) -> dict[str, Any]:
+    return dict(SCENES[name])

@@ -1,0 +1,1 @@
+"""Work-precision: error against run time for whole questions."""

@@ -1,0 +1,248 @@
+"""Cycles of period 2, 3 and 64, and where they are born or double: the chord system against shooting and watching."""
+
+import math
+from dataclasses import replace
+from decimal import Decimal
+from functools import cache, partial
+from itertools import islice
+from typing import Any
+
+from flint import arb
+from sympy import N, Rational, acos
+
+from numeric import PinballMap
+from symbolic import tables
+from symbolic.cycles import polygons
+from symbolic.tables.symbols import alpha as alpha_letter
+from symbolic.tables.symbols import lam
+from symbolic.tables.table import Table
+from verification.cycles.shooting.attracting import cycle_at, doubled
+from verification.cycles.shooting.cascade import Rung, ladder
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.measure.speed.baselines import module
+from verification.measure.work.question import Method, Question
+from verification.measure.work.sought import DIGITS, Sought, last, to_digits
+from verification.named.locate import certify, closed_form
+from verification.proofs.periodic.bifurcation import Proof
+
+ALPHA = Rational(2, 25)
+HALF = Rational(1, 2)
+EGG = tables.egg(3).at(alpha=ALPHA)
+TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
+FIRST, HIGHEST = 3, 6  # rungs of the ladder, as in section 6.6
+FAR = Rational(41, 100)  # a contraction at which the cycle of period 64 has multipliers of some 10**5
+STRIDE = 0.2  # of the way back to its birth, in the contraction
+
+
+def cycle(
+    name: str, title: str, table: Table, at: Rational, start: tuple[float, ...], own: PinballMap, settles: bool
+) -> Question:
+    """The bounces of one cycle; `own` is its map, and `settles` says whether balls reach it."""
+    problem = Problem(table, (0,) * len(start), lam=at)
+    sought = Sought(problem, start)
+
+    def certified(digits: int) -> list[arb]:
+        return whole(certify(problem, list(start), digits)).enclosure.zero
+
+    landed = first_exit(problem, start)
+    return Question(
+        name,
+        title,
+        f"the boundary parameters of a cycle of period {len(start)} of the {table.name}, lam = {at}",
+        "radians",
+        certified,
+        (*sought.methods(certified), *textbook_cycle(own, (start[0], landed), len(start), settles)),
+    )
+
+
+def whole(proof: Proof) -> Proof:
+    """A proof whose checklist is complete."""
+    if not proof.certified:
+        missing = ", ".join(name for name, value in proof.checks.items() if value is not True)
+        raise ValueError(f"{proof.claim.problem.label}: not proved: {missing}")
+    return proof
+
+
+def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
+    """The exit angle at the first bounce, to three decimals."""
+    from verification.arithmetic.words import FLOAT64
+    from verification.cycles.shooting.newton import floats
+    from verification.cycles.shooting.problem import Rows
+
+    out, _ = Rows(problem, FLOAT64).angles(floats(problem, start), 1)
+    return round(float(out[0][0]), 3 if problem.period < 10 else 9)
+
+
+def textbook_cycle(map: PinballMap, ball: tuple[float, float], period: int, settles: bool) -> list[Method]:
+    """Single shooting on the compiled step, and for an attracting cycle a ball that settles on it."""
+    book = module("textbook")
+    if book is None:
+        return []
+
+    def bounces(theta: float, phi: float) -> list[float]:
+        orbit = map.orbit(theta, phi, period - 1)
+        return [float(x) for x in orbit.theta]
+
+    def shot(xtol: float) -> list[float]:
+        return bounces(*book.shooting(map, ball, period, xtol))
+
+    def settled(count: int) -> list[float]:
+        return bounces(*book.iterated(map, *ball, period * count))
+
+    shooting = Method(
+        "single shooting", "float64", "xtol", TOLERANCES, shot, lambda x: Decimal(f"{x:.3g}"), textbook=True
+    )
+    waiting = Method("waiting for it", "float64", "turns", (10, 30, 100, 300), settled, textbook=True)
+    return [shooting, waiting] if settles else [shooting]
+
+
+def period_2() -> Question:
+    """The vertical cycle of the cardioid, between `pi/3` and `-pi/3`: unstable."""
+    own = PinballMap("cardioid", lam="1/2")
+    return cycle("cycle-2", "A cycle of period 2, cardioid", tables.cardioid, HALF, (1.05, -1.05), own, False)
+
+
+def period_3() -> Question:
+    """The attracting triangle of the egg, which turns as `lam` falls from 1 to the fold."""
+    own = PinballMap("egg", lam="1/2", alpha="2/25")
+    return cycle("cycle-3", "A cycle of period 3, egg", EGG, HALF, triangle_start(), own, True)
+
+
+def triangle_start() -> tuple[float, ...]:
+    """Its bounces at `lam = 1/2`, to three decimals."""
+    first = float(N(polygons.near_flat().subs({lam: HALF, alpha_letter: ALPHA})))
+    return tuple(round(math.remainder(first + k * math.tau / 3, math.tau), 3) for k in range(3))
+
+
+def period_64() -> Question:
+    """The cycle of period 64 that the ladder bears, far from where it is born: strongly unstable."""
+    own = PinballMap("egg", lam=str(FAR), alpha="2/25")
+    return cycle("cycle-64", "A cycle of period 64, egg", EGG, FAR, far_cycle(), own, False)
+
+
+@cache
+def rungs() -> tuple[Rung, ...]:
+    """The rungs of the ladder in float64."""
+    return tuple(islice(ladder(ALPHA), HIGHEST - FIRST + 1))
+
+
+@cache
+def far_cycle() -> tuple[float, ...]:
+    """The cycle of period 64, followed in the contraction from its birth, to six decimals."""
+    birth, below = rungs()[-1], rungs()[-2]
+    here, lam = doubled(birth.problem, birth.start, 0.06 * (birth.lam - below.lam))
+    before, last_step = here, 1.0
+    while lam < float(FAR):
+        step = min(STRIDE * (lam - birth.lam), float(FAR) - lam)  # the branch leaves its birth like a square root
+        guess = [x + step / last_step * (x - y) for x, y in zip(here, before, strict=True)]
+        before, here = here, cycle_at(EGG, guess, lam + step)
+        lam, last_step = lam + step, step
+    return tuple(round(math.remainder(x, math.tau), 6) for x in here)
+
+
+def fold() -> Question:
+    """The fold at which the egg's triangles are born. Paper: section 6.4."""
+    exact = polygons.saddle_node().subs(alpha_letter, ALPHA)
+    turn = -float(N(acos(-ALPHA))) / 3
+    start = (*(round(turn + math.tau / 3 * k, 3) for k in range(3)), round(float(N(exact)), 3))
+    problem = Problem(EGG, (0, 0, 0), Kind.FOLD, "lam")
+    formula = Method(
+        "closed form, arb", "arb", "digits", DIGITS, lambda d: [closed_form(exact, d)], to_digits, proved=True
+    )
+    return Question(
+        "fold-3",
+        "The fold of period 3, egg",
+        f"the contraction at which cycles of period 3 are born, alpha = {ALPHA}",
+        "in lam",
+        lambda digits: [closed_form(exact, digits)],
+        (
+            *Sought(problem, start, last).methods(lambda d: [whole(certify(problem, list(start), d)).value]),
+            formula,
+            *textbook_fold(),
+        ),
+    )
+
+
+def textbook_fold() -> list[Method]:
+    """Bisection on whether shooting still finds the cycle."""
+    book = module("textbook")
+    if book is None:
+        return []
+    map = PinballMap("egg", lam=1, alpha="2/25")
+    triangle = triangle_start()
+    start = triangle[0], first_exit(Problem(EGG, (0, 0, 0), lam=HALF), triangle)
+
+    def seen(xtol: float) -> list[float]:
+        return [book.fold_seen(lambda lam: map.at(lam), start, 3, 0.3, 0.5, xtol)]
+
+    kept = (1e-3, 1e-6, 1e-9)
+    return [Method("last seen, shooting", "float64", "xtol", kept, seen, lambda x: Decimal(f"{x:.3g}"), textbook=True)]
+
+
+def doublings() -> Question:
+    """The rungs `lambda_3` to `lambda_6` of the egg's ladder. Paper: section 6.6."""
+    starts = [tuple(round(x, 5 if rung.n < HIGHEST else 6) for x in rung.start) for rung in rungs()]
+
+    def certified(problem: Problem, start: tuple[float, ...], digits: int) -> list[arb]:
+        return [whole(certify(problem, list(start), digits)).value]
+
+    each = [
+        Sought(rung.problem, start, last).methods(partial(certified, rung.problem, start))
+        for rung, start in zip(rungs(), starts, strict=True)
+    ]
+    together = tuple(_together(methods) for methods in zip(*each, strict=True))
+    return Question(
+        "doubling",
+        "The doubling ladder, egg",
+        f"lambda_{FIRST} to lambda_{HIGHEST}, where periods 4 to 32 double, alpha = {ALPHA}",
+        "in lam",
+        lambda d: [whole(certify(r.problem, list(s), d)).value for r, s in zip(rungs(), starts, strict=True)],
+        (*together, *textbook_doublings()),
+    )
+
+
+def _together(methods: tuple[Method, ...]) -> Method:
+    """One way for several questions at once; its promise is the weakest."""
+
+    def call(setting: Any) -> list[Any]:
+        return [x for method in methods for x in method.call(setting)]
+
+    def promise(setting: Any) -> Decimal | None:
+        made = [method.promise(setting) for method in methods]
+        return max((p for p in made if p is not None), default=None)
+
+    return replace(methods[0], call=call, promise=promise)
+
+
+def textbook_doublings() -> list[Method]:
+    """brentq on the multiplier of a cycle found by shooting, and periods read off settled balls."""
+    book = module("textbook")
+    if book is None:
+        return []
+    map = PinballMap("egg", lam=1, alpha="2/25")
+    found = rungs()
+
+    def map_at(lam: float) -> PinballMap:
+        return map.at(lam)
+
+    def brackets() -> list[tuple[int, tuple[float, float], float, float]]:
+        made = []
+        for rung in found:
+            period = 2 ** (rung.n - 1)
+            gap = 0.002 / 4.67 ** (rung.n - FIRST)
+            theta = rung.start[0]
+            phi = first_exit(Problem(EGG, (0,) * period, lam=Rational(rung.lam)), tuple(rung.start[:-1]))
+            made.append((period, (theta, phi), rung.lam - gap, rung.lam + 0.7 * gap))
+        return made
+
+    def flips(xtol: float) -> list[float]:
+        return [book.flip(map_at, ball, period, low, high, xtol) for period, ball, low, high in brackets()]
+
+    def watched(bounces: int) -> list[float]:
+        return [book.doubling_seen(map_at, ball, period, low, high, bounces) for period, ball, low, high in brackets()]
+
+    kept = TOLERANCES
+    return [
+        Method("brentq, shooting", "float64", "xtol", kept, flips, lambda x: Decimal(f"{x:.3g}"), textbook=True),
+        Method("periods of settled balls", "float64", "bounces", (300, 3_000, 30_000), watched, textbook=True),
+    ]

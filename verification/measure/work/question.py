@@ -1,0 +1,281 @@
+"""What is asked and in how many ways it can be answered: questions, methods, and the distance of an answer.
+
+An answer is a list of numbers of any kind. Its error is the largest distance of one of them from the reference,
+a list of balls; the radius of the reference counts, so no error is understated.
+
+Runs the methods of a question and gives a row for each setting: errors against balls, medians of times.
+
+Times are processor time of one core, which other work on the machine disturbs least.
+
+mpmath without gmpy2, timed in a process of its own: the choice is made when mpmath is imported.
+
+`python -m verification.measure.work.question QUESTION METHOD RUNS SETTING...` prints what a method found and took,
+as JSON.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from importlib.util import find_spec
+from typing import Any
+
+import mpmath
+import numpy as np
+from flint import arb, fmpq
+
+from verification.arithmetic.words import bits_of, working
+from verification.measure.work.row import Row, timed
+
+COUNTS = ("balls", "points")  # the units of settings that say how many answers a call gives
+GUARD = 20  # digits of a reference beyond the most that are asked for
+Answer = Sequence[Any]
+
+
+class Claimed(list[Any]):
+    """An answer that states its own error, as an error bar does."""
+
+    def __init__(self, numbers: Answer, claim: float) -> None:
+        super().__init__(numbers)
+        self.claim = Decimal(f"{claim:.3g}")
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to answer: `call(setting)` for each setting of a ladder, from quick to exact.
+
+    `unit` says what a setting is (`digits`, `xtol`, `bounces`), `promise(setting)` the largest error that the way
+    claims for itself, None when it claims none. A call gives `per` answers at a time, or as many as the setting says
+    where that counts balls or points. A method that is `elsewhere` is run by another process of its own.
+    """
+
+    name: str
+    arithmetic: str
+    unit: str
+    ladder: tuple[Any, ...]
+    call: Callable[[Any], Answer]
+    promise: Callable[[Any], Decimal | None] = lambda setting: None
+    per: int = 1
+    textbook: bool = False
+    proved: bool = False
+    elsewhere: bool = False
+
+    def labelled(self, setting: Any) -> str:
+        """A setting in words.
+
+        >>> Method("m", "a", "digits", (), list).labelled(30), Method("m", "a", "xtol", (), list).labelled(1e-8)
+        ('30 digits', 'xtol 1e-08')
+        """
+        if isinstance(setting, float):
+            return f"{self.unit} {setting:g}"
+        return f"{setting:,} {self.unit}" if not isinstance(setting, str) else setting
+
+    def answers(self, setting: Any) -> int:
+        """How many answers a call gives."""
+        return int(setting) if self.unit in COUNTS else self.per
+
+    def within(self, most_digits: int) -> tuple[Any, ...]:
+        """The settings that ask for no more digits than that."""
+        return tuple(s for s in self.ladder if self.unit != "digits" or s <= most_digits)
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question with its reference: `reference(digits)` are balls of radius below `10**-digits`, proved.
+
+    Where no proof is known `certified` is False, and the balls hold what was measured with its error.
+    `answers` says what the numbers are, `unit` in what the error is.
+    """
+
+    name: str
+    title: str
+    answers: str
+    unit: str
+    reference: Callable[[int], Answer]
+    methods: tuple[Method, ...]
+    certified: bool = True
+    most_digits: int = 1000
+
+
+def enclosed(value: Any) -> arb:
+    """A number of any kind as a ball that contains it, in the ambient precision.
+
+    >>> enclosed(0.5) == enclosed(Fraction(1, 2)) == enclosed("0.5") == enclosed(np.longdouble("0.5"))
+    True
+    """
+    if isinstance(value, arb):
+        return value
+    if isinstance(value, mpmath.ctx_mp_python._mpf):
+        sign, mantissa, exponent, _ = value._mpf_
+        return arb((-int(mantissa) if sign else int(mantissa), int(exponent)))
+    if isinstance(value, np.longdouble):
+        value = Fraction(*value.as_integer_ratio()) if np.isfinite(value) else float(value)
+    if isinstance(value, Fraction):
+        return arb(fmpq(value.numerator, value.denominator))
+    return arb(value) if isinstance(value, str) else arb(float(value))
+
+
+def distance(answer: Answer, reference: Answer, digits: int) -> tuple[Decimal | None, Decimal | None]:
+    """The largest distance of an answer from the reference: at least, and at most; None when a number is not finite.
+
+    >>> distance([0.5, 1], [arb("0.5"), arb("1.25")], 10)
+    (Decimal('0.2500'), Decimal('0.2500'))
+    """
+    if len(answer) != len(reference):
+        raise ValueError(f"answer: {len(answer)} numbers where the reference has {len(reference)}")
+    largest = least = arb(0)
+    with working(bits_of(digits + GUARD, 64)):
+        for value, truth in zip(answer, reference, strict=True):
+            gap = abs(enclosed(value) - truth)
+            if not gap.is_finite():
+                return None, None
+            largest, least = largest.max(arb(gap.abs_upper())), least.max(arb(gap.abs_lower()))
+        return Decimal(least.str(4, radius=False)), Decimal(largest.str(4, radius=False))
+
+
+def power(exponent: float) -> Decimal:
+    """`10**exponent`, which need not be a float.
+
+    >>> power(-1000)
+    Decimal('1E-1000')
+    """
+    return Decimal(10) ** Decimal(exponent) if exponent != int(exponent) else Decimal(1).scaleb(int(exponent))
+
+
+RUNS = 5
+SHORTEST = 1e-3  # seconds of a sample; what takes less is repeated within it
+HOPELESS = 5.0  # seconds of a first call that is not made twice
+PATIENCE = 0.4  # seconds for all runs of one setting; what takes longer runs once
+Say = Callable[[str], None]
+
+
+def silent(_: str) -> None:
+    """Says nothing."""
+
+
+def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say: Say = silent) -> list[Row]:
+    """The rows of a question, method by method; `say` hears of each method before it runs.
+
+    A method that raises a `ValueError` or an arithmetical error has no answer at that setting, and its row says why.
+    """
+    digits = min(most_digits, question.most_digits)
+    say("the reference")
+    reference = question.reference(digits + GUARD)
+    rows: list[Row] = []
+    for method in question.methods:
+        say(method.name)
+        rows += _rows(question, method, method.within(digits), reference, digits, runs)
+    return rows
+
+
+def _rows(
+    question: Question, method: Method, settings: tuple[Any, ...], reference: Answer, digits: int, runs: int
+) -> Iterator[Row]:
+    if not settings:
+        return
+    if method.elsewhere:
+        found = sampled(question.name, method.name, settings, runs)
+    else:
+        found = [sample(method, setting, runs, warm=i > 0) for i, setting in enumerate(settings)]
+    for setting, (answer, seconds, failure) in zip(settings, found, strict=True):
+        least, error = (None, None) if answer is None else distance(answer, reference, digits)
+        if answer is not None and error is None:
+            failure = "no finite number"
+        yield timed(
+            question.name,
+            method.name,
+            [each / method.answers(setting) for each in seconds],
+            arithmetic=method.arithmetic,
+            setting=method.labelled(setting),
+            error=error,
+            least=least,
+            promise=answer.claim if isinstance(answer, Claimed) else method.promise(setting),
+            textbook=method.textbook,
+            proved=method.proved,
+            failure=failure,
+            digits=setting if method.unit == "digits" else None,
+        )
+
+
+def sample(method: Method, setting: Any, runs: int, warm: bool = False) -> tuple[Answer | None, list[float], str]:
+    """The answer at a setting, the seconds of some calls, and what went wrong; the first call warms up.
+
+    A way so slow that `runs` of it would try the patience is timed less often, at least once; when it is `warm` by
+    another setting, its first call may be that once.
+    """
+    clock = time.perf_counter(), time.process_time()
+    answer, failure = None, ""
+    try:
+        answer = method.call(setting)
+    except (ValueError, ArithmeticError) as error:
+        failure = " ".join(str(error).split()) or type(error).__name__
+    first, spent = time.perf_counter() - clock[0], time.process_time() - clock[1]
+    if answer is None:
+        return None, [spent], failure
+    if first > PATIENCE and (warm or first > HOPELESS):
+        return answer, [spent], ""
+    repeats = max(1, int(SHORTEST / max(first, 1e-9)))
+    seconds = []
+    for _ in range(max(1, min(runs, int(PATIENCE / max(first, 1e-9))))):
+        start = time.process_time()
+        for _ in range(repeats):
+            method.call(setting)
+        seconds.append((time.process_time() - start) / repeats)
+    return answer, seconds, ""
+
+
+PLAIN = {"MPMATH_NOGMPY": "1", "SYMPY_GROUND_TYPES": "python"}
+MORE = 10  # digits written beyond those that were asked for
+Sample = tuple[Answer | None, list[float], str]
+
+
+def available() -> bool:
+    """Is gmpy2 there, so that to do without it is something else?"""
+    return find_spec("gmpy2") is not None
+
+
+def sampled(question: str, method: str, settings: Sequence[int], runs: int) -> list[Sample]:
+    """What `measure.sample` gives for each setting, from a process in which mpmath has Python's integers."""
+    command = [
+        sys.executable,
+        "-m",
+        "verification.measure.work.question",
+        question,
+        method,
+        str(runs),
+        *map(str, settings),
+    ]
+    folders = os.pathsep.join(path for path in sys.path if path)
+    environment = {**os.environ, **PLAIN, "PYTHONPATH": folders}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        return [(None, [0.0], f"the process without gmpy2 ended: {reason}")] * len(settings)
+    return [(row["answer"], row["seconds"], row["failure"]) for row in json.loads(done.stdout)]
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Answers on standard output."""
+    import mpmath
+
+    from verification.measure.work.compare import question
+
+    name, method, runs, *settings = arguments
+    if mpmath.libmp.BACKEND != "python":
+        raise SystemExit("mpmath has gmpy2 here, which it should not")
+    (chosen,) = (m for m in question(name).methods if m.name == method)
+    rows: list[dict[str, Any]] = []
+    for i, setting in enumerate(map(int, settings)):
+        answer, seconds, failure = sample(chosen, setting, int(runs), warm=i > 0)
+        texts = None if answer is None else [mpmath.nstr(x, setting + MORE) for x in answer]
+        rows.append({"answer": texts, "seconds": seconds, "failure": failure})
+    sys.stdout.write(json.dumps(rows))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,189 @@
+"""What a run leaves: rows of error, promise and time, and the front that no other row beats.
+
+Rows as a table in text or Markdown, and the facts of a run for its footer.
+"""
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from statistics import median, quantiles
+from typing import Any
+
+from verification.measure.speed.baselines import duration
+
+BALLS = ("error", "least", "promise")  # fields that a float may not hold
+SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # of the errors that are written as floats
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method at one setting: its error, what it promised, and the median of its times with their quartiles.
+
+    Times are in seconds for one answer. An `error` of None means that there was no answer; `failure` says why.
+    """
+
+    question: str
+    method: str
+    arithmetic: str
+    setting: str
+    error: Decimal | None
+    promise: Decimal | None
+    seconds: float
+    quartiles: tuple[float, float]
+    runs: int
+    textbook: bool = False
+    proved: bool = False
+    failure: str = ""
+    digits: int | None = None  # that were asked for, where digits are the ladder
+    least: Decimal | None = None  # that the error is, where the reference leaves it open
+
+    @property
+    def kept(self) -> bool | None:
+        """Did the method keep its promise? None when it made none, or the reference is too wide to tell."""
+        if self.error is None:
+            return False
+        if self.promise is None:
+            return None
+        least = self.error if self.least is None else self.least
+        return True if self.error <= self.promise else False if least > self.promise else None
+
+    @property
+    def magnitude(self) -> float:
+        """The decimal logarithm of the error, which may lie below every float; infinite without an answer.
+
+        >>> round(timed("q", "m", [1.0], error=Decimal("3e-900")).magnitude, 3)
+        -899.523
+        """
+        if self.error is None:
+            return float("inf")
+        return float(self.error.log10()) if self.error else -float("inf")
+
+    @property
+    def spread(self) -> float:
+        """The upper quartile of the times over the lower one."""
+        return self.quartiles[1] / self.quartiles[0] if self.quartiles[0] else 1.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The row as JSON has it; what no float holds is a decimal string."""
+        plain = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        plain |= {name: written(getattr(self, name)) for name in BALLS}
+        plain["quartiles"] = list(self.quartiles)
+        return plain | {"kept": self.kept}
+
+    @staticmethod
+    def from_dict(document: dict[str, Any]) -> "Row":
+        """The row that `to_dict` wrote."""
+        fields = {name: value for name, value in document.items() if name != "kept"}
+        for name in BALLS:
+            fields[name] = None if fields[name] is None else Decimal(str(fields[name]))
+        low, high = fields.pop("quartiles")
+        return Row(**fields, quartiles=(low, high))
+
+
+def timed(question: str, method: str, seconds: Sequence[float], **more: Any) -> Row:
+    """A row with the median of some times and their quartiles.
+
+    >>> timed("step", "kernel", [3.0, 1.0, 2.0], error=None).seconds
+    2.0
+    """
+    low, _, high = quantiles(seconds, n=4, method="inclusive") if len(seconds) > 1 else (seconds[0],) * 3
+    own = {"arithmetic": "", "setting": "", "promise": None} | more
+    return Row(question, method, seconds=median(seconds), quartiles=(low, high), runs=len(seconds), **own)
+
+
+def written(number: Decimal | None) -> float | str | None:
+    """An error for JSON: a float where one holds it, else a decimal string.
+
+    >>> written(Decimal("1.5e-16")), written(Decimal("2e-1000"))
+    (1.5e-16, '2E-1000')
+    """
+    if number is None:
+        return None
+    return float(number) if number == 0 or SMALLEST < abs(number) < LARGEST else str(number)
+
+
+def front(rows: Iterable[Row]) -> tuple[Row, ...]:
+    """The rows that no other row beats in error and time at once, quickest first: the Pareto front.
+
+    >>> a, b, c = (timed("q", str(t), [t], error=Decimal(e)) for t, e in ((1.0, 1), (2.0, 2), (3.0, 0)))
+    >>> [row.method for row in front([c, b, a])]
+    ['1.0', '3.0']
+    """
+    best: list[Row] = []
+    for row in sorted((r for r in rows if r.error is not None), key=lambda r: (r.seconds, r.error)):
+        if not best or (row.error is not None and best[-1].error is not None and row.error < best[-1].error):
+            best.append(row)
+    return tuple(best)
+
+
+HEAD = ("", "method", "setting", "error", "claims", "time", "spread", "ratio", "")
+MARKS = {True: "", False: "!", None: ""}
+
+
+def table(rows: Sequence[Row], base: Row | None = None) -> list[tuple[str, ...]]:
+    """A line for each row: `*` on the Pareto front, `!` where a claim is not kept; ratios to the time of `base`."""
+    best, base = front(rows), base or baseline(rows)
+    lines: list[tuple[str, ...]] = []
+    for row in rows:
+        ratio = f"{row.seconds / base.seconds:.3g}" if base and base.seconds else "-"
+        claims = "-" if row.promise is None else short(row.promise)
+        said = row.failure if row.error is None else short(row.error)
+        times = duration(row.seconds), f"{row.spread:.2f}" if row.runs > 1 else "once", ratio
+        lines.append(("*" if row in best else "", row.method, row.setting, said, claims, *times, MARKS[row.kept]))
+    return lines
+
+
+def plain(rows: Sequence[Row]) -> str:
+    """The table with columns that line up.
+
+    >>> from verification.measure.work.row import timed
+    >>> print(plain([timed("q", "kernel", [2e-9], error=Decimal("1e-16"), promise=Decimal("1e-17"), setting="s")]))
+       method  setting  error  claims  time  spread  ratio
+    *  kernel  s        1e-16  1e-17   2 ns  once    -      !
+    """
+    lines = [HEAD, *table(rows)]
+    wide = [max(len(line[i]) for line in lines) for i in range(len(HEAD))]
+    wide[3] = min(wide[3], 48)
+    return "\n".join(
+        "  ".join(text[:48].ljust(width) for text, width in zip(line, wide, strict=True)).rstrip() for line in lines
+    )
+
+
+def markdown(rows: Sequence[Row], base: Row | None = None) -> str:
+    """The same as a table in Markdown."""
+    lines = [HEAD, ("---",) * len(HEAD), *table(rows, base)]
+    return "\n".join(
+        "| " + " | ".join(text.replace("|", "/").replace("*", "\\*") for text in line) + " |" for line in lines
+    )
+
+
+def baseline(rows: Sequence[Row]) -> Row | None:
+    """The row that times are compared with: the quickest float64 of this package, at its finest setting."""
+    own = [row for row in rows if row.arithmetic == "float64" and not row.textbook and row.error is not None]
+    return [row for row in own if row.method == own[0].method][-1] if own else None
+
+
+def short(number: Decimal) -> str:
+    """Two digits of a number that may be no float.
+
+    >>> short(Decimal("1.234e-1000")), short(Decimal("0.02"))
+    ('1.2e-1000', '2e-2')
+    """
+    if number == 0:
+        return "0"
+    lead, exponent = f"{number:.1e}".split("e")
+    return f"{lead.removesuffix('.0')}e{int(exponent)}"
+
+
+def facts() -> dict[str, str]:
+    """Machine, versions, and how busy the machine was, for a footer."""
+    from verification.measure.speed.bench import machine_facts
+
+    load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
+    return machine_facts() | {"load": load}
+
+
+def footer(known: dict[str, str]) -> str:
+    """These on one line."""
+    return ", ".join(f"{key} {value}" for key, value in known.items())

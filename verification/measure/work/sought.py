@@ -1,0 +1,154 @@
+"""One system of equations, solved in every arithmetic: what most questions come to.
+
+Newton's method on the same generated formulas in float64, in NumPy's long doubles, in mpmath with digits that double
+at each step, in the midpoints of balls, and in balls with a proof. All start from the same few decimals.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from typing import Any
+
+import numpy as np
+from flint import arb
+
+from verification.arithmetic.words import FLOAT64, FUNCTIONS, Arithmetic, balls, bits_of, multiprecision, working
+from verification.cycles.shooting.newton import ATTEMPTS, GUARD, System, floats, levels, refined
+from verification.measure.work.question import Method, available, power
+from verification.proofs.periodic.interval_newton import Status, contraction
+
+Read = Callable[[Arithmetic, list[Any]], list[Any]]
+DIGITS = (16, 30, 100, 300, 1000)
+WITHOUT = "mpmath, no gmpy2"
+LONG_PI = np.longdouble("3.14159265358979323846264338327950288")
+LONG: Arithmetic = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS} | {
+    "q": lambda p, n: np.longdouble(p) / np.longdouble(n),
+    "pi": LONG_PI,
+}
+ROUNDINGS = 16  # of a residual and of what is read, in units of the last place
+STEPS = 40
+SLACK = 8  # digits of the last step that may be rounding
+
+
+def unknowns(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+    """All of the solution."""
+    return z
+
+
+def last(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+    """The free letter alone."""
+    return z[-1:]
+
+
+@dataclass(frozen=True)
+class Sought:
+    """Values `read` off the solution of a system near a start; `per` answers come of one solution."""
+
+    system: System
+    start: tuple[float, ...]
+    read: Read = unknowns
+    per: int = 1
+
+    def methods(self, certified: Callable[[int], list[arb]] | None = None) -> tuple[Method, ...]:
+        """The system in every arithmetic; `certified(digits)` is the whole proof, by default that of the zero alone."""
+        proof = certified or self.enclosed
+        exact = Method("mpmath", "mpmath", "digits", DIGITS, self.in_mpmath, to_digits, self.per)
+        found = [
+            Method("float64, Newton", "float64", "", ("to rounding",), self.in_floats, self.rounding, self.per),
+            Method("long double", "longdouble", "", (_width(),), self.in_long, self.long_rounding, self.per),
+            exact,
+            Method("arb, no proof", "arb", "digits", DIGITS, self.in_arb, to_digits, self.per),
+            Method("arb, certified", "arb", "digits", DIGITS, proof, to_digits, self.per, proved=True),
+        ]
+        if available():
+            found.insert(3, replace(exact, name=WITHOUT, elsewhere=True))
+        return tuple(found)
+
+    def in_floats(self, setting: Any = None) -> list[float]:
+        """In float64, until steps no longer shorten."""
+        return self.read(FLOAT64, floats(self.system, self.start))
+
+    def in_long(self, setting: Any = None) -> list[Any]:
+        """In NumPy's long doubles."""
+        return self.read(LONG, settled(self.system, LONG, [np.longdouble(x) for x in self.start]))
+
+    def in_mpmath(self, digits: int) -> list[Any]:
+        """In mpmath, from float64 on."""
+        solution = refined(self.system, self.start, digits)
+        context = type(solution.z[0]).context
+        return self.read(multiprecision(context), solution.z)
+
+    def in_arb(self, digits: int) -> list[arb]:
+        """In the midpoints of balls: quick, and nothing proved."""
+        z = self.middle(digits + GUARD)
+        with working(bits_of(digits + GUARD)):
+            return [x.mid() for x in self.read(balls(bits_of(digits + GUARD)), z)]
+
+    def middle(self, digits: int) -> list[arb]:
+        """An approximate solution in arb's floats, with digits that double at each step."""
+        z = [arb(x) for x in floats(self.system, self.start)]
+        for level in levels(digits):
+            bits = bits_of(level, 8)
+            enough = (digits - SLACK) / 2 if level == digits else 0.35 * level  # convergence is quadratic
+            with working(bits):
+                for _ in range(ATTEMPTS):
+                    correction = self.system.newton(balls(bits), z)
+                    z = [(x - d).mid() for x, d in zip(z, correction, strict=True)]
+                    if all(abs(d) < arb(10) ** -int(enough) for d in correction):
+                        break
+        return z
+
+    def enclosed(self, digits: int) -> list[arb]:
+        """Balls that hold what is read off the one zero near the start, which the interval Newton operator proves."""
+        bits = bits_of(digits, 64 + 8 * len(self.start).bit_length())
+        with working(bits):
+            radius = (arb(10) ** -(digits + 5)).mid()
+        found = contraction(self.system, self.middle(digits + 8), radius, bits)
+        if found.status is not Status.UNIQUE:
+            raise ValueError(f"{self.system.label}: {found.status.value}")
+        with working(bits):
+            return self.read(balls(bits), found.zero)
+
+    def condition(self) -> float:
+        """How far the solution moves at most for a residual of one: the largest row sum of the inverse matrix."""
+        z = floats(self.system, self.start)
+        total = np.zeros(len(z))
+        for i in range(len(z)):
+            unit = [1.0 if j == i else 0.0 for j in range(len(z))]
+            total += np.abs(np.array(self.system.solved(FLOAT64, z, unit), dtype=float))
+        return float(np.max(total))
+
+    def rounding(self, setting: Any = None) -> Decimal:
+        """What float64 promises: the condition number and a few roundings."""
+        return Decimal(f"{ROUNDINGS * 2.0**-52 * (1 + self.condition()):.3g}")
+
+    def long_rounding(self, setting: Any = None) -> Decimal:
+        """What a long double promises."""
+        return Decimal(f"{ROUNDINGS * float(np.finfo(np.longdouble).eps) * (1 + self.condition()):.3g}")
+
+
+def settled(system: System, arithmetic: Arithmetic, start: Sequence[Any]) -> list[Any]:
+    """Newton's steps, damped far away, as long as they shorten."""
+    z, before = list(start), None
+    for _ in range(STEPS):
+        correction = system.newton(arithmetic, z)
+        size = max(abs(d) for d in correction)
+        if not np.isfinite(size):
+            break
+        if before is not None and size < 1e-9 and size >= before:
+            return z
+        reach = min(1.0, float(0.3 / size)) if size else 1.0
+        z = [x - reach * d for x, d in zip(z, correction, strict=True)]
+        before = size
+    if before is not None and before < 1e-9:
+        return z
+    raise ValueError(f"{system.label}: Newton's method in {_width()} did not settle")
+
+
+def to_digits(digits: int) -> Decimal:
+    """What as many digits promise."""
+    return power(-digits)
+
+
+def _width() -> str:
+    return f"{np.finfo(np.longdouble).nmant + 1} bits"

@@ -1,0 +1,125 @@
+"""Events with certified digits: the float64 event is the start, balls prove what is near it.
+
+A fold and a period doubling are proved on the whole cycle, a pitchfork on the half that flips, turned
+so that the mirror is `theta -> -theta`. Other events have no certificate here.
+
+Every bifurcation curve that starts from the cycles of one scene, with its points of codimension two.
+
+All cycles up to a period are found, each is followed in `lam`, and every fold, doubling and pitchfork on
+the way is followed on as a curve in `(alpha, lam)`. Cycles that a symmetry maps to each other count once.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import pi
+
+import numpy as np
+from sympy import Expr, S
+
+from symbolic.tables import egg
+from verification.cycles.continuation.arc import Steps
+from verification.cycles.continuation.branch import Event, What, branch
+from verification.cycles.continuation.curves import Curve, curve
+from verification.cycles.continuation.recurrence import Array, Chords
+from verification.cycles.continuation.symmetry import rotations
+from verification.cycles.search.search import all_cycles
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.named.locate import certify
+from verification.named.tongue import TWO, largest_shape
+from verification.proofs.periodic.bifurcation import Proof
+
+KINDS = {What.FOLD: Kind.FOLD, What.FLIP: Kind.FLIP, What.PITCHFORK: Kind.FLIP}
+
+
+def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fraction | None = None) -> Proof | None:
+    """The proof that the event happens at the enclosed `letter`; None where there is no certificate for its kind.
+
+    Where the letter is a shape, `lam` is the contraction.
+
+    >>> from symbolic.tables import egg
+    >>> from verification.cycles.continuation.branch import branch
+    >>> ring = Chords(egg(3).at(alpha="7/100"), (0, 0))
+    >>> (doubling,) = branch(ring, np.array([0, pi]), "lam", 0.1, (0.0, 1.0)).events
+    >>> proof = proof_of(doubling, 20)
+    >>> proof is not None and proof.certified
+    True
+    """
+    ring = event.ring
+    if not isinstance(ring, Chords) or event.what not in KINDS:
+        return None
+    x, mirror = event.x, False
+    if event.what is What.PITCHFORK:
+        centred = _centred(ring, x)
+        if centred is None:
+            return None
+        x, mirror = centred, True
+    contraction = None if lam is None else S(lam)
+    problem = Problem(ring.table, ring.components, KINDS[event.what], letter, contraction, mirror)
+    return certify(problem, [*(float(v) for v in x), event.value], digits)
+
+
+def _centred(ring: Chords, x: Array) -> Array | None:
+    """The half cycle turned by a symmetry of the table until its mirror is `theta -> -theta`."""
+    if ring.ends.turn != -1:
+        return None
+    step = 2 * pi / rotations(ring.table)
+    for half in (ring.ends.shift / 2, ring.ends.shift / 2 + pi):
+        if abs(np.sin(pi * half / step)) < 1e-9:
+            return x - half
+    return None
+
+
+Tick = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """An event on the branch of a cycle of `period` bounces, and its curve; None when it could not be followed."""
+
+    period: int
+    event: Event
+    curve: Curve | None
+
+
+def survey(
+    alpha: Expr, lam: Expr, longest: int, K: int = 3, tick: Tick = lambda said: None, steps: Steps | None = None
+) -> Iterator[Surveyed]:
+    """The curves of the egg with K points that the cycles at one shape and contraction lead to.
+
+    >>> from sympy import Rational
+    >>> [(one.period, one.event.what.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
+    [(2, 'period doubling')]
+    """
+    table = egg(K)
+    seen: set[tuple[object, ...]] = set()
+    for cycle in all_cycles(table.at(alpha=alpha), lam, longest).catalogue.cycles:
+        mark = cycle.period, round(cycle.spectrum.trace, 6), round(cycle.spectrum.determinant, 6)
+        if mark in seen:
+            continue
+        seen.add(mark)
+        tick(f"period {cycle.period}")
+        ring, at = Chords(table, (0,) * cycle.period), {"alpha": float(alpha)}
+        try:
+            one = branch(ring, np.array(cycle.theta), "lam", float(lam), (0.0, 1.0), at, steps=Steps(most=250))
+        except ValueError:
+            continue  # at a bifurcation to within rounding: its neighbours lead there too
+        for event in one.events:
+            own = cycle.period, event.what, round(event.value, 7)
+            if event.what in KINDS and own not in seen:
+                seen.add(own)
+                yield Surveyed(cycle.period, event, curve_of(event, at["alpha"], K, steps))
+
+
+def curve_of(event: Event, alpha: float, K: int = 3, steps: Steps | None = None) -> Curve | None:
+    """The curve in `(alpha, lam)` through an event of the egg at shape `alpha`; None when it has none or is lost."""
+    if event.what not in KINDS or not isinstance(event.ring, Chords):
+        return None
+    top = largest_shape(K)
+    box = ((top / 100, top), (0.0, 1.0))
+    steps = steps or Steps(largest=0.3, most=150)
+    ring = replace(event.ring, table=egg(K))
+    try:
+        return curve(ring, KINDS[event.what], event.x, TWO, (alpha, event.value), box, steps=steps)
+    except ValueError:
+        return None

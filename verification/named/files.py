@@ -1,0 +1,137 @@
+"""Certificates as files: a claim with exact endpoints, written out and read back bit for bit.
+
+A ball is `[mantissa, exponent]` of its exact midpoint, in decimal text; the radius is one such pair.
+Reading builds the problem from the table's name and exact shape, so that a file can claim anything
+and prove nothing: `checked` works the whole checklist through again.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flint import arb, fmpz
+
+from symbolic import tables
+from symbolic.tables.formula import number
+from symbolic.tables.fourier import boundary_coefficients
+from symbolic.tables.table import Table
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
+from verification.proofs.periodic.bifurcation import Claim, Proof, proved
+
+if TYPE_CHECKING:
+    from verification.proofs.manifolds.claim import TangencyProof
+
+SCHEMA = 1
+LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
+
+
+def document(name: str, proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
+    """A proof as a JSON document."""
+    claim = proof.claim
+    if not isinstance(claim, Claim | SpecialClaim):
+        return {"schema": SCHEMA, "name": f"{name}, the tangency"} | claim.to_dict() | {"checks": dict(proof.checks)}
+    box = {
+        "bits": claim.bits,
+        "digits": claim.digits,
+        "centre": [_pair(x) for x in claim.centre],
+        "radius": _pair(claim.radius),
+        "checks": proof.checks,
+    }
+    if isinstance(claim, SpecialClaim):
+        lam = None if claim.lam is None else str(claim.lam)
+        return {"schema": SCHEMA, "name": name, "kind": "special", "value": claim.value, "lam": lam} | box
+    problem = claim.problem
+    return {
+        "schema": SCHEMA,
+        "name": name,
+        "table": problem.table.name,
+        "points": _points(problem.table),
+        "shape": {letter: str(value) for letter, value in problem.table.fixed},
+        "kind": problem.kind.name.lower(),
+        "free": problem.free,
+        "mirror": problem.mirror,
+        "lam": None if problem.lam is None else str(problem.lam),
+        "components": list(problem.components),
+    } | box
+
+
+def claim_of(given: Mapping[str, Any]) -> Claim | SpecialClaim:
+    """The claim of a document; `ValueError` with the entry that is wrong."""
+    try:
+        if given["schema"] != SCHEMA:
+            raise ValueError(f"certificate: schema = {given['schema']} is unknown; this version reads {SCHEMA}")
+        bits, digits = int(given["bits"]), int(given["digits"])
+        if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
+            raise ValueError(f"certificate: bits = {bits} or digits = {digits} is out of range")
+        centre, radius = tuple(_ball(pair) for pair in given["centre"]), _ball(given["radius"])
+        lam = None if given["lam"] is None else number(given["lam"], "lam")
+        if given["kind"] == "special":
+            unknowns = 2 if lam is None else 3
+            _sized(centre, unknowns, "unknowns")
+            return SpecialClaim(given["value"], centre, radius, bits, digits, lam)
+        problem = _problem(given, lam)
+        _sized(centre, problem.period + bool(problem.free), "unknowns")
+        return Claim(problem, centre, radius, bits, digits)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
+
+
+def _problem(given: Mapping[str, Any], lam: Any) -> Problem:
+    components = tuple(int(i) for i in given["components"])
+    if not 2 <= len(components) <= LARGEST_PERIOD:
+        raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
+    shape = {letter: number(text, letter) for letter, text in given["shape"].items()}
+    table = tables.named(given["table"], int(given["points"])).at(**shape)
+    if not set(components) <= set(range(len(table.components))):
+        raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
+    return Problem(table, components, Kind[given["kind"].upper()], given["free"], lam, bool(given["mirror"]))
+
+
+def _sized(centre: tuple[arb, ...], wanted: int, what: str) -> None:
+    if len(centre) != wanted:
+        raise ValueError(f"certificate: centre has {len(centre)} entries for {wanted} {what}")
+
+
+def read(path: Path) -> dict[str, Any]:
+    """The document in a file; `ValueError` when it is none."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"certificate {str(path)!r} cannot be read ({error.strerror})") from None
+    except ValueError as error:
+        raise ValueError(f"certificate {str(path)!r} is no JSON document: {error}") from None
+    if not isinstance(found, dict):
+        raise ValueError(f"certificate {str(path)!r} holds no JSON object")
+    return found
+
+
+def checked(given: Mapping[str, Any]) -> "Proof | SpecialProof | TangencyProof":
+    """The checklist of a document's claim, worked through anew; what the file says of it is not believed."""
+    if given.get("kind") == "tangency" and given.get("schema") == SCHEMA:
+        from verification.proofs.manifolds import claim as tangency  # NumPy, which no other certificate needs
+
+        return tangency.worked_through(tangency.claim_of(given))
+    claim = claim_of(given)
+    return specially_proved(claim) if isinstance(claim, SpecialClaim) else proved(claim)
+
+
+def _points(table: Table) -> int:
+    """`K` of an egg: the boundary turns by `2*pi/K` into itself."""
+    if table.name != "egg":
+        return 0
+    waves = boundary_coefficients(table.components[0])
+    return max(waves) - 1 if waves else 0
+
+
+def _pair(x: arb) -> list[str]:
+    mantissa, exponent = x.man_exp()
+    return [str(mantissa), str(exponent)]
+
+
+def _ball(pair: Any) -> arb:
+    mantissa, exponent = (fmpz(str(text)) for text in pair)  # int() refuses more than 4300 digits
+    if abs(exponent) > LARGEST_BITS * 2:
+        raise ValueError(f"certificate: the exponent {exponent} is out of range")
+    return arb((mantissa, exponent))

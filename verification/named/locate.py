@@ -1,0 +1,325 @@
+"""Where does it happen? Each bifurcation by its name: to N digits, with a proof.
+
+mpmath finds the approximation on the chord system, balls prove it (`verification.certificates`), and
+where there is a closed form it must agree. `value` and `radius` are decimals that hold the truth.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import mpmath
+from flint import arb
+from sympy import Expr, Integer, N, S, acos
+
+from symbolic import tables
+from symbolic.cycles import polygons, thresholds
+from symbolic.generation.text import kernel, load
+from symbolic.tables.symbols import alpha as alpha_letter
+from symbolic.tables.symbols import lam as lam_letter
+from verification.arithmetic.balls import decimal
+from verification.arithmetic.progress import telling
+from verification.arithmetic.words import balls, bits_of, working
+from verification.cycles.shooting import cascade as ladder
+from verification.cycles.shooting.newton import Step, refined
+from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.small import corner, focus
+from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
+from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
+from verification.proofs.periodic.interval_newton import Status, exact_balls
+
+if TYPE_CHECKING:
+    from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other name needs
+
+MOST_DIGITS = 20_000
+BUDGET = 4_000_000  # bounces times digits: some ten minutes
+MPMATH_SHARE = 0.7  # of the time that a proof and its approximation take
+Steps = tuple[Step, ...]
+Proved: TypeAlias = "Proof | SpecialProof | TangencyProof"
+FOLD_DIGITS = 50  # at most, of the proof beside a crisis
+GMPY2 = mpmath.libmp.BACKEND == "gmpy"
+WORDS = {True: "proved", False: "refuted", None: "unknown"}  # the three answers of a checklist
+
+
+@dataclass(frozen=True)
+class Located:
+    """A value in decimals, and what was proved about it."""
+
+    name: str
+    value: str
+    radius: str
+    digits: int
+    checks: Checks
+    seconds: float
+    ball: arb = field(repr=False)
+    proof: "Proved | None" = field(repr=False, default=None)
+    notes: Mapping[str, str] = field(default_factory=dict)
+    steps: Steps = field(repr=False, default=())
+
+    @property
+    def certified(self) -> bool:
+        """True when the whole checklist is proved."""
+        return all(value is True for value in self.checks.values())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The keys of `pinball locate --json`."""
+        return {
+            "name": self.name,
+            "value": self.value,
+            "radius": self.radius,
+            "digits": self.digits,
+            "certified": self.certified,
+            "checks": dict(self.checks),
+            "notes": dict(self.notes),
+            "gmpy2": GMPY2,
+            "newton": [{"digits": step.digits, "log10_correction": step.correction} for step in self.steps],
+            "seconds": self.seconds,
+        }
+
+    def __str__(self) -> str:
+        return f"{self.name} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><td>{item}</td><td>{WORDS[value]}</td></tr>" for item, value in self.checks.items())
+        said = "certified" if self.certified else "not certified"
+        return f"<p>{self.name} = {self.value} &plusmn; {self.radius}, {said}</p><table>{rows}</table>"
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search hands over: the ball, its checklist, and the proof if it is one cycle's."""
+
+    ball: arb
+    checks: Checks
+    proof: "Proved | None" = None
+    notes: Mapping[str, str] = field(default_factory=dict)
+    steps: Steps = ()
+
+
+def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
+    """The bifurcation `name` (see `NAMES`) to `digits` decimal digits.
+
+    >>> locate("lambda-c", 20).value
+    '0.0934003354313602414161'
+    """
+    if name not in NAMES:
+        raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}")
+    if not 1 <= digits <= MOST_DIGITS:
+        raise ValueError(f"locate: digits = {digits} is out of range; accepted: 1 to {MOST_DIGITS}")
+    search, letters = NAMES[name]
+    shape = dict(USUAL.get(name, {})) | shape
+    if set(shape) != set(letters):
+        raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(letters)}")
+    started = time.perf_counter()
+    found = search(digits, **shape)
+    value, radius = decimal(found.ball, digits + 1)
+    seconds = time.perf_counter() - started
+    rest = found.ball, found.proof, found.notes, found.steps
+    return Located(name, value, radius, digits, found.checks, seconds, *rest)
+
+
+def certify(problem: Problem, start: list[float], digits: int) -> Proof:
+    """The proof for the solution near `start`: mpmath to a few digits more, then balls around it."""
+    return _searched(problem, start, digits)[0]
+
+
+def _searched(problem: Problem, start: list[float], digits: int) -> tuple[Proof, Steps]:
+    tick = telling(f"{digits} digits")
+    solution = refined(problem, start, digits)
+    tick(MPMATH_SHARE)
+    bits = bits_of(digits, 64 + 8 * problem.period.bit_length())
+    with working(bits):
+        radius = (arb(10) ** -(digits + 2)).mid()
+    return proved(Claim(problem, tuple(exact_balls(solution.z)), radius, bits, digits)), solution.steps
+
+
+def closed_form(expression: Expr, digits: int) -> arb:
+    """An exact expression as a ball."""
+    bits = bits_of(digits, 64)
+    with working(bits):
+        ball: arb = load(kernel("value", [], {"value": expression}), balls(bits))()[0] + arb(0)
+        return ball
+
+
+def _agreeing(searched: tuple[Proof, Steps], expression: Expr, digits: int) -> Found:
+    """A proof from the cycle together with a closed form: both balls must meet."""
+    proof, steps = searched
+    ball = closed_form(expression, digits)
+    overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
+    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof), steps)
+
+
+def _direction(proof: Proof) -> dict[str, str]:
+    if proof.supercritical is None:
+        return {}
+    born = "a stable" if proof.supercritical else "an unstable"
+    return {"kind": f"{'super' if proof.supercritical else 'sub'}critical: {born} cycle of twice the period is born"}
+
+
+def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> tuple[SpecialProof, Steps]:
+    """The proof of a small system's solution near `start`."""
+    bits = bits_of(digits, 100)
+    with working(bits):
+        radius = (arb(10) ** -(digits + 3)).mid()
+    tick = telling(f"{digits} digits")
+    solution = refined(corner() if lam is None else focus(lam), start, digits + 5)
+    tick(MPMATH_SHARE)
+    claim = SpecialClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam)
+    return specially_proved(claim), solution.steps
+
+
+def lambda_star(digits: int) -> Found:
+    """The contraction at which the cuspless orbit through both corners exists. Paper: section 5.2."""
+    proof, steps = _special("lam", [0.2545, 0.0712], digits)
+    return Found(proof.value, proof.checks, proof, proof.notes, steps)
+
+
+def phi_star(digits: int) -> Found:
+    """Its exit angle at the upper corner, in radians."""
+    proof, steps = _special("phi", [0.2545, 0.0712], digits)
+    return Found(proof.value, proof.checks, proof, proof.notes, steps)
+
+
+def lambda_c(digits: int) -> Found:
+    """The period doubling of the cuspless cardioid's horizontal orbit. Paper: section 5.1."""
+    exact = thresholds.lambda_c()
+    problem = Problem(tables.cuspless, (1, 0), Kind.FLIP, "lam")
+    return _agreeing(_searched(problem, [0, 0, float(N(exact))], digits), exact, digits)
+
+
+def alpha_tilde(digits: int, lam: Expr) -> Found:
+    """The shape at which the egg's diameters double their period. Paper: section 6.3."""
+    exact = thresholds.alpha_tilde().subs(lam_letter, _unit("lam", lam))
+    problem = Problem(tables.egg(3), (0, 0), Kind.FLIP, "alpha", lam)
+    return _agreeing(_searched(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
+
+
+def alpha_hat(digits: int, lam: Expr) -> Found:
+    """The shape above which the multipliers of the egg's diameters are complex. Paper: section 6.3."""
+    exact = thresholds.alpha_hat().subs(lam_letter, _unit("lam", lam))
+    ball = closed_form(exact, digits)
+    if lam in (0, 1):
+        why = {0: "the discriminant touches 0 there and does not cross it", 1: "the table is a circle there"}[lam]
+        return Found(ball, {"precise": True} | dict.fromkeys(("exists", "unique")), None, {"degenerate": why})
+    proof, steps = _special("alpha", [0.0, 3.14, float(N(exact))], digits, lam)
+    overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
+    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, {}, steps)
+
+
+def saddle_node(digits: int, alpha: Expr) -> Found:
+    """The contraction at which the egg's period-3 cycles are born. Paper: section 6.4."""
+    table = tables.egg(3).at(alpha=alpha)
+    if alpha == 0:
+        raise ValueError(
+            "locate saddle-node: alpha = 0 is a circle, with triangles at lam = 1 only; accepted: 0 < alpha <= 1/10"
+        )
+    exact = polygons.saddle_node().subs(alpha_letter, alpha)
+    turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
+    problem = Problem(table, (0, 0, 0), Kind.FOLD, "lam")
+    start = [turn + float(N(2 * S.Pi / 3)) * k for k in range(3)]
+    return _agreeing(_searched(problem, [*start, float(N(exact))], digits), exact, digits)
+
+
+def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
+    """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
+    if (period := 2 ** max(int(n) - 1, 0)) * digits > BUDGET and n <= ladder.HIGHEST:
+        raise ValueError(
+            f"locate doubling: period {period} with {digits} digits is more work than the budget allows; "
+            f"accepted for n = {n}: up to {BUDGET // period} digits"
+        )
+    problem, start = ladder.critical_cycle(alpha, int(n))
+    proof, steps = _searched(problem, start, digits)
+    return Found(proof.value, proof.checks, proof, _direction(proof), steps)
+
+
+def symmetry_breaking(digits: int, alpha: Expr) -> Found:
+    """The contraction at which the egg's symmetric cycle of period 4 gives way to two that are not."""
+    problem, start = ladder.symmetry_breaking(alpha)
+    proof = certify(problem, start, digits)
+    born = "two stable cycles" if proof.supercritical else "two unstable cycles"
+    return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
+
+
+def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
+    """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch, which is proved. Paper: section 6.7.
+
+    That no other contact ends the attractor before is not.
+    """
+    from verification.proofs.manifolds.known import crisis, decimals, proof  # NumPy, which no other name needs
+
+    found = crisis(kind, alpha, digits)
+    stable, unstable = found.touch.multipliers[:2]
+    orbit = found.touch.contact.unstable
+    proved_fold = False
+    if not found.cycle.problem.shift[0]:  # of a cycle that closes with a turn there is no certificate
+        fold = certify(found.cycle.problem, found.cycle.start, min(digits, FOLD_DIGITS))
+        near = bool(abs(fold.value - arb(str(found.letter))) < 1e-3)
+        proved_fold = all(value is True for value in fold.checks.values()) and near
+    notes = {
+        "mechanism": f"homoclinic tangency of the {orbit.name}, multipliers {unstable:.6g} and {stable:.6g}",
+        "method": f"the fold of a cycle of {found.period} bounces that shadows it, estimated error, not a proof",
+        "second_method": f"tangency of the manifolds, {found.apart:.1e} away with error {found.touch.error:.1e}",
+        "transient": f"if an attractor ends here, lasts like (distance beyond)^-{found.exponent:.4f}, in the limit",
+    }
+    value, error = decimals(found)
+    with working(bits_of(digits, 100)):
+        ball = arb(value, error)
+    checks: Checks = {"shadowing_fold": proved_fold or None, "two_methods_agree": found.agrees or None}
+    made = proof(found, alpha, digits + 2)
+    inside = bool(ball.contains(made.value))
+    checks |= {"tangency": True if made.proof.touches and inside else None}
+    checks |= {item: made.checks[item] if inside else None for item in ("quadratic", "transversal")}
+    checks |= {"is_the_crisis": None}
+    held = made.certified and inside
+    if held:
+        notes["proved"] = f"the two manifolds touch, within {error} of the value; that the attractor ends there is not"
+    return Found(ball, checks, made if held else None, notes)
+
+
+def at_period(kind: str, digits: int, alpha: Expr, period: Expr) -> Found:
+    """Where a window or a small family of some period ends, its bands join, or an attractor reaches its saddle."""
+    from verification.proofs.manifolds.known import CONTACTS
+
+    name = f"{kind}-{period}"
+    if name not in CONTACTS:
+        known = sorted(int(other.rpartition("-")[2]) for other in CONTACTS if other.rpartition("-")[0] == kind)
+        listed = ", ".join(str(other) for other in known)
+        raise ValueError(f"locate {kind}: period = {period} is not known; accepted: {listed}")
+    return egg_crisis(name, digits, alpha)
+
+
+def _unit(letter: str, value: Expr) -> Expr:
+    if not 0 <= value <= 1:
+        raise ValueError(f"locate: {letter} = {value} is out of range; accepted: numbers from 0 to 1")
+    return value
+
+
+def _listed(letters: Any) -> str:
+    return ", ".join(f"--{letter}" for letter in letters) or "no letter"
+
+
+NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
+    "lambda-star": (lambda_star, ()),
+    "phi-star": (phi_star, ()),
+    "lambda-c": (lambda_c, ()),
+    "alpha-tilde": (alpha_tilde, ("lam",)),
+    "alpha-hat": (alpha_hat, ("lam",)),
+    "saddle-node": (saddle_node, ("alpha",)),
+    "doubling": (doubling, ("alpha", "n")),
+    "symmetry-breaking": (symmetry_breaking, ("alpha",)),
+    "merging-crisis": (lambda digits, alpha: egg_crisis("merging", digits, alpha), ("alpha",)),
+    "boundary-crisis": (lambda digits, alpha: egg_crisis("boundary", digits, alpha), ("alpha",)),
+    "band-merging": (partial(at_period, "band-merging"), ("alpha", "period")),
+    "symmetry-restoring": (lambda digits, alpha: egg_crisis("symmetry-restoring", digits, alpha), ("alpha",)),
+    "interior-crisis": (partial(at_period, "interior-crisis"), ("alpha", "period")),
+    "window-end": (partial(at_period, "window-end"), ("alpha", "period")),
+    "window-merging": (partial(at_period, "window-merging"), ("alpha", "period")),
+    "family-end": (partial(at_period, "family-end"), ("alpha", "period")),
+    "family-merging": (partial(at_period, "family-merging"), ("alpha", "period")),
+}
+USUAL = {  # letters that need not be given
+    "band-merging": {"period": Integer(4)},
+    "interior-crisis": {"period": Integer(12)},
+}

@@ -1,0 +1,266 @@
+"""Questions on a scene, each one call: which cycles, what becomes of one, and the proof of what happens to it.
+
+>>> from symbolic import Scene, tables
+>>> egg = Scene(tables.egg(3), alpha="2/25", lam="1/2")
+>>> triangle = find_cycles(egg, period=3).stable[0]
+>>> branch = follow(triangle, lam=("0.37", "1"))
+>>> certify(branch.folds[0], digits=20).value
+'0.378121252590090235753'
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, overload
+
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
+
+if TYPE_CHECKING:
+    from verification.cycles.continuation.branch import Branch, Event
+    from verification.cycles.search.catalogue import Found
+    from verification.cycles.search.search import Searched
+    from verification.named.locate import Located
+
+SHOWN = 12  # rows of a table in a notebook
+Tick = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class PeriodicOrbit:
+    """A cycle of minimal period in a scene: its bounces, in radians, and its multipliers, the larger one first."""
+
+    scene: Scene
+    components: tuple[int, ...]
+    theta: tuple[float, ...]
+    phi: tuple[float, ...]
+    multipliers: tuple[complex, complex]
+
+    @property
+    def period(self) -> int:
+        """The number of bounces."""
+        return len(self.theta)
+
+    @property
+    def stable(self) -> bool:
+        """True when both multipliers lie inside the unit circle, in float64."""
+        return max(map(abs, self.multipliers)) < 1
+
+    def __repr__(self) -> str:
+        mu = ", ".join(f"{m.real:.5g}" if m.imag == 0 else f"{m:.5g}" for m in self.multipliers)
+        kind = "stable" if self.stable else "unstable"
+        return f"PeriodicOrbit(period {self.period}, {kind}, multipliers {mu}, theta[0] = {self.theta[0]:.6g})"
+
+
+class PeriodicOrbits(Sequence[PeriodicOrbit]):
+    """Cycles, each once, by period; `.stable`, `.unstable` and `.of(period)` choose among them."""
+
+    def __init__(self, orbits: Iterable[PeriodicOrbit], searched: "Searched | None" = None) -> None:
+        self.orbits = tuple(orbits)
+        self.searched = searched
+
+    @overload
+    def __getitem__(self, index: int) -> PeriodicOrbit: ...
+    @overload
+    def __getitem__(self, index: slice) -> "PeriodicOrbits": ...
+    def __getitem__(self, index: int | slice) -> "PeriodicOrbit | PeriodicOrbits":
+        return PeriodicOrbits(self.orbits[index]) if isinstance(index, slice) else self.orbits[index]
+
+    def __len__(self) -> int:
+        return len(self.orbits)
+
+    def __iter__(self) -> Iterator[PeriodicOrbit]:
+        return iter(self.orbits)
+
+    @property
+    def stable(self) -> "PeriodicOrbits":
+        """Those whose multipliers both lie inside the unit circle."""
+        return PeriodicOrbits(orbit for orbit in self.orbits if orbit.stable)
+
+    @property
+    def unstable(self) -> "PeriodicOrbits":
+        """The others."""
+        return PeriodicOrbits(orbit for orbit in self.orbits if not orbit.stable)
+
+    def of(self, period: int) -> "PeriodicOrbits":
+        """Those of one minimal period."""
+        return PeriodicOrbits(orbit for orbit in self.orbits if orbit.period == period)
+
+    def __repr__(self) -> str:
+        return f"PeriodicOrbits({len(self)}: {len(self.stable)} stable)"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{o.period}</td><td>{'yes' if o.stable else 'no'}</td><td>{o.multipliers[0]:.6g}</td>"
+            f"<td>{o.multipliers[1]:.6g}</td><td>{o.theta[0]:.9f}</td></tr>"
+            for o in self.orbits[:SHOWN]
+        )
+        more = f"<p>and {len(self) - SHOWN} more</p>" if len(self) > SHOWN else ""
+        head = "<tr><th>period</th><th>stable</th><th colspan=2>multipliers</th><th>first bounce</th></tr>"
+        return f"<table>{head}{rows}</table>{more}"
+
+
+def find_cycles(
+    scene: Scene, *, period: int | None = None, up_to: int | None = None, seed: int = 1, tick: Tick | None = None
+) -> PeriodicOrbits:
+    """The cycles of a scene of one minimal period, or of all periods `up_to` one, found by search in float64.
+
+    A search does not prove that it found all; `pinball cycles --prove` does, for small periods.
+
+    >>> ellipse = Scene("ellipse", a="3/2", lam="1/2")
+    >>> find_cycles(ellipse, period=2)
+    PeriodicOrbits(2: 1 stable)
+    """
+    from verification.cycles.search.search import all_cycles
+
+    if (period is None) == (up_to is None):
+        raise ValueError("find_cycles: give one of period=N and up_to=N")
+    longest = period if period is not None else up_to
+    if isinstance(longest, bool) or not isinstance(longest, int) or longest < 2:
+        raise ValueError(f"find_cycles: {longest!r} is no period; accepted: integers from 2")
+    from sympy import S
+
+    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or (lambda said: None))
+    made = (_orbit(scene, cycle) for cycle in found.catalogue.cycles if period in (None, cycle.period))
+    return PeriodicOrbits(made, found)
+
+
+def _orbit(scene: Scene, cycle: "Found") -> PeriodicOrbit:
+    one, two = sorted(cycle.spectrum.multipliers, key=lambda mu: -abs(mu))
+    return PeriodicOrbit(scene, cycle.components, cycle.theta, cycle.phi, (complex(one), complex(two)))
+
+
+@dataclass(frozen=True)
+class FollowedOrbit:
+    """A branch of cycles in one letter, with what happens on it; `.folds`, `.flips` and their like choose."""
+
+    orbit: PeriodicOrbit
+    letter: str
+    branch: "Branch" = field(repr=False)
+
+    @property
+    def events(self) -> "tuple[BranchEvent, ...]":
+        """All events, in the order of the branch."""
+        return self._events
+
+    @cached_property
+    def _events(self) -> "tuple[BranchEvent, ...]":
+        return tuple(BranchEvent(self.orbit, self.letter, event) for event in self.branch.events)
+
+    @property
+    def folds(self) -> "tuple[BranchEvent, ...]":
+        """Where the branch turns: saddle-node bifurcations."""
+        return self._of("fold")
+
+    @property
+    def flips(self) -> "tuple[BranchEvent, ...]":
+        """Period doublings."""
+        return self._of("period doubling")
+
+    @property
+    def pitchforks(self) -> "tuple[BranchEvent, ...]":
+        """Where a symmetric cycle loses its symmetry."""
+        return self._of("pitchfork")
+
+    @property
+    def border_collisions(self) -> "tuple[BranchEvent, ...]":
+        """Where a bounce meets a join of the boundary."""
+        return self._of("border collision")
+
+    def _of(self, kind: str) -> "tuple[BranchEvent, ...]":
+        return tuple(event for event in self.events if event.kind == kind)
+
+    def __repr__(self) -> str:
+        ends = f"{min(self.branch.values):.6g} to {max(self.branch.values):.6g}"
+        events = ", ".join(f"{event.kind} at {event.value:.9g}" for event in self.events) or "no event"
+        return f"FollowedOrbit(period {self.orbit.period}, {self.letter} from {ends}: {events})"
+
+
+@dataclass(frozen=True)
+class BranchEvent:
+    """What happens on a branch, at which value of its letter, in float64; `certify` gives digits and a proof."""
+
+    orbit: PeriodicOrbit
+    letter: str
+    event: "Event" = field(repr=False)
+
+    @property
+    def kind(self) -> str:
+        """`fold`, `period doubling`, `pitchfork`, `branch point`, `border collision`, `Neimark-Sacker` or so."""
+        return self.event.what.value
+
+    @property
+    def value(self) -> float:
+        """The letter there."""
+        return self.event.value
+
+    @property
+    def supercritical(self) -> bool | None:
+        """True when the cycle that is born is stable where the old one is not; None where that is no question."""
+        return self.event.form.supercritical if self.event.form else None
+
+
+def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None, **interval: Any) -> FollowedOrbit:
+    """What becomes of a cycle as one letter changes: `lam=(low, high)`, or a shape such as `alpha=(low, high)`.
+
+    The ends are exact numbers or text. The branch is followed both ways from the cycle, through folds.
+    """
+    import numpy as np
+
+    from verification.cycles.continuation.arc import Steps
+    from verification.cycles.continuation.branch import branch
+    from verification.cycles.continuation.recurrence import Chords
+    from verification.cycles.continuation.starts import freed
+
+    if len(interval) != 1:
+        raise ValueError(f"follow: {', '.join(interval) or 'no letter'} given; one letter varies, as in lam=(0, 1)")
+    ((letter, ends),) = interval.items()
+    low, high = _ends(letter, ends)
+    scene = orbit.scene
+    ring, fixed = Chords(scene.table, orbit.components), None
+    value = float(scene.lam)
+    if letter != "lam":
+        if "table" not in scene.document or letter not in scene.shape:
+            accepted = ", ".join(["lam", *(scene.shape if "table" in scene.document else ())])
+            raise ValueError(f"follow: {letter} is no letter that varies in {scene}; accepted: {accepted}")
+        from sympy import S
+
+        ring = freed(ring, scene.K, letter, [S(exact(letter, end)) for end in ends])
+        value, fixed = float(scene.shape[letter]), {"lam": float(scene.lam)}
+    say = (lambda point: tick(f"{letter} = {point.z[-1]:.4f}")) if tick else None
+    return FollowedOrbit(
+        orbit, letter, branch(ring, np.array(orbit.theta), letter, value, (low, high), fixed, Steps(most=points), say)
+    )
+
+
+def _ends(letter: str, given: Any) -> tuple[float, float]:
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise ValueError(f"follow: {letter} = {given!r} is no interval; give two numbers, as in {letter}=('0.3', '1')")
+    low, high = (float(exact(letter, end)) for end in given)
+    if not low < high or (letter == "lam" and not 0 <= low < high <= 1):
+        within = ", both in [0, 1]" if letter == "lam" else ""
+        raise ValueError(
+            f"follow: {letter} from {given[0]} to {given[1]} is no interval; the first must be the smaller{within}"
+        )
+    return low, high
+
+
+def certify(event: BranchEvent, *, digits: int = 30) -> "Located":
+    """The value of the letter at an event to so many digits, with a proof in balls; its checklist says what holds.
+
+    Folds, period doublings and pitchforks have certificates.
+    """
+    import time
+
+    from verification.arithmetic.balls import decimal
+    from verification.named.events import proof_of
+    from verification.named.locate import Located
+
+    started = time.perf_counter()
+    lam = None if event.letter == "lam" else event.orbit.scene.lam
+    proof = proof_of(event.event, digits, event.letter, lam)
+    if proof is None:
+        raise ValueError(f"certify: a {event.kind} has no certificate; accepted: fold, period doubling, pitchfork")
+    value, radius = decimal(proof.value, digits + 1)
+    name = f"{event.kind} of period {event.orbit.period} in {event.letter}"
+    return Located(name, value, radius, digits, proof.checks, time.perf_counter() - started, proof.value, proof)

@@ -1,0 +1,1 @@
+"""The paper: its claims and their judges, its figures, the report."""

@@ -1,0 +1,266 @@
+"""Claims on the cardioid's chaotic attractor: sampled with an error, proved at `lam = 0`. Paper: sections 4.1, 4.2.
+
+Claims on the cardioid's exponents: what `symbolic.cycles.defocusing` proves, and what it does not. Paper: section 4.1.
+
+`g = 1 + tan((1 - lam)*pi/8)**2/2`. Shown for every `lam < 1`: on every orbit off the cusp the lower limit of
+`log|D(T**n) (1, 0)|/n` is at least `log(g)`; for almost every start the upper limit of the rate of the smallest
+singular value is at most `-log(g)`. Not shown for `0 < lam < 1`: that the limits exist, a negative exponent for every
+invariant measure, a natural (SRB) measure, transitivity. At `lam = 1` the exponents exist for almost every start.
+"""
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import log, sin
+
+from numeric import PinballMap
+from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import interior_starts
+from symbolic.cycles.defocusing import expands, least_exponent
+from symbolic.motion.contraction import log_cosine_mean
+from symbolic.proofs.signs import Finding
+from symbolic.tables import cardioid
+from symbolic.tables.arclength import arc_length
+from symbolic.tables.symbols import theta
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import answer, by, equal, judges, zero
+from verification.paper.shared.contraction import TENTHS, at_most_zero
+from verification.paper.shared.samples import BALLS, BOUNCES, CELLS, EARLY, SEED, sampled, spectrum, uneven, visited
+from verification.proofs.slap_map.chaotic_exponent import ChaoticProof, slap_exponent
+
+FIFTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
+LONG = 12_000  # bounces: 20 to a cell, if every cell is visited
+DUE = 15  # visits of one orbit to a cell, below which it may miss it by chance
+Array = NDArray[np.float64]
+
+
+@cache
+def slap_proof() -> ChaoticProof:
+    """The natural measure at `lam = 0` and its exponent, proved."""
+    return slap_exponent()
+
+
+@judges("cardioid.slap_ergodic")
+def slap_ergodic(claim: Claim) -> Judgement:
+    """One invariant measure has a density: it is ergodic, and natural."""
+    proof = slap_proof()
+    missing = [name for name, holds in proof.checks.items() if holds is not True]
+    return Judgement(
+        by(
+            "the transfer operator of the slap map has exactly one invariant density on the boundary; so its measure "
+            "of an invariant set is 0 or 1, and the time averages of almost every start are its means",
+            answer(proof.certified, f"not proved: {', '.join(missing)}" if missing else ", ".join(proof.checks)),
+        ),
+        "ergodic: one invariant measure with a density, and almost every start follows it, with the exponent "
+        f"{proof.value.str(15, radius=False)}; mixing is not shown",
+    )
+
+
+@cache
+def coverage(table: str) -> Array:
+    """Visits to cells at every fifth of a contraction, 16 orbits each."""
+    return visited(table, FIFTHS, 16, LONG)
+
+
+@judges("cardioid.attractor_grows", "cuspless.attractor_fills")
+def grows(claim: Claim) -> Judgement:
+    """The share of cells visited, against the contraction."""
+    counts = coverage(claim.id.partition(".")[0])
+    shares = [float(np.mean(c.sum(axis=0) > 0)) for c in counts]
+    rough = uneven(counts[-1])
+    listed = ", ".join(f"{x:.0%} at {value:g}" for x, value in zip(shares, FIFTHS, strict=True))
+    said = (
+        f"16 orbits of {LONG} bounces visit this share of {CELLS}x{CELLS} cells of (s, sin phi): {listed}; at lam = 1 "
+        f"the cells' shares vary by {rough:.1%} beyond counting; |sin phi| <= sin(lam*pi/2) bounds the attractor"
+    )
+    good = bool(np.all(np.diff(shares) > 0)) and shares[-1] == 1 and rough < 0.05
+    return sampled("it grows at each step sampled; uniform at lam = 1, the map's own measure", said, good)
+
+
+@judges("cardioid.transitive")
+def transitive(claim: Claim) -> Judgement:
+    """Single orbits visit the same cells, equally often."""
+    worst = 1.0
+    for counts in coverage("cardioid"):
+        often = counts.sum(axis=0) > len(counts) * DUE
+        worst = min(worst, float(np.mean(counts[:, often] > 0)))
+    proof = slap_proof()
+    said = (
+        f"16 orbits each at lam = 0.2, ..., 1 together visit at least {worst:.2%} of the pairs of an orbit and a cell "
+        f"where {DUE} visits are due; at lam = 0 it is {'' if proof.certified else 'not '}proved that almost every "
+        "start has one distribution; not of any orbit: unstable cycles lie on the attractor"
+    )
+    derived = "almost every start, not any: proved at lam = 0, sampled for lam > 0"
+    return sampled(derived, said, worst > 0.999 and proof.certified)
+
+
+@cache
+def approaches(contraction: str) -> Array:
+    """The smallest distance to the cusp after so many bounces, one column for each of 256 balls."""
+    map = PinballMap("cardioid", lam=contraction)
+    start = interior_starts(map, 256, SEED)
+    growth = Growth(map, start.component, start.theta, start.phi if map.law != "slap" else 0 * start.phi)
+    growth.skip(EARLY)
+    orbit = map.orbit(growth.theta, growth.phi, 4096)
+    return np.asarray(np.minimum.accumulate(np.hypot(orbit.x, orbit.y), axis=0))
+
+
+def nearing() -> str:
+    """How the smallest distance to the cusp falls with the number of bounces, in words.
+
+    At `lam = 0` a landing at the distance `d` has come from `s` of the order `d**(3/2)`, so `d` falls like `n**(-2/3)`.
+    """
+    told, powers = [], []
+    for contraction in ("0", "3/10", "8/10"):
+        first, last = np.median(approaches(contraction)[[64, 4096]], axis=1)
+        powers.append(f"{np.log(last / first) / np.log(64):.2f}")
+        told.append(f"{first:.1e} after 64 bounces and {last:.1e} after 4096 at lam = {contraction}")
+    return (
+        f"sampled, the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to "
+        f"the powers {', '.join(powers)} (-2/3 follows at lam = 0, -1 for the elastic measure)"
+    )
+
+
+NOT_SHOWN = (
+    "not shown for 0 < lam < 1: that the limits exist, nu_- < 0 for every invariant measure, a natural (SRB) measure, "
+    "transitivity"
+)
+
+
+def stretching() -> Finding:
+    """Every orbit off the cusp stretches exponentially, by a cone of beams that each bounce maps into itself."""
+    return by(
+        "beams that focus before D = cos(phi)/|K| form a cone that every bounce maps into itself at any lam, since "
+        "t*(t - D0 - d1) = (4/3)*sin(delta)^4 >= 0 on every chord; their width in units of D grows by (t - D0)/d1 >= 1 "
+        "and by g = 1 + tan((1 - lam)*pi/8)^2/2 at least from the second bounce on, when delta >= (1 - lam)*pi/4; so "
+        "|D(T^n) (1, 0)| >= sin((1 - lam)*pi/4)^4/4*g^(n - 2) for n >= 2, on every orbit off the cusp",
+        expands(),
+    )
+
+
+def elastic() -> Finding:
+    """At `lam = 1` the exponents exist and are not 0, for almost every start."""
+    return by(
+        "at lam = 1 the gain exceeds 1 on every chord, so its mean logarithm is positive for almost every start "
+        "(Birkhoff); log(cos(phi)) and log|K| have finite means in the measure that the map keeps, so the exponents "
+        "exist for almost every start (Oseledets), and their sum, the mean of log(cos(phi0)/cos(phi1)), is 0",
+        expands(),
+        answer(log_cosine_mean().is_finite, "the mean of log(cos) is log(2) - 1"),
+        equal(arc_length(cardioid.components[0]), 4 * sin(theta / 2), {}),
+        zero("", log_cosine_mean() - log(2) + 1),
+    )
+
+
+def both_signs() -> Finding:
+    """The largest singular value grows on every orbit, and the smallest falls for almost every start."""
+    return by(
+        "the smallest singular value is |det| over the largest, and log|det D(T^n)|/n has an upper limit <= 0 for "
+        "almost every start",
+        stretching(),
+        at_most_zero(),
+        elastic(),
+    )
+
+
+def measured() -> str:
+    """The sampled range of both exponents, for comparison."""
+    (low, high), (least, most) = ranges()
+    return f"sampled at lam = 0.1, ..., 1: nu_+ from {low:.3f} to {high:.3f}, nu_- from {least:.2f} to {most:.3f}"
+
+
+def ranges() -> tuple[tuple[float, float], tuple[float, float]]:
+    """The least and the largest `nu_plus` and `nu_minus` of single orbits at `lam = 0.1, ..., 1`."""
+    found = spectrum("cardioid", TENTHS)
+    plus, minus = found.plus[1:], found.minus[1:]
+    return (float(plus.min()), float(plus.max())), (float(minus.min()), float(minus.max()))
+
+
+def settling() -> tuple[float, str]:
+    """By what factor the spread of `nu_plus` over single orbits falls when they are four times as long, and words."""
+    short, long = (spectrum("cardioid", TENTHS, BALLS, n).plus[1:] for n in (BOUNCES // 4, BOUNCES))
+    ratio = float(np.max(np.std(long, axis=1) / np.std(short, axis=1)))
+    return ratio, (
+        f"sampled at lam = 0.1, ..., 1, the spread of nu_+ over {BALLS} orbits falls by a factor of {1 / ratio:.1f} or "
+        f"more from {BOUNCES // 4} to {BOUNCES} bounces (2 is due if the limits exist and are the same)"
+    )
+
+
+@judges("cardioid.lyapunov_exist")
+def existence(claim: Claim) -> Judgement:
+    """Proved at `lam = 1` alone; sampled elsewhere."""
+    ratio, said = settling()
+    return sampled(
+        "they exist for almost every start at lam = 1; for 0 < lam < 1 that the limits exist is not shown",
+        f"proved at lam = 1 (Oseledets); {said}",
+        ratio < 0.8 and bool(elastic()),
+    )
+
+
+@judges("cardioid.lyapunov_signs")
+def signs(claim: Claim) -> Judgement:
+    """Signs of the lower limit of one rate and the upper limit of the other, whether or not the limits exist."""
+    return Judgement(
+        both_signs(),
+        f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "
+        f"{least_exponent()} on every orbit off the cusp, and that of the smallest an upper limit of at most minus "
+        f"that for almost every start; at lam = 1 nu_+ = -nu_- > 0 for almost every start; {NOT_SHOWN}; {measured()}",
+    )
+
+
+@judges("cardioid.exponents_bounded_away")
+def bounded_away(claim: Claim) -> Judgement:
+    """At each `lam < 1` by a bound for all orbits, which tends to 0; one bound for all `lam` is sampled."""
+    (least, _), (_, most) = ranges()
+    return sampled(
+        f"proved at each lam < 1: {least_exponent()} bounds all orbits; it tends to 0 as lam tends to 1, so neither "
+        "one bound for all lam nor one for all orbits at lam = 1 is shown",
+        f"proved at each lam < 1, with a bound that tends to 0 as lam tends to 1; {measured()}",
+        bool(both_signs()) and least > 0.2 and most < -0.2,
+    )
+
+
+@judges("cardioid.nonuniformly_hyperbolic")
+def nonuniformly_hyperbolic(claim: Claim) -> Judgement:
+    """The rates keep off 0; that they converge is proved at `lam = 1` alone."""
+    ratio, said = settling()
+    return sampled(
+        "for almost every start no rate of growth has the limit 0: one has a lower limit above 0, the other an upper "
+        f"limit below 0; {NOT_SHOWN}",
+        f"proved for almost every start: the rates of both singular values keep off 0, from above and from below; at "
+        f"lam = 1 the limits exist; {said}",
+        bool(both_signs()) and ratio < 0.8,
+    )
+
+
+@judges("cardioid.chaotic_attractor")
+def chaotic(claim: Claim) -> Judgement:
+    """No cycle attracts and every orbit stretches; one transitive attractor is proved at `lam = 0` alone."""
+    (least, _), _ = ranges()
+    proof = slap_proof()
+    natural = "at lam = 0 one natural measure, whose exponent is proved" if proof.certified else "nothing at lam = 0"
+    return sampled(
+        f"every orbit off the cusp stretches at a rate of at least {least_exponent()}: no cycle attracts, and none "
+        f"converges to the cusp; {natural}; {NOT_SHOWN}",
+        f"proved for lam < 1: every orbit off the cusp stretches exponentially, so no cycle attracts; proved: "
+        f"{natural}; that there is one attractor with a natural measure for lam > 0 is sampled: every orbit at "
+        f"lam = 0.1, ..., 1 has nu_+ >= {least:.3f}",
+        bool(stretching()) and proof.certified and least > 0.2,
+    )
+
+
+@judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
+def near_cusp(claim: Claim) -> Judgement:
+    """A curve that no point leaves into the cusp would grow beyond the length of the boundary."""
+    return Judgement(
+        by(
+            "a curve along the cone is monotone in s, so it measures at most 3*pi in |K|*ds; it grows by g at each "
+            "bounce but the first until one of its points hits the cusp, whose neighbours on one side land arbitrarily "
+            "near it. So the starts that come as near to the cusp as wanted, as late as wanted, are open and dense "
+            "(lam < 1) among those that miss it, and no compact set off the cusp attracts an open set",
+            stretching(),
+        ),
+        "for a dense set of starts (a countable intersection of open dense ones) the orbit comes arbitrarily near the "
+        "cusp again and again, so no compact set off the cusp holds the attractor; that almost every start does is not "
+        f"shown; {nearing()}",
+    )

@@ -1,0 +1,1 @@
+"""Claims as printed, and what a judge may say of them."""

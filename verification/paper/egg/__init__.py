@@ -1,0 +1,1 @@
+"""Judges of the three-pointed egg. Paper: section 6."""

@@ -1,0 +1,244 @@
+"""Claims on how the egg's period-4 orbits lose stability, and on where in its parameters. Paper: sections 6.5, 6.6."""
+
+from functools import cache
+
+import numpy as np
+from flint import fmpq
+from sympy import Integer, Rational
+
+from numeric.sweeps.parameter_space import parameter_space
+from numeric.sweeps.run import run
+from symbolic.cycles.polygons import saddle_node
+from symbolic.cycles.thresholds import tilt
+from symbolic.proofs.signs import Finding, Outcome, positive
+from symbolic.tables import egg as table_of
+from symbolic.tables.symbols import alpha
+from verification.cycles.shooting.attracting import attractor
+from verification.named.branches import cascade
+from verification.paper.cardioid.splitting import bounced, ends_of_period
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import by, counterexample, judges, shown
+from verification.paper.egg.egg import SHAPES
+from verification.paper.egg.parameter_space import chaos_at
+from verification.paper.shared.attractors import STARTS, egg, proved_at, unsettled
+from verification.paper.shared.located import certified, located
+from verification.paper.shared.samples import sampled
+from verification.proofs.periodic.over_interval import Stability, everywhere
+
+SHAPE = Rational(2, 25)
+SMALL = ("0", "0.05", "0.1", "0.2", "0.28")  # contractions where period 4 is alone
+BETWEEN = 0.33, (0.289, 0.371)  # inside the life of the period 4 without a mirror
+OTHERS = (Rational(3, 40), Rational(9, 100))  # shapes where the cascade at 0.08 should be typical
+TONGUE = ("0.02", "0.05", "0.07", "0.08", "0.09", "0.1")
+LAMS = np.round(np.arange(0.05, 0.96, 0.05), 3)
+STOPS = (0.03, 0.01, 1e-12)  # tolerances of Newton's method
+STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # shapes side by side, and starts
+
+
+def answer(holds: bool | None, reason: str) -> Finding:
+    """A three-valued proof as a finding; a proof that fails refutes nothing."""
+    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+
+
+@cache
+def chaotic_lams() -> dict[str, list[float]]:
+    """The contractions of a coarse grid at which a quarter of 20 random balls or more are chaotic, for each shape."""
+    shapes = np.array([float(shape) for shape in TONGUE])
+    found = run(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), workers=1)
+    rows = zip(TONGUE, found.chaotic.values, strict=True)
+    return {shape: [float(lam) for lam, n in zip(LAMS, row, strict=True) if n >= 5] for shape, row in rows}
+
+
+def listed() -> str:
+    """The rows of that grid in words."""
+    rows = [(shape, lams) for shape, lams in chaotic_lams().items()]
+    return "; ".join(f"{shape}: {f'{min(r):g} to {max(r):g} ({len(r)})' if r else 'none'}" for shape, r in rows)
+
+
+@judges("egg.alpha_destabilises")
+def destabilises(claim: Claim) -> Judgement:
+    """The diameters' stability number falls with alpha; that chaos spreads is sampled."""
+    falls = positive(tilt().diff(alpha), {alpha: SHAPES})
+    counts = [len(row) for row in chaotic_lams().values()]
+    said = (
+        f"proved: on the diameters 1 - P = (18*alpha/(1 - alpha^2))^2 grows with alpha at every lam, so that one "
+        f"multiplier falls through -1 once and for all; sampled: contractions out of {LAMS.size} with chaos, by "
+        f"alpha: {listed()}. The triangles at the flat points attract at every alpha"
+    )
+    spreads = counts[:3] == [0, 0, 0] and 0 < counts[3] < counts[4]
+    return sampled(
+        "the diameters lose stability and chaos spreads; the period-3 orbits go on attracting",
+        said,
+        bool(falls) and spreads,
+    )
+
+
+@judges("egg.tongue")
+def tongue(claim: Claim) -> Judgement:
+    """The range of contractions with chaos, shape by shape."""
+    rows = chaotic_lams()
+    ends = [(min(rows[x]), max(rows[x])) for x in ("0.08", "0.09", "0.1") if rows[x]]
+    starts_lower = [low for low, _ in ends]
+    good = len(ends) == 3 and starts_lower == sorted(starts_lower, reverse=True) and not rows["0.07"]
+    said = (
+        f"contractions out of {LAMS.size} in steps of 0.05 at which a quarter of 20 random balls is chaotic: {listed()}"
+    )
+    return sampled("a region that opens above alpha = 0.07 and moves to smaller lam as alpha grows", said, good)
+
+
+@judges("egg.small_basins")
+def small_basins(claim: Claim) -> Judgement:
+    """The chance that 100 independent starts all miss a basin."""
+    missed = Rational(999, 1000) ** 100
+    return Judgement(
+        by(
+            "100 random starts miss a basin of the share p with the probability (1 - p)^100, above 0.9 for p <= 0.001",
+            shown("0.999^100 > 0.9", bool(missed > Rational(9, 10))),
+        ),
+        "(1 - p)^100 is 0.90 for p = 0.001, 0.37 for p = 0.01 and 0.05 for p = 0.03",
+    )
+
+
+@judges("egg.representative")
+def representative(claim: Claim) -> Judgement:
+    """The same events in the same order at two other shapes; the fold of the triangles comes at another place."""
+    said, good = [], True
+    for shape in (OTHERS[0], SHAPE, OTHERS[1]):
+        events = [located("symmetry-breaking", alpha=shape)]
+        events += [located("doubling", alpha=shape, n=Integer(n)) for n in (3, 4)]
+        values = [float(event.ball.mid()) for event in events]
+        good = good and all(event.certified for event in events) and values == sorted(values)
+        fold = float(saddle_node().subs(alpha, shape))
+        told = ", ".join(f"{value:.5f}" for value in values)
+        said.append(f"alpha = {float(shape):g}: {told}, and period 3 from {fold:.4f} on")
+    return sampled(
+        "the same order for 0.0717 < alpha < 0.1; above 0.0807 chaos comes before the triangles, not after",
+        f"loss of symmetry and doublings of periods 4 and 8, certified: {'; '.join(said)}; other shapes of the "
+        "region and later events are not computed here",
+        good,
+    )
+
+
+@judges("egg.only_period4")
+def only_period4(claim: Claim) -> Judgement:
+    """Every random start at a few small contractions reaches a certified cycle of period 4."""
+    alone = all([a.period for a in egg(x)] == [4, 4, 4] and unsettled(egg(x)) == 0 for x in SMALL)
+    proofs = [proved_at(x, 4) for x in SMALL]
+    return sampled(
+        "three attracting orbits of period 4, one at each diameter, up to lam = 0.2878",
+        f"at lam = {', '.join(SMALL)} each of {STARTS} random starts reaches one of three cycles of period 4, which "
+        f"are proved to attract; a share below {3 / STARTS:.1%} of others is not excluded",
+        alone and all(proofs),
+    )
+
+
+@cache
+def attracting_without_mirror() -> Finding:
+    """The attracting cycles of period 4 between the loss of symmetry and the doubling."""
+    table, (lam, ends) = table_of(3).at(alpha=SHAPE), BETWEEN
+    start = attractor(table, lam, (0.05, 3.1))
+    away = abs(np.remainder(start[0] + start[2] + np.pi, 2 * np.pi) - np.pi) > 0.01
+    found = all(everywhere(table, (0,) * 4, start, (lam, end), Stability.ATTRACTING).proved for end in ends)
+    low, high = ends
+    return answer(bool(found and away), f"a period 4 without the mirror attracts for every {low} <= lam <= {high}")
+
+
+@judges("egg.period4_doubles")
+def period4_doubles(claim: Claim) -> Judgement:
+    """Two events, not one: a loss of symmetry, by a pitchfork, and a doubling of what it bears."""
+    breaks, doubles = located("symmetry-breaking", alpha=SHAPE), located("doubling", alpha=SHAPE, n=Integer(3))
+    stable = breaks.proof.supercritical if breaks.proof else None  # type: ignore[union-attr]  # a cycle's proof
+    flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]
+    before = answer(bool(breaks.ball < fmpq(29, 100) and doubles.ball > fmpq(37, 100)), "0.2878 comes before 0.3712")
+    pitchfork = answer(stable, "there two attracting cycles of period 4, mirror images, are born from each")
+    return Judgement(
+        counterexample(
+            "the period-4 orbits of small lam are mirror-symmetric and become unstable at 0.287785..., in a pitchfork "
+            "and with a multiplier of half the orbit at -1, of the whole one at 1: no period doubling",
+            certified("symmetry-breaking", alpha=SHAPE),
+            pitchfork,
+        ),
+        "3 symmetric orbits of period 4 up to lam = 0.287785..., 6 without the mirror from there to 0.371235..., where "
+        "these double: 6 attracting orbits of period 8",
+        by(
+            "a pitchfork, then a supercritical doubling",
+            certified("symmetry-breaking", alpha=SHAPE),
+            pitchfork,
+            attracting_without_mirror(),
+            certified("doubling", alpha=SHAPE, n=Integer(3)),
+            answer(flips, "the flip bears attracting orbits of period 8"),
+            before,
+        ),
+        "The period-4 orbits of small lambda lose their mirror symmetry first, at lambda = 0.287785, in a pitchfork "
+        "that bears six stable period-4 orbits; it is these that double, at 0.371235.",
+    )
+
+
+@judges("egg.negative_exponents")
+def negative_exponents(claim: Claim) -> Judgement:
+    """An attracting cycle at a bifurcation has a multiplier of modulus 1, and the exponent 0."""
+    doubles = located("doubling", alpha=SHAPE, n=Integer(3))
+    flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]  # a cycle's proof
+    return Judgement(
+        counterexample(
+            "at lam = lambda_3 itself the cycle of period 4 has the multiplier -1, so the exponent log|-1|/4 = 0, and "
+            "still attracts, since the flip is supercritical",
+            certified("doubling", alpha=SHAPE, n=Integer(3)),
+            answer(flips, "supercritical"),
+        ),
+        "negative on every attracting cycle with both multipliers inside the unit circle; 0 at the bifurcations",
+        by(
+            "the exponent is log|mu|/n with the largest multiplier, negative when both lie inside the circle",
+            attracting_without_mirror(),
+        ),
+        "For stable periodic orbits; unstable ones have a positive exponent, and at the bifurcation values it is 0.",
+    )
+
+
+@judges("egg.tolerance_sensitive")
+def tolerance_sensitive(claim: Claim) -> Judgement:
+    """Where period 4 is seen to end, when the flights are solved more and less exactly."""
+    ends = seen_ends()
+    true = float(located("doubling", alpha=SHAPE, n=Integer(3)).ball.mid())
+    said = ", ".join(f"{f'{end:.5f}' if end else 'above 0.3725'} with {stop:g}" for stop, end in ends.items())
+    exact, loose = ends[STOPS[-1]], ends[STOPS[0]]
+    good = exact is not None and loose is not None and abs(exact - true) < 3e-4 < abs(loose - exact) < 2e-3
+    return sampled(
+        "lambda_3 shifts by less than 1e-3 up to a tolerance of 0.03, enough to read 0.372 for 0.3712",
+        f"period 4 is seen to end (2000 bounces at each contraction, steps of 1e-4, back to 1e-4) at {said} as the "
+        f"last step of Newton's method; certified {true:.6f}. From 0.01 down the tolerance changes nothing",
+        good,
+    )
+
+
+@cache
+def seen_ends() -> dict[float, float | None]:
+    """For each tolerance the first contraction of a grid at which an orbit is not back after four bounces, or None."""
+    theta, phi = np.array([0.05]), np.array([0.0])
+    for _ in range(1000):
+        theta, phi = bounced(theta, phi, np.array([0.36]), 0.08, 1e-12)
+    start, lams = (float(theta[0]), float(phi[0])), np.arange(0.3705, 0.3725, 1e-4)
+    found = {stop: ends_of_period(4, lams, 0.08, stop, start, 2000, 1e-4) for stop in STOPS}
+    return {stop: float(ends[0]) if ends.size else None for stop, ends in found.items()}
+
+
+@judges("egg.isolated_resolution")
+def isolated_resolution(claim: Claim) -> Judgement:
+    """A strip that one shape of a grid meets goes on at the shapes beside it."""
+    said, good = [], True
+    for shape, lam, period, step in STRIPS:
+        found = cascade(Rational(shape), Rational(lam), period, step)
+        good = good and found.proved
+        beyond = f"{found.limit + 1e-4:.6f}"
+        _, _, share, nu, error = chaos_at(shape, beyond)
+        good = good and share > 0
+        said.append(
+            f"at alpha = {shape} the doublings of period {period} are certified and accumulate near {found.limit:.6f}; "
+            f"at {beyond} {share:.1%} of 600 balls have nu_+ = {nu:.4f} +- {error:.0e}"
+        )
+    return sampled(
+        "narrow strips across the plane of alpha and lam, of which a coarse grid meets a point here and there; at one "
+        "alpha they are apart from the tongue",
+        "; ".join(said),
+        good,
+    )

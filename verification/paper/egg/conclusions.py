@@ -1,0 +1,219 @@
+"""Claims of the paper's last section, in which it sums up. Paper: section 7.
+
+What is proved elsewhere is used here; a summary that rests on one sampled part is supported and no more.
+"""
+
+from functools import cache
+
+import numpy as np
+from flint import arb
+from sympy import Rational, S
+
+from numeric import PinballMap
+from numeric.dynamics.attractors import Attractor
+from numeric.dynamics.splitting import jump, slopes
+from symbolic import tables
+from symbolic.cycles.defocusing import expands
+from symbolic.cycles.thresholds import even_stability_numbers
+from symbolic.proofs.signs import Finding, Outcome
+from symbolic.tables.symbols import alpha, lam
+from verification.named.attractors import certificate
+from verification.named.branches import Cascade, cascade
+from verification.named.torus import double_one, expanding_cycle
+from verification.paper.cardioid.border import chaos, corner
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import by, counterexample, judges, zero
+from verification.paper.ellipse.ellipse import LIMIT, lyapunov
+from verification.paper.shared.attractors import JOIN, SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
+from verification.paper.shared.samples import sampled
+from verification.proofs.manifolds.known import CONTACTS
+from verification.proofs.periodic.curve import doubling_curve
+from verification.proofs.periodic.interval_newton import Status
+
+MIXED = ("0.1", "0.43", "0.5", "0.6", "0.7", "0.83")  # contractions of the egg at alpha = 0.08
+DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # where orbits of these periods attract
+WEAK, KINKED = "0.99", "0.5"
+NEAR_ELASTIC = ("0.97", "0.99")
+EVEN, ODD = (4, 6), (5, 7)
+
+
+def answer(holds: bool | None, reason: str) -> Finding:
+    """A three-valued proof as a finding; a proof that fails refutes nothing."""
+    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+
+
+@judges("map.mixture")
+def mixture(claim: Claim) -> Judgement:
+    """The two "only" are proved; what is generic is sampled on the egg and the cuspless cardioid."""
+    periodic = by(LIMIT, *lyapunov())
+    kinds = {x: (bool(chaotic(egg(x))), bool(cycles(egg(x)))) for x in MIXED}
+    cuspless = found("cuspless", "0.09")
+    both = [x for x, (wild, calm) in kinds.items() if wild and calm]
+    said = (
+        "proved: in the ellipse with a > 1 every orbit tends to one of two periodic ones, and in the cardioid every "
+        "orbit off the cusp has a positive exponent for lam < 1, so that no cycle attracts; sampled: both kinds "
+        f"coexist in the egg at alpha = {SHAPE}, lam = {', '.join(both)} out of {', '.join(MIXED)}, and in the "
+        "cuspless cardioid at 0.09"
+    )
+    mixed = len(both) >= 3 and bool(chaotic(cuspless)) and bool(cycles(cuspless))
+    return sampled(
+        "only periodic in ellipses, none periodic in the cardioid; a mixture over ranges of lam in the other two",
+        said,
+        bool(periodic) and bool(expands()) and mixed,
+    )
+
+
+@judges("map.sudden_creation")
+def sudden_creation(claim: Claim) -> Judgement:
+    """The chaotic attractor that is born with the orbit through both joins."""
+    return Judgement(
+        by(
+            "an orbit joins the two jumps of the curvature at lam = lambda*, and a chaotic attractor is next to it "
+            "from there on",
+            corner("exists", "the orbit through both joins"),
+            chaos(),
+        ),
+        "a border collision at lambda* = 0.0712172...; a chaotic attractor next to the orbit from there to 0.1",
+    )
+
+
+@judges("map.kink_structure")
+def kink_structure(claim: Claim) -> Judgement:
+    """The slope of the attractor jumps at the joins by `lam` times the jump of the curvature, `3*lam/2`."""
+    map = PinballMap("cuspless", lam=KINKED)
+    some = slopes(map, STARTS // 2, 1)
+    jumps = [abs(jump(*some, place)) for place in (-JOIN, JOIN, 0.0)]
+    awaited = 1.5 * float(KINKED)
+    return sampled(
+        "kinks at s = +-sqrt(3)/4, where dphi/ds jumps by lam times the jump of the curvature; none at s = 0",
+        f"at lam = {KINKED} the slope of the attractor jumps by {jumps[0]:.3f} and {jumps[1]:.3f} at the two joins, "
+        f"where 3*lam/2 = {awaited:.3f} follows from the derivative matrix, and by {jumps[2]:.3f} at s = 0",
+        max(abs(x - awaited) for x in jumps[:2]) < 0.1 * awaited and jumps[2] < 0.1 * awaited,
+    )
+
+
+@judges("map.cascades_of_different_periods")
+def different_periods(claim: Claim) -> Judgement:
+    """The first doublings of orbits of three periods."""
+    rungs = doublings()
+    told = "; ".join(f"{', '.join(map(str, c.periods))} at {', '.join(f'{x:.6f}' for x in c.lams)}" for c in rungs)
+    return sampled(
+        "cascades from periods 4, 12 and 9 at alpha = 0.08: two or three doublings of each are proved, supercritical",
+        f"doublings of the periods {told}, each certified; that infinitely many follow is extrapolated",
+        all(c.proved for c in rungs),
+    )
+
+
+@cache
+def doublings() -> list[Cascade]:
+    """The first doublings from each of the starts."""
+    return [cascade(Rational(SHAPE), Rational(at), period, step, 2) for at, period, step in DIFFERENT]
+
+
+@judges("map.collapse_in_crises")
+def collapse(claim: Claim) -> Judgement:
+    """Two ways to end: in the basin of another attractor, or by growing together with others."""
+    ends = [name for name in CONTACTS if any(kind in name for kind in ("family-end", "window-end", "boundary"))]
+    before, after = egg("0.65"), egg("0.67")
+    gone = bool(chaotic(before)) and not chaotic(after) and unsettled(after) < 0.1 * STARTS
+    return sampled(
+        "at the boundary crisis, 0.6621, the attractor meets the edge of the basins of period 3; the smaller ones end "
+        "likewise on the stable manifold of the saddle of their fold",
+        f"chaotic at lam = 0.65, none at 0.67 among {STARTS} random starts; `pinball locate` proves the tangency of "
+        f"manifolds at {len(ends)} such ends and estimates that they are the ends",
+        gone,
+    )
+
+
+@judges("map.uniform_contraction")
+def uniform_contraction(claim: Claim) -> Judgement:
+    """Two facts that speak against the reason given: areas may grow, and multipliers be complex of modulus 1."""
+    grows = expanding_cycle()
+    resonant = double_one().status is Status.UNIQUE
+    return Judgement(
+        Finding(
+            Outcome.UNKNOWN,
+            "a uniform contraction of angles does not by itself exclude invariant circles: "
+            + (
+                "a cycle of the egg that enlarges areas is proved"
+                if grows.certified and grows.determinant > 1
+                else "no expanding cycle is proved"
+            )
+            + ("; and so is a double multiplier 1 of a cycle of period 17 at lam = 0.96379" if resonant else ""),
+        ),
+        "uniform contraction does not exclude them: a cycle with det = 1.372 at lam = 0.95, and at alpha = 0.06873, "
+        "lam = 0.96379 a double multiplier 1, next to which the multipliers are complex of modulus 1",
+    )
+
+
+@judges("map.weak_shows_elliptic")
+def weak_shows_elliptic(claim: Claim) -> Judgement:
+    """Each cycle that attracts at weak dissipation lies next to an elastic one that is elliptic."""
+    near = [cycle for cycle in cycles(egg(WEAK)) if cycle.share and cycle.share.count]
+    families = {cycle.family: cycle for cycle in near}.values()
+    turned = [elastic(cycle) for cycle in families]
+    periods = ", ".join(str(cycle.period) for cycle in families)
+    return Judgement(
+        by(
+            f"at alpha = {SHAPE} random starts at lam = {WEAK} reach cycles of period {periods}, and within 0.2 of "
+            "each lies a cycle at lam = 1, proved to exist, with |trace| < 2",
+            answer(bool(turned) and all(turned), f"{len(turned)} elliptic cycles"),
+            proved_at(WEAK, 3),
+        ),
+        "weak dissipation shows those elliptic orbits whose islands are wide enough for a random start",
+    )
+
+
+def elastic(cycle: Attractor) -> bool:
+    """Is there an elliptic cycle of the elastic map near an attracting one?"""
+    proof = certificate(tables.egg(3).at(alpha=SHAPE), S.One, cycle.points, 20)
+    discrete = all(proof.checks[item] is True for item in ("exists", "unique", "admissible", "minimal_period"))
+    apart = max(abs(near(theta, x)) for theta, x in zip(proof.theta, cycle.points.theta, strict=True))
+    return discrete and bool(abs(proof.trace) < 2) and apart < 0.2
+
+
+def near(theta: arb, x: float) -> float:
+    """The difference of two angles, modulo a turn."""
+    return float(np.remainder(float(theta.mid()) - x + np.pi, 2 * np.pi) - np.pi)
+
+
+@judges("map.weak_chaos")
+def weak_chaos(claim: Claim) -> Judgement:
+    """The cardioid for every `lam < 1` by its cone, the cuspless cardioid by random starts."""
+    each = [found("cuspless", x) for x in NEAR_ELASTIC]
+    alone = all(len(some) == len(chaotic(some)) == 1 and unsettled(some) == 0 for some in each)
+    return sampled(
+        "in the cardioid no cycle attracts at any lam < 1, proved; in the cuspless cardioid near 1 sampled",
+        "every orbit of the cardioid off the cusp has a positive exponent for lam < 1, proved by a cone; in the "
+        f"cuspless cardioid at lam = {', '.join(NEAR_ELASTIC)} each of {STARTS} starts reaches one chaotic set",
+        bool(expands()) and alone,
+    )
+
+
+@judges("map.other_K")
+def other_K(claim: Claim) -> Judgement:
+    """Even K cannot double; odd K doubles all along its own curve, supercritically."""
+    even = [even_stability_numbers(K) for K in EVEN]
+    squares = [
+        zero("", P - root**2)
+        for (vertex, flat), K in zip(even, EVEN, strict=True)
+        for P, root in (
+            (vertex, ((2 * K**2 + 1) * alpha + 1) / (1 + alpha)),
+            (flat, ((2 * K**2 + 1) * alpha - 1) / (1 - alpha)),
+        )
+    ]
+    odd = [doubling_curve(K) for K in ODD]
+    return Judgement(
+        counterexample(
+            "K = 4 and 6: a vertex faces a vertex and a flat point a flat point, the stability number is a square, so "
+            "1 + trace + det = (1 + lam)^2*P + (1 - lam)^2 > 0 for lam < 1 and no diameter ever doubles its period: "
+            "the first event of the portrait for K = 3 is missing",
+            *squares,
+            at={lam: S.Half},
+        ),
+        "odd K: the diameters double on a curve alpha-tilde(K) of their own, supercritically for every lam < 1 (proved "
+        "for K = 5 and 7), and a tongue follows; even K: they never do, and no tongue was found",
+        answer(all(sign.supercritical for sign in odd), "K = 5 and 7: a supercritical doubling for every 0 <= lam < 1"),
+        "The answer: for odd K the portrait begins as for K = 3, for even K it does not. Section 'Other numbers of "
+        "points' of the page on bifurcations follows it further.",
+    )

@@ -1,0 +1,191 @@
+"""Claims on the egg's shape, its map, and the circle it starts from. Paper: sections 6, 6.1, 6.5.
+
+The ranges that the claims on the egg share.
+"""
+
+from sympy import (
+    Interval,
+    Matrix,
+    Rational,
+    S,
+    Symbol,
+    cos,
+    expand,
+    expand_trig,
+    pi,
+    simplify,
+    sin,
+)
+
+from symbolic.cycles.egg import COSINE, curvature_slope_polynomial, squared_speed_polynomial, turning_polynomial
+from symbolic.cycles.named import egg_diameter
+from symbolic.motion.circle import flight
+from symbolic.motion.convexity import convexity
+from symbolic.proofs.signs import Finding, positive
+from symbolic.tables import egg
+from symbolic.tables.symbols import alpha, lam, phi, theta
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import by, counterexample, equal, identity, judges, zero
+
+BOUNDARY = egg(3).components[0]
+
+
+@judges("egg.polar")
+def radius(claim: Claim) -> Judgement:
+    """The distance from the centre along the direction `theta`."""
+    x, y = BOUNDARY.point
+    return identity(claim, simplify(x * cos(theta) + y * sin(theta)))
+
+
+@judges("egg.circle")
+def circle(claim: Claim) -> Judgement:
+    """`rho = 1` at `alpha = 0`."""
+    x, y = (coordinate.subs(alpha, 0) for coordinate in BOUNDARY.point)
+    return Judgement(by("rho = 1", zero("", x**2 + y**2 - 1)), "x^2 + y^2 = 1")
+
+
+@judges("egg.symmetry")
+def symmetry(claim: Claim) -> Judgement:
+    """A third of a turn maps the boundary to itself."""
+    third = 2 * pi / 3
+    turn = Matrix([[cos(third), -sin(third)], [sin(third), cos(third)]])
+    moved = Matrix(BOUNDARY.point).subs(theta, theta + third)
+    gap = (moved - turn * Matrix(BOUNDARY.point)).applyfunc(lambda e: expand(expand_trig(e)))
+    return Judgement(by("z(theta + 2*pi/3) is z(theta) turned by 2*pi/3", zero("", *gap)), "3-fold")
+
+
+@judges("egg.nonconvex")
+def nonconvex(claim: Claim) -> Judgement:
+    """The turning at the flat points is `(1 - alpha)*(1 - 10*alpha)`."""
+    flat = turning_polynomial().subs(COSINE, -1)
+    return Judgement(
+        by(
+            "the boundary turns right at the flat points for 1/10 < alpha < 1; from alpha = 1 on it is no simple curve",
+            equal(flat, (1 - alpha) * (1 - 10 * alpha), {}),
+            positive(-flat, {alpha: Interval.open(Rational(1, 10), 1)}),
+        ),
+        "x'y'' - y'x'' = (1 - alpha)*(1 - 10*alpha) at theta = pi/3",
+    )
+
+
+@judges("egg.convex")
+def convex(claim: Claim) -> Judgement:
+    """Convex on the closed range, focusing without its end."""
+    flat_end = turning_polynomial().subs({COSINE: -1, alpha: Rational(1, 10)})
+    focusing = convexity(egg(3), {alpha: Interval.Ropen(0, Rational(1, 10))}, strictly=True)
+    return Judgement(
+        counterexample(
+            "at alpha = 1/10 the curvature of the flat points is 0, and a focusing component has none",
+            zero("", flat_end),
+            at={alpha: Rational(1, 10)},
+        ),
+        "convex for alpha in [0, 1/10], focusing for alpha in [0, 1/10)",
+        by("x'y'' - y'x'' > 0 below 1/10 and >= 0 at it", focusing, convexity(egg(3))),
+        "At alpha = 1/10 the table is still convex but no longer focusing: the curvature vanishes at three points.",
+    )
+
+
+def regular() -> Finding:
+    """The speed vanishes nowhere."""
+    return by("rho^2 + rho'^2 > 0", positive(squared_speed_polynomial(), {COSINE: FULL, alpha: SHAPES}))
+
+
+@judges("egg.analytic")
+def analytic(claim: Claim) -> Judgement:
+    """A trigonometric polynomial with non-vanishing velocity."""
+    return Judgement(regular(), "a regular analytic closed curve")
+
+
+@judges("egg.compact_domain")
+def compact_domain(claim: Claim) -> Judgement:
+    """A circle times a closed interval of angles."""
+    N = convexity(egg(3))
+    return Judgement(
+        by(
+            "no corner and no tangency on the way (the table is convex), so the domain is boundary x [-pi/2, pi/2]",
+            regular(),
+            N,
+        ),
+        "boundary x [-pi/2, pi/2]",
+    )
+
+
+@judges("egg.curvature_min_location", "egg.curvature_max_location")
+def extrema(claim: Claim) -> Judgement:
+    """`|kappa|` grows strictly with `cos(3*theta)`."""
+    slope = curvature_slope_polynomial()
+    return Judgement(
+        counterexample(
+            "at alpha = 0 the table is a circle and every point is extremal",
+            zero("", slope.subs(alpha, 0)),
+            at={alpha: S.Zero},
+        ),
+        "|kappa| grows strictly with cos(3*theta): least at pi/3, pi, -pi/3, largest at 0, 2*pi/3, "
+        "-2*pi/3, for alpha in (0, 1/10]",
+        by("d|kappa|/d cos(3*theta) > 0", positive(slope, {COSINE: FULL, alpha: ROUND})),
+        "At alpha = 0 every point is extremal; the statement needs alpha > 0.",
+    )
+
+
+@judges("egg.curvature_min")
+def flat_curvature(claim: Claim) -> Judgement:
+    """The curvature where the diameter arrives."""
+    return identity(claim, egg_diameter().frames[1].curvature)
+
+
+@judges("egg.curvature_max")
+def vertex_curvature(claim: Claim) -> Judgement:
+    """The curvature where the diameter starts."""
+    return identity(claim, egg_diameter().frames[0].curvature)
+
+
+@judges("egg.integrable_at_zero")
+def integrable(claim: Claim) -> Judgement:
+    """The elastic circle keeps `phi`."""
+    return Judgement(
+        by("at alpha = 0, lam = 1 the map keeps phi", zero("", flight()[1].subs(lam, 1) - phi)), "phi1 = phi"
+    )
+
+
+@judges("egg.slap_limit")
+def slap_limit(claim: Claim) -> Judgement:
+    """The circle's slap map, reached continuously because landings are transversal."""
+    return identity(claim, flight(theta, S.Zero)[0])
+
+
+@judges("egg.map_smooth")
+def map_smooth(claim: Claim) -> Judgement:
+    """The flight equation has slope `cos(eta1) > 0` in the landing point."""
+    return Judgement(
+        by(
+            "the flight equation is analytic with slope cos(eta1) != 0 for |phi0| < pi/2 in a convex "
+            "table: implicit function theorem",
+            regular(),
+            convexity(egg(3)),
+        ),
+        "analytic for |phi| < pi/2",
+    )
+
+
+@judges("egg.persistence")
+def persistence(claim: Claim) -> Judgement:
+    """No multiplier is 1."""
+    trace, det, mu = Symbol("trace"), Symbol("det"), Symbol("mu")
+    gap = (mu**2 - trace * mu + det).subs(mu, 1) - (1 - trace + det)
+    return Judgement(
+        by(
+            "attracting and hyperbolic cycles have det(D(T^n) - 1) = 1 - trace + det != 0: implicit function theorem",
+            zero("", gap),
+        ),
+        "persists while no multiplier is 1",
+    )
+
+
+SHAPES = Interval(0, Rational(1, 10))
+ROUND = Interval.Lopen(0, Rational(1, 10))  # without the circle
+FULL = Interval(-1, 1)  # of cos(3*theta)
+
+
+def at(numeral: str) -> Rational:
+    """A shape or a contraction as the exact number that its decimal shows."""
+    return Rational(numeral)

@@ -1,0 +1,315 @@
+"""Claims on the egg's slap map and period-2 orbits. Paper: sections 6.1 to 6.3."""
+
+from functools import cache
+
+from sympy import (
+    Expr,
+    Interval,
+    Rational,
+    S,
+    simplify,
+    sqrt,
+)
+
+from symbolic.cycles.cycle import is_double_normal, monodromy, trace_and_determinant
+from symbolic.cycles.double_normal import stability_number, trace_of
+from symbolic.cycles.named import c, egg_diameter, egg_parallel, parallel_shape
+from symbolic.cycles.thresholds import alpha_hat, alpha_tilde, complex_up_to, tilt
+from symbolic.motion.collision import slap_derivative
+from symbolic.proofs.signs import Finding, conjunction, nonnegative, positive
+from symbolic.tables.symbols import alpha, lam
+from verification.arithmetic.progress import telling
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import (
+    answer,
+    by,
+    counterexample,
+    digits,
+    equal,
+    identity,
+    judges,
+    on_range,
+    shown,
+    zero,
+)
+from verification.paper.egg.egg import ROUND, SHAPES, at
+from verification.proofs.slap_map.critical_points import OneZero, one_zero
+
+W2 = tilt() ** 2  # 1 - P on the diameters
+
+
+def P_at(shape: Expr) -> Expr:
+    """The stability number of the diameters at one shape."""
+    return stability_number(egg_diameter()).subs(alpha, shape)
+
+
+def diameter() -> tuple[Expr, Expr]:
+    """Trace and determinant on the diameters."""
+    return trace_and_determinant(egg_diameter())
+
+
+@judges("egg.elastic_period2_elliptic")
+def elliptic_diameters(claim: Claim) -> Judgement:
+    """`0 < P < 1`."""
+    numbers = [P_at(at(value)) for value in ("0.02", "0.05")]
+    return Judgement(
+        by("0 < P < 1 at both shapes", *(f for P in numbers for f in (positive(P, {}), positive(1 - P, {})))),
+        f"P = {numbers}",
+    )
+
+
+@judges("egg.elastic_period2_unstable")
+def unstable_diameters(claim: Claim) -> Judgement:
+    """`P < 0` at `lam = 1`."""
+    P = P_at(at("0.08"))
+    return Judgement(by("P < 0, so trace = 4*P - 2 < -2 at lam = 1", positive(-P, {})), f"P = {P}")
+
+
+def slap_slope(at_vertex: bool) -> Expr:
+    """`T0'` at an end of a diameter."""
+    cycle = egg_diameter()
+    start = cycle.frames[0 if at_vertex else 1]
+    return slap_derivative(K0=start.curvature, t=cycle.length(0), cos_eta1=S.One)
+
+
+@cache
+def crossings() -> OneZero:
+    """The certificate that `T0'` vanishes at most once between a flat point and a vertex."""
+    return one_zero(tick=telling("shapes and cosines"))
+
+
+@judges("egg.slap_critical_points")
+def critical_points(claim: Claim) -> Judgement:
+    """`T0'` is even about each flat point and positive at the vertices; its sign at the flat points decides."""
+    shape, birth = {alpha: at("0.08")}, sqrt(82) - 9
+    cover = crossings()
+    return Judgement(
+        counterexample(
+            "at alpha = 0.08 T0' < 0 at the three flat points and > 0 at the three vertices between them",
+            positive(-slap_slope(False).subs(shape), {}),
+            positive(slap_slope(True).subs(shape), {}),
+            at=shape,
+        ),
+        "none for alpha < sqrt(82) - 9 = 0.05538..., three at it (the flat points), six for every larger alpha up to "
+        "1/10, one on each side of each flat point",
+        by(
+            "between a flat point and a vertex T0' has one zero if it is negative at the flat points, none if positive",
+            answer(
+                cover.proved,
+                f"T0' vanishes at most once between them, growing, for every alpha in [0, 1/10] ({cover.boxes} boxes)",
+            ),
+            positive(slap_slope(True), {alpha: SHAPES}),
+            positive(-slap_slope(False).diff(alpha), {alpha: SHAPES}),
+            zero(
+                "at the flat points T0' falls with alpha and is 0 at sqrt(82) - 9", slap_slope(False).subs(alpha, birth)
+            ),
+        ),
+        "Six critical points arise, one on each side of each flat point; three only at the critical value itself.",
+    )
+
+
+@judges("egg.slap_fold")
+def slap_fold(claim: Claim) -> Judgement:
+    """A map that turns back takes values twice."""
+    shape = {alpha: at("0.08")}
+    return Judgement(
+        by(
+            "T0' changes sign, so T0 is not one to one near a critical point",
+            positive(-slap_slope(False).subs(shape), {}),
+            positive(slap_slope(True).subs(shape), {}),
+        ),
+        "T0 takes some values at several points for alpha > sqrt(82) - 9",
+    )
+
+
+@judges("egg.slap_critical_caption")
+def critical_caption(claim: Claim) -> Judgement:
+    """The same, at the caption's shape."""
+    return slap_fold(claim)
+
+
+@judges("egg.slap_period2_stable")
+def slap_stable(claim: Claim) -> Judgement:
+    """`-1 < P < 1`."""
+    P = P_at(at("0.05"))
+    return Judgement(by(f"(T0^2)' = P = {P}", positive(1 - P**2, {})), f"P = {P}")
+
+
+@judges("egg.slap_period2_unstable", "egg.horizontal_period2_unstable")
+def slap_unstable(claim: Claim) -> Judgement:
+    """`P < -1`."""
+    P = P_at(at("0.08"))
+    return Judgement(by(f"(T0^2)' = P = {P}", positive(-1 - P, {})), f"P = {P}")
+
+
+@judges("egg.other_period2")
+def other_period2(claim: Claim) -> Judgement:
+    """`alpha` grows from 0 to 1/10 along the family, and `P > 1` on it."""
+    family = egg_parallel()
+    P = stability_number(family)
+    left = {c: Interval.Ropen(Rational(-2, 9), 0)}
+    shape = parallel_shape()
+    return Judgement(
+        by(
+            "alpha falls strictly with c = cos(theta) from above 1/10 at c = -2/9 to 0 at c = 0, and P > 1 in between",
+            shown("normal at both ends", is_double_normal(family)),
+            positive(-shape.diff(c), left),
+            positive(shape.subs(c, Rational(-2, 9)) - Rational(1, 10), {}),
+            zero("", shape.subs(c, 0)),
+            positive(P - 1, left),
+        ),
+        "three orbits for every alpha in (0, 1/10], with P > 1: unstable for every lam",
+    )
+
+
+@judges("egg.period2_orbits")
+def diameters_exist(claim: Claim) -> Judgement:
+    """Normal at both ends."""
+    return Judgement(
+        shown(
+            "the diameters are normal to the boundary at both ends, for every alpha", is_double_normal(egg_diameter())
+        ),
+        "phi = 0",
+    )
+
+
+@judges("egg.monodromy")
+def egg_monodromy(claim: Claim) -> Judgement:
+    """At the vertex; one exponent is misprinted."""
+    return identity(
+        claim,
+        monodromy(egg_diameter()),
+        (
+            "(lam*(lam^2 + alpha^4*lam^2 - 2*alpha^2*lam*(162 + 163*lam)))",
+            "(lam^2 + alpha^4*lam^2 - 2*alpha^2*lam*(162 + 163*lam))",
+        ),
+        "Entry (2, 2) has one factor lambda too many: it reads lambda*(lambda^2 + ...) for lambda^2 + ... . "
+        "The matrix belongs to the base point at the vertex.",
+    )
+
+
+@judges("egg.mu_not_one")
+def mu_not_one(claim: Claim) -> Judgement:
+    """The characteristic polynomial at 1 is `(1+lam)**2*W**2`."""
+    trace, det = diameter()
+    return on_range(
+        claim,
+        lambda box: positive(1 - trace + det, box),
+        "mu != 1 for alpha in (0, 1/10]",
+        {alpha: ROUND},
+        "At alpha = 0 (the circle) one eigenvalue is 1 for every lambda; the statement needs alpha > 0.",
+    )
+
+
+@judges("egg.alpha_tilde")
+def doubling_curve(claim: Claim) -> Judgement:
+    """Both forms are non-negative; their squares agree."""
+    return Judgement(
+        by(
+            "both forms are square roots or quotients of positive numbers, with equal squares",
+            equal(claim.formula**2, alpha_tilde() ** 2, claim.box),
+        ),
+        str(alpha_tilde()),
+    )
+
+
+@judges("egg.mu_at_alpha_tilde")
+def mu_at_alpha_tilde(claim: Claim) -> Judgement:
+    """`-P = ((1-lam)/(1+lam))**2` there, so -1 is a multiplier, and the other is `-lam**2`."""
+    trace, det = diameter()
+    both = zero("", trace - trace_of(1 - W2), det - lam**2, 1 + trace_of(S.Zero) + lam**2 - (1 - lam) ** 2)
+    return Judgement(
+        by(
+            "1 + trace + det = (1+lam)^2*P + (1-lam)^2 = 0 at alpha-tilde; the other is -lam^2",
+            both,
+            on_the_curve(),
+            equal(claim.formula, -S.One, {}),
+        ),
+        "-1",
+    )
+
+
+def on_the_curve() -> Finding:
+    """`W**2` is `2*(1+lam**2)/(1+lam)**2` at alpha-tilde, and grows with alpha."""
+    level = 2 * (1 + lam**2) / (1 + lam) ** 2
+    return conjunction(zero("", W2.subs(alpha, alpha_tilde()) - level), positive(tilt().diff(alpha), {alpha: SHAPES}))
+
+
+@judges("egg.period2_unstable_above")
+def unstable_above(claim: Claim) -> Judgement:
+    """`P` falls with alpha."""
+    return Judgement(
+        by("1 + trace + det = (1+lam)^2*P + (1-lam)^2 vanishes at alpha-tilde and falls with alpha", on_the_curve()),
+        "mu_- < -1 for alpha > alpha-tilde(lam)",
+    )
+
+
+@judges("egg.alpha_tilde_0")
+def alpha_tilde_0(claim: Claim) -> Judgement:
+    """At `lam = 0`."""
+    return digits(claim, alpha_tilde().subs(lam, 0))
+
+
+@judges("egg.alpha_tilde_1")
+def alpha_tilde_1(claim: Claim) -> Judgement:
+    """At `lam = 1`."""
+    return digits(claim, alpha_tilde().subs(lam, 1))
+
+
+@judges("egg.period2_always_unstable")
+def always_unstable(claim: Claim) -> Judgement:
+    """alpha-tilde falls with `lam`."""
+    level = 2 * (1 + lam**2) / (1 + lam) ** 2
+    return Judgement(
+        by(
+            "alpha-tilde falls with lam, so it is largest at lam = 0",
+            on_the_curve(),
+            nonnegative(-simplify(level.diff(lam)), {lam: Interval(0, 1)}),
+        ),
+        "alpha-tilde(lam) <= alpha-tilde(0)",
+    )
+
+
+@judges("egg.period2_stable_below")
+def stable_below(claim: Claim) -> Judgement:
+    """Strict inequalities fail at `alpha = 0` and at `lam = 1`."""
+    trace, det = diameter()
+    return Judgement(
+        counterexample(
+            "at alpha = 0 one eigenvalue is 1, and at lam = 1 the product of the eigenvalues is 1",
+            zero("", (1 - trace + det).subs(alpha, 0), det.subs(lam, 1) - 1),
+            at={alpha: S.Zero, lam: S.Zero},
+        ),
+        "|mu| < 1 for 0 < alpha < alpha-tilde(lam) and 0 <= lam < 1",
+        by(
+            "-((1-lam)/(1+lam))^2 < P < 1 there",
+            on_the_curve(),
+            positive(W2, {alpha: ROUND}),
+            positive(1 - det, {lam: Interval.Ropen(0, 1)}),
+        ),
+        "The moduli are below one only for alpha > 0 and lambda < 1: at alpha = 0 one eigenvalue is "
+        "1, at lambda = 1 both have modulus 1.",
+    )
+
+
+@judges("egg.alpha_hat")
+def focus_curve(claim: Claim) -> Judgement:
+    """The printed form is 0/0 at `lam = 1`; the derived one is not."""
+    return identity(claim, alpha_hat())
+
+
+@judges("egg.complex_region")
+def complex_region(claim: Claim) -> Judgement:
+    """`0 < P < 4*lam/(1+lam)**2` between the curves, because `W` grows with alpha."""
+    low = tilt().subs(alpha, alpha_hat()) - (1 - lam) / (1 + lam)
+    high = tilt().subs(alpha, complex_up_to()) - 1
+    trace, _ = diameter()
+    P = 1 - W2
+    return Judgement(
+        by(
+            "P = 4*lam/(1+lam)^2 at alpha-hat and P = 0 at alpha-tilde(1), and P falls with alpha",
+            zero("", low, high, trace - trace_of(P), complex_up_to() - alpha_tilde().subs(lam, 1)),
+            positive(tilt().diff(alpha), {alpha: SHAPES}),
+        ),
+        "complex exactly for alpha-hat(lam) < alpha < alpha-tilde(1)",
+    )

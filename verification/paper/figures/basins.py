@@ -1,0 +1,100 @@
+"""The figures of basins of attraction in phase space. Paper: sections 5.2 and 6.7, appendix A.3."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from numeric import PinballMap
+from numeric.dynamics.attractors import classify
+from numeric.dynamics.kinds import Kind
+from numeric.pinball.sampling import phase_grid
+from verification.paper.figures.cuspless import cycle_points, orbit_on
+from verification.paper.figures.phase import by_angle, by_arc_length, facts
+from verification.plots.sheet import CROSS, DARK, Array, Panel, Panels, Raster, cloud, scaled, sheet
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ACROSS, UP = 360, 240  # cells of a draft
+TRANSIENT = 1000  # bounces before a ball is first looked at
+BLANK, SHADE = (1.0, 1.0, 1.0), (0.78, 0.84, 0.78)
+RED = (0.87, 0.55, 0.5)
+
+
+def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
+    """Which attractor the ball in each cell of phase space reaches, and the attractors.
+
+    The abscissa is `theta` where `angle` is true, else arc length; cells are equal in arc length either way.
+    """
+    grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
+    balls = grid.starts
+    label, attractors = classify(map, balls.component, balls.theta, balls.phi, TRANSIENT)
+    curves, names, count = {}, [], scaled(4000, fine, 50)
+    for i, attractor in enumerate(attractors):
+        name = "chaotic" if attractor.kind is Kind.CHAOTIC else f"period {attractor.period}"
+        names.append(name if name not in names else f"{name} ({i + 1})")
+        orbit = orbit_on(map, attractor, count)
+        shown = by_angle(orbit) if angle else by_arc_length(map, orbit)
+        curves[names[-1]] = cycle_points(map, attractor)[0] if angle and attractor.period else shown
+    x = np.arctan2(balls.y, balls.x)[: grid.s.size] if angle else grid.s
+    order = np.argsort(x)
+    table = label.reshape(grid.sin_phi.size, grid.s.size)[:, order]
+    raster = Raster(x[order], grid.sin_phi, np.where(table < 0, len(names), table), (*names, "unsettled"))
+    known = facts(map, transient=TRANSIENT, columns=x.size, rows=grid.sin_phi.size)
+    return Panel(rf"$\lambda = {float(map.lam):g}$", "theta" if angle else "s", "sin_phi", curves, raster, known)
+
+
+def paint(ax: "Axes", raster: Raster, colours: dict[str, Any]) -> None:
+    """The cells in the colour of their name; those of a name without one stay blank."""
+    table = np.array([colours.get(name, BLANK) for name in raster.names])
+    ax.pcolormesh(edges(raster.x), edges(raster.y), table[raster.labels], rasterized=True)
+
+
+def edges(centres: Array) -> Array:
+    """The borders of cells around their centres.
+
+    >>> edges(np.array([1.0, 2.0, 4.0])).tolist()
+    [0.5, 1.5, 3.0, 5.0]
+    """
+    inner = (centres[1:] + centres[:-1]) / 2
+    return np.concatenate([[2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]]])
+
+
+def cuspless(fine: float = 1.0) -> Panels:
+    """The basins of the chaotic and of the period-2 attractor at `lam = 0.09`."""
+    return (basins(PinballMap("cuspless", lam="0.09"), fine, angle=False),)
+
+
+def draw_cuspless(panels: Panels) -> "Figure":
+    """The chaotic attractor's basin shaded, the other blank; both attractors."""
+    figure, (ax,) = sheet(panels, columns=1, height=3.2)
+    (panel,) = panels
+    assert panel.raster is not None
+    paint(ax, panel.raster, {"chaotic": SHADE})
+    points(ax, panel)
+    return figure
+
+
+def egg(fine: float = 1.0) -> Panels:
+    """The basins just below the boundary crisis and above it."""
+    return tuple(basins(PinballMap("egg", lam=lam, alpha="0.08"), fine, angle=True) for lam in ("0.66", "0.7"))
+
+
+def draw_egg(panels: Panels) -> "Figure":
+    """The chaotic basin shaded where there is one, else that of one of the two triangles; the attractors."""
+    figure, axes = sheet(panels, height=3.0)
+    for ax, panel in zip(axes, panels, strict=True):
+        assert panel.raster is not None
+        paint(ax, panel.raster, {"chaotic": SHADE} if "chaotic" in panel.curves else {"period 3": RED})
+        points(ax, panel)
+    return figure
+
+
+def points(ax: "Axes", panel: Panel) -> None:
+    """Chaotic attractors as dots, cycles as crosses."""
+    for name, curve in panel.curves.items():
+        if name.startswith("chaotic"):
+            cloud(ax, curve, DARK, size=0.7)
+        else:
+            ax.plot(*curve, **(CROSS | {"ms": 5}))

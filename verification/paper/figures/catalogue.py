@@ -1,0 +1,101 @@
+"""The figures by name: what the paper prints below each, what computes it, and what draws it."""
+
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib import import_module
+from importlib.resources import files
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from verification.plots.sheet import styled
+
+if TYPE_CHECKING:
+    from verification.plots.sheet import Panels
+
+DRAFT, FULL = 1.0, 8.0  # resolutions
+WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
+ENDINGS = {".png": {"Software": None}, ".pdf": {"CreationDate": None, "Producer": None}, ".svg": {"Date": None}}
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure: its name, the module and function that compute its data, and its place in the paper.
+
+    `labels` are the paper's own, empty for a figure that it only speaks of; the caption is quoted with its misprints.
+    """
+
+    name: str
+    made_by: str
+    labels: tuple[str, ...]
+    section: str
+    caption: str
+
+    @cached_property
+    def _pair(self) -> tuple[Callable[[float], "Panels"], Callable[["Panels"], Any]]:
+        module, function = self.made_by.split(".")
+        found = import_module(f"verification.paper.figures.{module}")
+        return getattr(found, function), getattr(found, f"draw_{function}")
+
+    def data(self, fine: float = DRAFT) -> "Panels":
+        """The panels at a resolution, 1 for a draft."""
+        return self._pair[0](fine)
+
+    def image(self, panels: "Panels", ending: str) -> bytes:
+        """The drawn panels as a file of that kind; the same panels give the same bytes."""
+        with styled():
+            buffer = BytesIO()
+            self._pair[1](panels).savefig(buffer, format=ending[1:], metadata=ENDINGS[ending])
+            return buffer.getvalue()
+
+    def document(self, panels: "Panels", fine: float) -> dict[str, Any]:
+        """The data as JSON has them."""
+        about = {"figure": self.name, "labels": list(self.labels), "caption": self.caption, "resolution": fine}
+        return {**about, "panels": [panel.document() for panel in panels]}
+
+    @property
+    def sentence(self) -> str:
+        """The first sentence of the caption, for a terminal.
+
+        >>> pictures()["egg-slap"].sentence[:28]
+        'Iterates up to the fourth of'
+        """
+        return plain(self.caption.partition(". ")[0].removesuffix(".") + ".")
+
+
+def plain(text: str) -> str:
+    """LaTeX as one would type it.
+
+    >>> plain(r"$s_0 \\defeq -\\sqrt{3}/4$ and $\\mu_{\\pm}$ at $\\lambda = 0.3$")
+    's_0 := -sqrt(3)/4 and mu_+- at lambda = 0.3'
+    """
+    text = re.sub(r"\\sqrt\{(\w+)\}", r"sqrt(\1)", text)
+    text = re.sub(r"\\([a-z]+)", lambda found: WORDS.get(found[1], found[1]), text)
+    return re.sub(r"[${}]", "", text)
+
+
+@cache
+def pictures() -> Mapping[str, Picture]:
+    """Every figure, in the order of the paper.
+
+    >>> pictures()["ellipse-slap"].labels
+    ('fig:slap-ellipse',)
+    """
+    text = (files("verification.paper.figures") / "captions.toml").read_text(encoding="utf-8")
+    entries = tomllib.loads(text)["figure"]
+    return {entry["name"]: Picture(**{**entry, "labels": tuple(entry["labels"])}) for entry in entries}
+
+
+def ending(path: Path) -> str:
+    """What kind of file `path` names; `ValueError` for one that cannot be written.
+
+    >>> ending(Path("slap.PDF"))
+    '.pdf'
+    """
+    if path.suffix.lower() not in ENDINGS:
+        known = ", ".join(ENDINGS)
+        raise ValueError(f"--out = {path} has the ending {path.suffix or 'none'!r}; accepted endings: {known}")
+    return path.suffix.lower()

@@ -1,0 +1,163 @@
+"""The evolutes of the tables, which every flight of the slap map touches. Paper: section 2.2; no figure there.
+
+The figures on the circle and the ellipse. Paper: section 3.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from numeric import PinballMap
+from symbolic.tables.geometry import evolute
+from symbolic.tables.symbols import theta
+from verification.paper.figures.phase import facts, flights, outline
+from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Panel, Panels, scaled, sheet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+from typing import TYPE_CHECKING
+
+from numeric.pinball.sampling import interior_starts
+from symbolic.cycles.cycle import discriminant
+from symbolic.cycles.double_normal import stability_number, trace_of
+from symbolic.cycles.named import minor_axis
+from symbolic.cycles.thresholds import lambda_minus
+from symbolic.tables.symbols import a as a_letter
+from symbolic.tables.symbols import lam as lam_letter
+from verification.paper.figures.phase import SEED
+from verification.paper.figures.phase import slap_by_angle as by_angle
+from verification.plots.sheet import DARK, FAINT, graphs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("ellipse", {"a": "1.2"}),
+    ("cardioid", {}),
+    ("cuspless", {}),
+    ("egg", {"alpha": "0.05"}),
+)
+
+
+@cache
+def centres(table: str, **shape: str) -> Callable[[Array], tuple[Array, Array]]:
+    """The centre of curvature of the first component against `theta`, from the exact formula."""
+    from symbolic.generation.text import kernel, load
+    from symbolic.tables import named
+    from verification.arithmetic.words import ARRAYS
+
+    x, y = evolute(named(table).at(**shape).components[0])
+    return load(kernel("evolute", [theta], {"x": x, "y": y}), ARRAYS)
+
+
+def evolutes(fine: float = 1.0) -> Panels:
+    """The envelope of the normals, with flights of the slap map that touch it.
+
+    The wall of the cuspless cardioid is straight and has its centre of curvature at infinity.
+    """
+    panels = []
+    for table, shape in TABLES:
+        map = PinballMap(table, lam=0, **shape)
+        low, high = map.states.ends[0]
+        starts = low + (high - low) * (np.arange(40) + 0.5) / 40
+        curves = {
+            "boundary": outline(map),
+            "flights": flights(map.orbit(starts, np.zeros(40), 1)),
+            "evolute": Curve(*centres(table, **shape)(np.linspace(low, high, scaled(400, fine, 20)))),
+        }
+        letters = {"alpha": r"\alpha"}
+        title = table + "".join(f", ${letters.get(name, name)} = {value}$" for name, value in shape.items())
+        panels.append(Panel(title, "x", "y", curves, facts=facts(map)))
+    return tuple(panels)
+
+
+def draw_evolutes(panels: Panels) -> "Figure":
+    """The evolutes thick."""
+    figure, axes = sheet(panels, columns=4, height=2.2)
+    for ax, panel in zip(axes, panels, strict=True):
+        ax.plot(*panel.curves["boundary"], **OUTLINE)
+        ax.plot(*panel.curves["flights"], color="0.7", lw=0.3)
+        ax.plot(*panel.curves["evolute"], color=BLACK, lw=1.4)
+    return figure
+
+
+LONG = 5  # of the ellipse whose eigenvalues are shown
+
+
+def configuration(fine: float = 1.0) -> Panels:
+    """One trajectory in the circle and one in the ellipse at `lam = 0.99`.
+
+    The start in the circle is random; that in the ellipse leaves an end of the major axis, a thousandth of a radian
+    from its direction.
+    """
+    circle, ellipse = PinballMap("circle", lam="0.99"), PinballMap("ellipse", lam="0.99", a="1.5")
+    start = interior_starts(circle, 1, SEED)
+    random = float(start.theta[0]), float(start.phi[0])
+    bounces = scaled(600, min(fine, 1.0), 20)
+    panels = []
+    for map, (polar, phi), title in ((circle, random, "circle"), (ellipse, (0.0, 1e-3), "ellipse, $a = 1.5$")):
+        orbit = map.orbit(np.array([polar]), np.array([phi]), bounces)
+        curves = {"boundary": outline(map), "trajectory": flights(orbit)}
+        panels.append(Panel(title, "x", "y", curves, facts=facts(map, theta=polar, phi=phi, bounces=bounces)))
+    return tuple(panels)
+
+
+def draw_configuration(panels: Panels) -> "Figure":
+    """Later flights are lighter."""
+    from matplotlib.collections import LineCollection
+
+    figure, axes = sheet(panels, height=3.0)
+    for ax, panel in zip(axes, panels, strict=True):
+        ax.plot(*panel.curves["boundary"], **OUTLINE)
+        points = np.array(panel.curves["trajectory"]).T[:-1]
+        shades = np.linspace(0, 0.8, len(points) - 1)
+        segments = np.stack([points[:-1], points[1:]], axis=1)
+        ax.add_collection(LineCollection(list(segments), colors=[(g, g, g) for g in shades], linewidths=0.4))
+    return figure
+
+
+def eigenvalues(fine: float = 1.0) -> Panels:
+    """Both moduli on the minor axis at `a = 5`, from the stability number; and `lambda_-(5)`."""
+    from symbolic.generation.text import kernel, load
+    from verification.arithmetic.words import ARRAYS
+
+    P = stability_number(minor_axis()).subs(a_letter, LONG)
+    trace = trace_of(P)
+    values = {"half": trace / 2, "quarter": discriminant(trace, lam_letter**2) / 4}
+    turn = float(lambda_minus().subs(a_letter, LONG))
+    lam = np.unique(np.append(np.linspace(0, 1, scaled(400, fine, 5)), turn))
+    half, quarter = load(kernel("eigenvalues", [lam_letter], values), ARRAYS)(lam)
+    root = np.sqrt(quarter.astype(complex))
+    curves = {name: Curve(lam, np.abs(half + sign * root)) for name, sign in (("mu_plus", 1), ("mu_minus", -1))}
+    return (Panel("ellipse, $a = 5$", "lam", "modulus", curves, facts={"a": LONG, "lambda_minus": turn}),)
+
+
+def draw_eigenvalues(panels: Panels) -> "Figure":
+    """The two branches, which meet at the dotted line."""
+    figure, (ax,) = sheet(panels, columns=1, height=3.0)
+    (panel,) = panels
+    ax.plot(*panel.curves["mu_plus"], color=BLACK, label=r"$|\mu_+|$")
+    ax.plot(*panel.curves["mu_minus"], color=DARK, ls="--", lw=1.4, label=r"$|\mu_-|$")
+    ax.axvline(float(panel.facts["lambda_minus"]), **FAINT)
+    ax.set_xlim(0, 1)
+    ax.set_ylim(0, 1)
+    ax.legend()
+    return figure
+
+
+def slap(fine: float = 1.0) -> Panels:
+    """The slap map and its second iterate at `a = 1.2`, polar angle against polar angle."""
+    map = PinballMap("ellipse", lam=0, a="1.2")
+    curves = {f"T_0{power}": by_angle(map, n, scaled(400, fine, 20)) for n, power in ((1, ""), (2, "^2"))}
+    return (Panel("ellipse, $a = 1.2$", "theta", "theta_image", curves, facts=facts(map)),)
+
+
+def draw_slap(panels: Panels) -> "Figure":
+    """Both graphs with the diagonal."""
+    figure, (ax,) = sheet(panels, columns=1, height=4.2)
+    graphs(ax, panels[0])
+    return figure

@@ -1,0 +1,185 @@
+"""Orbits in the paper's coordinates, and what many orbits do in the long run. Paper: appendix.
+
+Graphs of the slap map, with gaps where it jumps. Paper: sections 2.2, 3.4, 4.2, 5.4 and 6.2.
+
+Any scene in two panels, for tables of one's own: where balls end, in the table and in phase space.
+"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import Orbit, PinballMap
+from numeric.pinball.sampling import boundary, interior_starts
+from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Fact, Panel, Panels, cloud, scaled, sheet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+SEED = 1
+TRANSIENT = 2000  # bounces thrown away: the paper's several thousand, where draft pictures need no more
+OUTLINE_POINTS = 721  # points of a table's boundary
+
+
+class Settled(NamedTuple):
+    """Orbits after their transient, a ball to a column, and the larger exponent of each."""
+
+    orbit: Orbit
+    nu_plus: Array
+
+
+def settled(map: PinballMap, balls: int, bounces: int, transient: int = TRANSIENT, seed: int = SEED) -> Settled:
+    """The orbits of balls that start in the interior, long after. A ball that stops is left out.
+
+    The exponent is that of the last quarter of the transient.
+
+    >>> found = settled(PinballMap("ellipse", lam="1/2", a=2), 5, 8)
+    >>> bool(np.all(np.abs(np.cos(found.orbit.theta)) < 1e-9)), bool(np.all(found.nu_plus < 0))
+    (True, True)
+    """
+    starts = interior_starts(map, balls, seed)
+    part = max(1, transient // 4)
+    end = map.exponents(starts.theta, starts.phi, part, transient - part, starts.component)
+    whole = end.code == 0
+    orbit = map.orbit(end.theta[whole], end.phi[whole], bounces, end.component[whole])
+    going = orbit.code[-1] == 0
+    return Settled(balls_of(orbit, going), end.nu_plus[whole][going])
+
+
+def balls_of(orbit: Orbit, chosen: Any) -> Orbit:
+    """Some of the balls, by an index of columns."""
+    return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their kinds
+
+
+def arc_length(map: PinballMap, component: NDArray[np.int64], theta: Array) -> Array:
+    """The paper's `s`, from `-L/2` to `L/2`, `L` the perimeter.
+
+    >>> cuspless = PinballMap("cuspless")
+    >>> arc_length(cuspless, np.array([0, 0]), np.array([-0.001, 0.001])).round(2).tolist()
+    [3.9, -3.9]
+    """
+    length = map.arclength.perimeter
+    return np.asarray(np.mod(map.arclength.s(theta, component) + length / 2, length) - length / 2)
+
+
+def polar(map: PinballMap, theta: Array) -> Array:
+    """The polar angle, in [-pi, pi], of points on the first component: `theta` itself but for the ellipse.
+
+    >>> polar(PinballMap("ellipse", a=2), np.array([np.pi / 4])).round(4).tolist()
+    [0.4636]
+    """
+    x, y = map.states.point(np.zeros(theta.shape, dtype=np.int64), theta)
+    return np.asarray(np.arctan2(y, x))
+
+
+def by_arc_length(map: PinballMap, orbit: Orbit) -> Curve:
+    """The bounces as points `(s, sin(phi))`."""
+    return Curve(arc_length(map, orbit.component, orbit.theta).ravel(), np.sin(orbit.phi).ravel())
+
+
+def by_angle(orbit: Orbit) -> Curve:
+    """The bounces as points `(theta, sin(phi))`, `theta` the polar angle."""
+    return Curve(np.arctan2(orbit.y, orbit.x).ravel(), np.sin(orbit.phi).ravel())
+
+
+def flights(orbit: Orbit) -> Curve:
+    """The trajectories in the plane, with a gap between two balls."""
+    gap = np.full((1, orbit.x.shape[1]), np.nan)
+    return Curve(*(np.concatenate([field, gap]).T.ravel() for field in (orbit.x, orbit.y)))
+
+
+def outline(map: PinballMap) -> Curve:
+    """The boundary of the table, closed."""
+    parts = []
+    for index, (low, high) in enumerate(map.states.ends):
+        theta = np.linspace(low, high, OUTLINE_POINTS)
+        parts.append(np.array(map.states.point(np.full(OUTLINE_POINTS, index), theta)))
+    x, y = np.concatenate([*parts, parts[0][:, :1]], axis=1)
+    return Curve(x, y)
+
+
+def facts(map: PinballMap, **more: Fact) -> dict[str, Fact]:
+    """Table, shape and contraction of a panel, and whatever else its data were computed from."""
+    shape = {entry.name: float(value) for entry, value in zip(map.blueprint.shape, map.shape, strict=True)}
+    lam: dict[str, Fact] = {"lam": float(map.lam)} if map.lam.size == 1 else {}
+    return {"table": map.blueprint.table, **shape, **lam, **more}
+
+
+FINEST = 1e-9  # of the abscissa: a jump that survives is no slope
+JUMP = 0.02  # of the range of the values: larger steps are halved
+MOST = 200_000  # points of a graph
+
+
+def graph(f: Callable[[Array], Array], low: float, high: float, points: int) -> Curve:
+    """`f` over the open interval, halved until its steps are small; a gap where one stays large.
+
+    >>> stairs = graph(np.floor, 0.0, 2.0, 5)
+    >>> int(np.isnan(stairs.y).sum()), np.unique(stairs.y[~np.isnan(stairs.y)]).tolist()
+    (1, [0.0, 1.0])
+    """
+    x = low + (high - low) * (np.arange(points) + 0.5) / points
+    y = f(x)
+    extent = float(np.nanmax(y) - np.nanmin(y)) or 1.0
+    while x.size < MOST:
+        wide = (np.abs(np.diff(y)) > JUMP * extent) & (np.diff(x) > FINEST * (high - low))
+        if not np.any(wide):
+            break
+        at = np.flatnonzero(wide)
+        middle = (x[at] + x[at + 1]) / 2
+        x, y = np.insert(x, at + 1, middle), np.insert(y, at + 1, f(middle))
+    gaps = np.flatnonzero(np.abs(np.diff(y)) > JUMP * extent) + 1
+    return Curve(np.insert(x, gaps, x[gaps]), np.insert(y, gaps, np.nan))
+
+
+def slap_by_arc_length(map: PinballMap, iterate: int, points: int) -> Curve:
+    """The slap map's iterate, arc length against arc length."""
+    half = map.arclength.perimeter / 2
+
+    def image(s: Array) -> Array:
+        component, theta = boundary(map, s)
+        orbit = map.slap(theta, iterate, component)
+        return np.where(orbit.code[-1] == 0, arc_length(map, orbit.component[-1], orbit.theta[-1]), np.nan)
+
+    return graph(image, -half, half, points)
+
+
+def slap_by_angle(map: PinballMap, iterate: int, points: int) -> Curve:
+    """The slap map's iterate, polar angle against polar angle, in [-pi, pi); for tables of one component."""
+
+    def image(theta: Array) -> Array:
+        return polar(map, map.slap(theta, iterate).theta[-1])
+
+    found = graph(image, -np.pi, np.pi, points)
+    return Curve(polar(map, found.x), found.y)
+
+
+BALLS, FLIGHTS = 300, 3  # orbits in phase space, and of those drawn in the table
+
+
+def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
+    """The flights of a few balls and the bounces of many, long after their start.
+
+    >>> room, space = portrait(PinballMap("ellipse", lam="1/2", a=2), 0.1)
+    >>> space.x, space.y
+    ('s', 'sin_phi')
+    """
+    bounces = scaled(200, fine, 20)
+    orbit = settled(map, BALLS, bounces).orbit
+    theta, phi, component = (field[-1, :FLIGHTS] for field in (orbit.theta, orbit.phi, orbit.component))
+    few = map.orbit(theta, phi, 60, component)
+    known = facts(map, seed=SEED, balls=BALLS, bounces=bounces)
+    room = Panel("the table", "x", "y", {"outline": outline(map), "flights": flights(few)}, facts=known)
+    space = Panel("phase space", "s", "sin_phi", {"bounces": by_arc_length(map, orbit)}, facts=known)
+    return room, space
+
+
+def draw_portrait(panels: Panels) -> "Figure":
+    """Both panels side by side."""
+    figure, (room, space) = sheet(panels)
+    room.plot(*panels[0].curves["flights"], color=BLACK, lw=0.3)
+    room.plot(*panels[0].curves["outline"], **OUTLINE)
+    cloud(space, panels[1].curves["bounces"], BLACK)
+    return figure

@@ -1,0 +1,1 @@
+"""What `make verify` leaves behind: a page, Markdown, JSON and LaTeX."""

@@ -1,0 +1,1 @@
+"""Judges that more than one table needs."""

@@ -1,0 +1,315 @@
+"""Claims on which attractors there are: existence proved by certified cycles, the rest sampled. Sections 1, 2, 5, 6, 7.
+
+A certified attracting cycle is a witness: it refutes "only" and "all", and proves "is found". That nothing else
+attracts is sampled: none of `n` random starts reached anything else, so the share of those that do is below
+`3/n` with 95 per cent confidence.
+"""
+
+from collections.abc import Iterable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from sympy import Rational, Symbol, limit, oo, pi
+
+from numeric import PinballMap
+from numeric.dynamics.attractors import Attractor, Kind, find
+from numeric.dynamics.splitting import angles, jump, slopes
+from symbolic import tables
+from symbolic.motion.circle import flight
+from symbolic.proofs.signs import Finding, Outcome
+from symbolic.tables.symbols import lam, phi
+from verification.named.attractors import certificate
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges
+from verification.paper.ellipse.circle import settles
+from verification.paper.ellipse.ellipse import two_cycles
+from verification.paper.shared.samples import sampled
+
+SEED, STARTS, FEW = 1, 200, 40
+SHAPE = "0.08"
+JOIN = 3**0.5 / 4
+THREE = ("0.421", "0.425", "0.43", "0.435", "0.44", "0.443")  # from 0.42 to the merging crisis
+
+
+@cache
+def found(name: str, contraction: str, starts: int = STARTS, **shape: Any) -> tuple[Attractor, ...]:
+    """The attractors that random starts reach, with the images under the table's symmetries."""
+    table = tables.named(name).at(**shape)
+    return find(PinballMap(name, lam=contraction, **shape), starts, SEED, table, bounces=1000)
+
+
+def egg(contraction: str, starts: int = STARTS, alpha: str = SHAPE) -> tuple[Attractor, ...]:
+    """Those of the egg."""
+    return found("egg", contraction, starts, alpha=alpha)
+
+
+def unsettled(attractors: Iterable[Attractor], starts: int = STARTS) -> int:
+    """How many of the starts reached none of them."""
+    return starts - sum(a.share.count for a in attractors if a.share)
+
+
+def chaotic(attractors: Iterable[Attractor]) -> list[Attractor]:
+    """The chaotic ones."""
+    return [a for a in attractors if a.kind is Kind.CHAOTIC]
+
+
+def cycles(attractors: Iterable[Attractor], period: int = 0) -> list[Attractor]:
+    """The cycles, of one period when it is given."""
+    return [a for a in attractors if a.kind is Kind.CYCLE and period in (0, a.period)]
+
+
+@cache
+def proved_at(contraction: str, period: int, name: str = "egg", alpha: str = SHAPE, starts: int = STARTS) -> Finding:
+    """Every cycle of a period that was found, and its images, proved to exist and to attract at a contraction."""
+    shape = {"alpha": alpha} if name == "egg" else {}
+    table, some = tables.named(name).at(**shape), cycles(found(name, contraction, starts, **shape), period)
+    proofs = [certificate(table, Rational(contraction), a.points) for a in some]
+    good = bool(proofs) and all(proof.proved for proof in proofs)
+    said = f"{len(some)} attracting cycles of period {period} are proved at lam = {contraction}"
+    return Finding(Outcome.PROVED if good else Outcome.UNKNOWN, said)
+
+
+@judges("map.two_attractor_types")
+def two_types(claim: Claim) -> Judgement:
+    """The angle between the two directions: bounded below where there is dominated splitting."""
+    said, least = [], {}
+    scenes: list[tuple[str, str, dict[str, Any]]] = [("cardioid", "0.5", {}), ("cuspless", "0.5", {})]
+    for name, contraction, shape in (*scenes, ("egg", "0.45", {"alpha": SHAPE})):
+        map = PinballMap(name, lam=contraction, **shape)
+        cloud = max(chaotic(found(name, contraction, **shape)), key=lambda a: a.points.size).points
+        measured = angles(map, cloud.only(slice(0, None, 80)), 100)
+        least[name] = np.quantile(measured, [1e-4, 1e-3, 1e-2])
+        said.append(f"{name} at {contraction}: {', '.join(f'{x:.2g}' for x in least[name])}")
+    touching = bool(least["egg"][2] > 3 * least["egg"][1] > 9 * least["egg"][0])
+    apart = bool(min(least["cardioid"][0], least["cuspless"][0]) > 0.03)
+    text = (
+        "measured on chaotic attractors: the angle between the expanded and the contracted direction that one point in "
+        f"10^4, 10^3, 10^2 falls below, in radians: {'; '.join(said)}"
+    )
+    derived = "cycles, or chaotic sets; the angle keeps away from 0 in the cardioid and the cuspless cardioid"
+    if touching:
+        derived += ", and goes to 0 like the share of points in the egg: no dominated splitting there, it seems"
+    return sampled(derived, text, apart and not touching)
+
+
+@judges("map.no_irrational_rotation")
+def no_rotation(claim: Claim) -> Judgement:
+    """Every start of a sample of scenes ends on a cycle or a chaotic set; below `lam = 1` no circle is left."""
+    scenes = [
+        ("cardioid", "0.5", {}),
+        ("cuspless", "0.09", {}),
+        ("cuspless", "0.5", {}),
+        ("ellipse", "0.5", {"a": "2"}),
+    ]
+    scenes += [("egg", x, {"alpha": SHAPE}) for x in ("0.2", "0.43", "0.45", "0.7", "0.83")]
+    left = [unsettled(found(name, x, **shape)) for name, x, shape in scenes]
+    other = [a for name, x, shape in scenes for a in found(name, x, **shape) if a.kind in (Kind.NEUTRAL, Kind.STOPPED)]
+    said = (
+        f"{len(scenes)} scenes below lam = 1, {STARTS} starts each: every start ends on an attracting cycle or a set "
+        f"with nu_+ > 0 ({sum(left)} did not settle); in the circle every start ends on a diameter for lam < 1"
+    )
+    return sampled(
+        "none for lam < 1; at lam = 1 the lines of the circle are such curves (theta -> theta + pi - 2*phi)",
+        said,
+        not other and sum(left) == 0,
+    )
+
+
+@judges("map.whispering_gallery")
+def whispering_gallery(claim: Claim) -> Judgement:
+    """In the circle the angle is multiplied by `lam`, passes pi/2 after finitely many bounces, and the map ends."""
+    more, n = Symbol("more", positive=True), Symbol("n", positive=True)
+    exit = flight()[1]
+    rule = equal(exit, lam * phi, {})
+    away = greater(Rational(3, 2) * Rational(3, 2), pi / 2)
+    return Judgement(
+        counterexample(
+            "circle, lam = 3/2, phi = 3/2: the first exit angle, 9/4, leaves the table",
+            rule,
+            away,
+            at={lam: Rational(3, 2)},
+        ),
+        "in the circle |phi| grows by the factor lam until the rule gives an exit angle above pi/2, which leaves the "
+        "table: every orbit but the diameters ends after finitely many bounces",
+        by(
+            "in the circle, for every lam > 1 and phi != 0",
+            rule,
+            answer(limit((1 + more) ** n, n, oo) == oo, "lam^n*|phi| is unbounded for lam > 1"),
+        ),
+        "In the circle, for lambda > 1, no orbit converges to grazing: off the diameters the exit angle exceeds "
+        "pi/2 after finitely many bounces, where the map is no longer defined. The last angle before lies above "
+        "pi/(2*lambda), so near pi/2 only for lambda near 1. Nothing is shown of other tables.",
+    )
+
+
+@judges("cuspless.compact_near_zero", "cuspless.period2_attracts")
+def near_zero(claim: Claim) -> Judgement:
+    """Every start reaches the two points of the horizontal orbit, which is proved to attract."""
+    sampled_at = ("0.01", "0.03", "0.05", "0.07")
+    shares = [[a.share.count for a in cycles(found("cuspless", x), 2) if a.share] for x in sampled_at]
+    everywhere = all(counts == [STARTS] for counts in shares)
+    proof = proved_at("0.03", 2, "cuspless")
+    said = (
+        f"at lam = {', '.join(sampled_at)} each of {STARTS} random starts reaches the period-2 orbit on y = 0 (a share "
+        f"below {3 / STARTS:.0%} of others is not excluded); that it attracts is proved"
+    )
+    derived = "two points, far from the joins and from grazing, attract every start sampled"
+    return sampled(derived, said, everywhere and bool(proof))
+
+
+@judges("cuspless.accumulates_on_joins")
+def accumulates(claim: Claim) -> Judgement:
+    """The least distance to a join falls like one over the number of points, as with a positive density there."""
+    said, good = [], True
+    for contraction in ("0.08", "0.2", "0.5", "0.9"):
+        cloud = chaotic(found("cuspless", contraction))[0].points
+        map = PinballMap("cuspless", lam=contraction)
+        orbit = map.orbit(cloud.theta[::256], cloud.phi[::256], 3000, cloud.component[::256])
+        s = map.arclength.s(orbit.theta, orbit.component)
+        half = map.arclength.perimeter / 2
+        distance = np.abs(np.abs(np.remainder(s + half, 2 * half) - half) - JOIN)
+        few, many = np.min(distance[:100]), np.min(distance)
+        good = good and many < 1e-4 and many < few
+        said.append(f"{many:.0e} among {distance.size} points at {contraction}")
+    return sampled("orbits on the attractor come as near the joins as their number allows", "; ".join(said), good)
+
+
+@judges("cuspless.attractors_nonsmooth")
+def nonsmooth(claim: Claim) -> Judgement:
+    """The jump of the attractor's slope is `lam` times that of the curvature: at the joins, and not at `s = 0`."""
+    said = []
+    for contraction in ("0.5", "0.8"):
+        map = PinballMap("cuspless", lam=contraction)
+        jumps = [jump(*slopes(map, STARTS // 2, SEED), place) for place in (-JOIN, 0.0, JOIN)]
+        said.append(f"at lam = {contraction}: {', '.join(f'{x:+.3f}' for x in jumps)}")
+    return Judgement(
+        Finding(
+            Outcome.UNKNOWN,
+            "the slope dphi/ds of the attractor jumps by lam times the jump of the curvature (from the derivative "
+            "matrix), that is by 3*lam/2 at the joins and by 0 at s = 0; measured at -sqrt(3)/4, 0, sqrt(3)/4: "
+            f"{'; '.join(said)}. So it has corners at the joins, and none is seen at s = 0",
+        ),
+        "corners at s = +-sqrt(3)/4, where the slope dphi/ds jumps by 3*lam/2; no corner at s = 0",
+    )
+
+
+@judges("cuspless.chaotic_above_tenth", "cuspless.only_attractor")
+def only_chaos(claim: Claim) -> Judgement:
+    """One chaotic set and nothing else, at contractions from just above the period doubling."""
+    lams = ("0.0935", "0.1", "0.15", "0.25", "0.4", "0.6", "0.8", "0.95")
+    each = [found("cuspless", x) for x in lams]
+    alone = all(len(some) == 1 and len(chaotic(some)) == 1 and unsettled(some) == 0 for some in each)
+    least = min(a.nu_plus for some in each for a in some)
+    said = (
+        f"at lam = {', '.join(lams)} each of {STARTS} random starts reaches one and the same chaotic set, nu_+ >= "
+        f"{least:.2f}; a share below {3 / STARTS:.0%} of others is not excluded"
+    )
+    return sampled("one chaotic attractor, from lambda_c = 0.0934... on, for lam < 1", said, alone)
+
+
+@judges("egg.higher_period_attractors")
+def higher_periods(claim: Claim) -> Judgement:
+    """A witness near `lam = 1`: cycles of period 21."""
+    return Judgement(
+        by("at alpha = 0.08", proved_at("0.99", 21)),
+        "found at lam = 0.99: period 21; at 0.999 also periods 24, 30, 51; at 0.82 to 0.88 periods 12 and 24",
+    )
+
+
+@judges("egg.coexistence_near_tenth")
+def near_tenth(claim: Claim) -> Judgement:
+    """Near `alpha = 1/10`, the cycles proved and the chaos sampled."""
+    places = (("0.095", "0.4"), ("0.095", "0.45"), ("0.095", "0.5"), ("0.1", "0.4"), ("0.1", "0.45"))
+    each = [egg(contraction, STARTS, alpha) for alpha, contraction in places]
+    both = all(chaotic(some) and cycles(some, 3) for some in each)
+    proofs = [proved_at(contraction, 3, "egg", alpha) for alpha, contraction in places]
+    shares = ", ".join(f"{sum(a.share.count for a in chaotic(some) if a.share) / STARTS:.0%}" for some in each)
+    said = (
+        f"at (alpha, lam) = {', '.join(f'({a}, {x})' for a, x in places)} the period-3 cycles are proved to attract, "
+        f"and {shares} of {STARTS} random starts stay on a chaotic set"
+    )
+    return sampled(
+        "both, for lam from 0.4 to 0.5 at alpha = 0.095 and from 0.4 to 0.45 at 0.1", said, both and all(proofs)
+    )
+
+
+@judges("egg.three_attractors")
+def three(claim: Claim) -> Judgement:
+    """Between 0.42, where the paper's section begins, and the first crisis: one chaotic attractor to each diameter."""
+    each = {x: chaotic(egg(x)) for x in THREE}
+    apart = all(sorted(map(sorted, map(vertices, some))) == [[0], [1], [2]] for some in each.values())
+    said = (
+        f"at lam = {', '.join(THREE)} {STARTS} random starts find three chaotic attractors, each at one vertex "
+        "and no two at the same"
+    )
+    return sampled(
+        "three from 0.4104 (two to each diameter, mirror images, before) to the crisis at 0.4434, apart from windows, "
+        "where cycles attract; in some of these there are six, as in the one at 0.42",
+        said,
+        apart,
+    )
+
+
+@judges("egg.figure_chaos")
+def figure_chaos(claim: Claim) -> Judgement:
+    """Panels (c) and (d): a chaotic attractor at one diameter, and one that visits all three."""
+    local, wide = chaotic(egg("0.43")), chaotic(egg("0.45"))
+    good = [len(vertices(a)) for a in local] == [1, 1, 1] and [len(vertices(a)) for a in wide] == [3]
+    rates = [f"{max((a.nu_plus for a in some), default=np.nan):.2f}" for some in (local, wide)]
+    said = (
+        f"{STARTS} random starts find three chaotic attractors at 0.43, each at one vertex, nu_+ = {rates[0]}, and "
+        f"one at 0.45 that visits all three, nu_+ = {rates[1]}"
+    )
+    return sampled("three localised chaotic attractors at 0.43, a single delocalised one at 0.45", said, good)
+
+
+def vertices(attractor: Attractor) -> set[int]:
+    """The vertices of the egg, at `2*pi*k/3`, to which points of an attractor come within 0.3 radians.
+
+    >>> from types import SimpleNamespace
+    >>> sorted(vertices(SimpleNamespace(points=SimpleNamespace(theta=np.array([0.1, 3.1, -2.0])))))
+    [0, 2]
+    """
+    turns = attractor.points.theta / (2 * np.pi / 3)
+    nearest = np.round(turns)
+    return {int(k) % 3 for k in nearest[np.abs(turns - nearest) < 0.3 / (2 * np.pi / 3)]}
+
+
+@judges("egg.only_smooth_chaos")
+def only_smooth(claim: Claim) -> Judgement:
+    """In the circle and the ellipses only cycles of period 2 attract: proved. The egg's chaos is sampled."""
+    others = by(
+        "for 0 < lam < 1 every orbit of an ellipse converges to one of two cycles, and every orbit of the circle to a "
+        "diameter, since |phi| falls by the factor lam",
+        two_cycles(),
+        settles(),
+    )
+    least = min((a.nu_plus for a in chaotic(egg("0.45"))), default=-1.0)
+    said = (
+        "proved: in the circle and in every ellipse only cycles of period 2 attract, for 0 < lam < 1; the cardioid has "
+        "a cusp and the cuspless one jumps of curvature. The egg's chaotic attractor is sampled: nu_+ >= "
+        f"{least:.3f} at alpha = {SHAPE}, lam = 0.45"
+    )
+    return sampled(
+        "no chaotic attractor in the circle nor in any ellipse, for 0 < lam < 1: proved; one in the egg: sampled",
+        said,
+        bool(others) and least > 0.01,
+    )
+
+
+@judges("egg.windows_above")
+def windows(claim: Claim) -> Judgement:
+    """Windows are proved by their cycles, chaos between them is sampled; they begin before 0.42."""
+    proofs = [proved_at("0.4", 20), proved_at("0.42", 20, starts=FEW), proved_at("0.641", 18, starts=FEW)]
+    spread = {
+        x: max((a.nu_plus for a in chaotic(egg(x))), default=-1.0) for x in ("0.395", "0.41", "0.43", "0.45", "0.6")
+    }
+    text = ", ".join(f"{nu:.2f} at {x}" for x, nu in spread.items())
+    said = (
+        "attracting cycles of period 20, 20 and 18 are proved at lam = 0.4, 0.42 and 0.641; between them nu_+ of "
+        f"random starts is {text}. Windows and chaos alternate below 0.42 too, from the end of the cascade at 0.3935 on"
+    )
+    return sampled(
+        "alternating from lambda_infinity = 0.39352... on", said, all(proofs) and min(spread.values()) > 0.01
+    )

@@ -1,0 +1,257 @@
+"""Claims on Lyapunov exponents of the cuspless cardioid and the egg, and on what their signs mean.
+
+Paper: sections 5.3, 6.4, 6.6 and the appendix. Exponents of cycles are proved from certified multipliers, those of
+chaotic orbits sampled with standard errors.
+"""
+
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+
+import numpy as np
+from flint import arb
+from sympy import Expr, Rational, S, log, pi, sqrt
+
+from numeric import PinballMap
+from numeric.dynamics.phase_points import places
+from numeric.pinball.sampling import interior_starts
+from symbolic import tables
+from symbolic.cycles.multipliers import contracting_norm
+from symbolic.cycles.named import major_axis
+from symbolic.cycles.polygons import saddle_node
+from symbolic.cycles.thresholds import lambda_c
+from symbolic.motion.contraction import area_factor, steepening, weak_dissipation
+from symbolic.proofs.signs import Finding, Outcome
+from symbolic.tables.symbols import a, alpha, eta, lam
+from verification.arithmetic.balls import enclose
+from verification.arithmetic.words import working
+from verification.cycles.shooting.attracting import cycle_at, doubled
+from verification.cycles.shooting.cascade import ladder
+from verification.named.attractors import Certificate, certificate, exponents
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import answer, by, counterexample, greater, judges, rounded, zero
+from verification.paper.shared.samples import SEED, Spectrum, sampled, spectrum
+
+SHAPE = Rational(2, 25)
+BITS = 128
+DISCRETE = ("exists", "unique", "admissible", "minimal_period")
+
+
+def proved(proof: Certificate) -> bool:
+    """Does the cycle exist, is it admissible and of least period?"""
+    return all(proof.checks[name] is True for name in DISCRETE)
+
+
+@judges("cuspless.lyapunov_signs")
+def cuspless_signs(claim: Claim) -> Judgement:
+    """On the chaotic attractor; below `lambda_c` the period-2 attractor has two negative exponents."""
+    lams = tuple(k / 10 for k in range(1, 11))
+    found = spectrum("cuspless", lams)
+    least, most = float(np.min(found.plus)), float(np.max(found.minus))
+    plus = np.mean(found.plus, axis=1)
+    error = np.max(Spectrum.error(found.plus))
+    said = (
+        f"every one of {found.plus.size} orbits at lam = 0.1, 0.2, ..., 1 has nu_+ >= {least:.3f} and nu_- <= "
+        f"{most:.3f}; means from {plus[0]:.3f} to {plus.max():.3f}, errors up to {error:.0e} (between lambda* and "
+        "lambda_c starts in the basin of period 2 have two negative exponents)"
+    )
+    return sampled("nu_+ > 0 > nu_- on the chaotic attractor", said, least > 0.2 and most < -0.5)
+
+
+@cache
+def averaged(contraction: str, orbits: int = 1500) -> tuple[float, float, float]:
+    """`nu_plus` over random starts, its standard error, and the share of them that no cycle attracts."""
+    map = PinballMap("cuspless", lam=contraction)
+    start = interior_starts(map, orbits, SEED)
+    plus = map.exponents(start.theta, start.phi, 500, 4000, start.component).nu_plus
+    return float(np.mean(plus)), float(np.std(plus) / np.sqrt(orbits)), float(np.mean(plus > 0.1))
+
+
+def listed(contractions: tuple[str, ...]) -> str:
+    """The averages in words."""
+    rows = [(x, *averaged(x)) for x in contractions]
+    return "; ".join(f"{m:+.4f} +- {e:.0e} at {x} ({c:.1%} chaotic)" for x, m, e, c in rows)
+
+
+@judges("cuspless.nu_crosses_zero")
+def crosses_zero(claim: Claim) -> Judgement:
+    """The chaotic basin is born with size 0: the average turns positive well after the attractor appears."""
+    points = ("0.0713", "0.073", "0.075", "0.0765")
+    said = (
+        "sampled, it does not: the chaotic attractor appears at lambda* = 0.07122 with nu_+ = 0.25 and a basin of size "
+        f"0, so the average over starts stays negative there and turns positive near 0.0757: {listed(points)}"
+    )
+    signs = [averaged(x)[0] / averaged(x)[1] for x in points]
+    agrees = signs[0] > -3  # the first lies 0.1 per cent above lambda*
+    return sampled("it crosses 0 near lam = 0.0757, not at lambda* = 0.07122", said, agrees)
+
+
+@judges("cuspless.nu_jump")
+def jumps(claim: Claim) -> Judgement:
+    """The basin of period 2 shrinks to nothing, so the average rises steeply, and joins on."""
+    points = ("0.09", "0.092", "0.093", "0.0933", "0.095")
+    exact = float(lambda_c())
+    gaps, shares = [exact - float(x) for x in points[:4]], [1 - averaged(x)[2] for x in points[:4]]
+    power = float(np.polyfit(np.log(gaps), np.log(shares), 1)[0])
+    said = (
+        f"sampled, the average has no jump at lambda_c = {exact:.4f}: the flip is subcritical, so the basin of period "
+        f"2 shrinks to nothing there, like (lambda_c - lam)^{power:.2f}, and its nu_+ = log|mu_-|/2 tends to 0: "
+        f"{listed(points)}"
+    )
+    near, after = averaged(points[3])[0], averaged(points[4])[0]
+    return sampled("a steep rise, like the square root of lambda_c - lam, and no jump", said, after - near > 0.1)
+
+
+def triangle_rate() -> Expr:
+    """`nu_plus = nu_minus` of the egg's triangles while their multipliers are complex: half of `log(g(eta))`.
+
+    The exits of an equilateral triangle open `pi/3`, so `eta + lam*eta = pi/3`.
+
+    >>> round(float(triangle_rate().subs(lam, Rational(3937, 10000))), 4)
+    -0.3314
+    """
+    return log(area_factor().subs(eta, pi / (3 * (1 + lam)))) / 2
+
+
+def agree(one: arb, other: arb) -> Finding:
+    """Do two balls for one number, of at most `1e-15`, meet? They refute each other when they do not."""
+    if not one.overlaps(other):
+        return Finding(Outcome.REFUTED, f"{one} and {other} are different")
+    return answer(max(one.rad(), other.rad()) < arb("1e-15"), "both agree to 1e-15")
+
+
+@judges("egg.exponent_period3")
+def period3(claim: Claim) -> Judgement:
+    """A closed form, at the contraction where the paper compares it; it is 0 at birth and at `lam = 1`."""
+    here = Rational(3937, 10000)
+    value = triangle_rate().subs(lam, here)
+    born = enclose(saddle_node().subs(alpha, SHAPE)).real
+    table = tables.egg(3).at(alpha=SHAPE)
+    proof = certificate(table, here, places(0, [-1.4541, 0.6403, 2.7347], 0.0), 20)
+    with working(BITS):
+        same = agree(exponents(proof.trace, proof.determinant, 3)[0], enclose(value, {}, BITS).real)
+    finding = rounded(str(claim.printed), value)
+    ranged = "; it rounds to -0.3 from soon after the birth at lam = " + born.str(5, radius=False) + " up to lam = 0.49"
+    return Judgement(
+        by(
+            "at lam = 0.3937, from the certified cycle and in closed form",
+            finding,
+            answer(proved(proof), "proved"),
+            same,
+        ),
+        "nu = log(lam*cos(lam*eta)/cos(eta))/2 with eta = pi/(3*(1 + lam)) while the multipliers are complex: -0.3314 "
+        "at 0.3937, -0.2825 at 0.45, -0.1455 at 0.66" + ranged,
+        value=value,
+    )
+
+
+@cache
+def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
+    """The cycle of period 32 at a share of the way from its birth to its doubling: proved, `lam`, `nu_plus`."""
+    table = tables.egg(3).at(alpha=SHAPE)
+    _, _, born, dies = rungs()
+    theta, contraction = doubled(born.problem, born.start, (dies.lam - born.lam) / 50)
+    steps = 1 + int(8 * share)
+    target = born.lam + float(share) * (dies.lam - born.lam)
+    for k in range(1, steps + 1):
+        theta = cycle_at(table, theta, contraction + (target - contraction) * k / steps)
+    exact = Rational(Fraction(target).limit_denominator(10**7))
+    proof = certificate(table, exact, places(0, theta, 0.0), 20)
+    with working(BITS):
+        return proved(proof), exact, exponents(proof.trace, proof.determinant, len(theta))[0]
+
+
+@cache
+def rungs() -> list:  # type: ignore[type-arg]
+    """`lambda_3` to `lambda_6` in float64."""
+    return list(islice(ladder(SHAPE), 4))
+
+
+@judges("egg.exponent_period32")
+def period32(claim: Claim) -> Judgement:
+    """Along its window the exponent goes from 0 down and back to 0."""
+    shares = [Fraction(k, 20) for k in (1, 3, 10, 17, 19)]
+    rows = [period_32(share) for share in shares]
+    fits = next(row for row in rows if row[0] and round(float(row[2].mid()), 2) == -0.01)
+    told = ", ".join(f"{nu.str(3, radius=False)} at {float(where):.6f}" for _, where, nu in rows)
+    return Judgement(
+        by(
+            f"the certified cycle of period 32 at lam = {float(fits[1]):.7f} has nu_+ = {fits[2].str(6, radius=False)}",
+            answer(all(row[0] for row in rows), "every one of five cycles along the window is proved"),
+            rounded(str(claim.printed), lambda bits: fits[2]),
+        ),
+        f"it depends on lam: 0 at both ends of the window (lambda_5, lambda_6), and {told}",
+    )
+
+
+@judges("egg.chaos_by")
+def chaos_by(claim: Claim) -> Judgement:
+    """Sampled with an error bar; the symmetric images of the attractor have the same exponent."""
+    map = PinballMap("egg", lam=str(claim.printed), alpha=str(SHAPE))
+    start = interior_starts(map, 64, SEED)
+    end = map.exponents(start.theta, start.phi, 20_000, 5000, start.component)
+    plus = end.nu_plus[end.nu_plus > float(triangle_rate().subs(lam, Rational(str(claim.printed)))) / 2]
+    mean, error = float(np.mean(plus)), float(np.std(plus) / np.sqrt(plus.size))
+    said = (
+        f"at lam = {claim.printed} nu_+ = {mean:.5f} +- {error:.0e} over the {plus.size} of 64 orbits of 20000 bounces "
+        f"that do not end on period 3, {np.min(plus):.4f} at least; period 64 is born at lam = {rungs()[-1].lam:.6f}"
+    )
+    return sampled("nu_+ = 0.019 there", said, mean > 10 * error and float(np.min(plus)) > 0)
+
+
+@judges("egg.weak_dissipation_attracts")
+def weak_dissipation_attracts(claim: Claim) -> Judgement:
+    """An elliptic hexagon of the egg that becomes a repeller: its bounces are too oblique."""
+    table = tables.egg(3).at(alpha=Rational(1, 20))
+    six = [-3.0849, -2.0728, -0.9905, 0.0216, 1.1038, 2.1160]
+    damped, elastic = (certificate(table, x, places(0, six, 0.0), 20) for x in (Rational(99, 100), S.One))
+    with working(BITS):
+        turning = bool(elastic.trace**2 < 4), bool(damped.trace**2 < 4 * damped.determinant)
+        repels = bool(damped.determinant > 1)
+    size = damped.determinant.str(6, radius=False)
+    return Judgement(
+        counterexample(
+            "at alpha = 1/20 a cycle of period 6 is elliptic at lam = 1, and at lam = 99/100 a repeller with complex "
+            f"multipliers, |mu|^2 = {size}",
+            answer(proved(damped) and proved(elastic), "both cycles are proved"),
+            answer(all(turning), "complex multipliers at both"),
+            answer(repels, "det > 1 at lam = 99/100"),
+        ),
+        "an elliptic cycle becomes attracting for lam below 1 when the mean of eta*tan(eta) over it is below 1, and "
+        "repelling when it is above",
+        by(
+            "its multipliers have the modulus sqrt(det), and d log(det)/d lam at lam = 1 is the sum of "
+            f"{weak_dissipation()}, since log(g) does not depend on eta at lam = 1; eta = pi/6 on the triangles there",
+            zero("d log(g)/d eta is 0 at lam = 1", steepening().subs(lam, 1)),
+            zero("eta + lam*eta = pi/3", (eta + lam * eta).subs({eta: pi / 6, lam: 1}) - pi / 3),
+            greater(weak_dissipation().subs(eta, pi / 6), S.Zero),
+        ),
+        "True of the period-3 orbits; elliptic orbits with oblique bounces, where eta*tan(eta) exceeds 1 on average, "
+        "become repelling, so weak dissipation does not show their islands.",
+    )
+
+
+@judges("appendix.chaotic_sign")
+def chaotic_sign(claim: Claim) -> Judgement:
+    """The ellipse's major axis: a positive exponent in a table without chaos."""
+    from symbolic.cycles.cycle import monodromy
+
+    here = {a: S(2), lam: S.Half}
+    matrix = monodromy(major_axis()).subs(here)
+    largest = (matrix.trace() + sqrt(matrix.trace() ** 2 - 4 * matrix.det())) / 2
+    return Judgement(
+        counterexample(
+            "in the ellipse a = 2 at lam = 1/2, which has no chaotic attractor, the orbit along the major axis has "
+            f"nu_+ = log({largest})/2 > 0",
+            greater(largest, S.One),
+        ),
+        "a positive maximal exponent excludes convergence to an attracting cycle, and no more",
+        by(
+            "near an attracting cycle off joins and cusps DT is continuous, so over a period it contracts there in the "
+            "quadratic norm in which the monodromy matrix does: on an orbit that converges to the cycle every vector "
+            "shrinks exponentially, and no exponent is positive",
+            contracting_norm(),
+        ),
+        "A positive exponent does not make a trajectory converge to a chaotic attractor (unstable cycles have one "
+        "too); the criterion is meant for almost every initial condition.",
+    )

@@ -1,0 +1,1 @@
+"""Sheets of panels, and the drawings that more than one room uses."""

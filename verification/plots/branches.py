@@ -1,0 +1,176 @@
+"""A picture of branches: a bounce against the letter, solid where stable, events marked.
+
+The tongue explained in one picture: the curves of the cascade over a sample of where attractors are chaotic.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from verification.cycles.continuation.branch import Branch, What
+from verification.cycles.continuation.starts import spectrum_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from numeric import PinballMap
+from verification.cycles.search.newton import Array
+from verification.named.tongue import Accumulation, Rung, accumulation, cascade, fold, largest_shape
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+MARKS = {
+    What.FOLD: ("s", "tab:blue"),
+    What.PITCHFORK: ("D", "tab:purple"),
+    What.BRANCHING: ("D", "tab:brown"),
+    What.FLIP: ("o", "tab:red"),
+    What.TORUS: ("*", "tab:green"),
+    What.NEUTRAL: ("x", "tab:gray"),
+    What.BORDER: ("v", "tab:orange"),
+}
+
+
+def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> "Figure":
+    """The parameters of `bounces` (all when None) along each branch, in a figure of its own."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    seen: set[What] = set()
+    for number, branch in enumerate(branches):
+        shown = range(branch.system.recurrence.period) if bounces is None else bounces
+        colour = f"C{number}" if len(branches) > 1 else "black"
+        for bounce in shown:
+            for values, angles, stable in runs(branch, bounce):
+                axes.plot(values, angles, color=colour, lw=1.4 if stable else 0.9, ls="-" if stable else "--")
+            for event in branch.events:
+                marker, paint = MARKS[event.what]
+                label = None if event.what in seen else event.what.value
+                seen.add(event.what)
+                axes.plot(
+                    event.value, _wrapped(event.point.z[bounce]), marker, color=paint, ms=5, label=label, zorder=3
+                )
+    axes.set_xlabel(
+        {"lam": r"$\lambda$", "alpha": r"$\alpha$"}.get(branches[0].system.letter, branches[0].system.letter)
+    )
+    axes.set_ylabel(r"$\theta$ of the bounces" if branches[0].system.letter in ("lam", "alpha", "a") else "$x$")
+    axes.set_title(", ".join(dict.fromkeys(b.system.label for b in branches)) + "  (dashed: unstable)", fontsize=10)
+    if seen:
+        axes.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float], bool]]:
+    """Stretches of one stability that do not jump across the end of the circle."""
+    values: list[float] = []
+    angles: list[float] = []
+    for a, b in pairwise(branch.points):
+        stable = spectrum_of(b).stable
+        ends = [(float(p.z[-1]), float(_wrapped(p.z[bounce]))) for p in (a, b)]
+        if not values:
+            values, angles = [ends[0][0]], [ends[0][1]]
+        if abs(ends[1][1] - ends[0][1]) > np.pi:
+            yield values, angles, spectrum_of(a).stable  # the end at lam = 1 is on the edge itself
+            values, angles = [], []
+            continue
+        values.append(ends[1][0])
+        angles.append(ends[1][1])
+        if spectrum_of(a).stable != stable:
+            yield values[:-1], angles[:-1], not stable
+            values, angles = [ends[0][0], ends[1][0]], [ends[0][1], ends[1][1]]
+    if values:
+        yield values, angles, spectrum_of(branch.points[-1]).stable
+
+
+def _wrapped(theta: float) -> float:
+    return float(np.mod(theta + np.pi, 2 * np.pi) - np.pi)
+
+
+POSITIVE = 0.02  # an exponent per bounce above this counts as chaotic
+POINTS = 10_000  # parts that a convex table's range of shapes is cut into, to name a shape exactly
+
+
+class Sample(NamedTuple):
+    """The share of starts with a positive exponent, rows for shapes and columns for contractions."""
+
+    alpha: Array
+    lam: Array
+    share: Array
+
+
+def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed: int = 1) -> Sample:
+    """Exponents of random starts on a grid of shapes and contractions, after as many bounces that do not count.
+
+    >>> found = sampled(3, 3, 4, 200)
+    >>> found.share.shape, float(found.share[0].max())
+    ((3, 3), 0.0)
+    """
+    rng = np.random.default_rng(seed)
+    top, lams = Fraction(1, 1 + K * K), np.linspace(0.02, 0.98, side)
+    alphas = [top * Fraction(round(POINTS * x), POINTS) for x in np.linspace(0.3, 1.0, side)]
+    shares = []
+    for alpha in alphas:
+        theta = rng.uniform(-np.pi, np.pi, (side, starts))
+        phi = np.arcsin(rng.uniform(-0.99, 0.99, (side, starts)))
+        map = PinballMap("egg", lam=np.repeat(lams[:, None], starts, 1), K=K, alpha=alpha)
+        found = map.exponents(theta, phi, bounces, transient=bounces)
+        shares.append((found.nu_plus > POSITIVE).mean(axis=1))
+    return Sample(np.array([float(a) for a in alphas]), lams, np.array(shares))
+
+
+def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) -> "Figure":
+    """Doublings, symmetry breaking, accumulation and the fold of the polygons that take over, in (lam, alpha)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.5, 5.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    top = largest_shape(K)
+    if sample is not None:
+        axes.pcolormesh(sample.lam, sample.alpha, sample.share, cmap="Reds", vmin=0, vmax=1.6, shading="nearest")
+    if K % 2:
+        rungs = list(cascade(K, highest))
+        for rung in rungs:
+            _line(axes, rung)
+        _limit(axes, accumulation(rungs, np.linspace(0.6 * top, top, 41)))
+    for (p, q), dashes in zip(turns(K), ("-.", "--", ":", "-.", "--"), strict=False):
+        plane = fold(K, p, q).curve.plane
+        axes.plot(plane[:, 1], plane[:, 0], color="tab:blue", ls=dashes, lw=1.2, label=f"fold of the polygon {p}/{q}")
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0.3 * top, top)
+    axes.set_xlabel(r"$\lambda$")
+    axes.set_ylabel(r"$\alpha$")
+    axes.set_title(f"egg with K = {K}" + ("; red: share of starts that end in chaos" if sample is not None else ""))
+    axes.legend(fontsize=8, frameon=True, loc="lower left")
+    return figure
+
+
+def turns(K: int) -> list[tuple[int, int]]:
+    """The rotation numbers `p/K` below 1/2 whose polygons fold.
+
+    >>> turns(5)
+    [(1, 5), (2, 5)]
+    """
+    return [(p, K) for p in range(1, (K + 1) // 2) if np.gcd(p, K) == 1]
+
+
+def _line(axes: object, rung: Rung) -> None:
+    plane = rung.curve.plane
+    breaking = rung.what is What.PITCHFORK
+    label = rung.name if rung.period <= 4 else "doublings of 8, 16, ..." if rung.period == 8 else None
+    colour = "tab:purple" if breaking else "black" if rung.period == 2 else "tab:green"
+    axes.plot(plane[:, 1], plane[:, 0], color=colour, lw=1.6 if rung.period == 2 else 1.0, label=label)  # type: ignore[attr-defined]
+
+
+def _limit(axes: object, end: Accumulation) -> None:
+    axes.plot(end.lam, end.alpha, color="tab:red", lw=1.6, label="accumulation")  # type: ignore[attr-defined]

@@ -1,0 +1,210 @@
+"""What a figure shows, as data: panels of named point sequences, in the quantities of the paper's axes.
+
+The paper, axes and marks of every figure: quiet, and readable in black and white.
+
+Matplotlib is imported here, inside functions, and only when something is drawn. No pyplot, no global state: what the
+style sets holds while a figure is made and saved, and no longer.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+Array = NDArray[np.float64]
+Fact = str | int | float
+
+
+class Curve(NamedTuple):
+    """Points in order; a nan is a gap, where no line is drawn."""
+
+    x: Array
+    y: Array
+
+
+class Raster(NamedTuple):
+    """A label for each cell of a grid: `names[labels[row, column]]`, the first row lowest."""
+
+    x: Array
+    y: Array
+    labels: NDArray[np.int64]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes. `x` and `y` name what they measure, `facts` what the data were computed from."""
+
+    title: str
+    x: str
+    y: str
+    curves: Mapping[str, Curve]
+    raster: Raster | None = None
+    facts: Mapping[str, Fact] = field(default_factory=dict)
+
+    def document(self) -> dict[str, Any]:
+        """The panel as JSON has it; a gap is null.
+
+        >>> gap = Curve(np.array([0.0, 1.0]), np.array([2.0, np.nan]))
+        >>> Panel("a", "s", "s_1", {"T_0": gap}).document()["curves"]["T_0"]
+        {'x': [0.0, 1.0], 'y': [2.0, None]}
+        """
+        curves = {name: {"x": _plain(curve.x), "y": _plain(curve.y)} for name, curve in self.curves.items()}
+        found: dict[str, Any] = {"title": self.title, "x": self.x, "y": self.y, **self.facts, "curves": curves}
+        if self.raster is not None:
+            x, y, labels, names = self.raster
+            found["raster"] = {"x": _plain(x), "y": _plain(y), "names": list(names), "labels": labels.tolist()}
+        return found
+
+
+Panels = tuple[Panel, ...]
+
+
+def scaled(count: int, fine: float, least: int = 2) -> int:
+    """How many at resolution `fine`, of which a draft has `count`.
+
+    >>> scaled(100, 8.0), scaled(100, 0.001)
+    (800, 2)
+    """
+    return max(least, round(count * fine))
+
+
+def _plain(values: Array) -> list[float | None]:
+    return [None if value != value else value for value in np.asarray(values, dtype=float).tolist()]
+
+
+WIDTH = 7.0  # inches, of a page
+AXES = {
+    "x": "$x$",
+    "y": "$y$",
+    "s": "$s$",
+    "s_image": "$T_0^n(s)$",
+    "s_4": "$s_4$",
+    "sin_phi": r"$\sin\,\varphi$",
+    "phi": r"$\varphi_0$",
+    "theta": r"$\theta$",
+    "theta_image": r"$T_0^n(\theta)$",
+    "theta_3": r"$\theta_3$",
+    "lam": r"$\lambda$",
+    "alpha": r"$\alpha$",
+    "modulus": r"$|\mu_\pm|$",
+    "nu": r"$\nu$",
+}
+ANGLES = ("theta", "theta_image", "theta_3")
+STYLE: Any = {
+    "font.family": "serif",
+    "font.serif": ["STIXGeneral", "DejaVu Serif"],
+    "mathtext.fontset": "stix",
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.linewidth": 0.6,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "lines.linewidth": 0.9,
+    "path.simplify": True,
+    "savefig.dpi": 200,
+    "svg.hashsalt": "pinball",
+}
+BLACK, DARK, MIDDLE, LIGHT = "#000000", "#1f4e79", "#c8691c", "#9fc5e8"  # in order of lightness
+OUTLINE: dict[str, Any] = {"color": "0.35", "lw": 1.1, "solid_joinstyle": "miter"}
+FAINT: dict[str, Any] = {"color": "0.6", "lw": 0.5, "ls": ":"}
+CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew": 1.4, "zorder": 5}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Matplotlib's settings for the figures, put back afterwards."""
+    try:
+        import matplotlib
+    except ImportError:
+        raise ValueError("figure: Matplotlib is missing; install pinball-billiards[plot], or ask for --json") from None
+    with matplotlib.rc_context(STYLE):
+        yield
+
+
+def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tuple[Figure, list[Axes]]":
+    """A figure with one pair of axes for each panel, named and labelled; `height` in inches, of a row."""
+    from matplotlib.figure import Figure
+
+    rows = -(-len(panels) // columns)
+    width = WIDTH if columns > 1 else 4.2
+    figure = Figure(figsize=(width, rows * height), layout="constrained")
+    axes: list[Any] = []
+    for i, panel in enumerate(panels):
+        ax = figure.add_subplot(rows, columns, i + 1)
+        letter = f"({'abcdefgh'[i]}) " if len(panels) > 1 else ""
+        ax.set_title(letter + panel.title, loc="left")
+        _prepare(ax, panel)
+        axes.append(ax)
+    return figure, axes
+
+
+def _prepare(ax: "Axes", panel: Panel) -> None:
+    """Labels, limits and ticks that follow from what the axes measure."""
+    if panel.x == "x":
+        ax.set_aspect("equal")
+        ax.set_axis_off()
+    ax.set_xlabel(AXES[panel.x])
+    ax.set_ylabel(AXES[panel.y])
+    for name, axis, limits in ((panel.x, ax.xaxis, ax.set_xlim), (panel.y, ax.yaxis, ax.set_ylim)):
+        if name in ANGLES:
+            turns = range(-2, 3)
+            axis.set_ticks([k * 1.5707963267948966 for k in turns], [_pi(k) for k in turns])
+            limits(-3.141592653589793, 3.141592653589793)
+        elif name == "sin_phi":
+            limits(-1, 1)
+
+
+def _pi(halves: int) -> str:
+    """A multiple of `pi/2` in mathtext.
+
+    >>> _pi(-1), _pi(2)
+    ('$-\\\\pi/2$', '$\\\\pi$')
+    """
+    sign = "-" if halves < 0 else ""
+    return "$0$" if halves == 0 else rf"${sign}\pi{'/2' if halves % 2 else ''}$"
+
+
+def cloud(ax: "Axes", curve: Curve, color: str, size: float = 0.6, label: str | None = None) -> None:
+    """Many points, as pixels in a vector file."""
+    ax.plot(*curve, ls="", marker="o", mew=0, ms=size, color=color, rasterized=curve.x.size > 4000, label=label)
+
+
+def legend(ax: "Axes", columns: int = 3) -> None:
+    """A legend below the axes, whose marks are large enough to be told apart."""
+    shown = ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=columns, handletextpad=0.4)
+    handles: list[Any] = shown.legend_handles
+    for handle in handles:
+        handle.set_markersize(max(5.0, handle.get_markersize()))
+
+
+def graphs(ax: "Axes", panel: Panel) -> None:
+    """Graphs of a map and its iterates with the diagonal; the higher the iterate, the lighter the line."""
+    low = min(float(curve.x[0]) for curve in panel.curves.values())
+    high = max(float(curve.x[-1]) for curve in panel.curves.values())
+    ax.plot([low, high], [low, high], **FAINT)
+    looks: tuple[dict[str, Any], ...] = (
+        {"color": BLACK, "lw": 1.5},
+        {"color": DARK, "lw": 0.9, "ls": (0, (5, 1.2))},
+        {"color": MIDDLE, "lw": 0.9, "ls": (0, (1.2, 1))},
+        {"color": "0.62", "lw": 0.7},
+    )
+    for order, (look, (name, curve)) in enumerate(zip(looks, panel.curves.items(), strict=False)):
+        ax.plot(*curve, label=f"${name}$", zorder=4 - order, **look)
+    if panel.x not in ANGLES:
+        ax.set_xlim(low, high)
+        ax.set_ylim(low, high)
+    ax.set_box_aspect(1)
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=len(panel.curves), handlelength=2.2)

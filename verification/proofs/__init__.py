@@ -1,0 +1,1 @@
+"""Proofs in balls, a room for each subject."""

@@ -1,0 +1,234 @@
+"""What a border collision of the plane bears, from its two affine pieces: the kind, bounds, exponents.
+
+`x -> A x + b` with one `A` for `v < 0` and another for `v > 0`, that agree at `v = 0`, in units of the
+distance `e > 0` of the parameter; for `e < 0` the shift has the other sign. Proofs hold for the
+piecewise linear map, and say nothing of the terms that a map itself has beyond it. The kinds are those of
+[NusseYorke1992] and [BanerjeeYorkeGrebogi1998].
+
+**Robust chaos.** Where the fixed points lie on their own sides for `e > 0`, let `x` be proportional to `v` and grow
+away from the piece with the larger trace, called the left one. A suitable `y` brings the map to
+
+    (x, y) -> (tL*x + y + 1, -dL*x) for x <= 0,   (tR*x + y + 1, -dR*x) for x >= 0,
+
+with the traces `t` and the determinants `d` of the pieces. (It needs that `u` acts on `v`, which the signs below
+imply.) Let `n < m` be the multipliers of the left piece, and
+
+    0 < dL < 1,  0 < dR < 1,  tL > 1 + dL,  tR < -(1 + dR),
+    phi > 0  with  phi = dR - (tR + dL + dR - (1 + tR)*m)*m.
+
+Then a triangle is mapped into itself and a slightly larger one into its interior, and every orbit in it has an
+exponent of at least `log min(m, abs(mR)) > 0`, `mR` the right multiplier beyond -1 (one-sided where it meets
+`x = 0`). So there is an attractor, and no cycle in the triangle is stable; and so it is for all pieces near these,
+as the hypotheses are strict. The region is that of [BanerjeeYorkeGrebogi1998], in the form that
+[GlendinningSimpson2021] give its last inequality, and the two steps of the proof are theirs. It does not say that
+the attractor is one piece, or that it is the only one.
+
+Why. `0 < n < 1 < m` by the third inequality; let `Y` be the left fixed point, `h = m*(x - xY) + (y - yY)` and
+`k = n*(x - xY) + (y - yY)`. On the left `h` is multiplied by `m` and `k` by `n`, so `h = 0` is the stable line of `Y`
+and `k = 0` the unstable one. This meets `x = 0` at a point whose image is `D = (1/(1 - n), 0)`, and
+`h(f(D)) = phi/((1 - n)*(m - 1))`: the last inequality says that `f(D)`, where the unstable manifold has folded, has
+not crossed the stable line. Then the triangle `h >= h(f(D))`, `k <= 0`, above the line from `D` to `f(D)`, is mapped
+into itself. Its left part goes to `h >= m*h(f(D))`, `k <= 0`, `y >= 0`, which is part of it. The corners of its right
+part go there too when they are on `x = 0`, to `f(D)`, or to the line from `D` to `f(D)`; and it is convex.
+(Moved outwards a little, the end at `f(D)` of the line by far more than the rest, the sides go strictly inside.) With
+`phi < 0` orbits that start near `f(D)` run off beside the unstable line: `h < 0` grows in size, `k < 0` fades, and
+`x` falls for ever. A direction `y/x = s` goes to `-d/(t + s)`: those from `-n` to `-nR`, `nR` the smaller right
+multiplier, go to such, and `x` is multiplied by `t + s`, at least `m` on the left and at most `mR` on the right.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from flint import arb
+
+from verification.proofs.corner.polygon import (
+    HAIR,
+    SIGNS,
+    Piece,
+    Pieces,
+    Point,
+    Polygon,
+    Row,
+    expansion,
+    grown,
+    hull,
+    part,
+    trapped,
+    turned,
+)
+
+
+class Kind(Enum):
+    """What happens to the fixed points of the two pieces as the parameter passes."""
+
+    FOLD = "two fixed points, one on each side of the border, on one side of the parameter and none on the other"
+    PERSISTENCE = "one fixed point, which crosses the border"
+    UNKNOWN = "not decided"
+
+
+def fixed_point(piece: Piece) -> Row:
+    """The fixed point of an affine map, enclosed.
+
+    >>> fixed_point(Piece(((arb(3), arb(0)), (arb(0), arb(2))), (arb(2), arb(1))))
+    (-1.00000000000000, -1.00000000000000)
+    """
+    (a, b), (c, d) = piece.rows
+    p, q = piece.of((arb(0), arb(0)))
+    determinant = (1 - a) * (1 - d) - b * c
+    return ((1 - d) * p + b * q) / determinant, (c * p + (1 - a) * q) / determinant
+
+
+def kind(pieces: Pieces) -> Kind:
+    """Do both pieces have their fixed point on their own side for the same sign of `e`?"""
+    own = [fixed_point(piece)[1] * SIGNS[component] for component, piece in pieces.items()]
+    if all(x > 0 for x in own) or all(x < 0 for x in own):
+        return Kind.FOLD
+    return Kind.PERSISTENCE if own[0] * own[1] < 0 else Kind.UNKNOWN
+
+
+def hypotheses(pieces: Pieces) -> dict[str, bool | None]:
+    """Those of the theorem on robust chaos for `e > 0`, each proved, refuted or open in balls."""
+    right, left = sorted(pieces, key=lambda component: float(pieces[component].trace.mid()))
+    low, high = pieces[right], pieces[left]
+    return {
+        "fixed_points_on_their_sides": less(arb(0), fixed_point(high)[1] * SIGNS[left]),
+        "determinants_between_0_and_1": both(
+            *(both(less(arb(0), piece.determinant), less(piece.determinant, arb(1))) for piece in (low, high))
+        ),
+        "left_trace_above_1_plus_det": less(1 + high.determinant, high.trace),
+        "right_trace_below_minus_1_minus_det": less(low.trace, -1 - low.determinant),
+        "unstable_manifold_short_of_the_stable_one": less(arb(0), homoclinic(high, low)),
+    }
+
+
+def robust(pieces: Pieces) -> bool | None:
+    """Does the map lie in the region of robust chaos? False when a hypothesis is proved to fail, None when open."""
+    return both(*hypotheses(pieces).values())
+
+
+def homoclinic(left: Piece, right: Piece) -> arb:
+    """`phi` of the module's theorem: 0 where the unstable manifold of the left fixed point folds at its stable one.
+
+    >>> left, right = (Piece(((arb(0), arb(-d)), (arb(1), arb(t))), (arb(0), arb(1))) for t, d in ((2.5, 1), (-2, 0.5)))
+    >>> homoclinic(left, right)  # 0.5 - (-2 + 1 + 0.5 + 2)*2
+    -2.50000000000000
+    """
+    t, d = left.trace, left.determinant
+    m = (t + (t**2 - 4 * d).sqrt()) / 2
+    return right.determinant - (right.trace + d + right.determinant - (1 + right.trace) * m) * m
+
+
+def less(a: arb, b: arb) -> bool | None:
+    """`a < b` with its three answers."""
+    return True if a < b else False if a >= b else None
+
+
+def both(*answers: bool | None) -> bool | None:
+    """Do all hold? False as soon as one does not."""
+    return False if False in answers else None if None in answers else True
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Bounds in units of `e`: the attractor reaches `inner`, and lies within the polygon `outer`.
+
+    `inner` are the lowest and the highest `v` that points of the unstable manifold of the folding piece's
+    fixed point are proved to have: they belong to every attracting set that holds it. `strips` are length
+    and width of two thin convex sets, the images of the sides, that hold the attractor.
+    """
+
+    inner: tuple[arb, arb]
+    outer: Polygon
+    strips: tuple[tuple[float, float], ...]
+
+
+Segment = tuple[Row, Row]
+
+
+def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 10) -> Extent | None:
+    """Bounds of the attractor; `folding` is the piece with the negative multiplier. None when not proved."""
+    fixed, border = fixed_point(pieces[folding]), _to_border(pieces[folding])
+    if border is None or not fixed[1] * SIGNS[folding] > 0:
+        return None
+    manifold, heights = [(fixed, border)], [fixed[1]]
+    for _ in range(images):
+        manifold = [image for segment in manifold for image in _mapped(pieces, segment)]
+        heights += [end[1] for segment in manifold for end in segment]
+    outer = grown(pieces, _middle(pieces[folding].of(border)), room)
+    if outer is None or not trapped(pieces, outer):
+        return None
+    inner = min(heights, key=lambda v: float(v.mid())), max(heights, key=lambda v: float(v.mid()))
+    return Extent(inner, outer, strips(pieces, outer))
+
+
+def strips(pieces: Pieces, region: Polygon) -> tuple[tuple[float, float], ...]:
+    """Length and width of the images of both sides of a region: a trapped one has its attractor in them."""
+    return tuple(_strip(_image(piece, part(region, component))) for component, piece in pieces.items())
+
+
+def _to_border(piece: Piece) -> Row | None:
+    """Where the unstable direction of a fixed point meets `v = 0`.
+
+    The multiplier is negative, below -1: preimages of that way lie on it, on either side of the fixed
+    point in turn and ever nearer, so that all of it belongs to the unstable manifold.
+    """
+    (a, b), _ = piece.rows
+    u, v = fixed_point(piece)
+    multiplier = (piece.trace - (piece.trace**2 - 4 * piece.determinant).sqrt()) / 2
+    return (u - v * b / (multiplier - a), arb(0)) if multiplier < -1 else None
+
+
+def _mapped(pieces: Pieces, segment: Segment) -> list[Segment]:
+    """The image of a segment of the plane; what cannot be told to lie on one side is left out."""
+    p, q = segment
+    if p[1] * q[1] < 0:
+        crossing = p[0] - p[1] * (q[0] - p[0]) / (q[1] - p[1]), arb(0)
+        return _mapped(pieces, (p, crossing)) + _mapped(pieces, (crossing, q))
+    height = p[1] + q[1]
+    return [(piece.of(p), piece.of(q)) for c, piece in pieces.items() if height * SIGNS[c] > 0 and p[1] * q[1] >= 0]
+
+
+def _middle(x: Row) -> Point:
+    return float(x[0].mid()), float(x[1].mid())
+
+
+def _image(piece: Piece, points: Polygon) -> Polygon:
+    """Points whose hull holds the image of the hull, by a hair that covers the rounding of hulls in floats."""
+    images = [piece.of((arb(u) + arb(0, HAIR), arb(v) + arb(0, HAIR))) for u, v in points]
+    return [(float(a), float(b)) for u, v in images for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
+
+
+def _strip(points: Polygon) -> tuple[float, float]:
+    """Length and width of a set, along its longest diagonal and across it, rounded up."""
+    length, p, q = max((math.dist(p, q), p, q) for p in points for q in points)
+    across = [((q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])) / length for x in points]
+    return length + 1e-9, max(across) - min(across) + 1e-9
+
+
+def exponents(pieces: Pieces, region: Polygon, bounces: int = 2, length: int = 12) -> tuple[float, float] | None:
+    """Bounds of the largest exponent per bounce of every orbit in a trapping region.
+
+    From the least and the largest product of stretches over the words of this length that some point
+    of the region follows; each step of the map is as many bounces as said.
+    """
+    whole = expansion(pieces)
+    if whole is None:
+        return None
+    words = [(region, whole.ratio, arb(1))]
+    for _ in range(length):
+        words = [longer for word in words for longer in _continued(pieces, *word)]
+    steps = length * bounces
+    products = [product for _, _, product in words]
+    least, most = (float(f(float(e(p)) for p in products)) for f, e in ((min, arb.lower), (max, arb.upper)))
+    return math.log(least) / steps, math.log(most) / steps
+
+
+def _continued(pieces: Pieces, at: Polygon, ratio: arb, product: arb) -> list[tuple[Polygon, arb, arb]]:
+    found = []
+    for component, piece in pieces.items():
+        here: list[Point] = part(at, component)
+        if here:
+            stretch = abs(piece.rows[1][0] * ratio + piece.rows[1][1])
+            found.append((hull(_image(piece, here)), turned(piece, ratio), product * stretch))
+    return found

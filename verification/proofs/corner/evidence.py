@@ -1,0 +1,195 @@
+"""What the corner orbit bears at `lambda-star`: proved for the limit, measured beside it.
+
+Half the return (leave a corner, meet the arc, land near the other corner, take the mirror image) is
+continuous and piecewise smooth: the arc bends on one side of a corner, the wall does not on the
+other. Its linear parts at `lambda-star` are enclosed, so that the piecewise linear map which they
+make, the normal form of a border collision, is settled by proof: its kind, bounds of its attractor in
+units of `lam - lambda-star`, bounds of the exponent. Float64 orbits of the map itself stand beside it.
+Paper: section 5.2.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from flint import arb
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from verification.arithmetic.words import working
+from verification.proofs.corner.border_collision import (
+    Extent,
+    Kind,
+    exponents,
+    extent,
+    fixed_point,
+    kind,
+    robust,
+    strips,
+)
+from verification.proofs.corner.corner import ARC, WALL, enclosed
+from verification.proofs.corner.half_return import START, limit, pieces
+from verification.proofs.corner.mean_value import BITS, Bounce, angle, constant, corners
+from verification.proofs.corner.polygon import SIGNS, Pieces, Polygon, Row, grown, hull, part, sides, trapped
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Border:
+    """What is proved of the piecewise linear map; lengths and angles in units of `lam - lambda-star`.
+
+    `angles` bounds the exit angle at the corner, less `phi-star`; `exponent` the largest exponent per
+    bounce of every orbit, the extremes of which a few exceptional orbits attain.
+    """
+
+    pieces: Pieces
+    kind: Kind
+    robust: bool | None
+    extent: Extent
+    angles: tuple[float, float]
+    exponent: tuple[float, float]
+
+
+@cache
+def border() -> Border:
+    """The border collision of the corner orbit.
+
+    >>> found = border()
+    >>> found.kind.name, found.robust, [round(v, 3) for v in found.exponent]
+    ('FOLD', True, [0.18, 0.383])
+    """
+    with working(BITS):
+        linear = limit()
+        bounds = extent(linear)
+        if bounds is None:
+            raise ArithmeticError("the attractor of the piecewise linear map is not enclosed")
+        rates = exponents(linear, bounds.outer, length=9)
+        if rates is None:
+            raise ArithmeticError("the piecewise linear map is not proved to expand a cone")
+        return Border(linear, kind(linear), robust(linear), bounds, _angles(bounds.outer), rates)
+
+
+def _angles(region: Polygon) -> tuple[float, float]:
+    """`phi = -lam*eta`, to first order, over either side of a region, rounded outwards."""
+    theta1, star = enclosed()
+    found = []
+    for component in (ARC, WALL):
+        here = Bounce(component, constant(corners()[component], ()))
+        eta, by_v, by_u = angle(here, Bounce(ARC, constant(-theta1, ())))
+        found += [-eta - star * (by_v * v + by_u * u) for u, v in part(region, component)]
+    return min(float(x.lower()) for x in found), max(float(x.upper()) for x in found)
+
+
+def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | None:
+    """Length and width of two convex sets that hold the attractor of the map itself, arc's and wall's, proved.
+
+    In units of `lam - lambda-star`, for all `lam` up to `lambda-star + last`; None when not proved.
+
+    >>> [width < 1e-3 for _, width in strips_of_the_map()]
+    [True, True]
+    """
+    with working(BITS):
+        region = grown(limit(), START, 5e-4)
+        if region is None:
+            return None
+        family = pieces(region, (0.0, last))
+        return strips(family, region) if trapped(family, region) else None
+
+
+def saddles(last: float = 3e-6) -> dict[int, Row] | None:
+    """The two orbits of period 4 that are born at `lambda-star`, for all `lam` up to `lambda-star + last`, proved.
+
+    Where half the return has its fixed points `(u, v)` in units of `lam - lambda-star`, on the arc and on the
+    wall: `base + (1 - A)^-1 (H(base)/e - base)`, with the `A` of a point of the region, lies in a ball inside of it,
+    so that there is one; and there is one only. From 0.07122 on `certificates.everywhere` follows both.
+
+    >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
+    {0: '-0.532', 1: '10.1'}
+    """
+    region = [(-1.0, -1.0), (1.0, -1.0), (7.0, 12.0), (4.0, 12.0)]
+    with working(BITS):
+        family = pieces(region, (0.0, last))
+        found = {component: fixed_point(piece) for component, piece in family.items()}
+        for component, (u, v) in found.items():
+            trace, determinant = family[component].trace, family[component].determinant
+            within = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(region))
+            if not (within and v * SIGNS[component] > 0 and abs(trace) > abs(1 + determinant)):
+                return None
+        return found
+
+
+@dataclass(frozen=True)
+class Attractor:
+    """An attractor in units of `lam - lambda-star`: arc length beyond the corner, exit angle less `phi-star`.
+
+    `widths` are those of the strips that come from bounces on the arc and on the wall; `exponent` is the
+    largest one per bounce.
+    """
+
+    lam: float
+    lengths: tuple[float, float]
+    angles: tuple[float, float]
+    widths: tuple[float, float]
+    exponent: float
+
+
+def measured(distances: Sequence[float], bounces: int = 40_000) -> list[Attractor]:
+    """The attractor of the map itself at `lambda-star + e` for each distance `e`, in float64.
+
+    >>> (found,) = measured([1e-4], 20_000)
+    >>> [round(v, 2) for v in found.lengths]
+    [-1.69, 1.96]
+    """
+    theta1, star = (float(x.mid()) for x in enclosed())
+    lams = [star + e for e in distances]
+    map = PinballMap("cuspless", lam=lams)
+    start = np.full(len(lams), 2 * math.pi / 3)
+    phi = np.full(len(lams), _exit_angle(theta1))
+    orbit = map.orbit(start, phi, bounces)
+    rates = map.exponents(start, phi, bounces, bounces // 10).nu_plus
+    found = []
+    for i, e in enumerate(distances):
+        near = [np.asarray(x[bounces // 4 :, i], float) for x in (orbit.component, orbit.theta, orbit.phi)]
+        if np.any(orbit.code[:, i]):
+            raise ValueError(f"border: the orbit at lambda-star + {e} meets an undefined point")
+        found.append(_attractor(lams[i], e, near, (theta1, _exit_angle(theta1)), float(rates[i])))
+    return found
+
+
+def _exit_angle(theta1: float) -> float:
+    here = Bounce(ARC, constant(corners()[ARC], ()))
+    return float(angle(here, Bounce(ARC, constant(enclosed()[0], ())))[0].mid())
+
+
+def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, float], rate: float) -> Attractor:
+    """The bounces near the corners, mirrored to the upper one; the bounce before each tells `u`."""
+    component, theta, phi = near
+    on_wall = component == WALL
+    at = np.where(on_wall, np.abs(theta) > 0.2, np.abs(theta) > 1.2)
+    upper = np.where(on_wall, -np.sign(theta), np.sign(theta))
+    v = np.where(on_wall, math.sqrt(3) / 4 - np.abs(theta), 4 * np.sin(np.abs(theta) / 2) - 2 * math.sqrt(3)) / e
+    chosen = np.flatnonzero(at[2:]) + 2
+    u = (theta[chosen - 1] * upper[chosen] + orbit[0]) / e
+    angles = (phi[chosen] * upper[chosen] - orbit[1]) / e
+    v, came_from_wall = v[chosen], on_wall[chosen - 2]
+    widths = [_width(np.column_stack([u, v])[came_from_wall == side]) for side in (False, True)]
+    return Attractor(
+        lam,
+        (float(v.min()), float(v.max())),
+        (float(angles.min()), float(angles.max())),
+        (widths[0], widths[1]),
+        rate,
+    )
+
+
+def _width(points: Array) -> float:
+    """Across the longest diagonal of the points."""
+    corners = np.array(hull([(float(u), float(v)) for u, v in points]))
+    gaps = corners[:, None] - corners[None]
+    i, j = np.unravel_index(np.argmax(np.hypot(gaps[..., 0], gaps[..., 1])), gaps.shape[:2])
+    along = corners[j] - corners[i]
+    across = along[0] * (corners - corners[i])[:, 1] - along[1] * (corners - corners[i])[:, 0]
+    return float(np.ptp(across) / np.hypot(*along))

@@ -1,0 +1,1 @@
+"""Invariant manifolds of saddles, and where two of them touch."""

@@ -1,0 +1,240 @@
+"""Saddles and their local manifolds in complex balls, for every letter in a ball at once.
+
+A saddle of `p` bounces is the zero of its `p` rules, enclosed by an interval Newton step; the product of
+its bounces' derivatives gives the multipliers. With them in balls `doubled` encloses the coefficients of the
+series one after the other, since each order is a linear system whose right side has only lower orders.
+What the series leave out is bounded in `remainder`.
+
+A bound for all that the truncated series of a local manifold leave out, for saddles of any number of bounces.
+
+Let `P[i]`, `0 <= i < p`, be the polynomials of order `N`, continued to all `i` by
+`P[i+p](z) = sign*P[i](mu*z) + shift`. Sought are functions `h[i]`, analytic on the unit disc, without terms up
+to order `N` and continued likewise, such that `P + h` obeys the rule. Let `m` be the multiplier outwards: `mu` for
+the unstable manifold, `1/mu` for the stable one. Going outwards, each rule is solved for its outermost point:
+
+1. The rule along `P` is an analytic function without terms up to order `N`. So on the unit disc it is at
+   most `R**-(N+1)` times its bound on the disc of radius `R` (Schwarz's lemma): one evaluation in balls.
+2. One round nearer to the saddle the functions are `sign*h[i](z/m)`, at most `abs(m)**-(N+1)` times the bound of
+   `h[i]` (Schwarz again). This makes the sought functions small on the right side, and no inverse is needed.
+3. Where the two inner points of a rule are off by at most `e1` and `e2`, the outermost one is off by at most
+   `(defect + slope1*e1 + slope2*e2)/slope0`. The slopes are bounded over a convex tube around `P`, and `slope0`
+   is not 0 there, so such a point exists and is the only one in the tube (an interval Newton step).
+
+So a round outwards takes bounds `e[0], ..., e[p-1]` to bounds `E(e)`, an affine and monotone map. It is checked
+that `E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are taken to functions bounded by `e`, and their
+distances, in the norm weighted by `e`, at least halved. The one fixed point is `h`. It is analytic in the letter,
+and real where the letter is, as all else is. Dividing `z` by `m` again and again leads along an orbit to the
+saddle: this is the manifold.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import acb, acb_mat, arb, ctx, fmpq
+
+from verification.arithmetic.series import Jet
+from verification.arithmetic.words import FUNCTIONS, Arithmetic
+from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.saddle import Orbit, Saddle, matrix, padded, slopes
+from verification.proofs.manifolds.series import direction, doubled, horner, neighbours
+
+NEWTON = 12
+Rows = list[list[Any]]
+
+
+class TooWideError(ValueError):
+    """A step of the proof whose balls are too wide; `item` is the check that stays unknown."""
+
+    def __init__(self, item: str, message: str) -> None:
+        super().__init__(message)
+        self.item = item
+
+
+def complex_balls(bits: int) -> Arithmetic:
+    """The words of the kernels for complex balls, analytic wherever they are finite."""
+
+    def rational(p: int, n: int) -> acb:
+        with ctx.workprec(bits):
+            return acb(arb(fmpq(p, n)))
+
+    with ctx.workprec(bits):
+        pi = acb.pi()
+    cut = {"atan": lambda x: abs(x.imag) < 1, "sqrt": lambda x: x.real > 0, "log": lambda x: x.real > 0}
+    return {word: _analytic(word, cut.get(word)) for word in FUNCTIONS} | {"q": rational, "pi": pi}
+
+
+def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any], acb]:
+    """The function where it is analytic over the whole ball, and nothing at all where a cut may pass through."""
+
+    def function(x: Any) -> acb:
+        ball = acb(x)
+        return getattr(ball, word)() if defined is None or defined(ball) else acb("nan")
+
+    return function
+
+
+def around_zero(radius: arb) -> acb:
+    """A complex ball (a square) that contains all numbers of at most this size."""
+    half = arb(0, radius.abs_upper())
+    return acb(half, half)
+
+
+def size(x: Any) -> arb:
+    """An upper bound of the absolute value."""
+    return arb(abs(x).abs_upper())
+
+
+def enclosed_saddle(orbit: Orbit, map: Recurrence, letter: acb) -> Saddle:
+    """The one cycle near the start, for every letter in a ball, with real multipliers on both sides of the circle."""
+
+    def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
+        ring = padded(orbit, map, x)
+        values = [map.rule(ring[i : i + 3], letter) for i in range(len(x))]
+        return values, matrix(orbit, slopes(orbit, map, x, letter))
+
+    found = only_zero(rule, [acb(x) for x in orbit.start])
+    stable, unstable = multipliers_of(orbit, map, found, letter)
+    if not (abs(stable) < 1 and abs(unstable) > 1):
+        raise TooWideError("saddle", f"the multipliers of the {orbit.name} are not separated")
+    return Saddle(orbit, map, letter, tuple(found), stable, unstable)
+
+
+def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Sequence[acb]) -> list[acb]:
+    """The zero that an interval Newton step proves to be near `start`, and alone in a box."""
+
+    def step(values: list[acb], rows: Rows) -> list[acb]:
+        try:
+            found = acb_mat(rows).solve(acb_mat([[v] for v in values]))
+        except ZeroDivisionError as why:
+            raise TooWideError("saddle", "the linearised rules may be singular") from why
+        return [found[i, 0] for i in range(len(values))]
+
+    middle = list(start)
+    for _ in range(NEWTON):
+        middle = [(x - d).mid() for x, d in zip(middle, step(*rule(middle)), strict=True)]
+    values, rows = rule(middle)
+    least = arb(2) ** (-ctx.prec + 8)
+    box = [x + around_zero(4 * size(d) + least) for x, d in zip(middle, step(values, rows), strict=True)]
+    found = [x - d for x, d in zip(middle, step(values, rule(box)[1]), strict=True)]
+    if not all(b.contains(x) for b, x in zip(box, found, strict=True)):
+        raise TooWideError("saddle", "an interval Newton step did not contract; the balls are too wide")
+    return found
+
+
+def multipliers_of(orbit: Orbit, map: Recurrence, points: Sequence[acb], letter: acb) -> tuple[acb, acb]:
+    """The roots of the characteristic polynomial of one round, the one inside the unit circle first."""
+    first, second, determinant = (acb(1), acb(0)), (acb(0), acb(1)), acb(1)
+    for before, here, after in slopes(orbit, map, points, letter):
+        first, second = ((b, -(here * b + before * a) / after) for a, b in (first, second))
+        determinant = determinant * before / after
+    trace = orbit.sign * (first[0] + second[1])
+    root = (trace * trace - 4 * determinant).sqrt()
+    if not root.real > 0:
+        raise TooWideError("saddle", f"the multipliers of the {orbit.name} may be complex")
+    larger = (trace + root) / 2 if trace.real > 0 else (trace - root) / 2
+    return determinant / larger, larger
+
+
+@dataclass(frozen=True)
+class Enclosed:
+    """The terms of the series to some order, where `z = 1` is `unit` along the eigenvector with entry `chief` 1."""
+
+    saddle: Saddle
+    unstable: bool
+    factor: acb
+    coefficients: tuple[tuple[acb, ...], ...]
+
+    @property
+    def order(self) -> int:
+        """The highest power of `z`."""
+        return len(self.coefficients[0]) - 1
+
+    def over(self, i: int, radius: arb) -> acb:
+        """The polynomial of bounce `i`, any integer, over the disc of this radius: its terms in absolute value."""
+        orbit, (rounds, place) = self.saddle.orbit, divmod(i, len(self.coefficients))
+        x, *rest = self.coefficients[place]
+        shift, reach = orbit.shifted(self.saddle.map), radius * size(self.factor**rounds)
+        for _ in range(abs(rounds)):
+            x = orbit.sign * x + shift if rounds > 0 else orbit.sign * (x - shift)
+        return x + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
+
+    def ring(self) -> list[Jet]:
+        """The polynomials of the bounces, with one more on either side."""
+        powers = [self.factor**k for k in range(self.order + 1)]
+        return neighbours(self.saddle, [list(c) for c in self.coefficients], powers)
+
+    def pair(self) -> tuple[Jet, Jet]:
+        """Two neighbours that need no parameter outside the disc: bounces -1 and 0 going out, 0 and 1 coming in."""
+        ring = self.ring()
+        return (ring[0], ring[1]) if self.unstable else (ring[1], ring[2])
+
+
+def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float, chief: int) -> Enclosed:
+    """The series to `order` with enclosed coefficients; entry `chief` of the eigenvector is 1."""
+    factor = saddle.unstable if unstable else saddle.stable
+    found = direction(saddle, slopes(saddle.orbit, saddle.map, saddle.points, saddle.letter), factor)
+    series = [[x, v / found[chief]] for x, v in zip(saddle.points, found, strict=True)]
+    while len(series[0]) <= order:
+        series = doubled(saddle, factor, series, min(2 * len(series[0]), order + 1))
+    scaled = tuple(tuple(c * acb(unit) ** k for k, c in enumerate(row)) for row in series)
+    return Enclosed(saddle, unstable, factor, scaled)
+
+
+TUBE = "1e-6"  # what the remainder may not exceed, so that the slopes are bounded beforehand
+
+
+def remainder(made: Enclosed, outer: int) -> arb:
+    """What bounds the remainder of every bounce on the unit disc, by the rule on the disc of radius `outer`."""
+    if not vanishing(made):
+        raise TooWideError("remainder", "the rule has terms of low order; these are no coefficients of a manifold")
+    slopes = round_outwards(made, outer)
+    least = bounds(made, slopes, [arb(0)] * len(slopes))
+    allowed = [2 * e for e in least]
+    found = bounds(made, slopes, allowed)
+    if not all(e <= a and a < arb(TUBE) for e, a in zip(found, allowed, strict=True)):
+        raise TooWideError("remainder", "the remainder of the series is not bounded")
+    return max(allowed, key=lambda e: e.mid())
+
+
+def vanishing(made: Enclosed) -> bool:
+    """Do the rules' coefficients up to the order of the series contain 0?"""
+    map, ring = made.saddle.map.lifted, made.ring()
+    triples = [ring[i : i + 3] for i in range(len(ring) - 2)]
+    rules: list[Jet] = [map.rule(triple, made.saddle.letter) for triple in triples]
+    return all(c.contains(0) for rule in rules for c in rule.c)
+
+
+Outwards = list[tuple[int, arb, arb, arb]]  # for each bounce: defect, slope by the point inside it and the one before
+
+
+def round_outwards(made: Enclosed, outer: int) -> Outwards:
+    """One round from the saddle, each rule solved for its outermost point, with bounds in units of `slope0`."""
+    map, letter, p = made.saddle.map, made.saddle.letter, len(made.coefficients)
+    inside = -1 if made.unstable else 1
+    found: Outwards = []
+    for i in range(p) if made.unstable else reversed(range(p)):
+        three = [i + inside + k for k in (-1, 0, 1)]
+        defect = size(map.rule([made.over(j, arb(outer)) for j in three], letter))
+        tube = [made.over(j, arb(1)) + around_zero(arb(TUBE)) for j in three]
+        rows = map.slopes(tube, letter)
+        far, here, outermost = rows if made.unstable else rows[::-1]
+        least = arb(acb(outermost).abs_lower())
+        if not least > 0:
+            raise TooWideError("remainder", "a slope of the rule may be 0")
+        found.append((i, defect / least * arb(outer) ** -(made.order + 1), size(here) / least, size(far) / least))
+    return found
+
+
+def bounds(made: Enclosed, slopes: Outwards, errors: list[arb]) -> list[arb]:
+    """`E(e)` of the text above: bounds one round outwards from `errors`."""
+    p, inside = len(errors), -1 if made.unstable else 1
+    shrink = size(1 / made.factor if made.unstable else made.factor) ** (made.order + 1)
+    known: dict[int, arb] = {}
+
+    def bound(j: int) -> arb:
+        return known[j] if j in known else errors[j % p] * shrink ** abs(j // p)
+
+    for i, defect, here, far in slopes:
+        known[i] = size(defect + here * bound(i + inside) + far * bound(i + 2 * inside))
+    return [known[i] for i in range(p)]

@@ -1,0 +1,210 @@
+"""Manifolds grown from their local series to a given length, with points as close as the curve's bends ask for.
+
+The parameter of the series is good for the whole branch: a point far out is one near the saddle, some
+rounds of the map later (or earlier, on a stable manifold). So new points are put between neighbours
+that are too far apart, or between which the curve turns too much, and nothing is interpolated.
+
+Starts for `tangency`: where on an unstable manifold the gap to a stable one is least, near a given letter.
+
+A fundamental domain of the unstable branch, both sides of the saddle, is followed bounce by bounce. Wherever its points
+fall into the neighbourhood in which the local stable manifold is a graph, the gap is a function of the
+parameter; its local extrema near 0 are candidates, and `tangency` moves the letter until they are 0. What
+comes back are tangencies near the letter, the one that ends an attractor among others: which one it is,
+sampling has to say.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.arithmetic.words import ARRAYS, FLOAT64
+from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.saddle import Orbit, saddle
+from verification.proofs.manifolds.series import Local, local
+from verification.proofs.manifolds.tangency import Contact, Touch, tangency
+
+FIRST = 24  # points of a round before any is added
+PASSES = 14
+SETTLED = 3.0  # `ln(abs(z))` from which a short round means a sink
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Points in the order of the curve, from the saddle outwards, and their parameters `ln(abs(z))`."""
+
+    here: Array
+    following: Array
+    parameter: Array
+    x: Array
+    y: Array
+
+    @property
+    def length(self) -> float:
+        """Arc length of the polygon, in the plane of the map."""
+        return float(np.sum(np.hypot(np.diff(self.x), np.diff(self.y))))
+
+
+def branch(local: Local, side: int, length: float, spacing: float = 0.02, turning: float = 0.2) -> Branch:
+    """One branch of a manifold, `side` 1 or -1, until it is `length` long.
+
+    It ends sooner where it leaves the domain of the map, or at a sink: where a round adds less than ten times
+    `spacing`.
+
+    >>> from sympy import Rational
+    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.saddle import Orbit, saddle
+    >>> from verification.proofs.manifolds.series import local
+    >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
+    >>> 5 < branch(local(fixed, unstable=True), 1, 5).length < 5.1
+    True
+    """
+    if side not in (1, -1) or not length > 0:
+        raise ValueError(f"manifold: side = {side}, length = {length}; accepted: side 1 or -1, a positive length")
+    step = abs(math.log(abs(float(local.factor))))
+    low, done, pieces = -step, 0.0, []
+    while done < length:
+        piece = _piece(local, side, low, low + step, spacing, turning)
+        pieces.append(piece)
+        whole = np.isfinite(piece.x)
+        if not whole.all() or (low > SETTLED and piece.length < 10 * spacing):
+            break
+        done += piece.length
+        low += step
+    fields = [np.concatenate([getattr(p, name) for p in pieces]) for name in Branch.__dataclass_fields__]
+    good = np.cumsum(~np.isfinite(fields[3])) == 0
+    path = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(fields[3]), np.diff(fields[4])))])
+    good &= np.concatenate([[True], path[:-1] <= length])
+    return Branch(*(field[good] for field in fields))
+
+
+def _piece(local: Local, side: int, low: float, high: float, spacing: float, turning: float) -> Branch:
+    """The points with `ln(abs(z))` from `low` up to, but not at, `high`."""
+    made = _points(local, side, np.linspace(low, high, FIRST))
+    for _ in range(PASSES):
+        dx, dy = np.diff(made.x), np.diff(made.y)
+        far = np.hypot(dx, dy) > spacing
+        turn = np.abs(np.angle(np.exp(1j * np.diff(np.arctan2(dy, dx))))) > turning
+        small = np.hypot(dx, dy) < spacing / 1000
+        bent = np.concatenate([turn, [False]]) | np.concatenate([[False], turn])
+        where = np.nonzero(far | (bent & ~small))[0]
+        if not where.size:
+            break
+        more = _points(local, side, (made.parameter[where] + made.parameter[where + 1]) / 2)
+        order = np.argsort(np.concatenate([made.parameter, more.parameter]), kind="stable")
+        joined = (
+            np.concatenate([getattr(made, name), getattr(more, name)])[order] for name in Branch.__dataclass_fields__
+        )
+        made = Branch(*joined)
+    return Branch(*(getattr(made, name)[:-1] for name in Branch.__dataclass_fields__))
+
+
+def _points(local: Local, side: int, parameter: Array) -> Branch:
+    """The points at `z = side*exp(parameter)`, those of one number of rounds together."""
+    rounds = np.maximum(0, np.ceil(parameter / abs(math.log(abs(float(local.factor)))))).astype(int)
+    here, following = np.full(parameter.size, np.nan), np.full(parameter.size, np.nan)
+    for count in np.unique(rounds):
+        those = rounds == count
+        here[those], following[those] = far(local, side * np.exp(parameter[those]), int(count))
+    x, y = local.saddle.map.over(ARRAYS).plane(here, following)
+    return Branch(here, following, parameter, np.asarray(x), np.asarray(y))
+
+
+def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
+    """The points at `z` of the manifold, from those `rounds` rounds nearer to the saddle."""
+    map, orbit, letter = local.saddle.map.over(ARRAYS), local.saddle.orbit, float(local.saddle.letter)
+    outwards = abs(float(local.factor)) > 1
+    factor = float(local.factor) if outwards else 1 / float(local.factor)
+    here, following = local.points(z / factor**rounds)
+    shift = orbit.shifted(map)
+    for _ in range(rounds):
+        if not outwards:
+            here, following = orbit.sign * here + shift, orbit.sign * following + shift
+        for _ in orbit.start:
+            if outwards:
+                here, following = following, map.following(here, following, letter)
+            else:
+                here, following = map.previous(here, following, letter), here
+        if outwards:
+            here, following = orbit.sign * (here - shift), orbit.sign * (following - shift)
+        if map.turn:  # a mirror leaves the next bounce behind, where the map takes it ahead
+            following = here + np.remainder(following - here, 2 * np.pi)
+    return here, following
+
+
+POINTS = 3000  # of the fundamental domain, on each side
+NEWTON = 12
+INSIDE = 0.9  # of the range on which the series converges
+SMALL = 0.05  # a gap that counts as near
+
+
+def touches(
+    orbit: Orbit, map: Recurrence, letter: float, rounds: int, most: int = 4, any_bounce: bool = False
+) -> list[Touch]:
+    """Homoclinic tangencies near a letter, within some rounds, in the order of their letters; each once.
+
+    `most` candidates with the smallest gaps are tried, those after whole rounds only or after `any_bounce`.
+
+    >>> from sympy import Rational
+    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> found = touches(Orbit("inner fixed point", (0.63,)), Henon(Rational(3, 10)), 1.3924, 6)
+    >>> min(round(abs(touch.letter - 1.39241980792), 9) for touch in found)
+    0.0
+    """
+    found: list[Touch] = []
+    for candidate in candidates(orbit, map, letter, rounds, any_bounce)[:most]:
+        try:
+            touch = tangency(candidate, map, 8)
+        except (ValueError, ArithmeticError):
+            continue
+        if all(abs(touch.letter - other.letter) > 1e-11 for other in found):
+            found.append(touch)
+    return sorted(found, key=lambda touch: float(touch.letter))
+
+
+def candidates(orbit: Orbit, map: Recurrence, letter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
+    """Extrema of the gap along both branches of the unstable manifold, the smallest first."""
+    at = saddle(orbit, map.over(FLOAT64), letter)
+    out, into = local(at, True), local(at, False)
+    found: list[tuple[float, Contact]] = []
+    grid = np.exp(np.linspace(-math.log(abs(at.unstable)), 0, POINTS))
+    for z in (grid, -grid):
+        here, following = out.points(z)
+        for count in range(1, rounds * len(orbit.start) + 1):
+            here, following = following, map.over(ARRAYS).following(here, following, letter)
+            whole = (orbit.sign ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
+            for sign in ((1, -1) if map.turn else (1,)) if any_bounce else whole:
+                gap, end = gaps(into, sign * here, sign * following)
+                for i in turning(gap):
+                    place = float(z[i]) * out.unit, float(end[i]) * into.unit
+                    least = gap[i] - (gap[i + 1] - gap[i - 1]) ** 2 / 8 / (gap[i - 1] - 2 * gap[i] + gap[i + 1])
+                    found.append((abs(float(least)), Contact(orbit, orbit, count, sign, *place, letter)))
+    return [contact for _, contact in sorted(found, key=lambda pair: pair[0])]
+
+
+def gaps(into: Local, here: Array, following: Array) -> tuple[Array, Array]:
+    """The gap to a local stable manifold, `nan` where it is no graph, and the parameter on it."""
+    at, ring = into.saddle, into.saddle.around()
+    if at.map.turn:
+        unit = 2 * np.pi / at.map.turn
+        turns = np.round((here - ring[1]) / unit)
+        here, following = here - turns * unit, following - turns * unit
+        following = following - 2 * np.pi * np.round((following - ring[2]) / (2 * np.pi))
+    first = np.polynomial.Polynomial(np.array(into.coefficients[0]))
+    slope = first.deriv()
+    with np.errstate(all="ignore"):
+        end = np.clip((here - first.coef[0]) / first.coef[1], -1 / abs(at.stable), 1 / abs(at.stable))
+        for _ in range(NEWTON):
+            end = end - (first(end) - here) / slope(end)
+        gap = following - into.points(end)[1]
+        good = (abs(end) < INSIDE / abs(at.stable)) & (abs(first(end) - here) < 1e-10) & (abs(gap) < SMALL)
+    return np.where(good, gap, np.nan), end
+
+
+def turning(gap: Array) -> Any:
+    """Where a gap has a strict local extremum, with both neighbours."""
+    rise = np.diff(gap)
+    return np.nonzero(rise[:-1] * rise[1:] < 0)[0] + 1

@@ -1,0 +1,219 @@
+"""Planar maps as one equation in three neighbours of an orbit, which is all that manifolds need to know of them.
+
+`rule(previous, here, following, letter) = 0` along every orbit; it can be solved for either end, so
+the map and its inverse are the same text read in two directions. The letter is the parameter that
+varies: the contraction of the pinball map, `a` of the Henon map. A map is bound to the words of one
+kind of number: floats, arrays, mpmath or balls, or jets of these.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
+from typing import Any, Protocol, Self
+
+import numpy as np
+from sympy import Expr
+
+from symbolic.generation.text import load
+from symbolic.motion.chords import chord_kernel
+from symbolic.tables.table import Table
+from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.words import ARRAYS, FLOAT64, Arithmetic
+
+SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found in float64
+NEWTON = 60  # steps at most after that, in other numbers and order by order in jets
+CLOSE = 1e-13
+
+
+class Recurrence(Protocol):
+    """A map of the plane, by its rule, over one kind of number."""
+
+    @property
+    def words(self) -> Arithmetic:
+        """The kind of number."""
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+
+    @property
+    def turn(self) -> int:
+        """The table goes into itself by `1/turn` of a turn; 0 where points are no angles."""
+
+    def over(self, words: Arithmetic) -> Self:
+        """The same map over another kind of number."""
+
+    @property
+    def lifted(self) -> Self:
+        """The same map over jets of its numbers."""
+
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        """0 at three neighbours of an orbit."""
+
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+        """The derivatives of the rule by its three points."""
+
+    def following(self, previous: Any, here: Any, letter: Any) -> Any:
+        """The map: what comes after `previous, here`."""
+
+    def previous(self, here: Any, following: Any, letter: Any) -> Any:
+        """Its inverse: what came before `here, following`."""
+
+    def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
+        """The coordinates in which the map is usually drawn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Henon:
+    """`x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`; the letter is `a`.
+
+    >>> from sympy import Rational
+    >>> Henon(Rational(3, 10)).following(0.5, 1.0, 1.5)
+    -0.35
+    """
+
+    b: Expr
+    words: Arithmetic = field(default_factory=lambda: ARRAYS)
+    label: str = "Henon"
+    turn: int = 0
+
+    def over(self, words: Arithmetic) -> "Henon":
+        return replace(self, words=words)
+
+    @cached_property
+    def lifted(self) -> "Henon":
+        return self.over(jets(self.words))
+
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        previous, here, following = near
+        return self.following(previous, here, letter) - following
+
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+        previous, here, following = near
+        return 0 * previous + self._b, -2 * letter * here, 0 * following - 1
+
+    def following(self, previous: Any, here: Any, letter: Any) -> Any:
+        return 1 - letter * here * here + self._b * previous
+
+    def previous(self, here: Any, following: Any, letter: Any) -> Any:
+        return (following - 1 + letter * here * here) / self._b
+
+    def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
+        return following, self._b * here
+
+    @cached_property
+    def _b(self) -> Any:
+        return self.words["q"](int(self.b.p), int(self.b.q))
+
+
+@dataclass(frozen=True, eq=False)
+class Pinball:
+    """The pinball map of a convex table of one component, on bounce parameters that count turns; the letter is `lam`.
+
+    Forwards a ball lands where the chord makes the angle `-lam*eta` with the normal; backwards it came
+    from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`.
+
+    >>> from symbolic.tables import circle
+    >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)
+    6.0
+    """
+
+    table: Table
+    words: Arithmetic = field(default_factory=lambda: ARRAYS)
+    label: str = "pinball"
+    turn: int = 1
+
+    def over(self, words: Arithmetic) -> "Pinball":
+        return replace(self, words=words)
+
+    @cached_property
+    def lifted(self) -> "Pinball":
+        return self.over(jets(self.words))
+
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        previous, here, following = near
+        return self.angle(here, following)[0] + letter * self.angle(here, previous)[0]
+
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+        previous, here, following = near
+        forth, back = self.angle(here, following), self.angle(here, previous)
+        return letter * back[2], forth[1] + letter * back[1], forth[2]
+
+    def following(self, previous: Any, here: Any, letter: Any) -> Any:
+        return self._other_end(here, -letter * self.angle(here, previous)[0], 0)
+
+    def previous(self, here: Any, following: Any, letter: Any) -> Any:
+        return self._other_end(here, -self.angle(here, following)[0] / letter, -1)
+
+    def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
+        return here, self.angle(here, following)[0]
+
+    @cached_property
+    def angle(self) -> Callable[..., Any]:
+        """The angle of a chord with the normal at its start, and its derivatives by both ends."""
+        loaded: Callable[..., Any] = load(chord_kernel(self.table, 0, 0, 1), self.words)
+        return loaded
+
+    def _other_end(self, here: Any, phi: Any, turns: int) -> Any:
+        """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`."""
+        start = landing(self.table, floating(here), floating(phi), turns)
+        if self.words is ARRAYS:
+            return start
+        x = here * 0 + (start if np.ndim(start) else float(start))
+        before = np.inf
+        for _ in range(NEWTON):
+            found = self.angle(here, x)
+            correction = (found[0] - phi) / found[2]
+            x = x - correction
+            size = largest(correction)
+            if not size < before / 2 and before < CLOSE:
+                break
+            before = size
+        return x
+
+
+@cache
+def angle_over(table: Table, arrays: bool) -> Callable[..., Any]:
+    """The angle of a chord in float64, on arrays or, which is faster, on single numbers."""
+    loaded: Callable[..., Any] = load(chord_kernel(table, 0, 0, 1), ARRAYS if arrays else FLOAT64)
+    return loaded
+
+
+def landing(table: Table, here: Any, phi: Any, turns: int) -> Any:
+    """Newton's method between bounds: the angle falls from pi/2 to -pi/2 on the way round."""
+    arrays = bool(np.ndim(here) or np.ndim(phi))
+    angle = angle_over(table, arrays)
+    pick: Callable[[Any, Any, Any], Any] = np.where if arrays else _either
+    if not arrays and not abs(phi) < math.pi / 2:
+        return math.nan
+    low = here + 2 * math.pi * turns
+    high = low + 2 * math.pi
+    x = low + math.pi - 2 * phi
+    with np.errstate(all="ignore"):
+        x = pick((x > low) & (x < high), x, low + math.pi)
+        for _ in range(SWEEPS):
+            value, _, slope = angle(here, x)[:3]
+            low, high = pick(value > phi, x, low), pick(value > phi, high, x)
+            better = x - (value - phi) / slope
+            better = pick((better > low) & (better < high), better, (low + high) / 2)
+            moved, x = abs(better - x), better
+            if np.max(moved, initial=0.0, where=np.isfinite(moved)) < CLOSE if arrays else moved < CLOSE:
+                break
+    return np.where(np.abs(phi) < math.pi / 2, x, math.nan) if arrays else x
+
+
+def _either(condition: Any, yes: Any, no: Any) -> Any:
+    return yes if condition else no
+
+
+def floating(x: Any) -> Any:
+    """A number, or the constant term of a jet, in float64."""
+    middle = x.c[0] if isinstance(x, Jet) else x
+    return np.asarray(middle, dtype=float) if np.ndim(middle) else float(middle)
+
+
+def largest(x: Any) -> float:
+    """The largest of the numbers in a jet or an array."""
+    parts = x.c if isinstance(x, Jet) else (x,)
+    return max(float(np.max(np.abs(part), initial=0.0)) for part in parts)

@@ -1,0 +1,185 @@
+"""Where an unstable and a stable manifold touch: the contraction at which they do, and the orbit on which.
+
+From `z` on the local unstable manifold the map is followed for some bounces, into the neighbourhood
+where the local stable manifold is a graph `following = S(here)`; the gap `following - S(here)` is a
+function of `z`, run on jets. At a fixed letter its extremum is found by Newton's method; the letter
+is where the extremum is 0, by secants. Quadratic contact is the second derivative, and transversal
+unfolding the speed of the extremum, both away from 0.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import mpmath
+
+from verification.arithmetic.series import Jet
+from verification.arithmetic.words import FLOAT64, multiprecision
+from verification.proofs.manifolds.recurrence import Recurrence, floating
+from verification.proofs.manifolds.saddle import Orbit, saddle
+from verification.proofs.manifolds.series import Local, horner, local
+
+STEPS = 30
+NOISE = 1e4  # times the goal: steps of secants that small and no longer shrinking are rounding
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Which manifolds touch, and starts: `z` on the unstable manifold, `end` on the stable one, and the letter.
+
+    Both are displacements along the eigenvectors. After `bounces` the point is compared with the
+    stable manifold after its mirror image (`sign = -1`) and turns of the table.
+    """
+
+    unstable: Orbit
+    stable: Orbit
+    bounces: int
+    sign: int
+    z: float
+    end: float
+    letter: float
+
+    @property
+    def kind(self) -> str:
+        """`homoclinic` or `heteroclinic`, modulo the table's symmetry."""
+        return "homoclinic" if self.unstable == self.stable else "heteroclinic"
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A tangency: the letter with an error estimate, and what makes it a generic one."""
+
+    contact: Contact
+    letter: Any
+    error: float
+    bend: float  # second derivative of the gap, in units of the local manifolds
+    speed: float  # derivative of the smallest gap by the letter
+    multipliers: tuple[float, float, float, float]  # of the unstable manifold's saddle, then of the other
+    residual: float
+
+
+class Gap:
+    """The distance from the stable manifold, on orbits that start on the unstable one, at one letter."""
+
+    def __init__(self, contact: Contact, map: Recurrence, letter: Any, order: int, tail: float) -> None:
+        self.old, self.map, self.letter = contact, map, letter
+        self.out = local(saddle(contact.unstable, map, letter), True, order, tail)
+        self.into = local(saddle(contact.stable, map, letter), False, order, tail)
+        early = rounds(contact.z / self.out.unit, float(self.out.factor))
+        late = rounds(contact.end / self.into.unit, 1 / float(self.into.factor))
+        self.bounces = contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
+        self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
+        self.scales = self.out.unit * float(self.out.factor) ** early, self.into.unit / float(self.into.factor) ** late
+        self.start, self.end = contact.z / self.scales[0], contact.end / self.scales[1]
+
+    def at(self, z: Any) -> tuple[Jet, Jet]:
+        """The gap at `z` to second order, and the parameter on the stable manifold."""
+        *_, here, following = self.orbit(z)
+        here, following = turned(self.into, self.sign * here, self.sign * following)
+        end = self.where(here)
+        apart: Jet = following - self.into.points(end)[1]
+        return apart, end
+
+    def orbit(self, z: Any) -> list[Jet]:
+        """The bounces from `z` on, with two derivatives by `z`."""
+        map = self.map.lifted
+        found = list(self.out.points(Jet(z, z * 0 + 1, z * 0)))
+        for _ in range(self.bounces):
+            found.append(map.following(found[-2], found[-1], self.letter))
+        return found
+
+    def where(self, here: Jet) -> Jet:
+        """The parameter on the stable manifold whose first point is `here`."""
+        c = self.into.coefficients[0]
+        slope = [k * x for k, x in enumerate(c)][1:]
+        z: Jet = Jet(*(here.c[0] * 0 + x for x in (self.end, 0, 0)))
+        before = math.inf
+        for _ in range(STEPS):
+            step = (horner(c, z) - here) / horner(slope, z)
+            z = z - step
+            size = max(abs(float(x)) / (1 + abs(float(y))) for x, y in zip(step.c, z.c, strict=True))
+            if size == 0 or (before < 1e-6 and not size < before / 2):
+                return z
+            before = size
+        raise ValueError(f"tangency: at {float(self.letter)} the orbit misses the neighbourhood of the stable manifold")
+
+    def extremum(self) -> tuple[Any, Jet, Jet]:
+        """`z` where the gap is least, the gap there, and where it is."""
+        z = self.letter * 0 + self.start
+        before = math.inf
+        for _ in range(STEPS):
+            gap, end = self.at(z)
+            step = gap.c[1] / (2 * gap.c[2])
+            size = abs(float(step))
+            if size == 0 or (before < 1e-5 and not size < before / 2):
+                return z, gap, end
+            z, before = z - step, size
+        raise ValueError(f"tangency: at {float(self.letter)} the manifolds come nowhere closest near the start")
+
+    def contact(self) -> Contact:
+        """The same contact with starts taken from here."""
+        z, _, end = self.extremum()
+        unstable, stable = (
+            replace(made.saddle.orbit, start=tuple(float(x) for x in made.saddle.points))
+            for made in (self.out, self.into)
+        )
+        place = float(z) * self.scales[0], float(end.c[0]) * self.scales[1]
+        return Contact(unstable, stable, self.old.bounces, self.old.sign, *place, float(self.letter))
+
+
+def rounds(z: float, factor: float) -> int:
+    """How often `z` has to be divided by the factor until it is at most 1."""
+    return max(0, math.ceil(math.log(abs(z)) / math.log(abs(factor))))
+
+
+def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
+    """A point of the plane moved by the table's rotations next to the saddle."""
+    map, ring = into.saddle.map, into.saddle.around()
+    if not map.turn:
+        return here, following
+    unit = 2 * map.words["pi"] * map.words["q"](1, map.turn)
+    k = round((float(floating(here)) - float(ring[1])) / float(unit))
+    here, following = here - k * unit, following - k * unit
+    whole = round((float(floating(following)) - float(ring[2])) / (2 * math.pi))
+    return here, following - 2 * map.words["pi"] * whole
+
+
+def tangency(contact: Contact, map: Recurrence, digits: int = 12) -> Touch:
+    """The letter at which the manifolds touch, to about `digits` digits.
+
+    The error is that of the last secant step, and what a longer series changes.
+    """
+    rough = secant(contact, map.over(FLOAT64), 28, 1e-16, (contact.letter, contact.letter + 1e-7), 1e-14)
+    if digits <= 11:
+        return rough
+    context = mpmath.MPContext()
+    context.dps = digits + 15
+    exact, near = map.over(multiprecision(context)), context.mpf(rough.letter)
+    start = replace(contact, letter=float(rough.letter))
+    order = 12 + digits
+    found = secant(
+        start, exact, order, 10.0 ** -(digits + 12), (near, near + context.mpf(10) ** -12), 10.0 ** -(digits + 2)
+    )
+    return found
+
+
+def secant(contact: Contact, map: Recurrence, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
+    """The letter where the extremum of the gap is 0, between secants."""
+    a, b = letters
+    b = b + 0 * a
+    fa = Gap(contact, map, a, order, tail).extremum()[1].c[0]
+    before = math.inf
+    for _ in range(STEPS):
+        gap = Gap(contact, map, b, order, tail)
+        _, found, _ = gap.extremum()
+        fb = found.c[0]
+        speed = (fb - fa) / (b - a)
+        a, fa, b = b, fb, b - fb / speed
+        step = float(abs(b - a))
+        if step < goal or before / 2 <= step < NOISE * goal:  # many bounces leave the gap with noise
+            out, into = gap.out.saddle, gap.into.saddle
+            near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
+            residual = max(gap.out.residual, gap.into.residual)
+            return Touch(contact, b, step + goal, float(2 * found.c[2]), float(speed), near, residual)
+        before = step
+    raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last were {float(a)} and {float(b)}")

@@ -1,0 +1,221 @@
+"""The orbit of a contact in float64: from one local manifold to the other, far into both, with its tangent.
+
+Near the saddle the points come from the series, which costs no digit; only between the two neighbourhoods
+the map is followed.
+
+A tangency as one zero of one system: an orbit from the unstable to the stable manifold, and a vector along it.
+
+Unknown are the parameter `z` where the orbit leaves the unstable manifold, its bounces `y[0] ... y[n+1]`, and the
+parameter `w` where it arrives on the stable one:
+
+    y[0] = P[-1](z),  y[1] = P[0](z),  rule(y[k-1], y[k], y[k+1]) = 0,  sign*y[n] = Q[0](w),  sign*y[n+1] = Q[1](w)
+
+up to turns of the table. At one letter the zeros are the points where the manifolds meet. The linearised equations,
+along a vector with `1` at `z`, carry the tangent of the one manifold to the other, and vanish exactly where the two
+touch. Both together, with the letter as the last unknown, are the system: as many equations as unknowns. Like the
+chord system of a cycle it has one equation for each bounce; no orbit is followed, and no ball grows along the way.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from flint import arb, arb_mat
+
+from verification.arithmetic.series import Jet
+from verification.arithmetic.words import FLOAT64, balls
+from verification.proofs.manifolds.enclosed import TooWideError
+from verification.proofs.manifolds.pair import Near, Pair, Precision, scale, smaller
+from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.series import Local, horner
+from verification.proofs.manifolds.tangency import Contact, rounds
+
+
+@dataclass(frozen=True)
+class Flight:
+    """Bounces with their derivatives by `z`, from bounce -1 on the one manifold to bounce 1 on the other.
+
+    `z` and `w` are the parameters at its ends, displacements along the eigenvectors; `w` is a jet in `z`.
+    """
+
+    bounces: list[Jet]
+    z: float
+    w: Jet
+
+
+def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: int, late: int) -> Flight:
+    """The orbit from `early` rounds before the start of the contact to `late` rounds after its end.
+
+    Both are at least as many as take the ends of the contact into the domains of the series.
+
+    >>> from verification.arithmetic.words import FLOAT64
+    >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
+    >>> from verification.proofs.manifolds.saddle import saddle
+    >>> from verification.proofs.manifolds.series import local
+    >>> triangle, map = CONTACTS["boundary"], table(SHAPE).over(FLOAT64)
+    >>> out, into = (local(saddle(triangle.unstable, map, triangle.letter), side) for side in (True, False))
+    >>> len(flight(triangle, map, out, into, 2, 3).bounces)
+    13
+    """
+    p, q = len(contact.unstable.start), len(contact.stable.start)
+    before, after = (
+        rounds(contact.z / out.unit, float(out.factor)),
+        rounds(contact.end / into.unit, 1 / float(into.factor)),
+    )
+    z, w0 = contact.z / float(out.factor) ** early, contact.end * float(into.factor) ** after
+    found = [bounce(out, j, Jet(z, 1.0)) for j in range(-1, (early - before) * p + 2)]
+    for _ in range(contact.bounces + before * p + after * q):
+        found.append(map.lifted.following(found[-2], found[-1], contact.letter))
+    end, rate = bounce(into, 0, Jet(w0, 1.0)).c
+    sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**after  # each round may mirror the rest
+    w = Jet(w0, sign * found[-2].c[1] / rate)
+    turn = found[-2].c[0] - sign * end
+    if map.turn:
+        unit = 2 * map.words["pi"] / map.turn
+        turn = round(turn / unit) * unit
+    for j in range(2, (late - after) * q + 2):
+        found.append(sign * bounce(into, j, w) + turn)
+    return Flight(found, z, w * float(into.factor) ** (late - after))
+
+
+def bounce(local: Local, j: int, z: Jet) -> Jet:
+    """Bounce `j`, any integer, of the orbit through a displacement `z` along the eigenvector."""
+    orbit, (rounds, place) = local.saddle.orbit, divmod(j, len(local.coefficients))
+    shift: Any = orbit.shifted(local.saddle.map)
+    x: Jet = horner(local.coefficients[place], z * (float(local.factor) ** rounds / local.unit))
+    for _ in range(abs(rounds)):
+        x = orbit.sign * x + shift if rounds > 0 else orbit.sign * (x - shift)
+    return x
+
+
+LARGEST = 0.4  # parameters at the start, where the remainder's derivatives are bounded up to 1/2
+MOST_BOUNCES = 2000
+Vector = list[arb]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A place in the space of unknowns: `orbit` is `z, y[0], ..., y[n+1], w`, and `along` the vector."""
+
+    orbit: Vector
+    along: Vector
+    letter: arb
+
+    @property
+    def unknowns(self) -> Vector:
+        """All that is sought, in one row."""
+        return [*self.orbit, *self.along[1:], self.letter]
+
+    @staticmethod
+    def of(unknowns: Vector) -> "Point":
+        """The point with these unknowns."""
+        m = len(unknowns) // 2
+        return Point(unknowns[:m], [arb(1), *unknowns[m:-1]], unknowns[-1])
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The equations and their derivatives at a point, or over a box.
+
+    `values` are those of the orbit's equations, `along` those of the vector's. `rows` are the derivatives of the
+    former by the orbit, and so of the latter by the vector; `bent` those of the latter by the orbit.
+    """
+
+    values: Vector
+    along: Vector
+    rows: list[Vector]
+    bent: list[Vector]
+    by_letter: Vector
+    bent_by_letter: Vector
+
+    def matrix(self) -> arb_mat:
+        """The derivative of the whole system, by the unknowns in their order."""
+        zero = [arb(0)] * (len(self.values) - 1)
+        upper = [[*row, *zero, g] for row, g in zip(self.rows, self.by_letter, strict=True)]
+        lower = zip(self.bent, self.rows, self.bent_by_letter, strict=True)
+        return arb_mat(upper + [[*bent, *row[1:], h] for bent, row, h in lower])
+
+    def step(self, values: Vector, algorithm: Literal["approx", "precond"]) -> Vector:
+        """What Newton's method takes off the unknowns where the system has these values."""
+        try:
+            found = self.matrix().solve(arb_mat([[x] for x in values]), algorithm=algorithm)
+        except ZeroDivisionError as why:
+            raise TooWideError("exists", "the linearised system may be singular") from why
+        return [found[i, 0] for i in range(len(values))]
+
+
+class Touching:
+    """The system of a contact near one letter, with both manifolds enclosed."""
+
+    def __init__(self, contact: Contact, map: Recurrence, letter: arb, precision: Precision) -> None:
+        self.map, self.letter = map.over(balls(precision.bits)), letter
+        self.pairs: list[Pair] = []
+        for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
+            found = scale(orbit, map, float(letter), unstable, precision.outer)
+            self.pairs.append(smaller(orbit, map, letter, found, precision))
+        out, into = (made.scale for made in self.pairs)
+        early = rounds(contact.z / min(LARGEST * out.unit, out.rough.unit), float(out.rough.factor))
+        late = rounds(contact.end / min(LARGEST * into.unit, into.rough.unit), 1 / float(into.rough.factor))
+        late = max(late, 1)  # the orbit ends on the series, and has their turns
+        self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
+        if self.bounces > MOST_BOUNCES:
+            raise TooWideError("exists", f"an orbit of {self.bounces} bounces is too long")
+        self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
+        self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
+
+    def _from(self, flight: Flight) -> tuple[int, Point]:
+        """The turns of the table at the end of an orbit, and the point from which Newton's method starts."""
+        map, units = self.map, [made.scale.unit for made in self.pairs]
+        apart = self.sign * flight.bounces[-2] - bounce(self.pairs[1].scale.rough, 0, flight.w)
+        turns = round(apart.c[0] * map.turn / (2 * math.pi))
+        along = [1.0, *(units[0] * x.c[1] for x in flight.bounces), units[0] / units[1] * flight.w.c[1]]
+        orbit = [flight.z / units[0], *(x.c[0] for x in flight.bounces), flight.w.c[0] / units[1]]
+        return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.letter)
+
+    def linear(self, at: Point) -> Linear:
+        """The equations at a point whose letter is the middle one, or over a box around it."""
+        out, into = ([made.at(i, z, at.letter - self.letter) for i in (0, 1)] for made, z in self._ends(at))
+        m = len(at.orbit)
+        made = Linear([], [], [], [], [], [])
+        for i, near in enumerate(out):
+            _ended(made, at, 1 + i, 0, 1, arb(0), near)
+        for k in range(1, self.bounces + 1):
+            self._bounced(made, at, k)
+        unit = 2 * self.map.words["pi"] / self.map.turn if self.map.turn else arb(0)
+        for i, near in enumerate(into):
+            _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns * unit, near)
+        return made
+
+    def _ends(self, at: Point) -> list[tuple[Pair, arb]]:
+        return [(self.pairs[0], at.orbit[0]), (self.pairs[1], at.orbit[-1])]
+
+    def _bounced(self, made: Linear, at: Point, k: int) -> None:
+        """The rule at `y[k]`; it is affine in the letter."""
+        near = [Jet(at.orbit[j], at.along[j]) for j in range(k, k + 3)]
+        map = self.map.lifted
+        plain = map.rule(near, arb(0))
+        moving = map.rule(near, arb(1)) - plain
+        value = plain + at.letter * moving
+        slopes = map.slopes(near, at.letter)
+        m = len(at.orbit)
+        rows = ([arb(0)] * k + [s.c[order] for s in slopes] + [arb(0)] * (m - k - 3) for order in (0, 1))
+        _add(made, value.c, list(rows), moving.c)
+
+
+def _ended(made: Linear, at: Point, here: int, end: int, sign: int, shift: arb, near: Near) -> None:
+    """The equation `sign*orbit[here] - shift = near(orbit[end])`."""
+    row, bent, share = [arb(0)] * len(at.orbit), [arb(0)] * len(at.orbit), at.along[end]
+    row[here], row[end], bent[end] = arb(sign), -near.first, -near.second * share
+    values = sign * at.orbit[here] - shift - near.place, sign * at.along[here] - near.first * share
+    _add(made, values, [row, bent], (-near.by_letter, -near.mixed * share))
+
+
+def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_letter: Sequence[arb]) -> None:
+    """One more equation, of the orbit and along the vector."""
+    for column, x in zip((made.values, made.along), values, strict=True):
+        column.append(x)
+    for matrix, row in zip((made.rows, made.bent), rows, strict=True):
+        matrix.append(row)
+    for column, x in zip((made.by_letter, made.bent_by_letter), by_letter, strict=True):
+        column.append(x)

@@ -1,0 +1,1 @@
+"""Proofs on periodic orbits: interval Newton, checklists of bifurcations, statements over a parameter interval."""

@@ -1,0 +1,147 @@
+"""A cycle for every contraction of an interval, attracting or not: the interval in small balls.
+
+With `lam` a ball the interval Newton operator proves one cycle for each `lam` of it, and balls for
+trace and determinant of the monodromy matrix decide stability on it.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from flint import arb, arb_mat
+from sympy import Rational
+
+from symbolic.tables.table import Table
+from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.words import balls, working
+from verification.cycles.shooting.chain import Chain
+from verification.cycles.shooting.newton import floats
+from verification.cycles.shooting.problem import Linearised, Problem, Rows
+from verification.maps.admissible import convex, inside, minimal
+from verification.proofs.periodic.interval_newton import Status, dense, krawczyk
+
+BITS = 96
+ROUNDING = 2.0**-50  # neighbouring balls of lam overlap, whatever floats do to their ends
+
+
+class Stability(Enum):
+    """Where the multipliers of a cycle lie."""
+
+    ATTRACTING = "inside the unit circle"
+    SADDLE = "one outside [-1, 1], one inside"
+    UNKNOWN = "not decided"
+
+
+@dataclass(frozen=True)
+class Everywhere:
+    """`reached` is how far the proof came, from the first end; `proved` when that is the other end."""
+
+    proved: bool
+    reached: float
+    balls: int
+
+
+def everywhere(
+    table: Table,
+    components: tuple[int, ...],
+    start: Sequence[float],
+    ends: tuple[float, float],
+    wanted: Stability,
+    budget: int = 2000,
+    tick: Tick = silent,
+) -> Everywhere:
+    """Is there a cycle of the `wanted` stability for every `lam` between `ends`, near `start` at the first?
+
+    >>> from symbolic.tables import egg
+    >>> flat, tilted = [1.05, 3.14, 5.24], Rational(2, 25)
+    >>> everywhere(egg(3).at(alpha=tilted), (0, 0, 0), flat, (0.99, 0.9), Stability.ATTRACTING).proved
+    True
+    """
+    lam, end = ends
+    theta = floats(Problem(table, components, lam=Rational(lam)), start)
+    spent, step, at = 0, (end - lam) / 16, lam
+    rates = [1.0] * len(theta)
+    while (end - lam) * step > 0:
+        step = math.copysign(min(abs(step), abs(end - lam)), step)
+        spent += 1
+        if spent > budget or abs(step) < 1e-9:
+            return Everywhere(False, lam, spent)
+        middle = lam + step / 2
+        try:
+            moved = floats(Problem(table, components, lam=Rational(middle)), theta)
+        except ValueError:
+            step /= 2
+            continue
+        if middle != at:
+            rates = [abs(x - y) / abs(middle - at) for x, y in zip(moved, theta, strict=True)]
+        radii = [abs(step) * (0.7 * rate + 0.2 * max(rates)) + 1e-12 for rate in rates]
+        if _proved(table, components, moved, middle, abs(step) / 2, radii) is wanted:
+            tick(step / (end - ends[0]))
+            lam, at, theta, step = lam + step, middle, moved, step * 1.3
+        else:
+            step /= 2
+    return Everywhere(True, end, spent)
+
+
+def _proved(
+    table: Table, components: tuple[int, ...], theta: list[float], middle: float, half: float, radii: list[float]
+) -> Stability:
+    with working(BITS):
+        wide = Problem(table, components, lam=arb(middle, half + ROUNDING))
+        thin = Problem(table, components, lam=arb(middle))
+        centre = [arb(x) for x in theta]
+        over = krawczyk(wide, centre, radii, BITS)
+        at = krawczyk(thin, centre, radii, BITS)
+        if over.status is not Status.UNIQUE or at.status is not Status.UNIQUE or convex(table) is not True:
+            return Stability.UNKNOWN
+        if not inside(table, components, over.zero) or not minimal(table, components, over.zero):
+            return Stability.UNKNOWN
+        here = trace_and_determinant(Linearised(Rows(thin, balls(BITS)), at.zero).plain)
+        slopes = _slopes(wide, over.zero)
+        if slopes is None:
+            return Stability.UNKNOWN
+        return stability(*(x + d * arb(0, half + ROUNDING) for x, d in zip(here, slopes, strict=True)))
+
+
+def _slopes(problem: Problem, zero: list[arb]) -> tuple[arb, arb] | None:
+    """The derivatives by `lam` of trace and determinant along the cycle, over the ball of `lam`."""
+    at = Linearised(Rows(problem, balls(BITS)), zero)
+    try:
+        motion = dense(at.plain).solve(arb_mat([[-b[0]] for b in at.into]))
+    except ZeroDivisionError:
+        return None
+    moving = Problem(problem.table, problem.components, lam=Jet(problem.lam, 1))
+    path = [Jet(x, motion[i, 0]) for i, x in enumerate(zero)]
+    trace, determinant = trace_and_determinant(Linearised(Rows(moving, jets(balls(BITS))), path).plain)
+    return trace.c[1], determinant.c[1]
+
+
+def trace_and_determinant(chain: Chain) -> tuple[Any, Any]:
+    """Trace and determinant of a cycle's monodromy matrix, from its linearised collision rules.
+
+    >>> trace_and_determinant(Chain([2, 2], [3, 3], [1, 1]))
+    (5.0, 4.0)
+    """
+    m: list[list[Any]] = [[1, 0], [0, 1]]
+    determinant: Any = 1
+    for lower, diagonal, upper in zip(chain.lower, chain.diagonal, chain.upper, strict=True):
+        m = [m[1], [-(lower * a + diagonal * b) / upper for a, b in zip(*m, strict=True)]]
+        determinant = determinant * lower / upper
+    return m[0][0] + m[1][1], determinant
+
+
+def stability(trace: arb, determinant: arb) -> Stability:
+    """Both multipliers inside the unit circle, or one on each side of it, or not decided.
+
+    >>> [stability(arb(t), arb("0.5")).name for t in (1, 2, 1.5)]
+    ['ATTRACTING', 'SADDLE', 'UNKNOWN']
+    """
+    at_one, at_minus_one = 1 - trace + determinant, 1 + trace + determinant  # the characteristic polynomial
+    if at_one > 0 and at_minus_one > 0 and determinant < 1:
+        return Stability.ATTRACTING
+    if at_one * at_minus_one < 0:
+        return Stability.SADDLE
+    return Stability.UNKNOWN

@@ -1,0 +1,1 @@
+"""The slap maps: periodic points, critical points, and the exponent of the natural measure."""

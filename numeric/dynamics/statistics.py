@@ -102,8 +102,9 @@ def estimate(blocks: Array) -> Estimate:
             break
         chosen = level
     tau = autocorrelation_time(blocks)
-    shared = (tau - 1 / (4 * tau)) / chosen.batch if chosen.inside and tau > 0.5 else 0.0  # exact for one exponential
-    missing = min(shared, 2 * SHARE)
+    # exact for one exponential; below 0 where neighbours alternate, and batches err on the safe side
+    shared = (tau - 1 / (4 * tau)) / chosen.batch if chosen.inside and tau > 0 else 0.0
+    missing = min(max(shared, -SHARE), 2 * SHARE)
     return Estimate(float(np.mean(blocks)), chosen.error / float(np.sqrt(1 - missing)), chosen, tau)
 
 

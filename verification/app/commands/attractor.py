@@ -32,6 +32,7 @@ def command(
 
     Starts are uniform inside the table with uniform directions; the first collision is elastic.
     """
+    from numeric import PinballMap
     from numeric.dynamics.attractors import find
 
     map, table = PinballMap(scene), scene.table

@@ -56,6 +56,7 @@ def command(
     """
     if until_error is not None and not until_error > 0:
         raise ValueError(f"--until-error = {until_error} is no error; give a positive number such as 1e-4")
+    from numeric import PinballMap
     from numeric.dynamics.account import account
     from numeric.dynamics.exponents import surveyed
     from numeric.pinball import sampling

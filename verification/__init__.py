@@ -1,1 +1,11 @@
-"""Is it true, how well, and at what cost: claims, certificates, reports and the command line."""
+"""Is it true, how well, at what cost? Questions on a scene, proofs in balls, the judged paper.
+
+    from verification import certify, check, find_cycles, follow, locate, verify
+    from verification import EnclosedMap, ExactMap, strategies
+
+Nothing is loaded before it is asked for: neither mpmath nor python-flint, neither SymPy nor NumPy.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

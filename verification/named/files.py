@@ -11,27 +11,35 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz
+from sympy import Expr
 
 from symbolic import tables
+from symbolic.cycles import polygons, thresholds
 from symbolic.tables.formula import number
 from symbolic.tables.fourier import boundary_coefficients
+from symbolic.tables.symbols import alpha as alpha_letter
+from symbolic.tables.symbols import lam as lam_letter
 from symbolic.tables.table import Table
+from verification.arithmetic.words import working
 from verification.cycles.shooting.problem import Kind, Problem
+from verification.named.locate import closed_form
+from verification.proofs.corner.corner import NEAR
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
 from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 
 if TYPE_CHECKING:
-    from verification.proofs.manifolds.claim import TangencyProof
+    from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof
 
 SCHEMA = 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
 
 
-def document(name: str, proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
-    """A proof as a JSON document."""
+def document(proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
+    """A proof as a JSON document; its name is what its equations say, and nothing else."""
     claim = proof.claim
+    name = name_of(claim)
     if not isinstance(claim, Claim | SpecialClaim):
-        return {"schema": SCHEMA, "name": f"{name}, the tangency"} | claim.to_dict() | {"checks": dict(proof.checks)}
+        return {"schema": SCHEMA, "name": name} | claim.to_dict() | {"checks": dict(proof.checks)}
     box = {
         "bits": claim.bits,
         "digits": claim.digits,
@@ -57,6 +65,45 @@ def document(name: str, proof: "Proof | SpecialProof | TangencyProof") -> dict[s
     } | box
 
 
+def name_of(claim: "Claim | SpecialClaim | TangencyClaim") -> str:
+    """What a claim states; by its name where its box holds the one value that `locate` has a closed form for.
+
+    A crisis has no name here, since a tangency is all that is proved of it; nor has a doubling, since other
+    cycles of the same period double too.
+    """
+    if isinstance(claim, SpecialClaim):
+        if claim.value != "alpha":
+            near = all(abs(x - mid) < 0.001 for x, mid in zip(claim.centre, NEAR, strict=True))
+            return {"lam": "lambda-star", "phi": "phi-star"}[claim.value] if near else "an orbit through both corners"
+        return (
+            "alpha-hat" if _in_box(claim, thresholds.alpha_hat().subs(lam_letter, claim.lam)) else "equal multipliers"
+        )
+    if not isinstance(claim, Claim):
+        contact = claim.contact
+        kind = "homoclinic" if contact.unstable == contact.stable else "heteroclinic"
+        return f"{kind} tangency in the egg, alpha = {claim.alpha}"
+    problem = claim.problem
+    table, plain = problem.table, not problem.mirror
+    what = table.name, problem.period, problem.kind, problem.free
+    if plain and what == ("cuspless", 2, Kind.FLIP, "lam") and _in_box(claim, thresholds.lambda_c()):
+        return "lambda-c"
+    if plain and _points(table) in (0, 3):
+        lam, alpha = problem.lam, dict(table.fixed).get("alpha")
+        if what == ("egg", 2, Kind.FLIP, "alpha") and _in_box(claim, thresholds.alpha_tilde().subs(lam_letter, lam)):
+            return "alpha-tilde"
+        if what == ("egg", 3, Kind.FOLD, "lam") and _in_box(claim, polygons.saddle_node().subs(alpha_letter, alpha)):
+            return "saddle-node"
+    half = "half of a symmetric cycle, of" if problem.mirror else "a cycle of"
+    shape = "".join(f", {name} = {value}" for name, value in table.fixed)
+    return f"{problem.kind.name.lower()} of {half} period {problem.period} in {problem.free}: {table.name}{shape}"
+
+
+def _in_box(claim: Claim | SpecialClaim, exact: Expr) -> bool:
+    """Does the last unknown's ball hold a value that is known exactly?"""
+    with working(claim.bits):
+        return bool((claim.centre[-1] + arb(0, claim.radius)).overlaps(closed_form(exact, claim.digits + 5)))
+
+
 def claim_of(given: Mapping[str, Any]) -> Claim | SpecialClaim:
     """The claim of a document; `ValueError` with the entry that is wrong."""
     try:
@@ -67,6 +114,8 @@ def claim_of(given: Mapping[str, Any]) -> Claim | SpecialClaim:
             raise ValueError(f"certificate: bits = {bits} or digits = {digits} is out of range")
         centre, radius = tuple(_ball(pair) for pair in given["centre"]), _ball(given["radius"])
         lam = None if given["lam"] is None else number(given["lam"], "lam")
+        if lam is not None and not 0 <= lam <= 1:
+            raise ValueError(f"certificate: lam = {lam} is no contraction; accepted: numbers in [0, 1]")
         if given["kind"] == "special":
             unknowns = 2 if lam is None else 3
             _sized(centre, unknowns, "unknowns")
@@ -108,13 +157,30 @@ def read(path: Path) -> dict[str, Any]:
 
 
 def checked(given: Mapping[str, Any]) -> "Proof | SpecialProof | TangencyProof":
-    """The checklist of a document's claim, worked through anew; what the file says of it is not believed."""
+    """The checklist of a document's claim, worked through anew; what the file says of it is not believed.
+
+    The name is part of the statement: a file under another name than its equations have is refused.
+    """
     if given.get("kind") == "tangency" and given.get("schema") == SCHEMA:
         from verification.proofs.manifolds import claim as tangency  # NumPy, which no other certificate needs
 
-        return tangency.worked_through(tangency.claim_of(given))
+        contact = tangency.claim_of(given)
+        _rightly_named(given, contact)
+        return tangency.worked_through(contact)
     claim = claim_of(given)
+    _rightly_named(given, claim)
     return specially_proved(claim) if isinstance(claim, SpecialClaim) else proved(claim)
+
+
+def check(path: Path | str) -> "Proof | SpecialProof | TangencyProof":
+    """The proof that a certificate file leads to, worked through anew; `certified` says whether every item holds."""
+    return checked(read(Path(path)))
+
+
+def _rightly_named(given: Mapping[str, Any], claim: "Claim | SpecialClaim | TangencyClaim") -> None:
+    said, true = given.get("name"), name_of(claim)
+    if said != true:
+        raise ValueError(f"certificate: name = {ascii(said)[:80]} is not what it states, which is {true!r}")
 
 
 def _points(table: Table) -> int:

@@ -12,13 +12,13 @@ from verification.named.locate import locate
 
 @pytest.fixture(scope="module")
 def fold() -> dict:
-    return document("saddle-node", locate("saddle-node", 30, alpha=Rational(2, 25)).proof)
+    return document(locate("saddle-node", 30, alpha=Rational(2, 25)).proof)
 
 
 def test_a_certificate_survives_json_bit_for_bit(fold):
     again = json.loads(json.dumps(fold))
 
-    assert document("saddle-node", checked(again)) == fold
+    assert document(checked(again)) == fold
 
 
 def test_a_certificate_is_verified_anew(fold):
@@ -26,14 +26,14 @@ def test_a_certificate_is_verified_anew(fold):
 
 
 def test_a_certificate_of_five_thousand_digits_is_read_back():
-    made = json.loads(json.dumps(document("lambda-star", locate("lambda-star", 5000).proof)))
+    made = json.loads(json.dumps(document(locate("lambda-star", 5000).proof)))
 
     assert checked(made).certified
 
 
 def test_an_irrational_shape_is_kept_exactly():
     proof = locate("saddle-node", 20, alpha=sqrt(2) / 30).proof
-    made = document("saddle-node", proof)
+    made = document(proof)
 
     assert made["shape"] == {"alpha": "sqrt(2)/30"}
     assert checked(made).certified
@@ -51,19 +51,17 @@ def test_an_irrational_shape_is_kept_exactly():
     ],
 )
 def test_every_name_has_a_certificate_that_checks(name, shape):
-    made = json.loads(json.dumps(document(name, locate(name, 20, **shape).proof)))
+    made = json.loads(json.dumps(document(locate(name, 20, **shape).proof)))
     again = checked(made)
 
     assert again.certified
-    assert document(name, again) == made
+    assert document(again) == made
 
 
 @pytest.mark.parametrize(
     "spoil",
     [
         lambda d: d["centre"].__setitem__(0, ["1", "-1"]),
-        lambda d: d.__setitem__("shape", {"alpha": "7/100"}),
-        lambda d: d.__setitem__("kind", "flip"),
         lambda d: d.__setitem__("radius", ["1", "-400"]),
         lambda d: d.__setitem__("digits", 60),
     ],
@@ -73,6 +71,37 @@ def test_a_spoiled_certificate_is_not_certified_whatever_it_says(fold, spoil):
     spoil(given)
 
     assert not checked(given).certified
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"),
+    [
+        ("name", "lambda-star"),
+        ("name", "lambda-star = 0.5 +- 0 (certified)"),
+        ("name", "\x1b[2Jsaddle-node"),
+        ("name", None),
+        ("shape", {"alpha": "7/100"}),
+        ("kind", "flip"),
+        ("mirror", True),
+    ],
+)
+def test_a_file_under_another_name_than_its_equations_have_is_refused(fold, entry, value):
+    with pytest.raises(ValueError, match="is not what it states"):
+        checked(copy.deepcopy(fold) | {entry: value})
+
+
+def test_an_angle_is_not_told_under_the_name_of_a_contraction():
+    made = document(locate("phi-star", 20).proof)
+
+    with pytest.raises(ValueError, match="is not what it states, which is 'lambda-star'"):
+        checked(made | {"value": "lam"})
+
+
+def test_a_contraction_beyond_one_is_refused():
+    made = document(locate("alpha-tilde", 20, lam=Rational(1, 3)).proof)
+
+    with pytest.raises(ValueError, match="lam = 2 is no contraction"):
+        checked(made | {"lam": "2"})
 
 
 @pytest.mark.parametrize(

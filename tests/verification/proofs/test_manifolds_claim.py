@@ -16,18 +16,18 @@ CLAIM = TangencyClaim(CONTACTS["boundary"], SHAPE, VALUE, 20)
 
 def test_a_certificate_of_a_tangency_is_checked_without_the_search(tmp_path, capsys):
     path = tmp_path / "touch.json"
-    path.write_text(json.dumps(document("boundary-crisis", worked_through(CLAIM))))
+    path.write_text(json.dumps(document(worked_through(CLAIM))))
 
     assert main(["check", str(path), "--json", "-"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["certified"] is True
-    assert found["name"] == "boundary-crisis, the tangency"
+    assert found["name"] == "homoclinic tangency in the egg, alpha = 2/25"
     assert found["value"].startswith("0.66214427335822441948")
     assert set(found["checks"].values()) == {True}
 
 
 def test_what_a_file_says_of_itself_is_not_believed():
-    given = document("boundary-crisis", worked_through(CLAIM)) | {"value": "0.66214427335822441952"}
+    given = document(worked_through(CLAIM)) | {"value": "0.66214427335822441952"}
     found = checked(json.loads(json.dumps(given)))
 
     assert set(given["checks"].values()) == {True}

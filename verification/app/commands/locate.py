@@ -90,7 +90,7 @@ def _write(path: str, found: "Located") -> None:
         raise ValueError(
             f"--certificate: {found.name} was not proved here; accepted: names and shapes that are certified"
         )
-    write_whole(Path(path), json.dumps(document(found.name, found.proof), indent=1) + "\n")
+    write_whole(Path(path), json.dumps(document(found.proof), indent=1) + "\n")
 
 
 @click.command(epilog="Example: pinball locate lambda-c --certificate lambda_c.json && pinball check lambda_c.json")
@@ -109,7 +109,7 @@ def check_command(file: str, output: Output) -> int:
     given = read(Path(file))
     proof = checked(given)
     seconds = time.perf_counter() - started
-    name = str(given.get("name", file))
+    name = str(given["name"])  # held to be what the equations say
     value, radius = decimal(proof.value, proof.claim.digits + 1)
     output.write(
         {

@@ -139,7 +139,7 @@ def test_the_command_writes_the_contract_and_a_certificate_that_checks(tmp_path)
 
 
 def test_a_certificate_that_fails_exits_with_one(tmp_path):
-    spoiled = document(locate("saddle-node", 20, alpha=ALPHA).proof) | {"kind": "flip"}
+    spoiled = document(locate("saddle-node", 20, alpha=ALPHA).proof) | {"digits": 60}
     (tmp_path / "c.json").write_text(json.dumps(spoiled))
 
     assert CliRunner().invoke(check, [str(tmp_path / "c.json")], standalone_mode=False).return_value == 1

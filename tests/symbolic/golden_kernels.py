@@ -39,7 +39,7 @@ def files() -> dict[str, str]:
         chords = [chord_kernel(table, *pair, order=2) for pair in PAIRS.get(name, [(0, 0)])]
         rules = [collision_kernel(table, triple) for triple in TRIPLES.get(name, [(0, 0, 0)])]
         made[f"chords_{name}.py"] = module_text(chords, f"symbolic.motion.chords.chord_angle, table {name}")
-        made[f"rules_{name}.py"] = module_text(rules, f"symbolic.motion.chords.collision_rule, table {name}")
+        made[f"rules_{name}.py"] = module_text(rules, f"motion.chords.collision_rule, table {name}")
         made[f"curvature_{name}.py"] = module_text(
             curvatures(table), f"symbolic.tables.geometry.curvature, table {name}"
         )

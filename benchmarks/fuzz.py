@@ -12,7 +12,7 @@ import sys
 import atheris
 
 with atheris.instrument_imports(
-    include=["symbolic.tables.formula", "symbolic.tables.formula_bounds", "verification.commands"]
+    include=["symbolic.tables.formula", "symbolic.tables.formula_bounds", "verification.app"]
 ):
     from symbolic.tables.formula import FUNCTIONS, number, parse
     from verification.app.shell.scene import scene, start_of

@@ -25,7 +25,7 @@ WORDS = sorted(
 TESTS = sorted(path for path in (ROOT / "tests").rglob("*.py") if "golden" not in path.parts)
 READERS_OF_TEXT = {"eval", "sympify", "parse_expr", "__import__"}
 EXECUTES = {Path("symbolic/generation/text.py")}  # compiles what it has written itself
-LINES = 350
+LINES = 400
 
 
 def named(path: Path) -> str:

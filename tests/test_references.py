@@ -12,7 +12,7 @@ BIBLIOGRAPHY = ROOT / "docs" / "references.bib"
 FOLDERS = ("docs", "symbolic", "numeric", "verification", "notebooks", "benchmarks", "tests")
 READ = {".md", ".py", ".ipynb", ".j2", ".html", ".toml"}
 APART = {ROOT / "docs" / "references.md", Path(__file__)}
-PRINTED = ROOT / "verification" / "claims" / "printed"  # the paper's own words, with its own citations
+PRINTED = ROOT / "verification" / "paper" / "claims" / "printed"  # the paper's own words, with its own citations
 TEXTS = sorted(
     path
     for folder in FOLDERS

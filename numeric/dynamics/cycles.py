@@ -2,7 +2,7 @@
 
 All bounces are unknowns at once, so errors do not multiply along the cycle, and one of period 256 next
 to the accumulation of period doublings is told from one of 128. For digits and proofs there is the
-chord system (`verification.shooting`, `verification.certificates`).
+chord system (`verification.cycles`, `verification.proofs`).
 """
 
 from dataclasses import dataclass

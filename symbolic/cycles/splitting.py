@@ -53,6 +53,7 @@ from sympy import (
     Matrix,
     Min,
     Rational,
+    S,
     Symbol,
     cos,
     expand_trig,
@@ -62,7 +63,6 @@ from sympy import (
     sin,
     sqrt,
     symbols,
-    sympify,
     tan,
     tanh,
 )
@@ -226,8 +226,8 @@ def least_rate(contraction: Expr = lam) -> Expr:
     >>> least_rate(Rational(4, 5)).n(3)
     0.00155
     """
-    arc = 1 + tan((1 - sympify(contraction)) * pi / 8) ** 2 / 2
-    wall = sympify(contraction) + Rational(11, 27)
+    arc = 1 + tan((1 - S(contraction)) * pi / 8) ** 2 / 2
+    wall = S(contraction) + Rational(11, 27)
     return log(smaller(arc, wall)) / 2
 
 
@@ -253,8 +253,8 @@ def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
     >>> [bound.n(3) for bound in diameters(Rational(1, 2))]
     [4.45, 5.18]
     """
-    share = sympify(contraction) / (1 + sympify(contraction))
-    gain = 1 + tan((1 - sympify(contraction)) * pi / 8) ** 2 / 2
+    share = S(contraction) / (1 + S(contraction))
+    gain = 1 + tan((1 - S(contraction)) * pi / 8) ** 2 / 2
     free = clearance(contraction)
     return log(1 + 2 * share) + log(gain / (gain - 1)), log(1 + share * Rational(4, 3) / free) + log(DIAMETER / free)
 

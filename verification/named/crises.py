@@ -1,6 +1,6 @@
 """The crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
 
-`verification.manifolds` has the same crises as tangencies, to many digits; this is what balls do.
+`verification.proofs.manifolds` has the same crises as tangencies, to many digits; this is what balls do.
 
 Below a crisis no ball leaves the attractor; above it each bounce has a chance to, which grows from 0
 like a power of the distance. So many balls are started on the attractor, and the contractions at

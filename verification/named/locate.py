@@ -1,6 +1,6 @@
 """Where does it happen? Each bifurcation by its name: to N digits, with a proof.
 
-mpmath finds the approximation on the chord system, balls prove it (`verification.certificates`), and
+mpmath finds the approximation on the chord system, balls prove it (`verification.proofs`), and
 where there is a closed form it must agree. `value` and `radius` are decimals that hold the truth.
 """
 

@@ -86,7 +86,8 @@ def test_a_full_disk_is_survived(tmp_path, monkeypatch):
     assert [path for path in tmp_path.iterdir() if not path.name.startswith(".")] == []
 
 
-def test_without_llvmlite_numpy_does_the_work(monkeypatch):
+def test_without_llvmlite_numpy_does_the_work(monkeypatch, tmp_path):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))  # or compiled code is read from there
     monkeypatch.setattr(machine, "_loaded", {})
     monkeypatch.setattr(machine, "_llvm", lambda: None)
     step = PinballMap("ellipse", lam=0.5, a=2).step(0.3, 0.2)

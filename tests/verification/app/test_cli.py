@@ -13,7 +13,7 @@ import click
 import pytest
 from sympy import Expr, Rational, cos, sqrt
 
-import verification
+import verification.paper.report
 from symbolic import tables
 from symbolic.tables.definition import PAPER
 from symbolic.tables.scene import Scene
@@ -58,7 +58,7 @@ def engine(monkeypatch, tmp_path):
         ),
     )
     monkeypatch.setitem(sys.modules, "verification.paper.report.verdicts", fake)
-    monkeypatch.setattr(verification, "claims", fake, raising=False)
+    monkeypatch.setattr(verification.paper.report, "verdicts", fake, raising=False)
     monkeypatch.chdir(tmp_path)
     return fake
 
@@ -81,7 +81,7 @@ def scenes(monkeypatch):
 
     for command in (show, shape):
         monkeypatch.setitem(COMMANDS, command.name, "for tests")
-        monkeypatch.setitem(sys.modules, f"verification.commands.{command.name}", SimpleNamespace(command=command))
+        monkeypatch.setitem(sys.modules, f"verification.app.commands.{command.name}", SimpleNamespace(command=command))
     return seen
 
 

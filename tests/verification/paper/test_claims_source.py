@@ -8,7 +8,8 @@ import pytest
 
 from verification.paper.report import verdicts as claims
 
-JUDGES = sorted(Path(claims.__file__).parent.glob("on_*.py"))
+PAPER = Path(claims.__file__).parents[1]
+JUDGES = [path for room in claims.ROOMS for path in sorted((PAPER / room).glob("*.py"))]
 TEXTS = {"reason", "notes", "erratum", "evidence", "method", "derived"}  # fields that hold sentences
 READERS = {"startswith", "endswith", "find", "rfind", "index", "rindex", "search", "match", "fullmatch"}
 VERDICTS = {"shown", "answer"}  # findings from a decision
@@ -49,12 +50,12 @@ def places(found: Iterator[ast.AST]) -> list[str]:
     return [f"line {node.lineno}: {ast.unparse(node)}" for node in found]
 
 
-@pytest.mark.parametrize("path", JUDGES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", JUDGES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_no_judge_writes_down_the_outcome_of_a_finding(path):
     assert places(asserted(ast.parse(path.read_text()))) == []
 
 
-@pytest.mark.parametrize("path", JUDGES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", JUDGES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_no_judge_decides_by_the_text_of_a_message(path):
     assert places(compared(ast.parse(path.read_text()))) == []
 

@@ -16,7 +16,9 @@ from symbolic import tables
 from symbolic.tables.formula import number
 from symbolic.tables.fourier import boundary_coefficients
 from symbolic.tables.table import Table
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.shooting.problem import Problem
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
 from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 
@@ -49,7 +51,7 @@ def document(name: str, proof: "Proof | SpecialProof | TangencyProof") -> dict[s
         "table": problem.table.name,
         "points": _points(problem.table),
         "shape": {letter: str(value) for letter, value in problem.table.fixed},
-        "kind": problem.kind.name.lower(),
+        "kind": problem.kind.name.lower() if problem.kind else "cycle",
         "free": problem.free,
         "mirror": problem.mirror,
         "lam": None if problem.lam is None else str(problem.lam),
@@ -86,7 +88,8 @@ def _problem(given: Mapping[str, Any], lam: Any) -> Problem:
     table = tables.named(given["table"], int(given["points"])).at(**shape)
     if not set(components) <= set(range(len(table.components))):
         raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
-    return Problem(table, components, Kind[given["kind"].upper()], given["free"], lam, bool(given["mirror"]))
+    kind = None if given["kind"] == "cycle" else BifurcationKind[given["kind"].upper()]
+    return Problem(table, components, kind, given["free"], lam, Closure(-1 if given["mirror"] else 1))
 
 
 def _sized(centre: tuple[arb, ...], wanted: int, what: str) -> None:

@@ -26,6 +26,7 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
 from verification.arithmetic.series import Jet
 from verification.arithmetic.words import ARRAYS, Arithmetic
+from verification.cycles.recurrence.closure import IDENTITY, Closure
 from verification.maps.admissible import convex
 
 Array = NDArray[np.float64]
@@ -44,24 +45,9 @@ class Terms:
     slope_by: dict[str, tuple[Array, Array, Array]]
 
 
-@dataclass(frozen=True)
-class Ends:
-    """How a ring closes: `x[n] = turn*x[0] + shift`."""
-
-    turn: int = 1
-    shift: float = 0.0
-
-    def padded(self, x: Array) -> Array:
-        """`x` with a neighbour at either end.
-
-        >>> Ends(-1).padded(np.array([1.0, 2.0]))
-        array([-2.,  1.,  2., -1.])
-        """
-        return np.concatenate([[self.turn * (x[-1] - self.shift)], x, [self.turn * x[0] + self.shift]])
-
-    def twice(self) -> "Ends":
-        """How the ring run through twice closes."""
-        return Ends(1, self.turn * self.shift + self.shift)
+def around(closure: Closure, x: Array) -> Array:
+    """`x` with a neighbour at either end."""
+    return np.array(closure.padded(x, closure.radians))  # type: ignore[arg-type]  # an array is a sequence here
 
 
 class Recurrence(Protocol):
@@ -76,7 +62,7 @@ class Recurrence(Protocol):
         """Bounces of the ring."""
 
     @property
-    def ends(self) -> Ends:
+    def closure(self) -> Closure:
         """How it closes."""
 
     @property
@@ -102,7 +88,7 @@ class Chords:
 
     table: Table
     components: tuple[int, ...]
-    ends: Ends = Ends()
+    closure: Closure = IDENTITY
 
     @property
     def label(self) -> str:
@@ -127,10 +113,10 @@ class Chords:
         >>> bool(abs(axis.terms(np.array([np.pi / 2, -np.pi / 2]), {"lam": 0.5}, 1).value).max() < 1e-15)
         True
         """
-        lam, around = at["lam"], self.ends.padded(x)
+        lam, ring = at["lam"], around(self.closure, x)
         shape = [at[name] for name in self.letters[1:]]
-        f = self._angles(ARRAYS, 1, around[1:-1], around[2:], shape, order)
-        b = self._angles(ARRAYS, -1, around[1:-1], around[:-2], shape, order)
+        f = self._angles(ARRAYS, 1, ring[1:-1], ring[2:], shape, order)
+        b = self._angles(ARRAYS, -1, ring[1:-1], ring[:-2], shape, order)
         none = np.zeros(self.period)
         by, slope_by, bend = {"lam": b["angle"]}, {}, {}
         for s in self.letters[1:]:
@@ -160,20 +146,20 @@ class Chords:
             for pair in set(pairs):
                 chosen = np.array([p == pair for p in pairs])
                 angle = _loaded_chord(self.table, *pair, 0, arithmetic)
-                ends = (Jet(*(c[chosen] for c in x.c)) for x in (here, other))
-                for row, value in zip(total, angle(*ends, *shape)[0].c, strict=True):
+                pair_of = (Jet(*(c[chosen] for c in x.c)) for x in (here, other))
+                for row, value in zip(total, angle(*pair_of, *shape)[0].c, strict=True):
                     row[chosen] += factor * value
         return Jet(*total)
 
     def doubled(self) -> "Chords":
         """The ring run through twice."""
-        return replace(self, components=self.components * 2, ends=self.ends.twice())
+        return replace(self, components=self.components * 2, closure=self.closure.twice())
 
     def angles(self, x: Array, at: Letters) -> tuple[Array, Array]:
         """Exit and incidence angles at each bounce, in radians."""
-        around, shape = self.ends.padded(x), [at[name] for name in self.letters[1:]]
-        out = self._angles(ARRAYS, 1, around[1:-1], around[2:], shape, 0)["angle"]
-        return out, self._angles(ARRAYS, -1, around[1:-1], around[:-2], shape, 0)["angle"]
+        ring, shape = around(self.closure, x), [at[name] for name in self.letters[1:]]
+        out = self._angles(ARRAYS, 1, ring[1:-1], ring[2:], shape, 0)["angle"]
+        return out, self._angles(ARRAYS, -1, ring[1:-1], ring[:-2], shape, 0)["angle"]
 
     def obstacle(self, x: Array, at: Letters) -> str:
         """A bounce beyond its component, or next to its neighbour."""
@@ -182,8 +168,8 @@ class Chords:
                 component = self.table.components[part]
                 if not float(component.start) <= value <= float(component.end):
                     return f"bounce {i} left the {component.name} at theta = {value:.6g}"
-        around, parts = self.ends.padded(x), (*self.components, self.components[0])
-        apart = np.abs(np.sin((around[2:] - around[1:-1]) / 2))
+        ring, parts = around(self.closure, x), (*self.components, self.components[0])
+        apart = np.abs(np.sin((ring[2:] - ring[1:-1]) / 2))
         for i in range(self.period):
             if parts[i] == parts[i + 1] and apart[i] < 1e-6:
                 return f"bounces {i} and {i + 1} met at theta = {x[i]:.6g}, where no chord is left"
@@ -198,7 +184,7 @@ class Chords:
             return f"the chord from bounce {int(np.argmax(np.abs(out)))} does not point into the table"
         landed = _map_of(self.table, PinballMap).step(x, out, np.array(self.components))
         after = np.roll(np.array(self.components), -1)
-        expected = self.ends.padded(x)[2:]
+        expected = around(self.closure, x)[2:]
         for i in range(self.period):
             if landed.code[i]:
                 return f"the flight from bounce {i} ends at a {landed.status[i].name.lower()}"
@@ -259,7 +245,7 @@ class Explicit:
     residual: Expr
     parameters: tuple[Symbol, ...]
     period: int
-    ends: Ends = Ends()
+    closure: Closure = IDENTITY
 
     @property
     def label(self) -> str:
@@ -273,8 +259,8 @@ class Explicit:
 
     def terms(self, x: Array, at: Letters, order: int) -> Terms:
         """The rule and its derivatives up to second order, whatever `order` is."""
-        around, values = self.ends.padded(x), [at[name] for name in self.letters]
-        made = load(_explicit(self.residual, self.parameters), ARRAYS)(around[:-2], around[1:-1], around[2:], *values)
+        ring, values = around(self.closure, x), [at[name] for name in self.letters]
+        made = load(_explicit(self.residual, self.parameters), ARRAYS)(ring[:-2], ring[1:-1], ring[2:], *values)
         full = [np.broadcast_to(np.asarray(v, dtype=float), x.shape) for v in made]
         n = len(self.parameters)
         pairs = list(combinations_with_replacement(range(3), 2))
@@ -290,7 +276,7 @@ class Explicit:
 
     def doubled(self) -> "Explicit":
         """The ring run through twice."""
-        return replace(self, period=2 * self.period, ends=self.ends.twice())
+        return replace(self, period=2 * self.period, closure=self.closure.twice())
 
     def obstacle(self, x: Array, at: Letters) -> str:
         """Nothing is ever in the way of a formula."""

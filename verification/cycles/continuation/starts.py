@@ -90,7 +90,7 @@ def freed(ring: Chords, K: int, letter: str, interval: Sequence[Expr | Fraction]
             table.at(**{letter: S(value)})
         except ValueError as why:
             raise ValueError(f"--shape: {why}") from None
-    return Chords(table, ring.components, ring.ends)
+    return Chords(table, ring.components, ring.closure)
 
 
 def rows(branch: Branch) -> list[tuple[Point, Event | None]]:

@@ -128,7 +128,7 @@ def multipliers_of(orbit: Orbit, map: Recurrence, points: Sequence[acb], letter:
     for before, here, after in slopes(orbit, map, points, letter):
         first, second = ((b, -(here * b + before * a) / after) for a, b in (first, second))
         determinant = determinant * before / after
-    trace = orbit.sign * (first[0] + second[1])
+    trace = orbit.closure.turn * (first[0] + second[1])
     root = (trace * trace - 4 * determinant).sqrt()
     if not root.real > 0:
         raise TooWideError("saddle", f"the multipliers of the {orbit.name} may be complex")
@@ -152,12 +152,11 @@ class Enclosed:
 
     def over(self, i: int, radius: arb) -> acb:
         """The polynomial of bounce `i`, any integer, over the disc of this radius: its terms in absolute value."""
-        orbit, (rounds, place) = self.saddle.orbit, divmod(i, len(self.coefficients))
+        closure, (rounds, place) = self.saddle.orbit.closure, divmod(i, len(self.coefficients))
         x, *rest = self.coefficients[place]
-        shift, reach = orbit.shifted(self.saddle.map), radius * size(self.factor**rounds)
-        for _ in range(abs(rounds)):
-            x = orbit.sign * x + shift if rounds > 0 else orbit.sign * (x - shift)
-        return x + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
+        reach = radius * size(self.factor**rounds)
+        moved: acb = closure.carried(x, closure.angle(self.saddle.map.words), rounds)
+        return moved + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
 
     def ring(self) -> list[Jet]:
         """The polynomials of the bounces, with one more on either side."""

@@ -119,17 +119,18 @@ def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
     outwards = abs(float(local.factor)) > 1
     factor = float(local.factor) if outwards else 1 / float(local.factor)
     here, following = local.points(z / factor**rounds)
-    shift = orbit.shifted(map)
+    closure = orbit.closure
+    shift = closure.angle(map.words)
     for _ in range(rounds):
         if not outwards:
-            here, following = orbit.sign * here + shift, orbit.sign * following + shift
+            here, following = (closure.carried(x, shift, 1) for x in (here, following))
         for _ in orbit.start:
             if outwards:
                 here, following = following, map.following(here, following, letter)
             else:
                 here, following = map.previous(here, following, letter), here
         if outwards:
-            here, following = orbit.sign * (here - shift), orbit.sign * (following - shift)
+            here, following = (closure.carried(x, shift, -1) for x in (here, following))
         if map.turn:  # a mirror leaves the next bounce behind, where the map takes it ahead
             following = here + np.remainder(following - here, 2 * np.pi)
     return here, following
@@ -175,7 +176,7 @@ def candidates(orbit: Orbit, map: Recurrence, letter: float, rounds: int, any_bo
         here, following = out.points(z)
         for count in range(1, rounds * len(orbit.start) + 1):
             here, following = following, map.over(ARRAYS).following(here, following, letter)
-            whole = (orbit.sign ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
+            whole = (orbit.closure.turn ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
             for sign in ((1, -1) if map.turn else (1,)) if any_bounce else whole:
                 gap, end = gaps(into, sign * here, sign * following)
                 for i in turning(gap):

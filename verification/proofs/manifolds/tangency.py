@@ -44,6 +44,11 @@ class Contact:
         """`homoclinic` or `heteroclinic`, modulo the table's symmetry."""
         return "homoclinic" if self.unstable == self.stable else "heteroclinic"
 
+    def mirrored(self, early: int, late: int) -> int:
+        """The sign with so many rounds more at either end, each of which may mirror the rest."""
+        turns: int = self.unstable.closure.turn**early * self.stable.closure.turn**late
+        return self.sign * turns
+
 
 @dataclass(frozen=True)
 class Touch:
@@ -68,7 +73,7 @@ class Gap:
         early = rounds(contact.z / self.out.unit, float(self.out.factor))
         late = rounds(contact.end / self.into.unit, 1 / float(self.into.factor))
         self.bounces = contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
-        self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
+        self.sign = contact.mirrored(early, late)
         self.scales = self.out.unit * float(self.out.factor) ** early, self.into.unit / float(self.into.factor) ** late
         self.start, self.end = contact.z / self.scales[0], contact.end / self.scales[1]
 

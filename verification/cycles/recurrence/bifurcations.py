@@ -1,0 +1,47 @@
+"""The bifurcations of cycles: one list, and for each the equation that defines it.
+
+    fold                 det(M - 1) = 0 and the branch turns in the parameter
+    pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
+    branch point         det(M - 1) = 0, the branch goes straight on, no symmetry is broken
+    period doubling      det(M + 1) = 0
+    Neimark-Sacker       det M = 1 with multipliers on the unit circle
+    neutral saddle       det M = 1 with real multipliers: no bifurcation
+    border collision     a bounce meets a join of the boundary
+
+`M` is the monodromy matrix. A bifurcating cycle solves one equation more than it has bounces, for one parameter more.
+"""
+
+from enum import Enum
+
+
+class BifurcationKind(Enum):
+    """What happens to a cycle as a parameter varies; the value is the field's word for it."""
+
+    FOLD = "fold"
+    PITCHFORK = "pitchfork"
+    BRANCH_POINT = "branch point"
+    FLIP = "period doubling"
+    TORUS = "Neimark-Sacker"
+    NEUTRAL_SADDLE = "neutral saddle"
+    BORDER_COLLISION = "border collision"
+
+    @property
+    def multiplier(self) -> int:
+        """The critical multiplier, 1 or -1, of the ring that is solved for: the part that flips, at a pitchfork.
+
+        >>> BifurcationKind.FOLD.multiplier, BifurcationKind.PITCHFORK.multiplier
+        (1, -1)
+        """
+        return -1 if self.solved is BifurcationKind.FLIP else 1
+
+    @property
+    def solved(self) -> "BifurcationKind | None":
+        """The kind whose equations are solved for, on the part that flips at a pitchfork; None where there are none."""
+        return SOLVED.get(self)
+
+
+SOLVED = {
+    BifurcationKind.FOLD: BifurcationKind.FOLD,
+    BifurcationKind.FLIP: BifurcationKind.FLIP,
+    BifurcationKind.PITCHFORK: BifurcationKind.FLIP,
+}

@@ -25,8 +25,9 @@ from numeric import PinballMap
 from symbolic.tables import egg
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import branch
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array
 from verification.cycles.shooting.attracting import next_critical
 from verification.cycles.shooting.problem import Problem
 from verification.named.locate import certify

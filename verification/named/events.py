@@ -21,10 +21,11 @@ from symbolic.tables import egg
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import Event, branch
 from verification.cycles.continuation.curves import Curve, curve
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.continuation.symmetry import rotations
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.closure import IDENTITY, MIRROR
+from verification.cycles.recurrence.recurrence import Array
 from verification.cycles.search.search import all_cycles
 from verification.cycles.shooting.problem import Problem
 from verification.named.locate import certify

@@ -19,7 +19,7 @@ from symbolic.cycles import polygons, thresholds
 from symbolic.generation.text import kernel, load
 from symbolic.tables.symbols import alpha as alpha_letter
 from symbolic.tables.symbols import lam as lam_letter
-from verification.arithmetic.balls import decimal
+from verification.arithmetic.balls import decimal, exact_balls
 from verification.arithmetic.progress import telling
 from verification.arithmetic.words import balls, bits_of, working
 from verification.cycles.recurrence.bifurcations import BifurcationKind
@@ -29,7 +29,7 @@ from verification.cycles.shooting.problem import Problem
 from verification.cycles.shooting.small import corner, focus
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
 from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
-from verification.proofs.periodic.interval_newton import Status, exact_balls
+from verification.proofs.periodic.interval_newton import Status
 
 if TYPE_CHECKING:
     from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other name needs

@@ -17,10 +17,11 @@ from symbolic.tables.symbols import lam
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.curves import Curve, Degenerate, curve
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.continuation.switching import switched
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.recurrence import Array
 from verification.named.feigenbaum import limit
 
 TWO = ("alpha", "lam")

@@ -21,11 +21,12 @@ from verification.cycles.continuation import linear
 from verification.cycles.continuation.arc import End, Steps
 from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.linear import spectrum
-from verification.cycles.continuation.recurrence import Chords, cubic, delayed, henon, logistic
 from verification.cycles.continuation.starts import dataset, named
 from verification.cycles.continuation.switching import switched
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.explicit import cubic, delayed, henon, logistic
 from verification.cycles.shooting.cascade import ladder
 from verification.named.events import proof_of
 from verification.named.locate import locate

@@ -16,10 +16,11 @@ from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.curves import Special, curve
 from verification.cycles.continuation.normal import coefficients
-from verification.cycles.continuation.recurrence import Chords, henon
 from verification.cycles.continuation.systems import Critical
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.explicit import henon
 from verification.cycles.shooting.normal_form import normal_form
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.named.tongue import accumulation, cascade, fold, largest_shape

@@ -14,8 +14,8 @@ from symbolic.tables.symbols import theta
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import FLOAT64
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chain import Chain, Elimination
 from verification.cycles.recurrence.closure import MIRROR
-from verification.cycles.shooting.chain import Chain, Elimination
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 
 fractions = st.fractions(-3, 3, max_denominator=7)

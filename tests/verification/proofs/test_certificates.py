@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from sympy import Rational
 
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
+from verification.arithmetic.balls import exact_balls
 from verification.arithmetic.words import balls, working
 from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.newton import refined
@@ -19,7 +20,7 @@ from verification.cycles.shooting.small import corner
 from verification.maps.admissible import convex, inside, minimal
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Claim, proved
-from verification.proofs.periodic.interval_newton import Status, contraction, exact_balls
+from verification.proofs.periodic.interval_newton import Status, contraction
 
 AXIS = Problem(ellipse.at(a=Rational(3, 2)), (0, 0), lam=Rational(1, 3))
 EGG = egg(3).at(alpha=Rational(2, 25))

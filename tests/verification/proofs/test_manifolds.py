@@ -26,7 +26,7 @@ from verification.proofs.manifolds.known import (
     homoclinic_exponent,
     table,
 )
-from verification.proofs.manifolds.recurrence import Henon, Pinball
+from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import local
 from verification.proofs.manifolds.shadows import shadow

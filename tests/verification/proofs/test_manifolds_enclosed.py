@@ -24,7 +24,7 @@ from verification.proofs.manifolds.enclosed import (
 )
 from verification.proofs.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
 from verification.proofs.manifolds.pair import Precision, one_cycle, pair, scale, smaller
-from verification.proofs.manifolds.recurrence import Henon
+from verification.proofs.manifolds.plane_map import Henon
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import horner, local
 

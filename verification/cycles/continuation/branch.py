@@ -14,10 +14,11 @@ from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
 from verification.cycles.continuation.linear import Spectrum
 from verification.cycles.continuation.normal import Coefficients, coefficients
-from verification.cycles.continuation.recurrence import Array, Chords, Letters, Recurrence
 from verification.cycles.continuation.symmetry import parts, whole
 from verification.cycles.continuation.systems import Cycles
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence
 
 NOISE = 1e-9  # a test function that small has no sign
 NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
@@ -91,7 +92,7 @@ def branch(
     """The branch through the cycle near `x` at `letter = value`, both ways, inside `interval`.
 
     >>> from sympy import Symbol
-    >>> from verification.cycles.continuation.recurrence import logistic
+    >>> from verification.cycles.recurrence.explicit import logistic
     >>> found = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.9))
     >>> [(event.what.value, round(event.value, 9)) for event in found.events]
     [('period doubling', 3.0)]

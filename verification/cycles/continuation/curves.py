@@ -20,9 +20,9 @@ import numpy as np
 
 from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
-from verification.cycles.continuation.recurrence import Array, Letters, Recurrence
 from verification.cycles.continuation.systems import Critical
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence
 
 Box = tuple[tuple[float, float], tuple[float, float]]
 NOISE = 1e-10
@@ -100,7 +100,7 @@ def curve(
 ) -> Curve:
     """The curve of `kind` through the critical cycle near `x`, at letters near `near`, both ways inside `box`.
 
-    >>> from verification.cycles.continuation.recurrence import henon
+    >>> from verification.cycles.recurrence.explicit import henon
     >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))
     >>> found = curve(henon(1), flip, np.array([0.95]), ("b", "a"), (0.3, 0.37), box)
     >>> bool(np.allclose(found.plane[:, 1], 3 * (1 - found.plane[:, 0]) ** 2 / 4))

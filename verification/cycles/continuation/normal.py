@@ -15,8 +15,8 @@ import numpy as np
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import ARRAYS
 from verification.cycles.continuation.linear import along, null_vectors, ring_matrix, solved
-from verification.cycles.continuation.recurrence import Array, Letters, Recurrence, around
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence, around
 
 JETS = jets(ARRAYS)
 

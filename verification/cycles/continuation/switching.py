@@ -17,10 +17,11 @@ from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import LostError, Point, Steps
 from verification.cycles.continuation.branch import Branch, Event, Interval, through
 from verification.cycles.continuation.linear import null_vectors, ring_matrix
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.continuation.symmetry import whole
 from verification.cycles.continuation.systems import Cycles
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
@@ -34,7 +35,7 @@ def switched(
     """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
 
     >>> from verification.cycles.continuation.branch import branch
-    >>> from verification.cycles.continuation.recurrence import logistic
+    >>> from verification.cycles.recurrence.explicit import logistic
     >>> one = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4))
     >>> (two,) = switched(one, one.events[0], (2.0, 3.6))
     >>> [(event.what.value, round(event.value, 9)) for event in two.events]

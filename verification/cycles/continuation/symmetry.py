@@ -15,8 +15,9 @@ from sympy import pi as exact_pi
 
 from symbolic.tables.symbols import theta
 from symbolic.tables.table import Table
-from verification.cycles.continuation.recurrence import Array, Chords
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.closure import IDENTITY, Closure
+from verification.cycles.recurrence.recurrence import Array
 from verification.cycles.shooting.problem import mirrored
 
 SAME = 1e-7  # radians

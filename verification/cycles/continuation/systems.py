@@ -23,8 +23,8 @@ from verification.cycles.continuation.linear import (
     spectrum,
 )
 from verification.cycles.continuation.normal import bend_of
-from verification.cycles.continuation.recurrence import Array, Letters, Recurrence, Terms
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence, Terms
 
 PARAMETER = 4.0  # a letter counts as much as an angle of this many radians moved by every bounce
 

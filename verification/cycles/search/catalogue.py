@@ -8,7 +8,7 @@ import numpy as np
 
 from symbolic.tables.table import Table
 from verification.cycles.continuation.linear import Spectrum, spectrum
-from verification.cycles.continuation.recurrence import Chords
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.search.newton import Array
 
 SAME = 1e-7

@@ -16,7 +16,7 @@ from typing import Any
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import Arithmetic
 from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.chain import Vector, dot
+from verification.cycles.recurrence.chain import Vector, dot, trace_and_determinant
 from verification.cycles.shooting.problem import Linearised, Rows
 
 
@@ -44,9 +44,7 @@ def normal_form(at: Linearised, arithmetic: Arithmetic) -> NormalForm:
     """The normal form where the equations of a fold or a flip hold."""
     chain, v, w = at.critical.chain, at.critical.right, at.critical.left
     turn = at.problem.closure.turn * (w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1])
-    determinant: Any = 1
-    for lower, upper in zip(chain.lower, chain.upper, strict=True):
-        determinant = determinant * lower / upper
+    _, determinant = trace_and_determinant(chain.rows)
     second = along(at, jets(arithmetic), [v])
     if at.problem.kind is BifurcationKind.FOLD:
         return NormalForm(turn, dot(w, at.by_letter[0]), dot(w, [r.c[2] for r in second]), determinant)

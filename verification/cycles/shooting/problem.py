@@ -14,13 +14,13 @@ from typing import Any
 from sympy import Expr, simplify
 
 from symbolic.generation.text import constant, load
-from symbolic.motion.chords import chord_kernel
 from symbolic.tables.symbols import theta
 from symbolic.tables.table import Component, Table
 from verification.arithmetic.words import Arithmetic
 from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chain import Chain, Elimination, Vector, dot
+from verification.cycles.recurrence.chords import chord_angles
 from verification.cycles.recurrence.closure import IDENTITY, Closure
-from verification.cycles.shooting.chain import Chain, Elimination, Vector, dot
 from verification.cycles.shooting.condition import Solve
 
 
@@ -118,18 +118,7 @@ class Rows:
     def __init__(self, problem: Problem, arithmetic: Arithmetic) -> None:
         self.problem, self.arithmetic = problem, arithmetic
         self.shape = problem.free if problem.free not in ("", "lam") else ""
-        self.loaded: dict[tuple[int, int, int], Any] = {}
-
-    def kernel(self, here: int, there: int, order: int) -> Any:
-        """The loaded chord kernel between two components."""
-        key = here, there, order
-        if key not in self.loaded:
-            self.loaded[key] = load(chord_kernel(self.problem.table, *key), self.arithmetic)
-        return self.loaded[key]
-
-    def places(self, order: int) -> dict[str, int]:
-        """Where a kernel returns each derivative."""
-        return {name: i for i, name in enumerate(chord_kernel(self.problem.table, 0, 0, order).results)}
+        self.kernel = chord_angles(problem.table, arithmetic)
 
     def contraction(self, z: Vector) -> Any:
         """`lam`, given or unknown."""
@@ -195,7 +184,7 @@ class Linearised:
         if self.problem.free == "lam":
             rule, lower, diagonal = ([b[k] for b in self.into] for k in (0, 2, 1))
             return rule, lower, diagonal, [0] * len(rule)
-        at, s, lam = self.rows.places(2), self.rows.shape, self.lam
+        at, s, lam = self.rows.kernel.places(2), self.rows.shape, self.lam
         r, d, u = at[f"angle_{s}"], at[f"angle_0_{s}"], at[f"angle_1_{s}"]
         both = list(zip(self.out, self.into, strict=True))
         return (
@@ -207,7 +196,7 @@ class Linearised:
 
     def _of_rest(self) -> tuple[Vector, Any]:
         """The derivatives of `rest` by the parameters and by the free letter: `left . dJ . right`."""
-        at = self.rows.places(2)
+        at = self.rows.kernel.places(2)
         hh, ho, oo = at["angle_00"], at["angle_01"], at["angle_11"]
         n, sign, turn, lam = self.problem.period, self.critical.chain.sign, self.problem.closure.turn, self.lam
         v, w = self.critical.right, self.critical.left

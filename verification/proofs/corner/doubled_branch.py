@@ -23,11 +23,11 @@ from symbolic.tables import cuspless
 from verification.arithmetic.balls import real_ball
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import balls, working
+from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.recurrence.closure import MIRROR
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.maps.admissible import convex, inside
 from verification.proofs.periodic.interval_newton import Status, compared, dense
-from verification.proofs.periodic.over_interval import trace_and_determinant
 
 BITS = 96
 PARTS = (1, 0)  # the wall, then the arc
@@ -146,5 +146,5 @@ def third_order(e: arb, m: arb, lam: arb) -> list[arb]:
 
 def half(e: arb, m: arb, lam: arb) -> tuple[arb, arb]:
     """Trace and determinant of half an orbit, followed by the mirror."""
-    trace, determinant = trace_and_determinant(linearised(e, e * m, lam).plain)
-    return -trace, determinant
+    chain = linearised(e, e * m, lam).plain
+    return trace_and_determinant(chain.rows, chain.sign)

@@ -11,8 +11,8 @@ from sympy import Expr
 from symbolic import tables
 from symbolic.tables.formula import number
 from verification.cycles.recurrence.closure import Closure
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import Checks, Proof, tangency_proved
-from verification.proofs.manifolds.recurrence import Pinball
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.words import ARRAYS, FLOAT64
-from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import Local, local
 from verification.proofs.manifolds.tangency import Contact, Touch, tangency
@@ -55,7 +55,7 @@ def branch(local: Local, side: int, length: float, spacing: float = 0.02, turnin
     `spacing`.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> from verification.proofs.manifolds.saddle import Orbit, saddle
     >>> from verification.proofs.manifolds.series import local
     >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
@@ -143,14 +143,14 @@ SMALL = 0.05  # a gap that counts as near
 
 
 def touches(
-    orbit: Orbit, map: Recurrence, letter: float, rounds: int, most: int = 4, any_bounce: bool = False
+    orbit: Orbit, map: PlaneMap, letter: float, rounds: int, most: int = 4, any_bounce: bool = False
 ) -> list[Touch]:
     """Homoclinic tangencies near a letter, within some rounds, in the order of their letters; each once.
 
     `most` candidates with the smallest gaps are tried, those after whole rounds only or after `any_bounce`.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> found = touches(Orbit("inner fixed point", (0.63,)), Henon(Rational(3, 10)), 1.3924, 6)
     >>> min(round(abs(touch.letter - 1.39241980792), 9) for touch in found)
     0.0
@@ -166,7 +166,7 @@ def touches(
     return sorted(found, key=lambda touch: float(touch.letter))
 
 
-def candidates(orbit: Orbit, map: Recurrence, letter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
+def candidates(orbit: Orbit, map: PlaneMap, letter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
     """Extrema of the gap along both branches of the unstable manifold, the smallest first."""
     at = saddle(orbit, map.over(FLOAT64), letter)
     out, into = local(at, True), local(at, False)

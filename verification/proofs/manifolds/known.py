@@ -31,8 +31,8 @@ from verification.arithmetic.words import FLOAT64
 from verification.cycles.recurrence.closure import Closure
 from verification.cycles.shooting.newton import refined
 from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, sharpened
-from verification.proofs.manifolds.recurrence import Pinball
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.shadows import Shadow, shadow
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency

@@ -51,7 +51,7 @@ def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) 
     """The manifold to `order`, scaled so that its last coefficient is about `tail`.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> from verification.proofs.manifolds.saddle import Orbit, saddle
     >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> local(fixed, unstable=True).residual < 1e-14

@@ -32,7 +32,7 @@ from verification.arithmetic.words import FLOAT64
 from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.recurrence.closure import Closure
 from verification.cycles.shooting.problem import Problem
-from verification.proofs.manifolds.recurrence import Pinball
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.series import horner
 from verification.proofs.manifolds.tangency import Contact, Gap
 

@@ -15,7 +15,7 @@ import mpmath
 
 from verification.arithmetic.series import Jet
 from verification.arithmetic.words import FLOAT64, multiprecision
-from verification.proofs.manifolds.recurrence import Recurrence, floating
+from verification.proofs.manifolds.plane_map import PlaneMap, floating
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import Local, horner, local
 
@@ -66,7 +66,7 @@ class Touch:
 class Gap:
     """The distance from the stable manifold, on orbits that start on the unstable one, at one letter."""
 
-    def __init__(self, contact: Contact, map: Recurrence, letter: Any, order: int, tail: float) -> None:
+    def __init__(self, contact: Contact, map: PlaneMap, letter: Any, order: int, tail: float) -> None:
         self.old, self.map, self.letter = contact, map, letter
         self.out = local(saddle(contact.unstable, map, letter), True, order, tail)
         self.into = local(saddle(contact.stable, map, letter), False, order, tail)
@@ -149,7 +149,7 @@ def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
     return here, following - 2 * map.words["pi"] * whole
 
 
-def tangency(contact: Contact, map: Recurrence, digits: int = 12) -> Touch:
+def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
     """The letter at which the manifolds touch, to about `digits` digits.
 
     The error is that of the last secant step, and what a longer series changes.
@@ -168,7 +168,7 @@ def tangency(contact: Contact, map: Recurrence, digits: int = 12) -> Touch:
     return found
 
 
-def secant(contact: Contact, map: Recurrence, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
+def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
     """The letter where the extremum of the gap is 0, between secants."""
     a, b = letters
     b = b + 0 * a

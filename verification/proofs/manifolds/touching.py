@@ -27,7 +27,7 @@ from verification.arithmetic.series import Jet
 from verification.arithmetic.words import FLOAT64, balls
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.pair import Near, Pair, Precision, scale, smaller
-from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.series import Local, horner
 from verification.proofs.manifolds.tangency import Contact, rounds
 
@@ -44,7 +44,7 @@ class Flight:
     w: Jet
 
 
-def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: int, late: int) -> Flight:
+def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int, late: int) -> Flight:
     """The orbit from `early` rounds before the start of the contact to `late` rounds after its end.
 
     Both are at least as many as take the ends of the contact into the domains of the series.
@@ -146,7 +146,7 @@ class Linear:
 class Touching:
     """The system of a contact near one letter, with both manifolds enclosed."""
 
-    def __init__(self, contact: Contact, map: Recurrence, letter: arb, precision: Precision) -> None:
+    def __init__(self, contact: Contact, map: PlaneMap, letter: arb, precision: Precision) -> None:
         self.map, self.letter = map.over(balls(precision.bits)), letter
         self.pairs: list[Pair] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):

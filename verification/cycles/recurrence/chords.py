@@ -1,85 +1,56 @@
-"""A cycle as a ring of three-term rules: what a branch is followed on, a billiard's or any other map's.
+"""Periodic orbits of a billiard: the collision rule in the angles of the two chords that meet at each bounce."""
 
-At each bounce one equation `R(before, here, after, letters) = 0` ties three neighbours. Around the end
-`x[n] = turn*x[0] + shift`: a full cycle has `turn = 1`, `shift = 0`; half of a mirror-symmetric one has
-`turn = -1`, and one bounce of a polygon has `shift = 2*pi*p/q`. The linear part along the ring is that
-of the map, so its multipliers come from three diagonals and no derivative of the map is needed.
-
-Maps whose bifurcations are published: the engine that follows billiards must find them too.
-
-Logistic, `x -> r*x*(1 - x)` [May1976]. Henon, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three
-successive `x` [Henon1976]. Delayed logistic, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
-"""
-
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import combinations_with_replacement
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from sympy import Expr, Symbol, diff
 
-from symbolic.generation.text import Kernel, kernel, load
+from symbolic.generation.text import load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
 from verification.arithmetic.series import Jet
-from verification.arithmetic.words import ARRAYS, Arithmetic
+from verification.arithmetic.words import ARRAYS, FLOAT64, Arithmetic
 from verification.cycles.recurrence.closure import IDENTITY, Closure
+from verification.cycles.recurrence.recurrence import Array, Letters, Rule, Slopes, Terms, around
 from verification.maps.admissible import convex
 
-Array = NDArray[np.float64]
-Letters = Mapping[str, float]
-Pair = tuple[int, int]
+
+class ChordAngles:
+    """The angle of a chord with the normal at its start, between any two components, over one kind of number.
+
+    >>> from symbolic.tables import circle
+    >>> from verification.arithmetic.words import FLOAT64
+    >>> round(ChordAngles(circle, FLOAT64)(0, 0, 0)(0.0, 3.0)[0], 12)  # (pi - 3)/2
+    0.070796326795
+    """
+
+    def __init__(self, table: Table, arithmetic: Arithmetic) -> None:
+        self.table, self.arithmetic = table, arithmetic
+        self.loaded: dict[tuple[int, int, int], Callable[..., Any]] = {}
+
+    def __call__(self, here: int, there: int, order: int) -> Callable[..., Any]:
+        """The kernel from component `here` to `there`, with derivatives up to `order`; loaded once."""
+        key = here, there, order
+        if key not in self.loaded:
+            self.loaded[key] = load(chord_kernel(self.table, *key), self.arithmetic)
+        return self.loaded[key]
+
+    def places(self, order: int) -> dict[str, int]:
+        """Where a kernel returns each derivative."""
+        return {name: i for i, name in enumerate(chord_kernel(self.table, 0, 0, order).results)}
 
 
-@dataclass(frozen=True)
-class Terms:
-    """The rule along a ring, an entry for each bounce; derivatives by (before, here, after) and by letters."""
-
-    value: Array
-    slope: tuple[Array, Array, Array]
-    by: dict[str, Array]
-    bend: dict[Pair, Array]
-    slope_by: dict[str, tuple[Array, Array, Array]]
+def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:
+    """The chord angles of a table; in float64 the same each time, as those are asked for most often."""
+    kept = arithmetic is ARRAYS or arithmetic is FLOAT64
+    return _in_float64(table, arithmetic is ARRAYS) if kept else ChordAngles(table, arithmetic)
 
 
-def around(closure: Closure, x: Array) -> Array:
-    """`x` with a neighbour at either end."""
-    return np.array(closure.padded(x, closure.radians))  # type: ignore[arg-type]  # an array is a sequence here
-
-
-class Recurrence(Protocol):
-    """What can be followed: `terms` at a ring, and `rule` on other kinds of number."""
-
-    @property
-    def label(self) -> str:
-        """What messages call it."""
-
-    @property
-    def period(self) -> int:
-        """Bounces of the ring."""
-
-    @property
-    def closure(self) -> Closure:
-        """How it closes."""
-
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The letters that it can be followed in."""
-
-    def terms(self, x: Array, at: Letters, order: int) -> Terms:
-        """The rule and its derivatives up to `order`."""
-
-    def rule(self, arithmetic: Arithmetic, ring: tuple[Any, Any, Any], at: Letters) -> Any:
-        """The rule at `(before, here, after)`."""
-
-    def doubled(self) -> "Recurrence":
-        """The ring run through twice."""
-
-    def obstacle(self, x: Array, at: Letters) -> str:
-        """Why `x` is no cycle although the rules hold; empty when nothing is in the way."""
+@cache
+def _in_float64(table: Table, arrays: bool) -> ChordAngles:
+    return ChordAngles(table, ARRAYS if arrays else FLOAT64)
 
 
 @dataclass(frozen=True)
@@ -145,11 +116,32 @@ class Chords:
             pairs = list(zip(parts, (parts[(i + way) % len(parts)] for i in range(len(parts))), strict=True))
             for pair in set(pairs):
                 chosen = np.array([p == pair for p in pairs])
-                angle = _loaded_chord(self.table, *pair, 0, arithmetic)
+                angle = chord_angles(self.table, arithmetic)(*pair, 0)
                 pair_of = (Jet(*(c[chosen] for c in x.c)) for x in (here, other))
                 for row, value in zip(total, angle(*pair_of, *shape)[0].c, strict=True):
                     row[chosen] += factor * value
         return Jet(*total)
+
+    def over(self, arithmetic: Arithmetic) -> Rule:
+        """The collision rule at single bounces.
+
+        >>> from symbolic.tables import ellipse
+        >>> from verification.arithmetic.words import FLOAT64
+        >>> low, high = -np.pi / 2, np.pi / 2
+        >>> value, _ = Chords(ellipse.at(a=2), (0, 0)).over(FLOAT64)(0, (low, high, low), {"lam": 0.5})
+        >>> abs(value) < 1e-15
+        True
+        """
+        angles, parts = chord_angles(self.table, arithmetic), self.components
+
+        def rule(i: int, near: Sequence[Any], at: Mapping[str, Any]) -> tuple[Any, Slopes]:
+            (before, here, after), lam = near, at["lam"]
+            shape = [at[name] for name in self.letters[1:]]
+            f = angles(parts[i], parts[(i + 1) % len(parts)], 1)(here, after, *shape)
+            b = angles(parts[i], parts[i - 1], 1)(here, before, *shape)
+            return f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2])
+
+        return rule
 
     def doubled(self) -> "Chords":
         """The ring run through twice."""
@@ -207,12 +199,13 @@ class Chords:
     ) -> dict[str, Array]:
         parts = self.components
         others = tuple(parts[(i + way) % len(parts)] for i in range(len(parts)))
-        names = chord_kernel(self.table, 0, 0, order).results
+        angles = chord_angles(self.table, arithmetic)
+        names = angles.places(order)
         found = {name: np.empty(len(parts)) for name in names}
         with np.errstate(all="ignore"):
             for pair in set(zip(parts, others, strict=True)):
                 chosen = np.array([p == pair for p in zip(parts, others, strict=True)])
-                values = _loaded_chord(self.table, *pair, order, arithmetic)(here[chosen], there[chosen], *shape)
+                values = angles(*pair, order)(here[chosen], there[chosen], *shape)
                 for name, value in zip(names, values, strict=True):
                     found[name][chosen] = value
         return found
@@ -221,100 +214,3 @@ class Chords:
 @cache
 def _map_of(table: Table, maker: Any) -> Any:
     return maker(table, lam=1)
-
-
-_CHORDS: dict[tuple[Any, ...], Any] = {}
-
-
-def _loaded_chord(table: Table, here: int, there: int, order: int, arithmetic: Arithmetic) -> Any:
-    """The chord angle on the numbers of `arithmetic`, loaded once for each."""
-    key = table, here, there, order, id(arithmetic)
-    if key not in _CHORDS:
-        _CHORDS[key] = arithmetic, load(chord_kernel(table, here, there, order), arithmetic)
-    return _CHORDS[key][1]
-
-
-BEFORE, HERE, AFTER = (Symbol(name, real=True) for name in ("before", "here", "after"))
-
-
-@dataclass(frozen=True)
-class Explicit:
-    """Cycles of a map given by a formula: `residual` in `BEFORE`, `HERE`, `AFTER` and `parameters`."""
-
-    name: str
-    residual: Expr
-    parameters: tuple[Symbol, ...]
-    period: int
-    closure: Closure = IDENTITY
-
-    @property
-    def label(self) -> str:
-        """What messages call it."""
-        return f"{self.name}, period {self.period}"
-
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The parameters' names."""
-        return tuple(p.name for p in self.parameters)
-
-    def terms(self, x: Array, at: Letters, order: int) -> Terms:
-        """The rule and its derivatives up to second order, whatever `order` is."""
-        ring, values = around(self.closure, x), [at[name] for name in self.letters]
-        made = load(_explicit(self.residual, self.parameters), ARRAYS)(ring[:-2], ring[1:-1], ring[2:], *values)
-        full = [np.broadcast_to(np.asarray(v, dtype=float), x.shape) for v in made]
-        n = len(self.parameters)
-        pairs = list(combinations_with_replacement(range(3), 2))
-        by = dict(zip(self.letters, full[4 : 4 + n], strict=True))
-        bend = dict(zip(pairs, full[4 + n : 10 + n], strict=True))
-        rest = full[10 + n :]
-        mixed = {name: (rest[3 * i], rest[3 * i + 1], rest[3 * i + 2]) for i, name in enumerate(self.letters)}
-        return Terms(full[0], (full[1], full[2], full[3]), by, bend, mixed)
-
-    def rule(self, arithmetic: Arithmetic, ring: tuple[Any, Any, Any], at: Letters) -> Any:
-        """The rule at `(before, here, after)`."""
-        return load(_plain(self.residual, self.parameters), arithmetic)(*ring, *(at[name] for name in self.letters))[0]
-
-    def doubled(self) -> "Explicit":
-        """The ring run through twice."""
-        return replace(self, period=2 * self.period, closure=self.closure.twice())
-
-    def obstacle(self, x: Array, at: Letters) -> str:
-        """Nothing is ever in the way of a formula."""
-        return ""
-
-
-@cache
-def _plain(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
-    return kernel("rule", [BEFORE, HERE, AFTER, *parameters], {"residual": residual})
-
-
-@cache
-def _explicit(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
-    ring = (BEFORE, HERE, AFTER)
-    values = {"residual": residual} | {f"d_{s}": diff(residual, s) for s in (*ring, *parameters)}
-    values |= {f"d_{r}_{s}": diff(residual, r, s) for r, s in combinations_with_replacement(ring, 2)}
-    values |= {f"d_{p}_{s}": diff(residual, p, s) for p in parameters for s in ring}
-    return kernel("rule_and_derivatives", [BEFORE, HERE, AFTER, *parameters], values)
-
-
-r, a, b = (Symbol(name, real=True) for name in "rab")
-
-
-def logistic(period: int) -> Explicit:
-    """Cycles of the logistic map; the letter is `r`."""
-    return Explicit("logistic", AFTER - r * HERE * (1 - HERE), (r,), period)
-
-
-def henon(period: int) -> Explicit:
-    """Cycles of the Henon map; the letters are `a` and `b`."""
-    return Explicit("Henon", AFTER - 1 + a * HERE**2 - b * BEFORE, (a, b), period)
-
-
-def delayed(period: int) -> Explicit:
-    """Cycles of the delayed logistic map; the letter is `r`."""
-    return Explicit("delayed logistic", AFTER - r * HERE * (1 - BEFORE), (r,), period)
-
-
-def cubic(period: int) -> Explicit:
-    """Cycles of `x -> r*x - x**3`; the letter is `r`."""
-    return Explicit("cubic", AFTER - r * HERE + HERE**3, (r,), period)

@@ -127,6 +127,8 @@ def test_jets_are_the_taylor_coefficients(a, b, c):
 def test_a_problem_that_is_not_square_is_refused():
     with pytest.raises(ValueError, match="CYCLE with lam free is not square"):
         Problem(cuspless, (1, 0), None, "lam")
+    with pytest.raises(ValueError, match="accepted: fold, flip"):
+        Problem(cuspless, (1, 0), BifurcationKind.TORUS, "lam")
     with pytest.raises(ValueError, match="free letters must be just lam; lam = None"):
         Problem(egg(3), (0, 0), BifurcationKind.FLIP, "lam")
     with pytest.raises(ValueError, match="theta -> -theta is no mirror image"):

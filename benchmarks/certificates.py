@@ -21,10 +21,12 @@ from sympy import Expr, Integer, N, Rational, acos, pi
 from symbolic import tables
 from symbolic.cycles.polygons import saddle_node
 from symbolic.tables.symbols import alpha as letter
+from verification.arithmetic.balls import exact_balls
 from verification.arithmetic.words import balls, bits_of, working
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.cascade import ladder
 from verification.cycles.shooting.newton import GUARD, System, floats, levels, refined
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.cycles.shooting.small import corner
 from verification.named.feigenbaum import limit, ratio
 from verification.named.files import checked, document
@@ -34,7 +36,6 @@ from verification.proofs.corner.half_return import birth
 from verification.proofs.corner.return_map import kink_falls, minimum_at_kink
 from verification.proofs.periodic.bifurcation import Claim, proved
 from verification.proofs.periodic.exclusion import no_triangles
-from verification.proofs.periodic.interval_newton import exact_balls
 
 ALPHA: Expr = Rational(2, 25)
 DIGITS = (16, 50, 100, 300, 1000, 3000, 10_000)
@@ -82,7 +83,7 @@ def systems() -> dict[str, tuple[System, list[float]]]:
     return {
         "lambda-star": (corner(), [0.2545, 0.0712]),
         "saddle-node": (
-            Problem(egg, (0, 0, 0), Kind.FOLD, "lam"),
+            Problem(egg, (0, 0, 0), BifurcationKind.FOLD, "lam"),
             [*triangle, float(N(saddle_node().subs(letter, ALPHA)))],
         ),
         "doubling 3": (first.problem, first.start),

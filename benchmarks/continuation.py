@@ -24,10 +24,12 @@ from sympy import Rational
 from numeric import PinballMap
 from symbolic.tables import egg
 from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import What, branch
-from verification.cycles.continuation.recurrence import Array, Chords
+from verification.cycles.continuation.branch import branch
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array
 from verification.cycles.shooting.attracting import next_critical
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.named.locate import certify
 from verification.named.tongue import Rung, cascade
 
@@ -119,7 +121,7 @@ def triangles(console: Console) -> None:
 
 def doublings() -> tuple[list[Rung], Array]:
     """The curves, and for each doubling of period 4 to 64 its contractions on 50 shapes."""
-    rungs = [rung for rung in cascade(3, 64) if rung.what is What.FLIP and rung.period >= 4]
+    rungs = [rung for rung in cascade(3, 64) if rung.what is BifurcationKind.FLIP and rung.period >= 4]
     return rungs, np.array([[rung.lam(float(alpha)) for alpha in SHAPES] for rung in rungs])
 
 
@@ -129,7 +131,7 @@ def afresh(alpha: Rational, cycles: list[Array]) -> list[float]:
     lams = [float(z[-1]) for z in cycles]
     gaps = [lams[0] / 4, *(b - a for a, b in pairwise(lams))]
     return [
-        next_critical(table, [float(x) for x in z[:-2]], lam - 0.4 * gap, 0.1 * gap, Kind.FLIP)[-1]
+        next_critical(table, [float(x) for x in z[:-2]], lam - 0.4 * gap, 0.1 * gap, BifurcationKind.FLIP)[-1]
         for z, lam, gap in zip(cycles, lams, gaps, strict=True)
     ]
 
@@ -145,7 +147,7 @@ def cascades(console: Console, every: int) -> None:
         walked = afresh(alpha, at)
         walking.append(time.perf_counter() - start)
         for i, (rung, z, other) in enumerate(zip(rungs, at, walked, strict=True)):
-            problem = Problem(egg(3).at(alpha=alpha), (0,) * rung.period, Kind.FLIP, "lam")
+            problem = Problem(egg(3).at(alpha=alpha), (0,) * rung.period, BifurcationKind.FLIP, "lam")
             proof = certify(problem, [*(float(x) for x in z[:-2]), float(z[-1])], 25)
             assert proof.certified
             wrong["curve"][i].append(abs(float(proof.value.mid() - z[-1])))

@@ -53,10 +53,11 @@ print(float(found.nu_plus), float(found.nu_minus))
 
 # +
 from verification.arithmetic.balls import decimal
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.shooting.problem import Problem
 from verification.named.locate import certify
 
-problem = Problem(flower, (0, 0), Kind.FLIP, free="lam")
+problem = Problem(flower, (0, 0), BifurcationKind.FLIP, free="lam")
 proof = certify(problem, [0.0, 3.141592653589793, float(threshold)], 30)
 print(decimal(proof.value, 30)[0])
 for item, answer in proof.checks.items():

@@ -6,6 +6,7 @@ Stretches of a line as balls: cut into touching pieces, halved, joined.
 import math
 from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
+from typing import Any
 
 from flint import acb, arb, ctx, fmpq
 from sympy import (
@@ -61,6 +62,22 @@ def real_ball(number: Expr | Callable[[int], arb], digits: int = 30) -> arb:
     True
     """
     return enclose(number, digits=digits).real if isinstance(number, Expr) else number(digits)
+
+
+def as_ball(x: Any) -> arb:
+    """A number of mpmath as an exact ball, bit for bit.
+
+    >>> import mpmath
+    >>> as_ball(mpmath.mpf(1) / 3).is_exact()
+    True
+    """
+    sign, mantissa, exponent, _ = x._mpf_
+    return arb((-int(mantissa) if sign else int(mantissa), int(exponent)))
+
+
+def exact_balls(numbers: Iterable[Any]) -> list[arb]:
+    """Numbers of mpmath, each as an exact ball."""
+    return [as_ball(x) for x in numbers]
 
 
 def _ball(e: Expr) -> acb:

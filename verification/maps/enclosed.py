@@ -15,7 +15,7 @@ from flint import arb, fmpq
 
 from numeric import PinballMap
 from numeric.backends.scalars import Scalars
-from verification.arithmetic.balls import enclose
+from verification.arithmetic.balls import as_ball, enclose
 from verification.arithmetic.words import working
 from verification.maps.exact import Ball, ExactMap
 from verification.maps.first_hit import BITS, Boundary, Frame, free
@@ -175,9 +175,3 @@ def number(value: Any, bits: int = 0) -> arb:
     if isinstance(value, int | float):
         return arb(value)
     return enclose(value, digits=int(bits / 3.3219) + 2).real
-
-
-def as_ball(x: Any) -> arb:
-    """An mpmath number, exactly."""
-    sign, man, exp, _ = x._mpf_
-    return arb((-int(man) if sign else int(man), int(exp)))

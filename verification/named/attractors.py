@@ -16,10 +16,11 @@ from symbolic.tables import cardioid
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
 from verification.arithmetic.words import balls, bits_of, working
+from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.periodic.over_interval import Stability, stability, trace_and_determinant
+from verification.proofs.periodic.over_interval import Stability, stability
 
 DIGITS = 30
 
@@ -54,9 +55,8 @@ def certificate(table: Table, lam: Expr, near: Places, digits: int = DIGITS) -> 
     bits = proof.claim.bits
     with working(bits):
         try:
-            trace, determinant = trace_and_determinant(
-                Linearised(Rows(problem, balls(bits)), proof.enclosure.zero).plain
-            )
+            chain = Linearised(Rows(problem, balls(bits)), proof.enclosure.zero).plain
+            trace, determinant = trace_and_determinant(chain.rows)
         except ZeroDivisionError:
             trace = determinant = arb("nan")
         attracts = stability(trace, determinant) is Stability.ATTRACTING

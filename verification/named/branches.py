@@ -28,9 +28,11 @@ from symbolic.tables import egg
 from symbolic.tables.symmetry import Symmetry
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.closure import IDENTITY, MIRROR, Closure
 from verification.cycles.shooting.attracting import FEIGENBAUM, doubled, next_critical
 from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.named.locate import certify
 
 STEP, LEAST = 1.2e-2, 1e-9
@@ -147,40 +149,41 @@ def _in_step(map: PinballMap, new: Places, old: Places) -> Places:
 def _named(map: PinballMap, table: Table, group: Sequence[Symmetry], cycle: Cycle, lam: float, digits: int) -> End:
     """The end with its event, from the multiplier that is near 1 or -1 and from what the cycle comes near."""
     mu, points, n = cycle.multipliers[0], cycle.points, cycle.period
-    event, kind, mirror, use = Event.UNKNOWN, Kind.FOLD, False, points
+    event, kind, closure, use = Event.UNKNOWN, BifurcationKind.FOLD, IDENTITY, points
     if abs(mu.imag) < 0.05 and mu.real < -0.8:
-        event, kind = Event.FLIP, Kind.FLIP
+        event, kind = Event.FLIP, BifurcationKind.FLIP
     elif abs(mu.imag) < 0.05 and mu.real > 0.8:
         half = points.turned(n // 2)
         if n % 2 == 0 and np.max(np.linalg.norm(embedded(map, half) - embedded(map, points), axis=1)) < MEET:
-            event, kind, use = Event.HALVED, Kind.FLIP, points.only(slice(0, n // 2))
+            event, kind, use = Event.HALVED, BifurcationKind.FLIP, points.only(slice(0, n // 2))
         elif len(own(map, points, group, MEET)) > len(own(map, points, group)):
-            event, kind = Event.PITCHFORK, Kind.FLIP
+            event, kind = Event.PITCHFORK, BifurcationKind.FLIP
         else:
             event = Event.FOLD
         if event is Event.FOLD and len(own(map, points, group)) > 1 and n % 2 == 0:
-            event, kind = _broken(map, table, group, cycle, lam)
+            event = _broken(map, table, group, cycle, lam)
+            kind = BifurcationKind.FLIP if event is Event.PITCHFORK else kind
     if event is Event.PITCHFORK:
         found = _mirrored(map, group, points)
         if found is None:
             return End(lam, event, f"{lam:.9f}", False, cycle)
-        use, mirror = found, True
+        use, closure = found, MIRROR
     if event is Event.UNKNOWN:
         return End(lam, event, f"{lam:.9f}", False, cycle)
-    return _solved(table, event, kind, use, mirror, lam, digits, cycle)
+    return _solved(table, event, kind, use, closure, lam, digits, cycle)
 
 
-def _broken(map: PinballMap, table: Table, group: Sequence[Symmetry], cycle: Cycle, lam: float) -> tuple[Event, Kind]:
+def _broken(map: PinballMap, table: Table, group: Sequence[Symmetry], cycle: Cycle, lam: float) -> Event:
     """A fold, or the symmetric side of a pitchfork: then half the cycle flips here."""
     half = _mirrored(map, group, cycle.points)
     if half is not None:
-        problem = Problem(table, tuple(int(i) for i in half.component), Kind.FLIP, "lam", mirror=True)
+        problem = Problem(table, tuple(int(i) for i in half.component), BifurcationKind.FLIP, "lam", closure=MIRROR)
         try:
             if abs(floats(problem, [*half.theta, lam])[-1] - lam) < 1e-5:
-                return Event.PITCHFORK, Kind.FLIP
+                return Event.PITCHFORK
         except (ValueError, ZeroDivisionError):
             pass
-    return Event.FOLD, Kind.FOLD
+    return Event.FOLD
 
 
 def _mirrored(map: PinballMap, group: Sequence[Symmetry], points: Places) -> Places | None:
@@ -198,9 +201,16 @@ def _mirrored(map: PinballMap, group: Sequence[Symmetry], points: Places) -> Pla
 
 
 def _solved(
-    table: Table, event: Event, kind: Kind, use: Places, mirror: bool, lam: float, digits: int, cycle: Cycle
+    table: Table,
+    event: Event,
+    kind: BifurcationKind,
+    use: Places,
+    closure: Closure,
+    lam: float,
+    digits: int,
+    cycle: Cycle,
 ) -> End:
-    problem = Problem(table, tuple(int(i) for i in use.component), kind, "lam", mirror=mirror)
+    problem = Problem(table, tuple(int(i) for i in use.component), kind, "lam", closure=closure)
     try:
         start = floats(problem, [*use.theta, lam])
         if abs(start[-1] - lam) > 1e-4:
@@ -244,16 +254,16 @@ def cascade(alpha: Rational, lam: Rational, period: int, step: float, rungs: int
     ((4,), 0.371236, True)
     """
     table, at = egg(3).at(alpha=alpha), float(lam)
-    critical = next_critical(table, reached(alpha, lam, period), at, step, Kind.FLIP)
+    critical = next_critical(table, reached(alpha, lam, period), at, step, BifurcationKind.FLIP)
     gap, periods, lams, proved = (critical[-1] - at) / 4, [period], [critical[-1]], True
     while True:
-        problem = Problem(table, (0,) * periods[-1], Kind.FLIP, "lam")
+        problem = Problem(table, (0,) * periods[-1], BifurcationKind.FLIP, "lam")
         proof = certify(problem, critical, DIGITS)
         proved = proved and proof.certified and proof.supercritical is True
         if len(lams) == rungs:
             return Cascade(tuple(periods), tuple(lams), proved)
         theta, near = doubled(problem, critical, 0.3 * gap)
-        critical = next_critical(table, theta, near, 0.15 * gap, Kind.FLIP)
+        critical = next_critical(table, theta, near, 0.15 * gap, BifurcationKind.FLIP)
         gap = (critical[-1] - lams[-1]) / FEIGENBAUM
         periods.append(2 * periods[-1])
         lams.append(critical[-1])

@@ -19,17 +19,18 @@ from sympy import Expr, S
 
 from symbolic.tables import egg
 from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import Event, What, branch
+from verification.cycles.continuation.branch import Event, branch
 from verification.cycles.continuation.curves import Curve, curve
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.continuation.symmetry import rotations
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.closure import IDENTITY, MIRROR
+from verification.cycles.recurrence.recurrence import Array
 from verification.cycles.search.search import all_cycles
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.named.locate import certify
 from verification.named.tongue import TWO, largest_shape
 from verification.proofs.periodic.bifurcation import Proof
-
-KINDS = {What.FOLD: Kind.FOLD, What.FLIP: Kind.FLIP, What.PITCHFORK: Kind.FLIP}
 
 
 def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fraction | None = None) -> Proof | None:
@@ -46,25 +47,25 @@ def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fractio
     True
     """
     ring = event.ring
-    if not isinstance(ring, Chords) or event.what not in KINDS:
+    if not isinstance(ring, Chords) or event.what.solved is None:
         return None
-    x, mirror = event.x, False
-    if event.what is What.PITCHFORK:
+    x, closure = event.x, IDENTITY
+    if event.what is BifurcationKind.PITCHFORK:
         centred = _centred(ring, x)
         if centred is None:
             return None
-        x, mirror = centred, True
+        x, closure = centred, MIRROR
     contraction = None if lam is None else S(lam)
-    problem = Problem(ring.table, ring.components, KINDS[event.what], letter, contraction, mirror)
+    problem = Problem(ring.table, ring.components, event.what.solved, letter, contraction, closure)
     return certify(problem, [*(float(v) for v in x), event.value], digits)
 
 
 def _centred(ring: Chords, x: Array) -> Array | None:
     """The half cycle turned by a symmetry of the table until its mirror is `theta -> -theta`."""
-    if ring.ends.turn != -1:
+    if ring.closure.turn != -1:
         return None
     step = 2 * pi / rotations(ring.table)
-    for half in (ring.ends.shift / 2, ring.ends.shift / 2 + pi):
+    for half in (ring.closure.radians / 2, ring.closure.radians / 2 + pi):
         if abs(np.sin(pi * half / step)) < 1e-9:
             return x - half
     return None
@@ -106,20 +107,20 @@ def survey(
             continue  # at a bifurcation to within rounding: its neighbours lead there too
         for event in one.events:
             own = cycle.period, event.what, round(event.value, 7)
-            if event.what in KINDS and own not in seen:
+            if event.what.solved and own not in seen:
                 seen.add(own)
                 yield Surveyed(cycle.period, event, curve_of(event, at["alpha"], K, steps))
 
 
 def curve_of(event: Event, alpha: float, K: int = 3, steps: Steps | None = None) -> Curve | None:
     """The curve in `(alpha, lam)` through an event of the egg at shape `alpha`; None when it has none or is lost."""
-    if event.what not in KINDS or not isinstance(event.ring, Chords):
+    if event.what.solved is None or not isinstance(event.ring, Chords):
         return None
     top = largest_shape(K)
     box = ((top / 100, top), (0.0, 1.0))
     steps = steps or Steps(largest=0.3, most=150)
     ring = replace(event.ring, table=egg(K))
     try:
-        return curve(ring, KINDS[event.what], event.x, TWO, (alpha, event.value), box, steps=steps)
+        return curve(ring, event.what.solved, event.x, TWO, (alpha, event.value), box, steps=steps)
     except ValueError:
         return None

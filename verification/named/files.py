@@ -21,7 +21,9 @@ from symbolic.tables.symbols import alpha as alpha_letter
 from symbolic.tables.symbols import lam as lam_letter
 from symbolic.tables.table import Table
 from verification.arithmetic.words import working
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.shooting.problem import Problem
 from verification.named.locate import closed_form
 from verification.proofs.corner.corner import NEAR
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
@@ -57,7 +59,7 @@ def document(proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
         "table": problem.table.name,
         "points": _points(problem.table),
         "shape": {letter: str(value) for letter, value in problem.table.fixed},
-        "kind": problem.kind.name.lower(),
+        "kind": problem.kind.name.lower() if problem.kind else "cycle",
         "free": problem.free,
         "mirror": problem.mirror,
         "lam": None if problem.lam is None else str(problem.lam),
@@ -85,17 +87,22 @@ def name_of(claim: "Claim | SpecialClaim | TangencyClaim") -> str:
     problem = claim.problem
     table, plain = problem.table, not problem.mirror
     what = table.name, problem.period, problem.kind, problem.free
-    if plain and what == ("cuspless", 2, Kind.FLIP, "lam") and _in_box(claim, thresholds.lambda_c()):
+    if plain and what == ("cuspless", 2, BifurcationKind.FLIP, "lam") and _in_box(claim, thresholds.lambda_c()):
         return "lambda-c"
     if plain and _points(table) in (0, 3):
         lam, alpha = problem.lam, dict(table.fixed).get("alpha")
-        if what == ("egg", 2, Kind.FLIP, "alpha") and _in_box(claim, thresholds.alpha_tilde().subs(lam_letter, lam)):
+        if what == ("egg", 2, BifurcationKind.FLIP, "alpha") and _in_box(
+            claim, thresholds.alpha_tilde().subs(lam_letter, lam)
+        ):
             return "alpha-tilde"
-        if what == ("egg", 3, Kind.FOLD, "lam") and _in_box(claim, polygons.saddle_node().subs(alpha_letter, alpha)):
+        if what == ("egg", 3, BifurcationKind.FOLD, "lam") and _in_box(
+            claim, polygons.saddle_node().subs(alpha_letter, alpha)
+        ):
             return "saddle-node"
     half = "half of a symmetric cycle, of" if problem.mirror else "a cycle of"
     shape = "".join(f", {name} = {value}" for name, value in table.fixed)
-    return f"{problem.kind.name.lower()} of {half} period {problem.period} in {problem.free}: {table.name}{shape}"
+    kind = "cycle" if problem.kind is None else problem.kind.name.lower()
+    return f"{kind} of {half} period {problem.period} in {problem.free}: {table.name}{shape}"
 
 
 def _in_box(claim: Claim | SpecialClaim, exact: Expr) -> bool:
@@ -135,7 +142,8 @@ def _problem(given: Mapping[str, Any], lam: Any) -> Problem:
     table = tables.named(given["table"], int(given["points"])).at(**shape)
     if not set(components) <= set(range(len(table.components))):
         raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
-    return Problem(table, components, Kind[given["kind"].upper()], given["free"], lam, bool(given["mirror"]))
+    kind = None if given["kind"] == "cycle" else BifurcationKind[given["kind"].upper()]
+    return Problem(table, components, kind, given["free"], lam, Closure(-1 if given["mirror"] else 1))
 
 
 def _sized(centre: tuple[arb, ...], wanted: int, what: str) -> None:

@@ -19,16 +19,17 @@ from symbolic.cycles import polygons, thresholds
 from symbolic.generation.text import kernel, load
 from symbolic.tables.symbols import alpha as alpha_letter
 from symbolic.tables.symbols import lam as lam_letter
-from verification.arithmetic.balls import decimal
+from verification.arithmetic.balls import decimal, exact_balls
 from verification.arithmetic.progress import telling
 from verification.arithmetic.words import balls, bits_of, working
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting import cascade as ladder
 from verification.cycles.shooting.newton import Step, refined
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.cycles.shooting.small import corner, focus
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
 from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
-from verification.proofs.periodic.interval_newton import Status, exact_balls
+from verification.proofs.periodic.interval_newton import Status
 
 if TYPE_CHECKING:
     from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other name needs
@@ -185,14 +186,14 @@ def phi_star(digits: int) -> Found:
 def lambda_c(digits: int) -> Found:
     """The period doubling of the cuspless cardioid's horizontal orbit. Paper: section 5.1."""
     exact = thresholds.lambda_c()
-    problem = Problem(tables.cuspless, (1, 0), Kind.FLIP, "lam")
+    problem = Problem(tables.cuspless, (1, 0), BifurcationKind.FLIP, "lam")
     return _agreeing(_searched(problem, [0, 0, float(N(exact))], digits), exact, digits)
 
 
 def alpha_tilde(digits: int, lam: Expr) -> Found:
     """The shape at which the egg's diameters double their period. Paper: section 6.3."""
     exact = thresholds.alpha_tilde().subs(lam_letter, _unit("lam", lam))
-    problem = Problem(tables.egg(3), (0, 0), Kind.FLIP, "alpha", lam)
+    problem = Problem(tables.egg(3), (0, 0), BifurcationKind.FLIP, "alpha", lam)
     return _agreeing(_searched(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
 
 
@@ -217,7 +218,7 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
         )
     exact = polygons.saddle_node().subs(alpha_letter, alpha)
     turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
-    problem = Problem(table, (0, 0, 0), Kind.FOLD, "lam")
+    problem = Problem(table, (0, 0, 0), BifurcationKind.FOLD, "lam")
     start = [turn + float(N(2 * S.Pi / 3)) * k for k in range(3)]
     return _agreeing(_searched(problem, [*start, float(N(exact))], digits), exact, digits)
 
@@ -253,7 +254,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     stable, unstable = found.touch.multipliers[:2]
     orbit = found.touch.contact.unstable
     proved_fold = False
-    if not found.cycle.problem.shift[0]:  # of a cycle that closes with a turn there is no certificate
+    if not found.cycle.problem.closure.shift[0]:  # of a cycle that closes with a turn there is no certificate
         fold = certify(found.cycle.problem, found.cycle.start, min(digits, FOLD_DIGITS))
         near = bool(abs(fold.value - arb(str(found.letter))) < 1e-3)
         proved_fold = all(value is True for value in fold.checks.values()) and near

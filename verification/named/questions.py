@@ -209,8 +209,8 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
 
     from verification.cycles.continuation.arc import Steps
     from verification.cycles.continuation.branch import branch
-    from verification.cycles.continuation.recurrence import Chords
     from verification.cycles.continuation.starts import freed
+    from verification.cycles.recurrence.chords import Chords
 
     if len(interval) != 1:
         raise ValueError(f"follow: {', '.join(interval) or 'no letter'} given; one letter varies, as in lam=(0, 1)")

@@ -15,11 +15,13 @@ from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg
 from symbolic.tables.symbols import lam
 from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import What, branch
+from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.curves import Curve, Degenerate, curve
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.continuation.switching import switched
-from verification.cycles.shooting.problem import Kind
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.recurrence import Array
 from verification.named.feigenbaum import limit
 
 TWO = ("alpha", "lam")
@@ -33,7 +35,7 @@ class Rung:
 
     name: str
     period: int
-    what: What
+    what: BifurcationKind
     curve: Curve = field(repr=False)
 
     @property
@@ -68,14 +70,14 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
     one = branch(Chords(table, (0, 0)), np.array([0.0, pi]), "lam", 0.0, (0.0, 1.0), at)
     period = 2
     while period <= highest:
-        event = next(e for e in one.events if e.what in (What.FLIP, What.PITCHFORK))
+        event = next(e for e in one.events if e.what in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK))
         period = one.system.recurrence.period
-        what = "doubling" if event.what is What.FLIP else "symmetry breaking"
+        what = "doubling" if event.what is BifurcationKind.FLIP else "symmetry breaking"
         name = f"{what} of {period}"
         tick(name)
-        found = curve(event.ring, Kind.FLIP, event.x, TWO, (at["alpha"], event.value), box, steps=steps)
+        found = curve(event.ring, BifurcationKind.FLIP, event.x, TWO, (at["alpha"], event.value), box, steps=steps)
         yield Rung(name, period, event.what, found)
-        if period >= highest and event.what is What.FLIP:
+        if period >= highest and event.what is BifurcationKind.FLIP:
             return
         one = switched(one, event, (0.0, 1.0))[0]
 
@@ -86,19 +88,18 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> Rung:
     top = largest_shape(K)
     at = {"alpha": 0.8 * top}
     one = branch(ring, np.array([pi / K]), "lam", 1.0, (0.0, 1.0), at)
-    event = next(e for e in one.events if e.what is What.FOLD)
+    event = next(e for e in one.events if e.what is BifurcationKind.FOLD)
     box = ((top / 200, top), (0.0, 1.0))
-    found = curve(ring, Kind.FOLD, event.x, TWO, (at["alpha"], event.value), box, steps=Steps(largest=0.15))
-    return Rung(f"fold of {p}/{q}", q, What.FOLD, found)
+    found = curve(ring, BifurcationKind.FOLD, event.x, TWO, (at["alpha"], event.value), box, steps=Steps(largest=0.15))
+    return Rung(f"fold of {p}/{q}", q, BifurcationKind.FOLD, found)
 
 
 def polygon(K: int, p: int, q: int) -> Chords:
     """One bounce of the cycle that turns by `2*pi*p/q` each time."""
-    from verification.cycles.continuation.recurrence import Ends
 
     if K * p % q:
         raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
-    return Chords(egg(K), (0,), Ends(1, 2 * pi * p / q))
+    return Chords(egg(K), (0,), Closure(1, (p, q)))
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def accumulation(rungs: list[Rung], alphas: Array) -> Accumulation:
 
     The error is the difference to a second extrapolation, or to the same one without the last rung if that is larger.
     """
-    doublings = [rung for rung in rungs if rung.what is What.FLIP and rung.period > 2]
+    doublings = [rung for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
     found = []
     for alpha in alphas:
         values = [rung.lam(float(alpha)) for rung in doublings]

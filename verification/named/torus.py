@@ -9,24 +9,25 @@ The determinant of a cycle is not `lam**p` (`symbolic.cycles.determinant`). Thre
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 from flint import arb
 from sympy import Expr, Rational, atan
 
 from symbolic.cycles.polygons import largest_tilt
 from symbolic.generation.text import kernel, load
-from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
 from symbolic.tables.symbols import alpha as letter
-from verification.arithmetic.words import Arithmetic, balls, working
-from verification.cycles.shooting.chain import Chain, Elimination, Vector
+from verification.arithmetic.balls import exact_balls
+from verification.arithmetic.words import balls, working
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.shooting.critical import critical
 from verification.cycles.shooting.newton import refined
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.cycles.shooting.small import Small
 from verification.named.locate import certify
-from verification.proofs.periodic.interval_newton import Enclosure, contraction, exact_balls
-from verification.proofs.periodic.over_interval import trace_and_determinant
+from verification.proofs.periodic.interval_newton import Enclosure, contraction
 
 BITS = 128
 HEXAGON = (0.0, 1.0472, 2.0944, 3.1416, 4.1888, 5.236)
@@ -56,27 +57,14 @@ def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
     proof = certify(problem, list(HEXAGON), 20)
     with working(BITS):
         chain = Linearised(Rows(problem, balls(BITS)), proof.enclosure.zero).plain
-        _, determinant = trace_and_determinant(chain)
+        _, determinant = trace_and_determinant(chain.rows)
     return Expanding(proof.certified, determinant)
 
 
 def resonance(period: int) -> Small:
     """A cycle of the egg with the double multiplier 1: unknowns are its bounces, `alpha` and `lam`."""
-
-    chord = chord_kernel(egg(3), 0, 0, 1)
-
-    def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
-        theta, alpha, lam = z[:period], z[-2], z[-1]
-        angle: Any = load(chord, arithmetic)
-        out = [angle(theta[i], theta[(i + 1) % period], alpha) for i in range(period)]
-        into = [angle(theta[i], theta[i - 1], alpha) for i in range(period)]
-        lower, upper = [lam * b[2] for b in into], [f[2] for f in out]
-        diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
-        chain = Chain(lower, diagonal, upper)
-        _, determinant = trace_and_determinant(chain)
-        return [*(f[0] + lam * b[0] for f, b in zip(out, into, strict=True)), Elimination(chain).rest, determinant - 1]
-
-    return Small(f"egg, period {period}, the double multiplier 1", equations)
+    both = BifurcationKind.FOLD, BifurcationKind.TORUS
+    return critical(Chords(egg(3), (0,) * period), both, ("alpha", "lam"))
 
 
 def double_one() -> Enclosure:

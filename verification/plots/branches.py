@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verification.cycles.continuation.branch import Branch, What
+from verification.cycles.continuation.branch import Branch
 from verification.cycles.continuation.starts import spectrum_of
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,13 +28,13 @@ if TYPE_CHECKING:
 
 
 MARKS = {
-    What.FOLD: ("s", "tab:blue"),
-    What.PITCHFORK: ("D", "tab:purple"),
-    What.BRANCHING: ("D", "tab:brown"),
-    What.FLIP: ("o", "tab:red"),
-    What.TORUS: ("*", "tab:green"),
-    What.NEUTRAL: ("x", "tab:gray"),
-    What.BORDER: ("v", "tab:orange"),
+    BifurcationKind.FOLD: ("s", "tab:blue"),
+    BifurcationKind.PITCHFORK: ("D", "tab:purple"),
+    BifurcationKind.BRANCH_POINT: ("D", "tab:brown"),
+    BifurcationKind.FLIP: ("o", "tab:red"),
+    BifurcationKind.TORUS: ("*", "tab:green"),
+    BifurcationKind.NEUTRAL_SADDLE: ("x", "tab:gray"),
+    BifurcationKind.BORDER_COLLISION: ("v", "tab:orange"),
 }
 
 
@@ -45,7 +46,7 @@ def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) ->
     figure = Figure(figsize=(8, 5), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    seen: set[What] = set()
+    seen: set[BifurcationKind] = set()
     for number, branch in enumerate(branches):
         shown = range(branch.system.recurrence.period) if bounces is None else bounces
         colour = f"C{number}" if len(branches) > 1 else "black"
@@ -166,7 +167,7 @@ def turns(K: int) -> list[tuple[int, int]]:
 
 def _line(axes: object, rung: Rung) -> None:
     plane = rung.curve.plane
-    breaking = rung.what is What.PITCHFORK
+    breaking = rung.what is BifurcationKind.PITCHFORK
     label = rung.name if rung.period <= 4 else "doublings of 8, 16, ..." if rung.period == 8 else None
     colour = "tab:purple" if breaking else "black" if rung.period == 2 else "tab:green"
     axes.plot(plane[:, 1], plane[:, 0], color=colour, lw=1.6 if rung.period == 2 else 1.0, label=label)  # type: ignore[attr-defined]

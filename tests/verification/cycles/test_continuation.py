@@ -19,11 +19,14 @@ from symbolic.tables.symbols import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.cycles.continuation import linear
 from verification.cycles.continuation.arc import End, Steps
-from verification.cycles.continuation.branch import What, branch
+from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.linear import spectrum
-from verification.cycles.continuation.recurrence import Chords, Ends, cubic, delayed, henon, logistic
 from verification.cycles.continuation.starts import dataset, named
 from verification.cycles.continuation.switching import switched
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.explicit import cubic, delayed, henon, logistic
 from verification.cycles.shooting.cascade import ladder
 from verification.named.events import proof_of
 from verification.named.locate import locate
@@ -41,7 +44,7 @@ def cascade(one, interval, count):
     """Each doubling, switched on to the next branch."""
     found = []
     for _ in range(count):
-        event = next(e for e in one.events if e.what is What.FLIP)
+        event = next(e for e in one.events if e.what is BifurcationKind.FLIP)
         found.append(event)
         (one,) = switched(one, event, interval)
     return found
@@ -50,7 +53,7 @@ def cascade(one, interval, count):
 @pytest.mark.parametrize("alpha", ["1/50", "1/20", "2/25", "1/10"])
 def test_the_branch_of_triangles_passes_its_fold_where_the_closed_form_says(alpha):
     one = branch(Chords(egg(3).at(alpha=alpha), (0, 0, 0)), TRIANGLE, "lam", 1.0, (0.0, 1.0))
-    (fold,) = [event for event in one.events if event.what is What.FOLD]
+    (fold,) = [event for event in one.events if event.what is BifurcationKind.FOLD]
 
     assert abs(fold.value - float(saddle_node().subs(letter, Rational(alpha)))) < 1e-12
     assert one.values[0] == one.values[-1] == 1.0
@@ -66,7 +69,7 @@ def test_the_events_of_the_cascade_are_the_located_ones():
     doublings = cascade(two, (0.0, 0.6), 4)
     rungs = [rung.lam for rung in islice(ladder(ALPHA), 4)]
 
-    assert pitchfork.what is What.PITCHFORK
+    assert pitchfork.what is BifurcationKind.PITCHFORK
     assert abs(pitchfork.value - float(locate("symmetry-breaking", 15, alpha=ALPHA).value)) < 1e-12
     assert [event.value for event in doublings] == pytest.approx(rungs, abs=1e-12)
     assert all(event.form.supercritical for event in doublings)
@@ -100,7 +103,7 @@ def test_no_pitchfork_is_lost_where_the_whole_ring_is_singular():
     (pitchfork,) = four.events
     proof = proof_of(pitchfork, 20)
 
-    assert pitchfork.what is What.PITCHFORK
+    assert pitchfork.what is BifurcationKind.PITCHFORK
     assert pitchfork.located
     assert proof.certified
     assert abs(float(proof.value.mid()) - pitchfork.value) < 1e-12
@@ -111,7 +114,7 @@ def test_henons_second_doubling_has_a_closed_form():
     for b in (0.0, 0.2, 0.3):
         one = branch(henon(1), np.array([1.0]), "a", 0.1, (-0.1, 1.4), {"b": b})
         (two,) = switched(one, one.events[-1], (-0.1, 1.4))
-        flip = next(e for e in two.events if e.what is What.FLIP)
+        flip = next(e for e in two.events if e.what is BifurcationKind.FLIP)
 
         assert abs(flip.value - ((1 - b) ** 2 + (1 + b) ** 2 / 4)) < 1e-10
 
@@ -140,7 +143,7 @@ def test_henons_later_doublings_agree_with_single_shooting():
 def test_the_window_of_period_three_opens_where_it_is_published():
     """1 + sqrt(8) [Myrberg1958]."""
     one = branch(logistic(3), np.array([0.1494, 0.4880, 0.9594]), "r", 3.84, (3.5, 3.9))
-    fold = next(event for event in one.events if event.what is What.FOLD)
+    fold = next(event for event in one.events if event.what is BifurcationKind.FOLD)
 
     assert abs(fold.value - (1 + 8**0.5)) < 1e-12
 
@@ -160,7 +163,7 @@ def test_a_neimark_sacker_bifurcation_is_named_where_there_is_one():
     one = branch(delayed(1), np.array([0.4]), "r", 1.7, (1.2, 2.2))
     (torus,) = one.events
 
-    assert torus.what is What.TORUS
+    assert torus.what is BifurcationKind.TORUS
     assert abs(torus.value - 2) < 1e-12
     assert abs(np.angle(one.system.spectrum(torus.point.z).multipliers[0])) == pytest.approx(pi / 3, abs=1e-9)
 
@@ -171,7 +174,7 @@ def test_a_branch_point_without_a_fold_is_switched_at():
     (crossing,) = one.events
     both = switched(one, crossing, (0.2, 1.5))
 
-    assert crossing.what is What.BRANCHING
+    assert crossing.what is BifurcationKind.BRANCH_POINT
     assert abs(crossing.value - 1) < 1e-12
     for side in both:
         assert side.points[-1].z[0] ** 2 == pytest.approx(side.points[-1].z[1] - 1, abs=1e-10)
@@ -193,13 +196,13 @@ def test_the_determinant_is_the_product_of_the_areas_of_the_bounces_not_a_power_
 def test_the_three_determinants_are_those_of_the_product_of_matrices():
     rng = np.random.default_rng(5)
     for n, turn in ((2, 1), (3, 1), (5, 1), (8, 1), (2, -1), (3, -1)):
-        ring, x = Chords(TABLE, (0,) * n, Ends(turn)), rng.uniform(0, 0.3, n) + 2.4 * np.arange(n)
+        ring, x = Chords(TABLE, (0,) * n, Closure(turn)), rng.uniform(0, 0.3, n) + 2.4 * np.arange(n)
         terms = ring.terms(x, {"lam": 0.4}, 1)
         product = np.eye(2)
         for below, middle, above in zip(*terms.slope, strict=True):
             product = np.array([[-middle / above, -below / above], [1.0, 0.0]]) @ product
         product = turn * product  # half a symmetric cycle: what comes round is its mirror image
-        found = spectrum(terms, ring.ends)
+        found = spectrum(terms, ring.closure)
 
         assert found.at_one == pytest.approx(np.linalg.det(product - np.eye(2)), rel=1e-7)
         assert found.at_minus_one == pytest.approx(np.linalg.det(product + np.eye(2)), rel=1e-7)
@@ -216,7 +219,7 @@ def test_the_cycle_born_at_the_cuspless_doubling_ends_on_the_corner_orbit():
 
     assert abs(doubling.value - float(lambda_c())) < 1e-12
     assert doubling.form.supercritical is False
-    assert collision.what is What.BORDER
+    assert collision.what is BifurcationKind.BORDER_COLLISION
     assert abs(collision.value - float(locate("lambda-star", 15).value)) < 1e-12
     assert sorted(b.system.recurrence.components for b in beyond) == [(0, 0, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0)]
     assert all(b.values.min() > collision.value for b in beyond)  # all four exist on one side only

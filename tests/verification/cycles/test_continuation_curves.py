@@ -13,13 +13,16 @@ from symbolic.tables.symbols import alpha as alpha_letter
 from symbolic.tables.symbols import lam as lam_letter
 from verification.arithmetic.words import FLOAT64
 from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import What, branch
+from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.curves import Special, curve
 from verification.cycles.continuation.normal import coefficients
-from verification.cycles.continuation.recurrence import Chords, Ends, henon
 from verification.cycles.continuation.systems import Critical
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.explicit import henon
 from verification.cycles.shooting.normal_form import normal_form
-from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.named.tongue import accumulation, cascade, fold, largest_shape
 from verification.named.torus import contracting_up_to, double_one, expanding_cycle
 
@@ -59,7 +62,7 @@ def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(rungs):
 
 
 def test_the_resonances_pile_up_as_in_area_preserving_maps(rungs):
-    ends = [rung.special[0].letters[0] for rung in rungs if rung.what is What.FLIP and rung.period > 2]
+    ends = [rung.special[0].letters[0] for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
     gaps = [b - a for a, b in pairwise(ends)]
 
     assert gaps[-2] / gaps[-1] == pytest.approx(AREA_PRESERVING, abs=0.01)
@@ -74,9 +77,9 @@ def test_the_accumulation_is_that_of_the_certified_ladder(rungs):
 
 def test_henons_flip_and_fold_meet_nowhere_and_end_in_resonances():
     """Both are parabolas in closed form; at b = -1 the map keeps areas: 1:2 on the flip, 1:1 on the fold."""
-    box = ((-1.0, 0.9), (-2.0, 4.0))
-    flips = curve(henon(1), Kind.FLIP, np.array([0.95]), ("b", "a"), (0.3, 0.37), box, steps=Steps(largest=2.0))
-    folds = curve(henon(1), Kind.FOLD, np.array([2.8]), ("b", "a"), (0.3, -0.12), box, steps=Steps(largest=2.0))
+    box, long = ((-1.0, 0.9), (-2.0, 4.0)), Steps(largest=2.0)
+    flips = curve(henon(1), BifurcationKind.FLIP, np.array([0.95]), ("b", "a"), (0.3, 0.37), box, steps=long)
+    folds = curve(henon(1), BifurcationKind.FOLD, np.array([2.8]), ("b", "a"), (0.3, -0.12), box, steps=long)
 
     assert np.allclose(flips.plane[:, 1], 3 * (1 - flips.plane[:, 0]) ** 2 / 4, atol=1e-10)
     assert np.allclose(folds.plane[:, 1], -((1 - folds.plane[:, 0]) ** 2) / 4, atol=1e-10)
@@ -89,11 +92,13 @@ def test_the_coefficients_are_those_of_the_certified_normal_form():
     table = egg(3).at(alpha="7/100")
     one = branch(Chords(table, (0, 0)), np.array([0.0, np.pi]), "lam", 0.1, (0.0, 1.0))
     (flip,) = one.events
-    at = Linearised(Rows(Problem(table, (0, 0), Kind.FLIP, "lam"), FLOAT64), [*map(float, flip.x), flip.value])
+    at = Linearised(
+        Rows(Problem(table, (0, 0), BifurcationKind.FLIP, "lam"), FLOAT64), [*map(float, flip.x), flip.value]
+    )
     v = np.array(at.critical.right)
     expected = normal_form(at, FLOAT64).branch / np.mean(v**2)
 
-    assert coefficients(flip.ring, flip.x, {"lam": flip.value}, Kind.FLIP, "lam").branch == pytest.approx(
+    assert coefficients(flip.ring, flip.x, {"lam": flip.value}, BifurcationKind.FLIP, "lam").branch == pytest.approx(
         expected, rel=1e-9
     )
 
@@ -116,11 +121,11 @@ def test_a_double_multiplier_one_below_lam_one_is_proved():
     assert 0.0687 < found.zero[-2] < 0.0688
 
 
-@pytest.mark.parametrize("kind", [Kind.FOLD, Kind.FLIP])
+@pytest.mark.parametrize("kind", [BifurcationKind.FOLD, BifurcationKind.FLIP])
 @pytest.mark.parametrize("turn", [1, -1])
 def test_the_matrix_of_a_critical_cycle_is_that_of_the_difference_quotients(kind, turn):
     z = np.array([0.3, 2.9, -0.4, 0.05, 0.3])
-    system = Critical.near(Chords(egg(3), (0, 0, 0), Ends(turn, 0.2)), kind, ("alpha", "lam"), z)
+    system = Critical.near(Chords(egg(3), (0, 0, 0), Closure(turn, (1, 31))), kind, ("alpha", "lam"), z)
     _, matrix = system.linear(z)
     h = 1e-6
     steps = [(system.linear(z + h * e)[0] - system.linear(z - h * e)[0]) / (2 * h) for e in np.eye(len(z))]

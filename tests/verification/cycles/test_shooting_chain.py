@@ -13,8 +13,10 @@ from symbolic.tables import cuspless, egg, polar
 from symbolic.tables.symbols import theta
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import FLOAT64
-from verification.cycles.shooting.chain import Chain, Elimination
-from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chain import Chain, Elimination
+from verification.cycles.recurrence.closure import MIRROR
+from verification.cycles.shooting.problem import Linearised, Problem, Rows
 
 fractions = st.fractions(-3, 3, max_denominator=7)
 
@@ -80,12 +82,15 @@ def test_rest_vanishes_exactly_when_the_matrix_is_singular(chain):
 
 
 PROBLEMS = [
-    (Problem(egg(3).at(alpha="2/25"), (0,) * 4, Kind.FLIP, "lam"), [0.3, 3.0, -0.2, 2.5, 0.2]),
-    (Problem(egg(3), (0,) * 4, Kind.FOLD, "alpha", Rational(1, 3)), [0.3, 3.0, -0.2, 2.5, 0.05]),
-    (Problem(egg(3).at(alpha="2/25"), (0, 0), Kind.FLIP, "lam"), [0.3, 3.0, 0.2]),
-    (Problem(cuspless, (1, 0, 0), Kind.FLIP, "lam"), [0.1, -0.4, 1.1, 0.3]),
-    (Problem(egg(3).at(alpha="2/25"), (0, 0), Kind.FLIP, "lam", mirror=True), [0.1, -2.7, 0.2]),
-    (Problem(egg(3), (0, 0, 0), Kind.FOLD, "alpha", Rational(1, 3), mirror=True), [0.1, -2.7, 0.2, 0.05]),
+    (Problem(egg(3).at(alpha="2/25"), (0,) * 4, BifurcationKind.FLIP, "lam"), [0.3, 3.0, -0.2, 2.5, 0.2]),
+    (Problem(egg(3), (0,) * 4, BifurcationKind.FOLD, "alpha", Rational(1, 3)), [0.3, 3.0, -0.2, 2.5, 0.05]),
+    (Problem(egg(3).at(alpha="2/25"), (0, 0), BifurcationKind.FLIP, "lam"), [0.3, 3.0, 0.2]),
+    (Problem(cuspless, (1, 0, 0), BifurcationKind.FLIP, "lam"), [0.1, -0.4, 1.1, 0.3]),
+    (Problem(egg(3).at(alpha="2/25"), (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR), [0.1, -2.7, 0.2]),
+    (
+        Problem(egg(3), (0, 0, 0), BifurcationKind.FOLD, "alpha", Rational(1, 3), MIRROR),
+        [0.1, -2.7, 0.2, 0.05],
+    ),
     (Problem(cuspless, (1, 0, 0), lam=Rational(1, 4)), [0.1, -0.4, 1.1]),
 ]
 
@@ -121,11 +126,13 @@ def test_jets_are_the_taylor_coefficients(a, b, c):
 
 def test_a_problem_that_is_not_square_is_refused():
     with pytest.raises(ValueError, match="CYCLE with lam free is not square"):
-        Problem(cuspless, (1, 0), Kind.CYCLE, "lam")
+        Problem(cuspless, (1, 0), None, "lam")
+    with pytest.raises(ValueError, match="accepted: fold, flip"):
+        Problem(cuspless, (1, 0), BifurcationKind.TORUS, "lam")
     with pytest.raises(ValueError, match="free letters must be just lam; lam = None"):
-        Problem(egg(3), (0, 0), Kind.FLIP, "lam")
+        Problem(egg(3), (0, 0), BifurcationKind.FLIP, "lam")
     with pytest.raises(ValueError, match="theta -> -theta is no mirror image"):
-        Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), mirror=True)
+        Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), closure=MIRROR)
     with pytest.raises(ValueError, match="1 row is no chain"):
         Chain([1], [1], [1])
 

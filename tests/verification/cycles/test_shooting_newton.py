@@ -9,16 +9,17 @@ from sympy import Rational
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg
 from symbolic.tables.symbols import lam
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.attracting import attractor, characteristic, next_critical
 from verification.cycles.shooting.newton import floats, levels, refined
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.cycles.shooting.small import corner
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 
 
 def flip() -> Problem:
-    return Problem(egg(3), (0, 0), Kind.FLIP, "alpha", Rational(1, 3))
+    return Problem(egg(3), (0, 0), BifurcationKind.FLIP, "alpha", Rational(1, 3))
 
 
 def test_corrections_shrink_quadratically():
@@ -74,7 +75,7 @@ def test_an_attractor_of_the_egg_is_a_cycle_of_the_chord_system():
 
 def test_a_followed_cycle_has_the_multiplier_it_was_followed_to():
     theta = attractor(EGG, 0.36, (0.05, 3.1))
-    *cycle, lam_3 = next_critical(EGG, theta, 0.36, 0.005, Kind.FLIP)
+    *cycle, lam_3 = next_critical(EGG, theta, 0.36, 0.005, BifurcationKind.FLIP)
 
     assert abs(lam_3 - 0.371235502528) < 1e-11
-    assert abs(characteristic(EGG, cycle, lam_3, -1)) < 1e-9
+    assert abs(characteristic(EGG, cycle, lam_3, BifurcationKind.FLIP)) < 1e-9

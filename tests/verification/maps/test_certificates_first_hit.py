@@ -8,12 +8,12 @@ from sympy import Rational, cos
 
 from symbolic.tables import cardioid, cuspless, egg, polar
 from symbolic.tables.symbols import theta
+from verification.arithmetic.balls import exact_balls
 from verification.arithmetic.words import working
 from verification.cycles.shooting.newton import refined
 from verification.cycles.shooting.problem import Problem
 from verification.maps.first_hit import first_hits
 from verification.proofs.periodic.bifurcation import Claim, proved
-from verification.proofs.periodic.interval_newton import exact_balls
 
 WAISTED = polar(1 + cos(2 * theta) / 2)  # the waist at theta = +-pi/2 has radius 1/2
 

@@ -14,6 +14,7 @@ from symbolic.cycles.named import egg_diameter, minor_axis
 from symbolic.cycles.polygons import saddle_node
 from symbolic.tables.symbols import a, alpha, lam
 from verification.arithmetic.words import multiprecision
+from verification.cycles.recurrence.chain import trace_and_determinant as monodromy
 from verification.cycles.shooting.condition import Conditioning
 from verification.cycles.shooting.newton import refined
 from verification.cycles.shooting.problem import Linearised, Rows
@@ -24,7 +25,6 @@ from verification.measure.extremes.flights import Asked, Truth, findings
 from verification.measure.extremes.kernels import KERNELS, LONGDOUBLE, TEXTBOOK
 from verification.measure.extremes.near import SMALL, Measured, Stability
 from verification.measure.extremes.page import rows
-from verification.proofs.periodic.over_interval import trace_and_determinant as monodromy
 
 DOCS = Path(page.__file__).parent.parent.parent / "docs"
 WIDE = np.finfo(np.longdouble).nmant >= 63
@@ -150,7 +150,7 @@ def test_the_triangle_next_to_its_fold_has_a_multiplier_within_1e_12_of_one():
     problem, start = near.touching(near.FOLD_GAP)
     z = near.solution(problem, start)
     context = type(z[0]).context
-    trace, det = monodromy(Linearised(Rows(problem, multiprecision(context)), z).plain)
+    trace, det = monodromy(Linearised(Rows(problem, multiprecision(context)), z).plain.rows)
     shape = dict(problem.table.fixed)["alpha"]
     fold = N(saddle_node().subs(alpha, shape) - problem.lam, 60)
 

@@ -10,9 +10,10 @@ from sympy import Rational
 
 from symbolic.tables import cuspless, egg
 from verification.arithmetic.words import working
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.attracting import attractor, cycle_at, doubled
 from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.proofs.periodic.interval_newton import Status, krawczyk
 from verification.proofs.periodic.over_interval import Stability, everywhere, stability
 
@@ -43,7 +44,7 @@ def test_an_attracting_cycle_of_period_4_exists_for_every_small_contraction():
 
 
 def test_the_unstable_cycle_born_at_lambda_c_lives_down_to_the_corners():
-    flip = Problem(cuspless, (1, 0), Kind.FLIP, "lam")
+    flip = Problem(cuspless, (1, 0), BifurcationKind.FLIP, "lam")
     start, lam = doubled(flip, floats(flip, [0.0, 0.0, 0.0934]), 0.002)
 
     assert lam < 0.0934  # subcritical: on the side where the period-2 orbit is stable

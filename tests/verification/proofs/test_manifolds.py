@@ -11,6 +11,7 @@ from sympy import Rational
 
 from symbolic import tables
 from verification.arithmetic.words import ARRAYS, FLOAT64
+from verification.cycles.recurrence.closure import Closure
 from verification.cycles.shooting.cascade import ladder
 from verification.plots.manifolds import portrait
 from verification.proofs.manifolds.grow import branch, far
@@ -25,7 +26,7 @@ from verification.proofs.manifolds.known import (
     homoclinic_exponent,
     table,
 )
-from verification.proofs.manifolds.recurrence import Henon, Pinball
+from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import local
 from verification.proofs.manifolds.shadows import shadow
@@ -39,7 +40,7 @@ CASES = [
     (EGG, TRIANGLE, 0.66),
     (EGG, MIRRORED, 0.4434),
     (EGG, Orbit("diameter", (0.0, 3.1416)), 0.5),
-    (EGG, Orbit("parallel tangents", (0.3326,), -1, (2, 3)), 0.4434),
+    (EGG, Orbit("parallel tangents", (0.3326,), Closure(-1, (2, 3))), 0.4434),
 ]
 # [AraiMischaikow2006]: quadratic homoclinic tangencies proved in these
 # intervals. [GrebogiOttRomeirasYorke1987]: the boundary crisis of the Henon map.
@@ -85,7 +86,7 @@ def test_multipliers_are_those_of_the_derivative_matrix(map, orbit, letter):
         for here, following in pairwise(ring[1:]):
             phi = found.map.angle(here, following)[0]
             product = bounces.derivative(math.remainder(here, 2 * math.pi), phi) @ product
-        product *= orbit.sign
+        product *= orbit.closure.turn
     else:
         product = np.array([[-2 * letter * found.points[0], 1], [0.3, 0]])
     expected = sorted(np.linalg.eigvals(product).real, key=abs)
@@ -240,7 +241,7 @@ def test_bad_requests_are_one_sentence():
     with pytest.raises(ValueError, match="heteroclinic"):
         shadow(PUBLISHED["crisis, b = 0.3"][0], Pinball(tables.circle), 1.4, 4)
     with pytest.raises(ValueError, match="no saddle"):
-        saddle(Orbit("triangle of the flat points", (-0.905,), 1, (1, 3)), EGG.over(FLOAT64), 0.66)
+        saddle(Orbit("triangle of the flat points", (-0.905,), Closure(1, (1, 3))), EGG.over(FLOAT64), 0.66)
 
 
 def test_a_portrait_shows_both_panels():

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from sympy import Rational
 
 from verification.arithmetic.words import multiprecision, working
+from verification.cycles.recurrence.closure import Closure
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
     bounds,
@@ -23,7 +24,7 @@ from verification.proofs.manifolds.enclosed import (
 )
 from verification.proofs.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
 from verification.proofs.manifolds.pair import Precision, one_cycle, pair, scale, smaller
-from verification.proofs.manifolds.recurrence import Henon
+from verification.proofs.manifolds.plane_map import Henon
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import horner, local
 
@@ -214,7 +215,7 @@ def test_cycles_at_single_letters_are_held_against_the_one_over_a_disc():
     """A cycle at another letter, or another bounce of the same cycle, is not taken for it."""
     with working(300):
         around, here, elsewhere = at(SYMMETRIC, 0.41, 1e-12), at(SYMMETRIC, 0.41), at(SYMMETRIC, 0.4101)
-        turned = at(Orbit("its mirror image", tuple(-x for x in SYMMETRIC.start), -1, (-2, 3)), 0.41)
+        turned = at(Orbit("its mirror image", tuple(-x for x in SYMMETRIC.start), Closure(-1, (-2, 3))), 0.41)
 
         assert one_cycle(around, here)
         assert not one_cycle(around, elsewhere)
@@ -223,7 +224,7 @@ def test_cycles_at_single_letters_are_held_against_the_one_over_a_disc():
 
 def test_what_no_ball_encloses_is_not_proved():
     with working(100):
-        sink = Orbit("sink", (1.09,))
+        sink, flat = Orbit("sink", (1.09,)), Orbit("flat points", (-0.905,), Closure(1, (1, 3)))
         with pytest.raises(TooWideError, match="not separated"):
             enclosed_saddle(sink, Henon(Rational(3, 10)).over(complex_balls(100)), acb(0.2))
         with pytest.raises(TooWideError, match="may be singular"):
@@ -231,4 +232,4 @@ def test_what_no_ball_encloses_is_not_proved():
         with pytest.raises(TooWideError, match="did not contract"):
             at(MIRRORED, 0.4434, 0.001)
         with pytest.raises(TooWideError, match="complex"):
-            enclosed_saddle(Orbit("flat points", (-0.905,), 1, (1, 3)), EGG.over(complex_balls(100)), acb(0.66))
+            enclosed_saddle(flat, EGG.over(complex_balls(100)), acb(0.66))

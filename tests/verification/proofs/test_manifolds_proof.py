@@ -12,10 +12,11 @@ from sympy import Rational
 
 from symbolic.tables import cardioid
 from verification.arithmetic.words import FLOAT64, multiprecision, working
+from verification.cycles.recurrence.closure import Closure
 from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
 from verification.proofs.manifolds.pair import Precision
+from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
-from verification.proofs.manifolds.recurrence import Henon, Pinball
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import local
 from verification.proofs.manifolds.tangency import Contact, Gap, tangency
@@ -105,7 +106,7 @@ def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
     orbit = CONTACTS[kind].unstable
     points = list(orbit.start)
     while len(points) < 6 * len(orbit.start):
-        points.append(orbit.sign * points[-len(orbit.start)] + 2 * math.pi * orbit.shift[0] / orbit.shift[1])
+        points.append(orbit.closure.carried(points[-len(orbit.start)], orbit.closure.radians, 1))
     image = system.sign * (points[0] + system.turns * 2 * math.pi / 3)
 
     assert min(abs(math.remainder(image - x, 2 * math.pi)) for x in points) < 1e-4
@@ -196,7 +197,7 @@ def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(na
     [
         ({}, "0.66", ["saddle", "remainder", "admissible"]),  # no tangency near this letter
         ({"bounces": 7, "z": 0.02}, BY_CYCLES["boundary"], ["saddle", "remainder"]),  # nor near this orbit
-        ({"unstable": Orbit("flat points", (-0.905,), 1, (1, 3))}, BY_CYCLES["boundary"], []),  # no saddle
+        ({"unstable": Orbit("flat points", (-0.905,), Closure(1, (1, 3)))}, BY_CYCLES["boundary"], []),  # no saddle
     ],
 )
 def test_where_a_proof_fails_its_checks_say_how_far_it_came(changed, value, known):

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from verification.cycles.continuation.linear import above, solved
-from verification.cycles.continuation.recurrence import Array
+from verification.cycles.recurrence.recurrence import Array
 
 NEWTON = 9  # steps before a corrector gives up
 CLOSE = 1e-11  # a correction that small is the last one, in units of the unknowns

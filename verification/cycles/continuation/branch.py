@@ -1,19 +1,11 @@
 """A branch of cycles in one letter: followed both ways from a start, with what happens on it.
 
-Each event is a zero of a test function between two points, located on the curve:
-
-    fold                 det(M - 1) = 0 and the branch turns in the letter
-    pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
-    branch point         det(M - 1) = 0, the branch goes straight on, no symmetry is broken
-    period doubling      det(M + 1) = 0
-    Neimark-Sacker       det M = 1 with multipliers on the unit circle
-    neutral saddle       det M = 1 with real multipliers: no bifurcation
-    border collision     a bounce meets a join of the boundary
+Each event is a zero of a test function between two points, located on the curve
+(`verification.cycles.recurrence.bifurcations` names them).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from itertools import pairwise
 
 import numpy as np
@@ -22,26 +14,15 @@ from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
 from verification.cycles.continuation.linear import Spectrum
 from verification.cycles.continuation.normal import Coefficients, coefficients
-from verification.cycles.continuation.recurrence import Array, Chords, Letters, Recurrence
 from verification.cycles.continuation.symmetry import parts, whole
 from verification.cycles.continuation.systems import Cycles
-from verification.cycles.shooting.problem import Kind
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence
 
 NOISE = 1e-9  # a test function that small has no sign
 NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
 Interval = tuple[float, float]
-
-
-class What(Enum):
-    """What happens on a branch."""
-
-    FOLD = "fold"
-    PITCHFORK = "pitchfork"
-    BRANCHING = "branch point"
-    FLIP = "period doubling"
-    TORUS = "Neimark-Sacker"
-    NEUTRAL = "neutral saddle"
-    BORDER = "border collision"
 
 
 @dataclass(frozen=True)
@@ -52,7 +33,7 @@ class Event:
     place is interpolated between two points.
     """
 
-    what: What
+    what: BifurcationKind
     point: Point
     ring: Recurrence
     x: Array = field(repr=False)
@@ -111,7 +92,7 @@ def branch(
     """The branch through the cycle near `x` at `letter = value`, both ways, inside `interval`.
 
     >>> from sympy import Symbol
-    >>> from verification.cycles.continuation.recurrence import logistic
+    >>> from verification.cycles.recurrence.explicit import logistic
     >>> found = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.9))
     >>> [(event.what.value, round(event.value, 9)) for event in found.events]
     [('period doubling', 3.0)]
@@ -221,27 +202,27 @@ def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
         except ValueError:
             continue
         _, x = whole(part, there.z[:-1], ring.period)
-        form = _form(part, there.z[:-1], reduced.at(there.z), Kind.FLIP, system.letter)
+        form = _form(part, there.z[:-1], reduced.at(there.z), BifurcationKind.FLIP, system.letter)
         z = np.append(x, there.z[-1])
         share = (z[-1] - a.z[-1]) / (b.z[-1] - a.z[-1])
         point = Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z))
-        return Event(What.PITCHFORK, point, part, there.z[:-1], form)
+        return Event(BifurcationKind.PITCHFORK, point, part, there.z[:-1], form)
     return None
 
 
 def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
     ring, x, at = system.recurrence, point.z[:-1], system.at(point.z)
     if name == "volume":
-        what = What.TORUS if abs(_spectrum(point).trace) < 2 else What.NEUTRAL
+        what = BifurcationKind.TORUS if abs(_spectrum(point).trace) < 2 else BifurcationKind.NEUTRAL_SADDLE
         return Event(what, point, ring, x)
     if name == "minus_one":
-        return Event(What.FLIP, point, ring, x, _form(ring, x, at, Kind.FLIP, system.letter))
+        return Event(BifurcationKind.FLIP, point, ring, x, _form(ring, x, at, BifurcationKind.FLIP, system.letter))
     if turns:
-        return Event(What.FOLD, point, ring, x, _form(ring, x, at, Kind.FOLD, system.letter))
-    return Event(What.BRANCHING, point, ring, x)
+        return Event(BifurcationKind.FOLD, point, ring, x, _form(ring, x, at, BifurcationKind.FOLD, system.letter))
+    return Event(BifurcationKind.BRANCH_POINT, point, ring, x)
 
 
-def _form(ring: Recurrence, x: Array, at: Letters, kind: Kind, letter: str) -> Coefficients | None:
+def _form(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> Coefficients | None:
     try:
         return coefficients(ring, x, at, kind, letter)
     except ValueError:
@@ -262,4 +243,4 @@ def border(system: Cycles, last: Point) -> Event | None:
         z, _ = arc.corrected(system, last.z, row, end)
     except LostError:
         return None
-    return Event(What.BORDER, Point(z, last.tangent, last.s, last.tests), ring, z[:-1])
+    return Event(BifurcationKind.BORDER_COLLISION, Point(z, last.tangent, last.s, last.tests), ring, z[:-1])

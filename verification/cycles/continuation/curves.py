@@ -20,9 +20,9 @@ import numpy as np
 
 from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
-from verification.cycles.continuation.recurrence import Array, Letters, Recurrence
 from verification.cycles.continuation.systems import Critical
-from verification.cycles.shooting.problem import Kind
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence
 
 Box = tuple[tuple[float, float], tuple[float, float]]
 NOISE = 1e-10
@@ -39,12 +39,12 @@ class Special(Enum):
 
 
 MEANING = {
-    (Kind.FOLD, "bend"): Special.CUSP,
-    (Kind.FOLD, "other_one"): Special.ONE_ONE,
-    (Kind.FOLD, "other_minus_one"): Special.FOLD_FLIP,
-    (Kind.FLIP, "bend"): Special.GENERALISED_FLIP,
-    (Kind.FLIP, "other_one"): Special.FOLD_FLIP,
-    (Kind.FLIP, "other_minus_one"): Special.ONE_TWO,
+    (BifurcationKind.FOLD, "bend"): Special.CUSP,
+    (BifurcationKind.FOLD, "other_one"): Special.ONE_ONE,
+    (BifurcationKind.FOLD, "other_minus_one"): Special.FOLD_FLIP,
+    (BifurcationKind.FLIP, "bend"): Special.GENERALISED_FLIP,
+    (BifurcationKind.FLIP, "other_one"): Special.FOLD_FLIP,
+    (BifurcationKind.FLIP, "other_minus_one"): Special.ONE_TWO,
 }
 
 
@@ -89,7 +89,7 @@ class Curve:
 
 def curve(
     ring: Recurrence,
-    kind: Kind,
+    kind: BifurcationKind,
     x: Array,
     two: tuple[str, str],
     near: tuple[float, float],
@@ -100,8 +100,9 @@ def curve(
 ) -> Curve:
     """The curve of `kind` through the critical cycle near `x`, at letters near `near`, both ways inside `box`.
 
-    >>> from verification.cycles.continuation.recurrence import henon
-    >>> found = curve(henon(1), Kind.FLIP, np.array([0.95]), ("b", "a"), (0.3, 0.37), ((0.0, 0.9), (0.0, 2.0)))
+    >>> from verification.cycles.recurrence.explicit import henon
+    >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))
+    >>> found = curve(henon(1), flip, np.array([0.95]), ("b", "a"), (0.3, 0.37), box)
     >>> bool(np.allclose(found.plane[:, 1], 3 * (1 - found.plane[:, 0]) ** 2 / 4))
     True
     """

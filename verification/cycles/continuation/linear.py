@@ -1,6 +1,6 @@
 """The matrices of a ring: its linearised rules, what they say about multipliers, and their null vectors.
 
-Elimination along the chain (`verification.cycles.shooting.chain`) does not pivot: right for one cycle in any
+Elimination along the chain (`verification.cycles.recurrence.chain`) does not pivot: right for one cycle in any
 arithmetic, but a branch passes superstable cycles, where a pivot vanishes. Here float64 matrices are
 factored with pivoting, densely while they are small and by sparse elimination, linear in the period, beyond.
 """
@@ -12,7 +12,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from verification.cycles.continuation.recurrence import Array, Ends, Terms
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.recurrence.recurrence import Array, Terms
 
 DENSE = 96  # unknowns up to which a dense factorisation is the faster one
 
@@ -28,19 +29,19 @@ def solved(matrix: Any, right: Array) -> Array:
     return found
 
 
-def ring_matrix(terms: Terms, ends: Ends, sign: int = 1) -> Any:
+def ring_matrix(terms: Terms, closure: Closure, sign: int = 1) -> Any:
     """The linearised rules on vectors that come back multiplied by `sign`; sparse when it is large.
 
     >>> one = np.ones(3)
     >>> t = Terms(one, (one, 2 * one, 3 * one), {}, {}, {})
-    >>> ring_matrix(t, Ends(), -1).tolist()
+    >>> ring_matrix(t, Closure(), -1).tolist()
     [[2.0, 3.0, -1.0], [1.0, 2.0, 3.0], [-3.0, 1.0, 2.0]]
     """
     lower, diagonal, upper = terms.slope
     n = len(diagonal)
     at = np.arange(n)
     back, forth = np.ones(n), np.ones(n)
-    back[0] = forth[-1] = sign * ends.turn
+    back[0] = forth[-1] = sign * closure.turn
     rows, columns = np.tile(at, 3), np.concatenate([at, (at - 1) % n, (at + 1) % n])
     values = np.concatenate([diagonal, lower * back, upper * forth])
     if n > DENSE:
@@ -100,15 +101,15 @@ class Spectrum:
         return self.at_one > 0 and self.at_minus_one > 0 and self.determinant < 1
 
 
-def spectrum(terms: Terms, ends: Ends) -> Spectrum:
+def spectrum(terms: Terms, closure: Closure) -> Spectrum:
     """The three numbers, from determinants of the ring: none cancels where a multiplier nears 1 or -1."""
     lower, _, upper = terms.slope
     n = len(lower)
     sign_u, log_u = np.prod(np.sign(upper)), np.sum(np.log(np.abs(upper)))
     at = []
     for s in (1, -1):
-        sign, log = _determinant(ring_matrix(terms, ends, s))
-        at.append(float(s * ends.turn * (-1) ** (n + 1) * sign * sign_u * np.exp(min(log - log_u, 700.0))))
+        sign, log = _determinant(ring_matrix(terms, closure, s))
+        at.append(float(s * closure.turn * (-1) ** (n + 1) * sign * sign_u * np.exp(min(log - log_u, 700.0))))
     return Spectrum(at[0], at[1], float(np.prod(lower / upper)))
 
 
@@ -143,10 +144,10 @@ def null_vectors(matrix: Any) -> tuple[Array, Array]:
     return right[-1] * scale, left[:, -1] * scale
 
 
-def along(terms: Terms, ends: Ends, v: Array, w: Array, sign: int) -> tuple[Array, dict[str, float]]:
+def along(terms: Terms, closure: Closure, v: Array, w: Array, sign: int) -> tuple[Array, dict[str, float]]:
     """`d(w A v)` by the bounces and by each letter, `A` the ring's matrix with `sign`."""
     n, bend = len(v), terms.bend
-    close = sign * ends.turn
+    close = sign * closure.turn
     before = np.concatenate([[close * v[-1]], v[:-1]])
     after = np.concatenate([v[1:], [close * v[0]]])
     ring = (before, v, after)
@@ -160,8 +161,8 @@ def along(terms: Terms, ends: Ends, v: Array, w: Array, sign: int) -> tuple[Arra
         parts.append(w * total)
     found = parts[1].copy()
     turned_back, turned_forth = parts[0].copy(), parts[2].copy()
-    turned_back[0] *= ends.turn
-    turned_forth[-1] *= ends.turn
+    turned_back[0] *= closure.turn
+    turned_forth[-1] *= closure.turn
     np.add.at(found, np.arange(n) - 1, turned_back)
     np.add.at(found, (np.arange(n) + 1) % n, turned_forth)
     letters = {

@@ -19,7 +19,8 @@ from symbolic.tables.table import Table
 from verification.cycles.continuation.arc import Point
 from verification.cycles.continuation.branch import Branch, Event, branch
 from verification.cycles.continuation.linear import Spectrum
-from verification.cycles.continuation.recurrence import Array, Chords
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -90,7 +91,7 @@ def freed(ring: Chords, K: int, letter: str, interval: Sequence[Expr | Fraction]
             table.at(**{letter: S(value)})
         except ValueError as why:
             raise ValueError(f"--shape: {why}") from None
-    return Chords(table, ring.components, ring.ends)
+    return Chords(table, ring.components, ring.closure)
 
 
 def rows(branch: Branch) -> list[tuple[Point, Event | None]]:
@@ -109,7 +110,7 @@ def dataset(branch: Branch) -> "xarray.Dataset":
     """Dimensions `point`, `bounce` and `which` (multiplier); the letter and the event are coordinates.
 
     >>> from verification.cycles.continuation.branch import branch as followed
-    >>> from verification.cycles.continuation.recurrence import logistic
+    >>> from verification.cycles.recurrence.explicit import logistic
     >>> table = dataset(followed(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4)))
     >>> [str(name) for name in table["event"].values if name], table["x"].dims
     (['period doubling'], ('point', 'bounce'))

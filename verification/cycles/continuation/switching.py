@@ -15,11 +15,13 @@ import numpy as np
 
 from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import LostError, Point, Steps
-from verification.cycles.continuation.branch import Branch, Event, Interval, What, through
+from verification.cycles.continuation.branch import Branch, Event, Interval, through
 from verification.cycles.continuation.linear import null_vectors, ring_matrix
-from verification.cycles.continuation.recurrence import Array, Chords
 from verification.cycles.continuation.symmetry import whole
 from verification.cycles.continuation.systems import Cycles
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import Array
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
@@ -33,17 +35,17 @@ def switched(
     """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
 
     >>> from verification.cycles.continuation.branch import branch
-    >>> from verification.cycles.continuation.recurrence import logistic
+    >>> from verification.cycles.recurrence.explicit import logistic
     >>> one = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4))
     >>> (two,) = switched(one, one.events[0], (2.0, 3.6))
     >>> [(event.what.value, round(event.value, 9)) for event in two.events]
     [('period doubling', 3.449489743)]
     """
-    if event.what in (What.FLIP, What.PITCHFORK):
+    if event.what in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK):
         return _along_the_null_vector(branch, event, interval, steps, tick)
-    if event.what is What.BRANCHING:
+    if event.what is BifurcationKind.BRANCH_POINT:
         return _across(branch, event, interval, steps, tick)
-    if event.what is What.BORDER:
+    if event.what is BifurcationKind.BORDER_COLLISION:
         return _over_the_join(branch, event, interval, steps, tick)
     return []
 
@@ -54,14 +56,14 @@ def _along_the_null_vector(
     letter, fixed = branch.system.letter, branch.system.fixed
     part, x = event.ring, event.x
     at = {**fixed, letter: event.value}
-    v, _ = null_vectors(ring_matrix(part.terms(x, at, 1), part.ends, -1))
-    ring, image = part.doubled(), part.ends.turn * x + part.ends.shift
-    both, away = np.concatenate([x, image]), np.concatenate([v, -part.ends.turn * v])
-    if isinstance(ring, Chords) and isinstance(part, Chords) and event.what is What.PITCHFORK:
+    v, _ = null_vectors(ring_matrix(part.terms(x, at, 1), part.closure, -1))
+    ring, image = part.doubled(), part.closure.carried(x, part.closure.radians, 1)
+    both, away = np.concatenate([x, image]), np.concatenate([v, -part.closure.turn * v])
+    if isinstance(ring, Chords) and isinstance(part, Chords) and event.what is BifurcationKind.PITCHFORK:
         n = branch.system.recurrence.period
-        ring, both = whole(replace(part, ends=part.ends), x, n)
+        ring, both = whole(replace(part, closure=part.closure), x, n)
         away = _repeated(part, v, n)
-    ways = (1, -1) if event.what is What.PITCHFORK else (1,)
+    ways = (1, -1) if event.what is BifurcationKind.PITCHFORK else (1,)
     system = Cycles(ring, letter, fixed)
     z = np.append(both, event.value)
     return [_leaving(system, z, np.append(way * away, 0.0), interval, steps, tick) for way in ways]
@@ -71,7 +73,7 @@ def _repeated(part: Chords, v: Array, n: int) -> Array:
     """A vector of a part that flips, along the whole cycle."""
     pieces, piece = [v], v
     while len(pieces) * part.period < n:
-        piece = -part.ends.turn * piece
+        piece = -part.closure.turn * piece
         pieces.append(piece)
     return np.concatenate(pieces)
 
@@ -101,7 +103,7 @@ def _leaving(
 def _across(branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None) -> list[Branch]:
     """Both ways along the null vector that is not the branch's own tangent."""
     system, z = branch.system, event.point.z
-    matrix = ring_matrix(system.terms(z), system.recurrence.ends)
+    matrix = ring_matrix(system.terms(z), system.recurrence.closure)
     v = np.append(null_vectors(matrix)[0], 0.0)
     own = event.point.tangent
     v = v - (v @ (system.weights * own)) * own

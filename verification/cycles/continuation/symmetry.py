@@ -15,7 +15,9 @@ from sympy import pi as exact_pi
 
 from symbolic.tables.symbols import theta
 from symbolic.tables.table import Table
-from verification.cycles.continuation.recurrence import Array, Chords, Ends
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.closure import IDENTITY, Closure
+from verification.cycles.recurrence.recurrence import Array
 from verification.cycles.shooting.problem import mirrored
 
 SAME = 1e-7  # radians
@@ -46,12 +48,12 @@ def rotations(table: Table) -> int:
 
 
 @cache
-def symmetries(table: Table) -> tuple[Ends, ...]:
+def symmetries(table: Table) -> tuple[Closure, ...]:
     """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first."""
     k = rotations(table)
-    turns = [2 * pi * j / k for j in range(k)]
+    turns = [(j, k) if j else (0, 1) for j in range(k)]
     mirror = all(mirrored(component) for component in table.components)
-    return tuple([Ends(-1, s) for s in turns] if mirror else []) + tuple(Ends(1, s) for s in turns[1:])
+    return tuple([Closure(-1, s) for s in turns] if mirror else []) + tuple(Closure(1, s) for s in turns[1:])
 
 
 def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
@@ -59,22 +61,22 @@ def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
 
     >>> from symbolic.tables import egg
     >>> triangle = Chords(egg(3).at(alpha="2/25"), (0, 0, 0))
-    >>> [(ring.period, ring.ends.turn) for ring, _ in parts(triangle, np.pi / 3 * np.array([1.0, 3.0, 5.0]))]
+    >>> [(ring.period, ring.closure.turn) for ring, _ in parts(triangle, np.pi / 3 * np.array([1.0, 3.0, 5.0]))]
     [(1, 1)]
     """
     n, found = ring.period, []
-    if ring.ends != Ends():
+    if ring.closure != IDENTITY:
         return []
     for m in (m for m in range(1, n) if n % m == 0):
         for g in symmetries(ring.table):
             if all(_maps(ring, g, x, i, m) for i in range(n)):
-                found.append((replace(ring, components=ring.components[:m], ends=g), x[:m].copy()))
+                found.append((replace(ring, components=ring.components[:m], closure=g), x[:m].copy()))
     return found
 
 
-def _maps(ring: Chords, g: Ends, x: Array, i: int, m: int) -> bool:
+def _maps(ring: Chords, g: Closure, x: Array, i: int, m: int) -> bool:
     j = (i + m) % ring.period
-    image = g.turn * x[i] + g.shift
+    image = g.carried(x[i], g.radians, 1)
     gap = remainder(x[j] - image, 2 * pi) if len(ring.table.components) == 1 else x[j] - image
     return ring.components[j] == ring.components[i] and abs(gap) < SAME
 
@@ -83,6 +85,6 @@ def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:
     """The full cycle of `n` bounces that a part makes up."""
     pieces, piece = [x], x
     while len(pieces) * part.period < n:
-        piece = part.ends.turn * piece + part.ends.shift
+        piece = part.closure.carried(piece, part.closure.radians, 1)
         pieces.append(piece)
-    return replace(part, components=part.components * len(pieces), ends=Ends()), np.concatenate(pieces)
+    return replace(part, components=part.components * len(pieces), closure=IDENTITY), np.concatenate(pieces)

@@ -23,8 +23,8 @@ from verification.cycles.continuation.linear import (
     spectrum,
 )
 from verification.cycles.continuation.normal import bend_of
-from verification.cycles.continuation.recurrence import Array, Letters, Recurrence, Terms
-from verification.cycles.shooting.problem import Kind
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence, Terms
 
 PARAMETER = 4.0  # a letter counts as much as an angle of this many radians moved by every bounce
 
@@ -59,12 +59,12 @@ class Cycles:
     def linear(self, z: Array) -> tuple[Array, Any]:
         """The rules, and their derivatives by the bounces and the letter."""
         terms = self.terms(z)
-        matrix = ring_matrix(terms, self.recurrence.ends)
+        matrix = ring_matrix(terms, self.recurrence.closure)
         return terms.value, beside(matrix, terms.by[self.letter])
 
     def spectrum(self, z: Array) -> Spectrum:
         """The multipliers, as three numbers."""
-        return spectrum(self.terms(z), self.recurrence.ends)
+        return spectrum(self.terms(z), self.recurrence.closure)
 
     def tests(self, z: Array) -> dict[str, float]:
         """`det(M - 1)`, `det(M + 1)` and `det M - 1`."""
@@ -85,14 +85,14 @@ class Critical:
     """Cycles at a fold or a flip, in two letters; unknowns are the bounces, then the letters."""
 
     recurrence: Recurrence
-    kind: Kind
+    kind: BifurcationKind
     two: tuple[str, str]
     borders: tuple[Array, Array] = field(repr=False)
     fixed: Letters = field(default_factory=dict)
 
     @classmethod
     def near(
-        cls, recurrence: Recurrence, kind: Kind, two: tuple[str, str], z: Array, fixed: Letters | None = None
+        cls, recurrence: Recurrence, kind: BifurcationKind, two: tuple[str, str], z: Array, fixed: Letters | None = None
     ) -> "Critical":
         """The system whose borders fit a critical cycle near `z`."""
         none = np.zeros(recurrence.period)
@@ -140,10 +140,10 @@ class Critical:
         """The rules and `g`, with their derivatives."""
         terms = self.terms(z)
         v, w, g = self.vectors(terms)
-        by_bounce, by_letter = along(terms, self.recurrence.ends, v, w, int(self.kind))
+        by_bounce, by_letter = along(terms, self.recurrence.closure, v, w, self.kind.multiplier)
         n = self.recurrence.period
         matrix = np.zeros((n + 1, n + 2))
-        matrix[:n, :n] = dense(ring_matrix(terms, self.recurrence.ends))
+        matrix[:n, :n] = dense(ring_matrix(terms, self.recurrence.closure))
         for j, name in enumerate(self.two):
             matrix[:n, n + j] = terms.by[name]
             matrix[n, n + j] = -by_letter[name]
@@ -154,8 +154,8 @@ class Critical:
         """The normal form's coefficient, the volume, and the other multiplier against 1 and -1."""
         terms = self.terms(z)
         v, w, _ = self.vectors(terms)
-        found = spectrum(terms, self.recurrence.ends)
-        other = found.determinant * int(self.kind)
+        found = spectrum(terms, self.recurrence.closure)
+        other = found.determinant * self.kind.multiplier
         bend = bend_of(self.recurrence, z[:-2], self.at(z), self.kind, v, w)
         return {"bend": bend, "volume": found.determinant - 1, "other_one": other - 1, "other_minus_one": other + 1}
 
@@ -168,4 +168,4 @@ class Critical:
         return self.bordered_at(z, self.borders)
 
     def _matrix(self, terms: Terms) -> Any:
-        return ring_matrix(terms, self.recurrence.ends, int(self.kind))
+        return ring_matrix(terms, self.recurrence.closure, self.kind.multiplier)

@@ -8,7 +8,7 @@ import numpy as np
 
 from symbolic.tables.table import Table
 from verification.cycles.continuation.linear import Spectrum, spectrum
-from verification.cycles.continuation.recurrence import Chords
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.search.newton import Array
 
 SAME = 1e-7
@@ -57,7 +57,7 @@ class Catalogue:
         if any(np.max(np.abs(mark - known)) < SAME * n for known in self.marks.get(n, [])):
             return False
         ring = Chords(self.table, components)
-        found = spectrum(ring.terms(x, {"lam": self.lam}, 1), ring.ends)
+        found = spectrum(ring.terms(x, {"lam": self.lam}, 1), ring.closure)
         if abs(found.at_one) < FAMILY:
             self.degenerate += 1
             return False

@@ -4,15 +4,12 @@ A seed is a row of bounce parameters, an orbit that almost closes. All rows that
 components are corrected together: one call of the chord kernel, one batch of small linear systems.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.generation.text import load
-from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
 from verification.arithmetic.words import ARRAYS
+from verification.cycles.recurrence.chords import Chords, chord_angles
 
 Array = NDArray[np.float64]
 STEPS = 14
@@ -25,13 +22,6 @@ class Corrector:
 
     def __init__(self, table: Table, lam: float) -> None:
         self.table, self.lam = table, lam
-        self.loaded: dict[tuple[int, int], Any] = {}
-
-    def angle(self, here: int, there: int) -> Any:
-        """The chord kernel between two components; a straight part has none to itself."""
-        if (here, there) not in self.loaded:
-            self.loaded[here, there] = load(chord_kernel(self.table, here, there, 1), ARRAYS)
-        return self.loaded[here, there]
 
     def closed(self, components: tuple[int, ...], seeds: Array, known: Array | None = None) -> Array:
         """The cycles that Newton's method reaches from the rows of `seeds`; rows that do not settle are dropped.
@@ -63,15 +53,11 @@ class Corrector:
 
     def diagonals(self, components: tuple[int, ...], x: Array) -> tuple[Array, Array, Array, Array]:
         """The rules at each bounce and their derivatives by the bounce before, the bounce, and the one after."""
-        n = len(components)
+        n, rule = len(components), Chords(self.table, components).over(ARRAYS)
         value, lower, middle, upper = (np.empty_like(x) for _ in range(4))
         for i in range(n):
-            j, h = (i + 1) % n, i - 1
-            out = self.angle(components[i], components[j])(x[:, i], x[:, j])
-            into = self.angle(components[i], components[h])(x[:, i], x[:, h])
-            value[:, i] = out[0] + self.lam * into[0]
-            lower[:, i], upper[:, i] = self.lam * into[2], out[2]
-            middle[:, i] = out[1] + self.lam * into[1]
+            near = x[:, i - 1], x[:, i], x[:, (i + 1) % n]
+            value[:, i], (lower[:, i], middle[:, i], upper[:, i]) = rule(i, near, {"lam": self.lam})
         return value, lower, middle, upper
 
     def _correction(self, components: tuple[int, ...], x: Array) -> Array:
@@ -93,9 +79,9 @@ class Corrector:
 
     def exits(self, components: tuple[int, ...], x: Array) -> Array:
         """Exit angles at each bounce."""
-        n = len(components)
-        columns = [self.angle(components[i], components[(i + 1) % n])(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
-        return np.stack(columns, axis=1)
+        n, angle = len(components), chord_angles(self.table, ARRAYS)
+        ahead = [angle(components[i], components[(i + 1) % n], 0)(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
+        return np.stack(ahead, axis=1)
 
 
 def deflation(x: Array, step: Array, known: Array) -> Array:

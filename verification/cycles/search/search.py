@@ -17,8 +17,8 @@ from sympy import Expr
 
 from numeric import PinballMap
 from symbolic.tables.table import Table
-from verification.cycles.continuation.recurrence import Ends
 from verification.cycles.continuation.symmetry import symmetries
+from verification.cycles.recurrence.closure import MIRROR
 from verification.cycles.search.catalogue import Catalogue
 from verification.cycles.search.newton import Array, Corrector
 from verification.maps.admissible import convex
@@ -146,5 +146,5 @@ def _file(catalogue: Catalogue, itinerary: tuple[int, ...], x: Array, out: Array
     if not catalogue.add(itinerary, x, out):
         return
     for g in symmetries(catalogue.table):
-        if len(catalogue.table.components) == 1 or g == Ends(-1, 0.0):
-            catalogue.add(itinerary, g.turn * x + g.shift, g.turn * out)
+        if len(catalogue.table.components) == 1 or g == MIRROR:
+            catalogue.add(itinerary, g.carried(x, g.radians, 1), g.turn * out)

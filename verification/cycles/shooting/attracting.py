@@ -10,9 +10,10 @@ from sympy import Rational
 
 from symbolic.tables.table import Table
 from verification.arithmetic.words import FLOAT64
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.newton import floats
 from verification.cycles.shooting.normal_form import normal_form
-from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.cycles.shooting.problem import Linearised, Problem, Rows
 
 FEIGENBAUM = 4.6692
 SETTLE = 3000  # bounces thrown away before an attractor is looked at
@@ -62,10 +63,10 @@ def _near(x: float, y: float) -> bool:
 
 
 def characteristic(
-    table: Table, theta: Sequence[float], lam: float, sign: int, components: tuple[int, ...] = ()
+    table: Table, theta: Sequence[float], lam: float, kind: BifurcationKind, components: tuple[int, ...] = ()
 ) -> float:
-    """`det(M - sign)` of a cycle's monodromy matrix `M`, up to sign: 0 at a fold (1) or a flip (-1)."""
-    free = Problem(table, components or (0,) * len(theta), Kind(sign), "lam")
+    """`det(M - mu)` of a cycle's monodromy matrix `M`, up to sign; `mu` is the critical multiplier of `kind`."""
+    free = Problem(table, components or (0,) * len(theta), kind, "lam")
     found = Linearised(Rows(free, FLOAT64), [*theta, lam], slope=False).critical
     value, power = found.rest / found.chain.upper[-1], 0
     for pivot, upper in zip(found.pivots, found.chain.upper, strict=False):
@@ -79,12 +80,12 @@ def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple
     return floats(Problem(table, components or (0,) * len(theta), lam=Rational(lam)), theta)
 
 
-def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: Kind) -> list[float]:
+def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: BifurcationKind) -> list[float]:
     """`[*theta, lam]` where the cycle has the multiplier -1 (or 1), followed from `lam` in steps of `step`."""
     problem = Problem(table, (0,) * len(theta), kind, "lam")
     before: list[float] = []
     here = cycle_at(table, theta, lam)
-    value = characteristic(table, here, lam, int(kind))
+    value = characteristic(table, here, lam, kind)
     for _ in range(400):
         guess = here if not before else [2 * x - y for x, y in zip(here, before, strict=True)]
         if not 0 <= lam + step <= 1:
@@ -93,7 +94,7 @@ def next_critical(table: Table, theta: Sequence[float], lam: float, step: float,
         if max(abs(x - y) for x, y in zip(after, guess, strict=True)) > 0.1:
             before, step = [], step / 2
             continue
-        new = characteristic(table, after, lam + step, int(kind))
+        new = characteristic(table, after, lam + step, kind)
         if value * new <= 0:
             share = value / (value - new)
             start = [x + share * (y - x) for x, y in zip(here, after, strict=True)]

@@ -16,9 +16,11 @@ from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.symbols import lam as lam_letter
 from symbolic.tables.table import Table
 from verification.arithmetic.progress import telling
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.closure import MIRROR
 from verification.cycles.shooting.attracting import FEIGENBAUM, attractor, doubled, next_critical
 from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 
 GRID = [k / 25 for k in range(20, -1, -1)]
 TRIED = f"a ball settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
@@ -49,13 +51,13 @@ def ladder(alpha: Expr) -> Iterator[Rung]:
     """
     table = tables.egg(3).at(alpha=alpha)
     lam, theta = stable_four(table)
-    critical = next_critical(table, theta, lam, 0.005, Kind.FLIP)
+    critical = next_critical(table, theta, lam, 0.005, BifurcationKind.FLIP)
     n, gap = 3, (critical[-1] - lam) / 4
     while True:
-        problem = Problem(table, (0,) * (len(critical) - 1), Kind.FLIP, "lam")
+        problem = Problem(table, (0,) * (len(critical) - 1), BifurcationKind.FLIP, "lam")
         yield Rung(n, problem, critical)
         theta, lam = doubled(problem, critical, 0.3 * gap)
-        following = next_critical(table, theta, lam, 0.15 * gap, Kind.FLIP)
+        following = next_critical(table, theta, lam, 0.15 * gap, BifurcationKind.FLIP)
         gap = (following[-1] - critical[-1]) / FEIGENBAUM
         n, critical = n + 1, following
 
@@ -79,7 +81,7 @@ def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
     whose product is 1. It breaks its symmetry first, and the ladder climbs from what it bears.
     """
     table = tables.egg(3).at(alpha=alpha)
-    problem = Problem(table, (0, 0), Kind.FLIP, "lam", mirror=True)
+    problem = Problem(table, (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR)
     for lam in GRID:
         cycle = attractor(table, lam, (0.05, 3.1), 16)
         if len(cycle) == 4 and abs(math.remainder(cycle[0] + cycle[2], 2 * math.pi)) < 1e-6:
@@ -133,4 +135,4 @@ def _second(alpha: Expr) -> tuple[Problem, list[float]]:
     for _ in range(50):
         middle = (low + high) / 2
         low, high = (middle, high) if float(alpha_tilde().subs(lam_letter, middle)) > alpha else (low, middle)
-    return Problem(tables.egg(3).at(alpha=alpha), (0, 0), Kind.FLIP, "lam"), [0.0, 3.14159265, low]
+    return Problem(tables.egg(3).at(alpha=alpha), (0, 0), BifurcationKind.FLIP, "lam"), [0.0, 3.14159265, low]

@@ -15,8 +15,9 @@ from typing import Any
 
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import Arithmetic
-from verification.cycles.shooting.chain import Vector, dot
-from verification.cycles.shooting.problem import Kind, Linearised, Rows
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chain import Vector, dot, trace_and_determinant
+from verification.cycles.shooting.problem import Linearised, Rows
 
 
 @dataclass(frozen=True)
@@ -42,12 +43,10 @@ class NormalForm:
 def normal_form(at: Linearised, arithmetic: Arithmetic) -> NormalForm:
     """The normal form where the equations of a fold or a flip hold."""
     chain, v, w = at.critical.chain, at.critical.right, at.critical.left
-    turn = at.problem.turn * (w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1])
-    determinant: Any = 1
-    for lower, upper in zip(chain.lower, chain.upper, strict=True):
-        determinant = determinant * lower / upper
+    turn = at.problem.closure.turn * (w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1])
+    _, determinant = trace_and_determinant(chain.rows)
     second = along(at, jets(arithmetic), [v])
-    if at.problem.kind is Kind.FOLD:
+    if at.problem.kind is BifurcationKind.FOLD:
         return NormalForm(turn, dot(w, at.by_letter[0]), dot(w, [r.c[2] for r in second]), determinant)
     bent = at.cycle.solve([-r.c[2] for r in second])
     third = along(at, jets(arithmetic), [v, bent])
@@ -65,9 +64,8 @@ def along(at: Linearised, arithmetic: Arithmetic, directions: list[Vector]) -> l
     n, order = problem.period, len(directions) + 1
     rows = Rows(problem, arithmetic)
     own = [Jet(z[i], *(d[i] for d in directions), *([0] * (order - len(directions)))) for i in range(n)]
-    first, last = (
-        Jet(*(c * problem.turn * int(problem.kind) ** k for k, c in enumerate(x.c))) for x in (own[0], own[-1])
-    )
+    sign = problem.kind.multiplier if problem.kind else 0
+    first, last = (Jet(*(c * problem.closure.turn * sign**k for k, c in enumerate(x.c))) for x in (own[0], own[-1]))
     ring = [last, *own, first]
     parts, shape = problem.components, (z[n],) if rows.shape else ()
     found = []

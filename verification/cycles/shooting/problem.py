@@ -7,7 +7,6 @@ negated (flip). All of it holds for any kind of number that the kernels can be l
 """
 
 from dataclasses import dataclass
-from enum import IntEnum
 from functools import cache, cached_property
 from math import remainder, tau
 from typing import Any
@@ -15,53 +14,48 @@ from typing import Any
 from sympy import Expr, simplify
 
 from symbolic.generation.text import constant, load
-from symbolic.motion.chords import chord_kernel
 from symbolic.tables.symbols import theta
 from symbolic.tables.table import Component, Table
 from verification.arithmetic.words import Arithmetic
-from verification.cycles.shooting.chain import Chain, Elimination, Vector, dot
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.chain import Chain, Elimination, Vector, dot
+from verification.cycles.recurrence.chords import chord_angles
+from verification.cycles.recurrence.closure import IDENTITY, Closure
 from verification.cycles.shooting.condition import Solve
-
-
-class Kind(IntEnum):
-    """What is required of a cycle; the value is the sign of the vectors that its bifurcation keeps."""
-
-    CYCLE = 0
-    FOLD = 1
-    FLIP = -1
 
 
 @dataclass(frozen=True)
 class Problem:
     """A cycle by its components, in a table whose only free shape is `free`.
 
-    With `mirror` it is half a cycle: after its bounces come their images under `theta -> -theta`.
-    With a `shift` of `p/q` of a turn they come again that much further on; certificates know no shift.
+    `kind` is FOLD or FLIP, None for a cycle by itself. `closure` says what comes after its bounces: their images
+    under `theta -> -theta`, or the same `p/q` of a turn further on; certificates know no shift.
     `lam` is free when None, exact, or a number as it is: a ball proves for every `lam` in it, a jet differentiates.
     """
 
     table: Table
     components: tuple[int, ...]
-    kind: Kind = Kind.CYCLE
+    kind: BifurcationKind | None = None
     free: str = ""
     lam: Expr | Any = None
-    mirror: bool = False
-    shift: tuple[int, int] = (0, 1)
+    closure: Closure = IDENTITY
 
     def __post_init__(self) -> None:
         shapes = {p.symbol.name for p in self.table.shapes}
         if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
             raise ValueError(f"{self.table.name}: free letters must be just {self.free or 'none'}; lam = {self.lam}")
-        if (self.kind is Kind.CYCLE) != (not self.free):
-            raise ValueError(f"{self.table.name}: {self.kind.name} with {self.free or 'no letter'} free is not square")
-
+        if self.kind not in (None, BifurcationKind.FOLD, BifurcationKind.FLIP):
+            raise ValueError(f"{self.table.name}: a {self.kind.value} is no problem of one cycle; accepted: fold, flip")
+        if (self.kind is None) != (not self.free):
+            kind = self.kind.name if self.kind else "CYCLE"
+            raise ValueError(f"{self.table.name}: {kind} with {self.free or 'no letter'} free is not square")
         if self.mirror and not all(mirrored(component) for component in self.table.components):
             raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
 
     @property
-    def turn(self) -> int:
-        """The factor on parameters that are carried around the end: -1 with a mirror."""
-        return -1 if self.mirror else 1
+    def mirror(self) -> bool:
+        """Is it half a cycle, that its mirror image completes?"""
+        return self.closure.turn == -1
 
     @property
     def label(self) -> str:
@@ -126,18 +120,7 @@ class Rows:
     def __init__(self, problem: Problem, arithmetic: Arithmetic) -> None:
         self.problem, self.arithmetic = problem, arithmetic
         self.shape = problem.free if problem.free not in ("", "lam") else ""
-        self.loaded: dict[tuple[int, int, int], Any] = {}
-
-    def kernel(self, here: int, there: int, order: int) -> Any:
-        """The loaded chord kernel between two components."""
-        key = here, there, order
-        if key not in self.loaded:
-            self.loaded[key] = load(chord_kernel(self.problem.table, *key), self.arithmetic)
-        return self.loaded[key]
-
-    def places(self, order: int) -> dict[str, int]:
-        """Where a kernel returns each derivative."""
-        return {name: i for i, name in enumerate(chord_kernel(self.problem.table, 0, 0, order).results)}
+        self.kernel = chord_angles(problem.table, arithmetic)
 
     def contraction(self, z: Vector) -> Any:
         """`lam`, given or unknown."""
@@ -148,10 +131,8 @@ class Rows:
 
     def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
         """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""
-        components, n, turn = self.problem.components, self.problem.period, self.problem.turn
-        p, q = self.problem.shift
-        shift = 2 * self.arithmetic["pi"] * self.arithmetic["q"](p, q) if p else 0
-        ring = [turn * (z[n - 1] - shift), *z[:n], turn * z[0] + shift]
+        components, n, closure = self.problem.components, self.problem.period, self.problem.closure
+        ring = closure.padded(z[:n], closure.angle(self.arithmetic))
         shape = (z[n],) if self.shape else ()
         out, into = [], []
         for i in range(n):
@@ -167,8 +148,7 @@ class Linearised:
     def __init__(self, rows: Rows, z: Vector, slope: bool = True) -> None:
         problem = rows.problem
         self.problem, self.z, self.rows = problem, z, rows
-        critical = problem.kind is not Kind.CYCLE
-        order = 2 if critical and slope else 1
+        order = 2 if problem.kind is not None and slope else 1
         self.lam = lam = rows.contraction(z)
         self.out, self.into = out, into = rows.angles(z, order)
         self.rule = [f[0] + lam * b[0] for f, b in zip(out, into, strict=True)]
@@ -176,9 +156,9 @@ class Linearised:
         diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
         lower = [lam * b[2] for b in into]
         self.value: Vector = list(self.rule)
-        self.plain = Chain(lower, diagonal, upper, problem.turn)
-        if critical:
-            self.critical = Elimination(Chain(lower, diagonal, upper, problem.turn * problem.kind))
+        self.plain = Chain(lower, diagonal, upper, problem.closure.turn)
+        if problem.kind is not None:
+            self.critical = Elimination(Chain(lower, diagonal, upper, problem.closure.turn * problem.kind.multiplier))
             self.value.append(self.critical.rest)
             if slope:
                 self.by_letter = self._by_letter()
@@ -191,13 +171,13 @@ class Linearised:
 
     def solve(self, r: Vector) -> Vector:
         """The matrix of first derivatives, inverted on `r`."""
-        if self.problem.kind is Kind.CYCLE:
+        if self.problem.kind is None:
             return self.cycle.solve(r)
         return self.cycle.bordered(self.by_letter[0], self.row, [self.corner], r)
 
     def solve_transposed(self, r: Vector) -> Vector:
         """The transposed matrix, inverted on `r`."""
-        if self.problem.kind is Kind.CYCLE:
+        if self.problem.kind is None:
             return self.cycle.transposed([], [], [], r)
         return self.cycle.transposed(self.by_letter[0], self.row, [self.corner], r)
 
@@ -206,7 +186,7 @@ class Linearised:
         if self.problem.free == "lam":
             rule, lower, diagonal = ([b[k] for b in self.into] for k in (0, 2, 1))
             return rule, lower, diagonal, [0] * len(rule)
-        at, s, lam = self.rows.places(2), self.rows.shape, self.lam
+        at, s, lam = self.rows.kernel.places(2), self.rows.shape, self.lam
         r, d, u = at[f"angle_{s}"], at[f"angle_0_{s}"], at[f"angle_1_{s}"]
         both = list(zip(self.out, self.into, strict=True))
         return (
@@ -218,9 +198,9 @@ class Linearised:
 
     def _of_rest(self) -> tuple[Vector, Any]:
         """The derivatives of `rest` by the parameters and by the free letter: `left . dJ . right`."""
-        at = self.rows.places(2)
+        at = self.rows.kernel.places(2)
         hh, ho, oo = at["angle_00"], at["angle_01"], at["angle_11"]
-        n, sign, turn, lam = self.problem.period, self.critical.chain.sign, self.problem.turn, self.lam
+        n, sign, turn, lam = self.problem.period, self.critical.chain.sign, self.problem.closure.turn, self.lam
         v, w = self.critical.right, self.critical.left
         by_theta: Vector = [0] * n
         for i, (f, b, weight) in enumerate(zip(self.out, self.into, w, strict=True)):

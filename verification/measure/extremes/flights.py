@@ -14,8 +14,9 @@ import mpmath
 import numpy as np
 
 from numeric import PinballMap, Status
+from verification.arithmetic.balls import as_ball
 from verification.arithmetic.words import bits_of
-from verification.maps.enclosed import EnclosedMap, Refusal, as_ball
+from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.maps.exact import Ball, ExactMap, exact_ball
 from verification.measure.extremes.cases import HALF_HEIGHT, Aim, Case, Ulps
 from verification.measure.extremes.kernels import DOUBLE, GOES_ON, KERNELS, TEXTBOOK, Kernel

@@ -27,11 +27,12 @@ from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.symbols import alpha as alpha_letter
 from symbolic.tables.symbols import lam as lam_letter
 from verification.arithmetic.words import bits_of, multiprecision
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.attracting import doubled
 from verification.cycles.shooting.cascade import rung
 from verification.cycles.shooting.condition import ROUNDINGS, Conditioning, costs_half, norm_of_inverse
 from verification.cycles.shooting.newton import Solution, UnsettledError, in_floats, refined
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.measure.extremes.kernels import DOUBLE
 
 SMALL = ROUNDINGS  # units: a dozen roundings, each of them explained by the data
@@ -143,7 +144,7 @@ def folded(ulps: int | None) -> Sought:
     turn = -float(N(acos(-shape))) / 3
     start = [turn + float(N(2 * pi / 3)) * k for k in range(3)]
     if ulps is None:
-        return Problem(table, (0, 0, 0), Kind.FOLD, "lam"), [*start, exact]
+        return Problem(table, (0, 0, 0), BifurcationKind.FOLD, "lam"), [*start, exact]
     lam = exact + ulps * ulp(exact)
     aside = (ulps * ulp(exact)) ** 0.5
     return Problem(table, (0, 0, 0), lam=Rational(lam)), [x + aside for x in start]

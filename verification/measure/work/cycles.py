@@ -16,9 +16,10 @@ from symbolic.cycles import polygons
 from symbolic.tables.symbols import alpha as alpha_letter
 from symbolic.tables.symbols import lam
 from symbolic.tables.table import Table
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.attracting import cycle_at, doubled
 from verification.cycles.shooting.cascade import Rung, ladder
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.measure.speed.baselines import module
 from verification.measure.work.question import Method, Question
 from verification.measure.work.sought import DIGITS, Sought, last, to_digits
@@ -145,7 +146,7 @@ def fold() -> Question:
     exact = polygons.saddle_node().subs(alpha_letter, ALPHA)
     turn = -float(N(acos(-ALPHA))) / 3
     start = (*(round(turn + math.tau / 3 * k, 3) for k in range(3)), round(float(N(exact)), 3))
-    problem = Problem(EGG, (0, 0, 0), Kind.FOLD, "lam")
+    problem = Problem(EGG, (0, 0, 0), BifurcationKind.FOLD, "lam")
     formula = Method(
         "closed form, arb", "arb", "digits", DIGITS, lambda d: [closed_form(exact, d)], to_digits, proved=True
     )

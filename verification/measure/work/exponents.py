@@ -12,7 +12,7 @@ from numeric.dynamics.statistics import Estimate, estimate
 from numeric.pinball.growth import Growth
 from numeric.pinball.sampling import interior_starts
 from verification.arithmetic.words import Arithmetic, balls, bits_of, working
-from verification.cycles.shooting.chain import Vector
+from verification.cycles.recurrence.chain import Vector, trace_and_determinant
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.measure.speed.baselines import module
 from verification.measure.work.cycles import EGG, HALF, first_exit, triangle_start, whole
@@ -20,7 +20,6 @@ from verification.measure.work.question import Claimed, Method, Question
 from verification.measure.work.sought import Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
 from verification.named.locate import certify
-from verification.proofs.periodic.over_interval import trace_and_determinant
 from verification.proofs.slap_map.chaotic_exponent import slap_exponent
 
 FEW, MANY = (30, 300, 3_000), (100, 10_000, 1_000_000)
@@ -38,14 +37,14 @@ def of_a_cycle() -> Question:
     ball = start[0], first_exit(problem, start)
 
     def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
-        trace, determinant = trace_and_determinant(Linearised(Rows(problem, arithmetic), z).plain)
+        trace, determinant = trace_and_determinant(Linearised(Rows(problem, arithmetic), z).plain.rows)
         return [larger(arithmetic, trace, determinant, 3)]
 
     def certified(digits: int) -> list[arb]:
         proof = whole(certify(problem, list(start), digits + 5))
         bits = bits_of(digits, 64)
         with working(bits):
-            pair = trace_and_determinant(Linearised(Rows(problem, balls(bits)), proof.enclosure.zero).plain)
+            pair = trace_and_determinant(Linearised(Rows(problem, balls(bits)), proof.enclosure.zero).plain.rows)
             return [enclosed_exponents(*pair, 3)[0]]
 
     def counted(bounces: int) -> list[float]:

@@ -22,7 +22,7 @@ from symbolic.tables.geometry import curvature, speed, velocity
 from symbolic.tables.symbols import theta
 from symbolic.tables.table import Table
 from verification.arithmetic.words import Arithmetic, balls, bits_of, working
-from verification.cycles.shooting.chain import Vector
+from verification.cycles.recurrence.chain import Vector
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.maps.exact import ExactMap
 from verification.measure.speed.baselines import module

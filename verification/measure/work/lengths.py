@@ -16,7 +16,7 @@ from symbolic.generation.text import Kernel, kernel, load
 from symbolic.tables.geometry import speed
 from symbolic.tables.symbols import theta
 from verification.arithmetic.words import FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
-from verification.cycles.shooting.chain import Vector
+from verification.cycles.recurrence.chain import Vector
 from verification.measure.speed.baselines import module
 from verification.measure.work.question import Method, Question, available
 from verification.measure.work.sought import DIGITS, WITHOUT, Sought, to_digits

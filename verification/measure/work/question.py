@@ -29,6 +29,7 @@ import mpmath
 import numpy as np
 from flint import arb, fmpq
 
+from verification.arithmetic.balls import as_ball
 from verification.arithmetic.words import bits_of, working
 from verification.measure.work.row import Row, timed
 
@@ -111,8 +112,7 @@ def enclosed(value: Any) -> arb:
     if isinstance(value, arb):
         return value
     if isinstance(value, mpmath.ctx_mp_python._mpf):
-        sign, mantissa, exponent, _ = value._mpf_
-        return arb((-int(mantissa) if sign else int(mantissa), int(exponent)))
+        return as_ball(value)
     if isinstance(value, np.longdouble):
         value = Fraction(*value.as_integer_ratio()) if np.isfinite(value) else float(value)
     if isinstance(value, Fraction):

@@ -13,7 +13,7 @@ from numeric import PinballMap
 from symbolic.cycles.cardioid_slap import LAUNCH_Q2, q, slope_squared
 from symbolic.generation.text import Kernel, kernel, load
 from verification.arithmetic.words import FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
-from verification.cycles.shooting.chain import Vector
+from verification.cycles.recurrence.chain import Vector
 from verification.cycles.shooting.small import corner
 from verification.measure.speed.baselines import module
 from verification.measure.work.question import Method, Question

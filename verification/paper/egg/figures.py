@@ -14,8 +14,9 @@ from symbolic import tables
 from symbolic.cycles.polygons import required_tilt
 from symbolic.proofs.signs import positive
 from symbolic.tables.symbols import alpha, lam, theta
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.attracting import FEIGENBAUM, doubled, next_critical
-from verification.cycles.shooting.problem import Kind, Problem
+from verification.cycles.shooting.problem import Problem
 from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement
@@ -59,13 +60,13 @@ def side_cascade(period: int) -> tuple[Proof, ...]:
     """The first rungs of a cascade beside the ladder, each flip certified."""
     table, (lam_at, (theta, phi)) = tables.egg(3).at(alpha=SHAPE), SIDE[period]
     settled = PinballMap("egg", lam=lam_at, alpha=str(SHAPE)).orbit(theta, phi, 4000)
-    critical = next_critical(table, settled.theta[-period:].tolist(), lam_at, 2e-4, Kind.FLIP)
+    critical = next_critical(table, settled.theta[-period:].tolist(), lam_at, 2e-4, BifurcationKind.FLIP)
     proofs, gap = [], 4e-5
     for rung in range(RUNGS):
-        problem = Problem(table, (0,) * (period * 2**rung), Kind.FLIP, "lam")
+        problem = Problem(table, (0,) * (period * 2**rung), BifurcationKind.FLIP, "lam")
         proofs.append(certify(problem, critical, 10))
         if rung < RUNGS - 1:
-            following = next_critical(table, *doubled(problem, critical, gap), gap / 2, Kind.FLIP)
+            following = next_critical(table, *doubled(problem, critical, gap), gap / 2, BifurcationKind.FLIP)
             gap, critical = (following[-1] - critical[-1]) / FEIGENBAUM / 3, following
     return tuple(proofs)
 

@@ -16,12 +16,13 @@ from sympy import pi, sqrt
 from symbolic.generation.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
+from verification.arithmetic.balls import exact_balls
 from verification.arithmetic.words import Arithmetic, bits_of, working
 from verification.cycles.shooting.newton import refined
 from verification.cycles.shooting.small import corner
 from verification.proofs.corner.border_collision import robust
 from verification.proofs.corner.polygon import Piece
-from verification.proofs.periodic.interval_newton import Status, contraction, exact_balls
+from verification.proofs.periodic.interval_newton import Status, contraction
 
 ARC, WALL = 0, 1
 NEAR = (0.2545, 0.0712)  # theta1 and lambda-star, from where Newton's method finds them

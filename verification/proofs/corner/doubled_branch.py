@@ -23,10 +23,11 @@ from symbolic.tables import cuspless
 from verification.arithmetic.balls import real_ball
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import balls, working
+from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.recurrence.closure import MIRROR
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.maps.admissible import convex, inside
 from verification.proofs.periodic.interval_newton import Status, compared, dense
-from verification.proofs.periodic.over_interval import trace_and_determinant
 
 BITS = 96
 PARTS = (1, 0)  # the wall, then the arc
@@ -86,7 +87,7 @@ def slope_at_zero() -> arb:
 
 def linearised(w: arb, v: arb, lam: arb) -> Linearised:
     """The two collision rules at half an orbit, with their derivatives."""
-    return Linearised(Rows(Problem(cuspless, PARTS, lam=lam, mirror=True), balls(BITS)), [w, v])
+    return Linearised(Rows(Problem(cuspless, PARTS, lam=lam, closure=MIRROR), balls(BITS)), [w, v])
 
 
 def step(e: arb, middle: list[arb], box: list[arb]) -> tuple[list[arb], arb_mat] | None:
@@ -132,7 +133,7 @@ def third_order(e: arb, m: arb, lam: arb) -> list[arb]:
     """`H_e/e`: twice the third Taylor coefficient of `G` along `(1, m)`, over the hull."""
     w, v = hull(e, m)
     zero = arb(0)
-    rows = Rows(Problem(cuspless, PARTS, lam=lam, mirror=True), jets(balls(BITS)))
+    rows = Rows(Problem(cuspless, PARTS, lam=lam, closure=MIRROR), jets(balls(BITS)))
     wall, arc = Jet(w, arb(1), zero, zero), Jet(v, m, zero, zero)
     ring = ((wall, arc, -1 * arc), (arc, -1 * wall, wall))  # here, after, before
     found = []
@@ -145,5 +146,5 @@ def third_order(e: arb, m: arb, lam: arb) -> list[arb]:
 
 def half(e: arb, m: arb, lam: arb) -> tuple[arb, arb]:
     """Trace and determinant of half an orbit, followed by the mirror."""
-    trace, determinant = trace_and_determinant(linearised(e, e * m, lam).plain)
-    return -trace, determinant
+    chain = linearised(e, e * m, lam).plain
+    return trace_and_determinant(chain.rows, chain.sign)

@@ -10,8 +10,9 @@ from sympy import Expr
 
 from symbolic import tables
 from symbolic.tables.formula import number
+from verification.cycles.recurrence.closure import Closure
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import Checks, Proof, tangency_proved
-from verification.proofs.manifolds.recurrence import Pinball
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 
@@ -49,7 +50,8 @@ class TangencyClaim:
             "table": "egg",
             "points": 3,
             "shape": {"alpha": str(self.alpha)},
-            "contact": asdict(self.contact),
+            "contact": asdict(self.contact)
+            | {"unstable": _document(self.contact.unstable), "stable": _document(self.contact.stable)},
             "value": self.value,
             "digits": self.digits,
         }
@@ -109,9 +111,13 @@ def _contact(given: Mapping[str, Any]) -> Contact:
     return Contact(unstable, stable, bounces, sign, z, end, letter)
 
 
+def _document(orbit: Orbit) -> dict[str, Any]:
+    return {"name": orbit.name, "start": orbit.start, "sign": orbit.closure.turn, "shift": orbit.closure.shift}
+
+
 def _orbit(given: Mapping[str, Any]) -> Orbit:
     start, sign = tuple(float(x) for x in given["start"]), int(given["sign"])
     turns, parts = (int(x) for x in given["shift"])
     if not 1 <= len(start) <= LARGEST_PERIOD or sign not in (1, -1) or parts not in (1, 3):
         raise ValueError(f"certificate: a saddle of {len(start)} bounces, sign {sign}, turn 1/{parts} is out of range")
-    return Orbit(str(given["name"]), start, sign, (turns, parts))
+    return Orbit(str(given["name"]), start, Closure(sign, (turns, parts)))

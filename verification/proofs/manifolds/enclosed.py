@@ -35,7 +35,8 @@ from flint import acb, acb_mat, arb, ctx, fmpq
 
 from verification.arithmetic.series import Jet
 from verification.arithmetic.words import FUNCTIONS, Arithmetic
-from verification.proofs.manifolds.recurrence import Recurrence
+from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Orbit, Saddle, matrix, padded, slopes
 from verification.proofs.manifolds.series import direction, doubled, horner, neighbours
 
@@ -85,7 +86,7 @@ def size(x: Any) -> arb:
     return arb(abs(x).abs_upper())
 
 
-def enclosed_saddle(orbit: Orbit, map: Recurrence, letter: acb) -> Saddle:
+def enclosed_saddle(orbit: Orbit, map: PlaneMap, letter: acb) -> Saddle:
     """The one cycle near the start, for every letter in a ball, with real multipliers on both sides of the circle."""
 
     def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
@@ -122,13 +123,9 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
     return found
 
 
-def multipliers_of(orbit: Orbit, map: Recurrence, points: Sequence[acb], letter: acb) -> tuple[acb, acb]:
+def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], letter: acb) -> tuple[acb, acb]:
     """The roots of the characteristic polynomial of one round, the one inside the unit circle first."""
-    first, second, determinant = (acb(1), acb(0)), (acb(0), acb(1)), acb(1)
-    for before, here, after in slopes(orbit, map, points, letter):
-        first, second = ((b, -(here * b + before * a) / after) for a, b in (first, second))
-        determinant = determinant * before / after
-    trace = orbit.sign * (first[0] + second[1])
+    trace, determinant = trace_and_determinant(slopes(orbit, map, points, letter), orbit.closure.turn)
     root = (trace * trace - 4 * determinant).sqrt()
     if not root.real > 0:
         raise TooWideError("saddle", f"the multipliers of the {orbit.name} may be complex")
@@ -152,12 +149,11 @@ class Enclosed:
 
     def over(self, i: int, radius: arb) -> acb:
         """The polynomial of bounce `i`, any integer, over the disc of this radius: its terms in absolute value."""
-        orbit, (rounds, place) = self.saddle.orbit, divmod(i, len(self.coefficients))
+        closure, (rounds, place) = self.saddle.orbit.closure, divmod(i, len(self.coefficients))
         x, *rest = self.coefficients[place]
-        shift, reach = orbit.shifted(self.saddle.map), radius * size(self.factor**rounds)
-        for _ in range(abs(rounds)):
-            x = orbit.sign * x + shift if rounds > 0 else orbit.sign * (x - shift)
-        return x + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
+        reach = radius * size(self.factor**rounds)
+        moved: acb = closure.carried(x, closure.angle(self.saddle.map.words), rounds)
+        return moved + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
 
     def ring(self) -> list[Jet]:
         """The polynomials of the bounces, with one more on either side."""

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.words import ARRAYS, FLOAT64
-from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import Local, local
 from verification.proofs.manifolds.tangency import Contact, Touch, tangency
@@ -55,7 +55,7 @@ def branch(local: Local, side: int, length: float, spacing: float = 0.02, turnin
     `spacing`.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> from verification.proofs.manifolds.saddle import Orbit, saddle
     >>> from verification.proofs.manifolds.series import local
     >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
@@ -119,17 +119,18 @@ def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
     outwards = abs(float(local.factor)) > 1
     factor = float(local.factor) if outwards else 1 / float(local.factor)
     here, following = local.points(z / factor**rounds)
-    shift = orbit.shifted(map)
+    closure = orbit.closure
+    shift = closure.angle(map.words)
     for _ in range(rounds):
         if not outwards:
-            here, following = orbit.sign * here + shift, orbit.sign * following + shift
+            here, following = (closure.carried(x, shift, 1) for x in (here, following))
         for _ in orbit.start:
             if outwards:
                 here, following = following, map.following(here, following, letter)
             else:
                 here, following = map.previous(here, following, letter), here
         if outwards:
-            here, following = orbit.sign * (here - shift), orbit.sign * (following - shift)
+            here, following = (closure.carried(x, shift, -1) for x in (here, following))
         if map.turn:  # a mirror leaves the next bounce behind, where the map takes it ahead
             following = here + np.remainder(following - here, 2 * np.pi)
     return here, following
@@ -142,14 +143,14 @@ SMALL = 0.05  # a gap that counts as near
 
 
 def touches(
-    orbit: Orbit, map: Recurrence, letter: float, rounds: int, most: int = 4, any_bounce: bool = False
+    orbit: Orbit, map: PlaneMap, letter: float, rounds: int, most: int = 4, any_bounce: bool = False
 ) -> list[Touch]:
     """Homoclinic tangencies near a letter, within some rounds, in the order of their letters; each once.
 
     `most` candidates with the smallest gaps are tried, those after whole rounds only or after `any_bounce`.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> found = touches(Orbit("inner fixed point", (0.63,)), Henon(Rational(3, 10)), 1.3924, 6)
     >>> min(round(abs(touch.letter - 1.39241980792), 9) for touch in found)
     0.0
@@ -165,7 +166,7 @@ def touches(
     return sorted(found, key=lambda touch: float(touch.letter))
 
 
-def candidates(orbit: Orbit, map: Recurrence, letter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
+def candidates(orbit: Orbit, map: PlaneMap, letter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
     """Extrema of the gap along both branches of the unstable manifold, the smallest first."""
     at = saddle(orbit, map.over(FLOAT64), letter)
     out, into = local(at, True), local(at, False)
@@ -175,7 +176,7 @@ def candidates(orbit: Orbit, map: Recurrence, letter: float, rounds: int, any_bo
         here, following = out.points(z)
         for count in range(1, rounds * len(orbit.start) + 1):
             here, following = following, map.over(ARRAYS).following(here, following, letter)
-            whole = (orbit.sign ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
+            whole = (orbit.closure.turn ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
             for sign in ((1, -1) if map.turn else (1,)) if any_bounce else whole:
                 gap, end = gaps(into, sign * here, sign * following)
                 for i in turning(gap):

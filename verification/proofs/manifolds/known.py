@@ -28,10 +28,11 @@ from sympy import Expr, Rational
 from symbolic.tables import egg
 from verification.arithmetic.progress import telling
 from verification.arithmetic.words import FLOAT64
+from verification.cycles.recurrence.closure import Closure
 from verification.cycles.shooting.newton import refined
 from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, sharpened
-from verification.proofs.manifolds.recurrence import Pinball
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.shadows import Shadow, shadow
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
@@ -40,10 +41,10 @@ from verification.proofs.manifolds.windows import WINDOWS
 SHAPE = Rational(2, 25)
 STEP = Rational(1, 500)  # of the shape, in continuation
 LEAST = Rational(1, 10_000)
-TRIANGLE = Orbit("triangle of the vertices", (-0.165533,), 1, (1, 3))
-MIRRORED = Orbit("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), -1, (7, 3))
-SYMMETRIC = Orbit("symmetric cycle of period 4", (-0.645971, 2.02441), -1, (2, 3))
-FOUR = Orbit("cycle of period 4", (-0.022673, 2.875498, 6.392393, 9.889393), 1, (6, 3))
+TRIANGLE = Orbit("triangle of the vertices", (-0.165533,), Closure(1, (1, 3)))
+MIRRORED = Orbit("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), Closure(-1, (7, 3)))
+SYMMETRIC = Orbit("symmetric cycle of period 4", (-0.645971, 2.02441), Closure(-1, (2, 3)))
+FOUR = Orbit("cycle of period 4", (-0.022673, 2.875498, 6.392393, 9.889393), Closure(1, (6, 3)))
 CONTACTS = {
     "merging": Contact(MIRRORED, MIRRORED, 14, 1, -0.00396287, -0.00053713, 0.44343525),
     "boundary": Contact(TRIANGLE, TRIANGLE, 5, 1, 0.03431592, -0.02607124, 0.66214427),

@@ -23,7 +23,7 @@ from verification.proofs.manifolds.enclosed import (
     remainder,
     size,
 )
-from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Orbit, Saddle, saddle
 from verification.proofs.manifolds.series import Local, horner, local
 
@@ -126,7 +126,7 @@ def _around(bound: arb) -> arb:
     return arb(0, bound.abs_upper())
 
 
-def scale(orbit: Orbit, map: Recurrence, letter: float, unstable: bool, outer: int) -> Scale:
+def scale(orbit: Orbit, map: PlaneMap, letter: float, unstable: bool, outer: int) -> Scale:
     """The unit with which the disc of radius `outer` moves bounces by `REACH`, from the series in float64."""
     made = local(saddle(orbit, map.over(FLOAT64), letter), unstable, ROUGH)
     first = [abs(c[1]) for c in made.coefficients]
@@ -143,7 +143,7 @@ def _reach(made: Local) -> float:
     return low
 
 
-def smaller(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Precision) -> Pair:
+def smaller(orbit: Orbit, map: PlaneMap, letter: arb, scale: Scale, precision: Precision) -> Pair:
     """The pair with the largest of a few units for which the remainder is bounded, each with more orders.
 
     Along long cycles the coefficients' balls grow with the order, in the largest unit by up to 100 for each; and
@@ -168,7 +168,7 @@ def one_cycle(around: Saddle, here: Saddle) -> bool:
     return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
 
 
-def pair(orbit: Orbit, map: Recurrence, letter: arb, scale: Scale, precision: Precision) -> Pair:
+def pair(orbit: Orbit, map: PlaneMap, letter: arb, scale: Scale, precision: Precision) -> Pair:
     """The pair near an exact letter, with the saddle and the remainder proved for every letter of the disc."""
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc

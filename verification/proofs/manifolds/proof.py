@@ -16,11 +16,11 @@ from dataclasses import dataclass, field
 from flint import arb, arb_mat
 
 from verification.arithmetic.words import working
-from verification.cycles.shooting.chain import dot
+from verification.cycles.recurrence.chain import dot
 from verification.maps.admissible import convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.pair import Precision
-from verification.proofs.manifolds.recurrence import Pinball, Recurrence
+from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.tangency import Contact
 from verification.proofs.manifolds.touching import Linear, Point, Touching, Vector
 from verification.proofs.periodic.interval_newton import Status, compared, slope_bits
@@ -56,7 +56,7 @@ class Proof:
         return all(self.checks[item] is True for item in ITEMS[:5])
 
 
-def tangency_proved(contact: Contact, map: Recurrence, value: str, digits: int = LEAST_DIGITS) -> Proof:
+def tangency_proved(contact: Contact, map: PlaneMap, value: str, digits: int = LEAST_DIGITS) -> Proof:
     """The proof that the manifolds touch at one letter within `10**-digits` of `value`, which has more digits.
 
     >>> from verification.proofs.manifolds.known import SHAPE, contact, table
@@ -75,7 +75,7 @@ def tangency_proved(contact: Contact, map: Recurrence, value: str, digits: int =
             return Proof(arb(letter, precision.step), checks)
 
 
-def _proved(system: Touching, map: Recurrence, precision: Precision) -> Proof:
+def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
     """The rest of the checklist, with both manifolds enclosed."""
     near = settled(system, precision).unknowns[:-1]
     centre, wide = Point.of([*near, system.letter]), arb(10) ** -(precision.digits // 2)
@@ -102,7 +102,7 @@ def _proved(system: Touching, map: Recurrence, precision: Precision) -> Proof:
     return Proof(image[-1], checks, bend, speed, (left.stable.real, left.unstable.real))
 
 
-def admissible(map: Recurrence) -> bool | None:
+def admissible(map: PlaneMap) -> bool | None:
     """True where each chord between two bounces meets the boundary nowhere on its way: in a convex table."""
     return convex(map.table) if isinstance(map, Pinball) else True
 
@@ -132,7 +132,7 @@ def settled(system: Touching, precision: Precision) -> Point:
     raise TooWideError("exists", "Newton's method finds no contact near the start")
 
 
-def sharpened(contact: Contact, map: Recurrence, value: str, digits: int) -> str:
+def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:
     """The letter of a contact to a few digits more than `digits`, from a value near it; not proved."""
     precision, before = Precision(digits), arb(1)
     with working(precision.bits):

@@ -1,6 +1,6 @@
 """A saddle: a cycle modulo a symmetry of the table, with its two multipliers.
 
-After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = sign*x[i] + shift`: a
+After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = turn*x[i] + shift`: a
 triangle is one bounce and a turn by a third, a chord between two mirror images one bounce and a mirror.
 The multipliers are those of the map followed by that symmetry undone.
 """
@@ -9,8 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.recurrence.closure import IDENTITY, Closure
 from verification.cycles.shooting.small import solved
-from verification.proofs.manifolds.recurrence import Recurrence, largest
+from verification.proofs.manifolds.plane_map import PlaneMap, largest
 
 STEPS = 60
 
@@ -21,13 +23,7 @@ class Orbit:
 
     name: str
     start: tuple[float, ...]
-    sign: int = 1
-    shift: tuple[int, int] = (0, 1)  # of a turn, `2*pi*p/q`
-
-    def shifted(self, map: Recurrence) -> Any:
-        """The shift, in radians, in the numbers of the map."""
-        p, q = self.shift
-        return 2 * map.words["pi"] * map.words["q"](p, q) if p else 0
+    closure: Closure = IDENTITY
 
 
 @dataclass(frozen=True)
@@ -35,7 +31,7 @@ class Saddle:
     """A cycle at one value of the letter; `stable` and `unstable` are its multipliers."""
 
     orbit: Orbit
-    map: Recurrence
+    map: PlaneMap
     letter: Any
     points: tuple[Any, ...]
     stable: Any
@@ -46,13 +42,12 @@ class Saddle:
         return padded(self.orbit, self.map, self.points)
 
 
-def padded(orbit: Orbit, map: Recurrence, points: Sequence[Any]) -> list[Any]:
+def padded(orbit: Orbit, map: PlaneMap, points: Sequence[Any]) -> list[Any]:
     """`x[-1], x[0], ..., x[p]`."""
-    sign, shift = orbit.sign, orbit.shifted(map)
-    return [sign * (points[-1] - shift), *points, sign * points[0] + shift]
+    return orbit.closure.padded(points, orbit.closure.angle(map.words))
 
 
-def slopes(orbit: Orbit, map: Recurrence, points: Sequence[Any], letter: Any) -> list[tuple[Any, Any, Any]]:
+def slopes(orbit: Orbit, map: PlaneMap, points: Sequence[Any], letter: Any) -> list[tuple[Any, Any, Any]]:
     """The derivatives of the rule at each point by the neighbour before, itself and the one after."""
     ring = padded(orbit, map, points)
     return [map.slopes(ring[i : i + 3], letter) for i in range(len(points))]
@@ -63,17 +58,17 @@ def matrix(orbit: Orbit, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) 
     p = len(rows)
     entries: list[list[Any]] = [[0] * p for _ in range(p)]
     for i, (before, here, after) in enumerate(rows):
-        entries[i][i - 1] += before * (1 if i else orbit.sign / factor)
+        entries[i][i - 1] += before * (1 if i else orbit.closure.turn / factor)
         entries[i][i] += here
-        entries[i][(i + 1) % p] += after * (1 if i < p - 1 else orbit.sign * factor)
+        entries[i][(i + 1) % p] += after * (1 if i < p - 1 else orbit.closure.turn * factor)
     return entries
 
 
-def saddle(orbit: Orbit, map: Recurrence, letter: Any) -> Saddle:
+def saddle(orbit: Orbit, map: PlaneMap, letter: Any) -> Saddle:
     """The cycle near its starting values, by Newton's method in the numbers of the map.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> found = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> print(f"{found.unstable:.6f} {found.stable:.6f}")
     -1.923739 0.155946
@@ -96,12 +91,9 @@ def saddle(orbit: Orbit, map: Recurrence, letter: Any) -> Saddle:
     )
 
 
-def multipliers(orbit: Orbit, map: Recurrence, points: Sequence[Any], letter: Any) -> tuple[Any, Any]:
+def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], letter: Any) -> tuple[Any, Any]:
     """The smaller and the larger multiplier in absolute value, of a cycle with real ones."""
-    first, second = (1, 0), (0, 1)  # the displacements (before, here) of two independent perturbations
-    for before, here, after in slopes(orbit, map, points, letter):
-        first, second = ((b, -(here * b + before * a) / after) for a, b in (first, second))
-    trace, determinant = orbit.sign * (first[0] + second[1]), first[0] * second[1] - first[1] * second[0]
+    trace, determinant = trace_and_determinant(slopes(orbit, map, points, letter), orbit.closure.turn)
     square = trace * trace - 4 * determinant
     if not square > 0:
         raise ValueError(f"{map.label}: the {orbit.name} is no saddle at {float(letter)}; its multipliers are complex")

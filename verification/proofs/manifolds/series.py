@@ -42,15 +42,16 @@ class Local:
         here = horner(self.coefficients[0], z)
         if len(self.coefficients) > 1:
             return here, horner(self.coefficients[1], z)
-        orbit = self.saddle.orbit
-        return here, orbit.sign * horner(self.coefficients[0], self.factor * z) + orbit.shifted(self.saddle.map)
+        closure = self.saddle.orbit.closure
+        first = horner(self.coefficients[0], self.factor * z)
+        return here, closure.carried(first, closure.angle(self.saddle.map.words), 1)
 
 
 def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) -> Local:
     """The manifold to `order`, scaled so that its last coefficient is about `tail`.
 
     >>> from sympy import Rational
-    >>> from verification.proofs.manifolds.recurrence import Henon
+    >>> from verification.proofs.manifolds.plane_map import Henon
     >>> from verification.proofs.manifolds.saddle import Orbit, saddle
     >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> local(fixed, unstable=True).residual < 1e-14
@@ -108,7 +109,7 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
 
 def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Jet]:
     """The series of the bounces with one more on either side, as jets."""
-    sign, shift = saddle.orbit.sign, saddle.orbit.shifted(saddle.map)
+    sign, shift = saddle.orbit.closure.turn, saddle.orbit.closure.angle(saddle.map.words)
     before = [sign * c / m for c, m in zip(series[-1], powers, strict=True)]
     after = [sign * c * m for c, m in zip(series[0], powers, strict=True)]
     before[0], after[0] = before[0] - sign * shift, after[0] + shift
@@ -117,7 +118,7 @@ def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Je
 
 def around(orbit: Any, step: Sequence[Any], power: Any) -> list[Any]:
     """One coefficient at each bounce, with one more on either side."""
-    return [orbit.sign * step[-1] / power, *step, orbit.sign * step[0] * power]
+    return [orbit.closure.turn * step[-1] / power, *step, orbit.closure.turn * step[0] * power]
 
 
 def reach(series: Series, tail: float) -> float:

@@ -29,8 +29,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.words import FLOAT64
-from verification.cycles.shooting.problem import Kind, Problem
-from verification.proofs.manifolds.recurrence import Pinball
+from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.closure import Closure
+from verification.cycles.shooting.problem import Problem
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.series import horner
 from verification.proofs.manifolds.tangency import Contact, Gap
 
@@ -66,9 +68,8 @@ def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball,
     else:
         shift = turns % map.turn
     after = [sign * x + shift * unit for x in points[: bent + 1]]
-    problem = Problem(
-        map.table, (0,) * len(points), Kind.FOLD, "lam", mirror=sign == -1, shift=(shift, map.turn if shift else 1)
-    )
+    closure = Closure(sign, (shift, map.turn) if shift else (0, 1))
+    problem = Problem(map.table, (0,) * len(points), BifurcationKind.FOLD, "lam", closure=closure)
     return Shadow(problem, [*points[bent + 1 :], *after, letter])
 
 
@@ -76,7 +77,8 @@ def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
     """One period of the cycle, the bounce that moves most with it, and the symmetry that continues it."""
     turn, orbit = gap.map.turn, gap.out.saddle.orbit
     unit = 2 * gap.map.words["pi"] / turn
-    once = orbit.sign, orbit.shift[0] * turn // orbit.shift[1]
+    p, q = orbit.closure.shift
+    once = orbit.closure.turn, p * turn // q
     z, _, end = gap.extremum()
     points: list[float] = []
     image = 1, 0

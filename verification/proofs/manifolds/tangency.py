@@ -15,7 +15,7 @@ import mpmath
 
 from verification.arithmetic.series import Jet
 from verification.arithmetic.words import FLOAT64, multiprecision
-from verification.proofs.manifolds.recurrence import Recurrence, floating
+from verification.proofs.manifolds.plane_map import PlaneMap, floating
 from verification.proofs.manifolds.saddle import Orbit, saddle
 from verification.proofs.manifolds.series import Local, horner, local
 
@@ -44,6 +44,11 @@ class Contact:
         """`homoclinic` or `heteroclinic`, modulo the table's symmetry."""
         return "homoclinic" if self.unstable == self.stable else "heteroclinic"
 
+    def mirrored(self, early: int, late: int) -> int:
+        """The sign with so many rounds more at either end, each of which may mirror the rest."""
+        turns: int = self.unstable.closure.turn**early * self.stable.closure.turn**late
+        return self.sign * turns
+
 
 @dataclass(frozen=True)
 class Touch:
@@ -61,14 +66,14 @@ class Touch:
 class Gap:
     """The distance from the stable manifold, on orbits that start on the unstable one, at one letter."""
 
-    def __init__(self, contact: Contact, map: Recurrence, letter: Any, order: int, tail: float) -> None:
+    def __init__(self, contact: Contact, map: PlaneMap, letter: Any, order: int, tail: float) -> None:
         self.old, self.map, self.letter = contact, map, letter
         self.out = local(saddle(contact.unstable, map, letter), True, order, tail)
         self.into = local(saddle(contact.stable, map, letter), False, order, tail)
         early = rounds(contact.z / self.out.unit, float(self.out.factor))
         late = rounds(contact.end / self.into.unit, 1 / float(self.into.factor))
         self.bounces = contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
-        self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
+        self.sign = contact.mirrored(early, late)
         self.scales = self.out.unit * float(self.out.factor) ** early, self.into.unit / float(self.into.factor) ** late
         self.start, self.end = contact.z / self.scales[0], contact.end / self.scales[1]
 
@@ -144,7 +149,7 @@ def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
     return here, following - 2 * map.words["pi"] * whole
 
 
-def tangency(contact: Contact, map: Recurrence, digits: int = 12) -> Touch:
+def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
     """The letter at which the manifolds touch, to about `digits` digits.
 
     The error is that of the last secant step, and what a longer series changes.
@@ -163,7 +168,7 @@ def tangency(contact: Contact, map: Recurrence, digits: int = 12) -> Touch:
     return found
 
 
-def secant(contact: Contact, map: Recurrence, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
+def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
     """The letter where the extremum of the gap is 0, between secants."""
     a, b = letters
     b = b + 0 * a

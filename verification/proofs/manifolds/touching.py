@@ -19,7 +19,7 @@ chord system of a cycle it has one equation for each bounce; no orbit is followe
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from flint import arb, arb_mat
 
@@ -27,7 +27,7 @@ from verification.arithmetic.series import Jet
 from verification.arithmetic.words import FLOAT64, balls
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.pair import Near, Pair, Precision, scale, smaller
-from verification.proofs.manifolds.recurrence import Recurrence
+from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.series import Local, horner
 from verification.proofs.manifolds.tangency import Contact, rounds
 
@@ -44,7 +44,7 @@ class Flight:
     w: Jet
 
 
-def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: int, late: int) -> Flight:
+def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int, late: int) -> Flight:
     """The orbit from `early` rounds before the start of the contact to `late` rounds after its end.
 
     Both are at least as many as take the ends of the contact into the domains of the series.
@@ -68,7 +68,7 @@ def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: in
     for _ in range(contact.bounces + before * p + after * q):
         found.append(map.lifted.following(found[-2], found[-1], contact.letter))
     end, rate = bounce(into, 0, Jet(w0, 1.0)).c
-    sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**after  # each round may mirror the rest
+    sign = contact.mirrored(early, after)
     w = Jet(w0, sign * found[-2].c[1] / rate)
     turn = found[-2].c[0] - sign * end
     if map.turn:
@@ -81,12 +81,10 @@ def flight(contact: Contact, map: Recurrence, out: Local, into: Local, early: in
 
 def bounce(local: Local, j: int, z: Jet) -> Jet:
     """Bounce `j`, any integer, of the orbit through a displacement `z` along the eigenvector."""
-    orbit, (rounds, place) = local.saddle.orbit, divmod(j, len(local.coefficients))
-    shift: Any = orbit.shifted(local.saddle.map)
+    closure, (rounds, place) = local.saddle.orbit.closure, divmod(j, len(local.coefficients))
     x: Jet = horner(local.coefficients[place], z * (float(local.factor) ** rounds / local.unit))
-    for _ in range(abs(rounds)):
-        x = orbit.sign * x + shift if rounds > 0 else orbit.sign * (x - shift)
-    return x
+    moved: Jet = closure.carried(x, closure.angle(local.saddle.map.words), rounds)
+    return moved
 
 
 LARGEST = 0.4  # parameters at the start, where the remainder's derivatives are bounded up to 1/2
@@ -148,7 +146,7 @@ class Linear:
 class Touching:
     """The system of a contact near one letter, with both manifolds enclosed."""
 
-    def __init__(self, contact: Contact, map: Recurrence, letter: arb, precision: Precision) -> None:
+    def __init__(self, contact: Contact, map: PlaneMap, letter: arb, precision: Precision) -> None:
         self.map, self.letter = map.over(balls(precision.bits)), letter
         self.pairs: list[Pair] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
@@ -161,7 +159,7 @@ class Touching:
         self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
         if self.bounces > MOST_BOUNCES:
             raise TooWideError("exists", f"an orbit of {self.bounces} bounces is too long")
-        self.sign = contact.sign * contact.unstable.sign**early * contact.stable.sign**late
+        self.sign = contact.mirrored(early, late)
         self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 
     def _from(self, flight: Flight) -> tuple[int, Point]:

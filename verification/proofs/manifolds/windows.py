@@ -4,6 +4,7 @@ widen the attractors of the main cascade.
 All at `alpha = 0.08`, for `known`: what each is, `docs/crises.md` tells. Found by `search`, settled by `tangency`.
 """
 
+from verification.cycles.recurrence.closure import Closure
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 
@@ -18,8 +19,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 12 from the fold at 0.36753",
             (-0.5576089, 2.102219, 5.072128, 8.459819, 11.85147, 14.54776),
-            -1,
-            (8, 3),
+            Closure(-1, (8, 3)),
         ),
         12,
         1,
@@ -28,7 +28,11 @@ WINDOWS = {
         0.37568811745482,
     ),
     "family-end-8": homoclinic(
-        Orbit("saddle of period 8 from the fold at 0.37326", (0.8016613, 4.345161, 7.921223, 10.61693), -1, (7, 3)),
+        Orbit(
+            "saddle of period 8 from the fold at 0.37326",
+            (0.8016613, 4.345161, 7.921223, 10.61693),
+            Closure(-1, (7, 3)),
+        ),
         8,
         1,
         0.0062893759,
@@ -52,8 +56,7 @@ WINDOWS = {
                 31.46964,
                 34.91534,
             ),
-            1,
-            (18, 3),
+            Closure(1, (18, 3)),
         ),
         48,
         1,
@@ -65,8 +68,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 15 from the fold at 0.44693",
             (-2.278344, 0.7208317, 4.361593, 8.041554, 10.86863),
-            1,
-            (8, 3),
+            Closure(1, (8, 3)),
         ),
         10,
         1,
@@ -78,8 +80,7 @@ WINDOWS = {
         Orbit(
             "cycle of period 9 on the boundary of the basin",
             (-2.292046, 0.2097274, 3.429299, 6.069922, 8.571134, 11.76231, 14.45184, 16.98282, 20.24812),
-            1,
-            (12, 3),
+            Closure(1, (12, 3)),
         ),
         24,
         1,
@@ -91,8 +92,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 14 from the fold at 0.56500",
             (2.254813, 5.331168, 8.223047, 10.9103, 14.47918, 17.48615, 21.14934),
-            -1,
-            (13, 3),
+            Closure(-1, (13, 3)),
         ),
         14,
         1,
@@ -104,8 +104,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 18 from the fold at 0.64099",
             (0.0931774, 3.731487, 6.464468, 9.738167, 12.34063, 14.70088, 17.40979, 20.97372, 24.4557),
-            -1,
-            (13, 3),
+            Closure(-1, (13, 3)),
         ),
         18,
         1,
@@ -117,8 +116,7 @@ WINDOWS = {
         Orbit(
             "symmetric cycle of period 12 born at 0.36753",
             (-0.5478452, 2.111142, 5.098686, 8.446527, 11.79871, 14.53786),
-            -1,
-            (8, 3),
+            Closure(-1, (8, 3)),
         ),
         24,
         1,
@@ -127,7 +125,11 @@ WINDOWS = {
         0.37410329567938,
     ),
     "family-merging-8": homoclinic(
-        Orbit("symmetric cycle of period 8 born at 0.37326", (0.7205278, 4.340274, 7.935613, 10.64481), -1, (7, 3)),
+        Orbit(
+            "symmetric cycle of period 8 born at 0.37326",
+            (0.7205278, 4.340274, 7.935613, 10.64481),
+            Closure(-1, (7, 3)),
+        ),
         16,
         1,
         0.00768453543,
@@ -151,8 +153,7 @@ WINDOWS = {
                 31.47205,
                 34.92186,
             ),
-            1,
-            (18, 3),
+            Closure(1, (18, 3)),
         ),
         48,
         1,
@@ -161,7 +162,11 @@ WINDOWS = {
         0.40208039226338,
     ),
     "window-merging-15": homoclinic(
-        Orbit("cycle of period 15 born at 0.44693", (-2.269106, 0.7479066, 4.366492, 8.044471, 10.87356), 1, (8, 3)),
+        Orbit(
+            "cycle of period 15 born at 0.44693",
+            (-2.269106, 0.7479066, 4.366492, 8.044471, 10.87356),
+            Closure(1, (8, 3)),
+        ),
         15,
         1,
         0.0044596375,
@@ -169,7 +174,7 @@ WINDOWS = {
         0.44770651916565,
     ),
     "window-merging-9": homoclinic(
-        Orbit("cycle of period 9 born at 0.49117", (-2.865415, -0.2119222, 2.298062), 1, (4, 3)),
+        Orbit("cycle of period 9 born at 0.49117", (-2.865415, -0.2119222, 2.298062), Closure(1, (4, 3))),
         12,
         1,
         0.0112281789,
@@ -180,8 +185,7 @@ WINDOWS = {
         Orbit(
             "symmetric cycle of period 14 born at 0.56500",
             (2.254608, 5.331005, 8.223263, 10.91109, 14.48073, 17.491, 21.15025),
-            -1,
-            (13, 3),
+            Closure(-1, (13, 3)),
         ),
         28,
         1,
@@ -193,8 +197,7 @@ WINDOWS = {
         Orbit(
             "symmetric cycle of period 18 born at 0.64099",
             (0.0935406, 3.732379, 6.46611, 9.743485, 12.3417, 14.70104, 17.40969, 20.97354, 24.45505),
-            -1,
-            (13, 3),
+            Closure(-1, (13, 3)),
         ),
         36,
         1,
@@ -206,8 +209,7 @@ WINDOWS = {
         Orbit(
             "cycle of period 8",
             (0.1046598, 3.610736, 6.26788, 9.182976, 12.67319, 16.15428, 18.80809, 21.67246),
-            1,
-            (12, 3),
+            Closure(1, (12, 3)),
         ),
         32,
         1,
@@ -236,8 +238,7 @@ WINDOWS = {
                 43.93746,
                 46.79604,
             ),
-            1,
-            (24, 3),
+            Closure(1, (24, 3)),
         ),
         64,
         1,
@@ -249,8 +250,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 6 from the fold at 0.41922",
             (-0.07405129, 2.863018, 6.41507, 9.976316, 12.65351, 15.76768),
-            1,
-            (9, 3),
+            Closure(1, (9, 3)),
         ),
         18,
         1,
@@ -262,8 +262,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 8 from the fold at 0.39008",
             (1.565194, 4.22992, 7.259888, 10.49862, 13.73159, 16.67711, 19.59012, 23.16111),
-            1,
-            (12, 3),
+            Closure(1, (12, 3)),
         ),
         24,
         1,
@@ -275,8 +274,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 20 from the fold at 0.41958",
             (-2.653915, 0.004628499, 2.946135, 6.378108, 9.826581, 12.48516, 15.26474, 18.88617, 22.30631, 25.02615),
-            -1,
-            (12, 3),
+            Closure(-1, (12, 3)),
         ),
         30,
         -1,
@@ -288,8 +286,7 @@ WINDOWS = {
         Orbit(
             "saddle of period 12 from the fold at 0.36753",
             (0.09755931, 3.631414, 6.293937, 9.245568, 12.65503, 16.08594),
-            -1,
-            (9, 3),
+            Closure(-1, (9, 3)),
         ),
         36,
         1,

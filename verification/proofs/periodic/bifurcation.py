@@ -16,8 +16,9 @@ from dataclasses import dataclass
 from flint import arb
 
 from verification.arithmetic.words import balls, working
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.normal_form import NormalForm, normal_form
-from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.maps.admissible import convex, inside, minimal
 from verification.maps.first_hit import first_hits
 from verification.proofs.periodic.interval_newton import Enclosure, Status, contraction, slope_bits
@@ -62,7 +63,7 @@ class Proof:
         The cycle that is born lies on the side `branch`, and the old one is unstable where its
         multiplier has passed -1: the two sides agree at a supercritical flip.
         """
-        if self.form is None or self.claim.problem.kind is not Kind.FLIP:
+        if self.form is None or self.claim.problem.kind is not BifurcationKind.FLIP:
             return None
         side = self.form.branch * self.form.multiplier_speed
         return True if side < 0 else False if side > 0 else None
@@ -72,7 +73,7 @@ def proved(claim: Claim) -> Proof:
     """The checklist of a claim, worked through.
 
     >>> from symbolic.tables import cuspless
-    >>> horizontal = Problem(cuspless, (1, 0), Kind.FLIP, "lam")
+    >>> horizontal = Problem(cuspless, (1, 0), BifurcationKind.FLIP, "lam")
     >>> with working(80):
     ...     near = (arb(0), arb(0), arb("0.0934003354315").mid())
     >>> proof = proved(Claim(horizontal, near, arb(2) ** -40, 80, 10))
@@ -96,7 +97,7 @@ def proved(claim: Claim) -> Proof:
         parts = problem.components * (len(whole) // problem.period)
         checks["admissible"] = _admissible(problem, parts, whole, shape) if found else None
         checks["minimal_period"] = minimal(problem.table, parts, whole) if found else None
-        if problem.kind is Kind.CYCLE:
+        if problem.kind is None:
             return Proof(claim, checks, enclosure)
         form = None
         for bits in (min(claim.bits, 2 * slope_bits(len(zero))), claim.bits) if found else ():

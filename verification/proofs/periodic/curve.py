@@ -16,8 +16,9 @@ from symbolic.tables import egg
 from symbolic.tables.symbols import lam as letter
 from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.words import balls, working
+from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.shooting.normal_form import normal_form
-from verification.cycles.shooting.problem import Kind, Linearised, Problem, Rows
+from verification.cycles.shooting.problem import Linearised, Problem, Rows
 
 BITS = 80
 SMALLEST = 2.0**-40  # halves of halves must stay exact in floats
@@ -53,7 +54,7 @@ def doubling_curve(K: int = 3, budget: int = 4000, tick: Tick = silent) -> Sign:
 
 
 def _supercritical(K: int, lam: arb, alpha: arb) -> bool:
-    problem = Problem(egg(K), (0, 0), Kind.FLIP, "alpha", lam)
+    problem = Problem(egg(K), (0, 0), BifurcationKind.FLIP, "alpha", lam)
     try:
         at = Linearised(Rows(problem, balls(BITS)), [arb(0), arb.pi(), alpha])
         bend = normal_form(at, balls(BITS)).bend

@@ -25,7 +25,7 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
 from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.words import balls, working
-from verification.cycles.shooting.chain import Vector
+from verification.cycles.recurrence.chain import Vector
 from verification.maps.admissible import convex
 
 BITS = 64

@@ -2,7 +2,7 @@
 
 For a box `X` with midpoint `m`, every zero in `X` lies in `N = m - F'(X)^-1 F(m)`, and when `N` lies
 in the interior of `X` there is exactly one. `F'(X)^-1` is applied by elimination in balls, in linear
-time (see `verification.cycles.shooting.chain`); it plays the part that a preconditioner has in Krawczyk's
+time (see `verification.cycles.recurrence.chain`); it plays the part that a preconditioner has in Krawczyk's
 operator, and contracts at least as well.
 
 Krawczyk's operator [Krawczyk1969], for wide boxes around short cycles.
@@ -15,12 +15,11 @@ motion of the cycle with `lam` is kept in one piece, `Y dF/dlam (lam - middle)`.
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
 
 from flint import arb, arb_mat
 
 from verification.arithmetic.words import balls, working
-from verification.cycles.shooting.chain import Chain
+from verification.cycles.recurrence.chain import Chain
 from verification.cycles.shooting.newton import System
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 
@@ -95,20 +94,6 @@ def compared(image: list[arb], box: list[arb]) -> Status:
     return Status.UNKNOWN
 
 
-def exact_balls(numbers: list[Any]) -> list[arb]:
-    """Numbers of mpmath as exact balls, bit for bit.
-
-    >>> import mpmath
-    >>> [x.is_exact() for x in exact_balls([mpmath.mpf(1) / 3])]
-    [True]
-    """
-    found = []
-    for x in numbers:
-        sign, mantissa, exponent, _ = x._mpf_
-        found.append(arb((-int(mantissa) if sign else int(mantissa), int(exponent))))
-    return found
-
-
 def krawczyk(problem: Problem, centre: list[arb], radii: list[float], bits: int) -> Enclosure:
     """What Krawczyk's operator proves about the cycles in a box; `lam` may be a ball.
 
@@ -138,7 +123,7 @@ def dense(chain: Chain) -> arb_mat:
     """The matrix of a chain."""
     n = len(chain.diagonal)
     rows = [[arb(0)] * n for _ in range(n)]
-    for i, (lower, diagonal, upper) in enumerate(zip(chain.lower, chain.diagonal, chain.upper, strict=True)):
+    for i, (lower, diagonal, upper) in enumerate(chain.rows):
         rows[i][i] += diagonal
         rows[i][i - 1] += lower * (chain.sign if i == 0 else 1)
         rows[i][(i + 1) % n] += upper * (chain.sign if i == n - 1 else 1)

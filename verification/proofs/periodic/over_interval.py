@@ -8,7 +8,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
 
 from flint import arb, arb_mat
 from sympy import Rational
@@ -17,7 +16,7 @@ from symbolic.tables.table import Table
 from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import balls, working
-from verification.cycles.shooting.chain import Chain
+from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.shooting.newton import floats
 from verification.cycles.shooting.problem import Linearised, Problem, Rows
 from verification.maps.admissible import convex, inside, minimal
@@ -99,7 +98,7 @@ def _proved(
             return Stability.UNKNOWN
         if not inside(table, components, over.zero) or not minimal(table, components, over.zero):
             return Stability.UNKNOWN
-        here = trace_and_determinant(Linearised(Rows(thin, balls(BITS)), at.zero).plain)
+        here = trace_and_determinant(Linearised(Rows(thin, balls(BITS)), at.zero).plain.rows)
         slopes = _slopes(wide, over.zero)
         if slopes is None:
             return Stability.UNKNOWN
@@ -115,22 +114,8 @@ def _slopes(problem: Problem, zero: list[arb]) -> tuple[arb, arb] | None:
         return None
     moving = Problem(problem.table, problem.components, lam=Jet(problem.lam, 1))
     path = [Jet(x, motion[i, 0]) for i, x in enumerate(zero)]
-    trace, determinant = trace_and_determinant(Linearised(Rows(moving, jets(balls(BITS))), path).plain)
+    trace, determinant = trace_and_determinant(Linearised(Rows(moving, jets(balls(BITS))), path).plain.rows)
     return trace.c[1], determinant.c[1]
-
-
-def trace_and_determinant(chain: Chain) -> tuple[Any, Any]:
-    """Trace and determinant of a cycle's monodromy matrix, from its linearised collision rules.
-
-    >>> trace_and_determinant(Chain([2, 2], [3, 3], [1, 1]))
-    (5.0, 4.0)
-    """
-    m: list[list[Any]] = [[1, 0], [0, 1]]
-    determinant: Any = 1
-    for lower, diagonal, upper in zip(chain.lower, chain.diagonal, chain.upper, strict=True):
-        m = [m[1], [-(lower * a + diagonal * b) / upper for a, b in zip(*m, strict=True)]]
-        determinant = determinant * lower / upper
-    return m[0][0] + m[1][1], determinant
 
 
 def stability(trace: arb, determinant: arb) -> Stability:

@@ -15,11 +15,12 @@ from sympy import Expr, Rational
 from symbolic.generation.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
+from verification.arithmetic.balls import exact_balls
 from verification.arithmetic.words import Arithmetic, balls, bits_of, working
-from verification.cycles.shooting.chain import Vector
+from verification.cycles.recurrence.chain import Vector
 from verification.cycles.shooting.newton import refined
 from verification.cycles.shooting.small import Small
-from verification.proofs.periodic.interval_newton import Status, contraction, exact_balls
+from verification.proofs.periodic.interval_newton import Status, contraction
 
 DIGITS = 20
 SLAP = Rational(1, 5), (0.2838, 3.7697)  # at alpha = 2/25, lam = 0: first bounce, and the next two

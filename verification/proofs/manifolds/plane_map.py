@@ -9,24 +9,25 @@ kind of number: floats, arrays, mpmath or balls, or jets of these.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, Protocol, Self
 
 import numpy as np
 from sympy import Expr
 
-from symbolic.generation.text import load
-from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
 from verification.arithmetic.series import Jet, jets
 from verification.arithmetic.words import ARRAYS, FLOAT64, Arithmetic
+from verification.cycles.recurrence.chords import Chords, chord_angles
+from verification.cycles.recurrence.explicit import henon
+from verification.cycles.recurrence.recurrence import Recurrence, Rule
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found in float64
 NEWTON = 60  # steps at most after that, in other numbers and order by order in jets
 CLOSE = 1e-13
 
 
-class Recurrence(Protocol):
+class PlaneMap(Protocol):
     """A map of the plane, by its rule, over one kind of number."""
 
     @property
@@ -65,7 +66,40 @@ class Recurrence(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Henon:
+class _Bound:
+    """The one rule of a recurrence of period 1, bound to a kind of number; `letter` is its parameter."""
+
+    words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
+
+    def over(self, words: Arithmetic) -> Self:
+        return replace(self, words=words)
+
+    @cached_property
+    def lifted(self) -> Self:
+        return self.over(jets(self.words))
+
+    @property
+    def ring(self) -> Recurrence:
+        """The recurrence."""
+        raise NotImplementedError
+
+    def at(self, letter: Any) -> dict[str, Any]:
+        """All parameters of the recurrence."""
+        return {"lam": letter}
+
+    @cached_property
+    def _rule(self) -> Rule:
+        return self.ring.over(self.words)
+
+    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+        return self._rule(0, near, self.at(letter))[0]
+
+    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+        return self._rule(0, near, self.at(letter))[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Henon(_Bound):
     """`x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`; the letter is `a`.
 
     >>> from sympy import Rational
@@ -74,24 +108,15 @@ class Henon:
     """
 
     b: Expr
-    words: Arithmetic = field(default_factory=lambda: ARRAYS)
     label: str = "Henon"
     turn: int = 0
 
-    def over(self, words: Arithmetic) -> "Henon":
-        return replace(self, words=words)
+    @property
+    def ring(self) -> Recurrence:
+        return henon(1)
 
-    @cached_property
-    def lifted(self) -> "Henon":
-        return self.over(jets(self.words))
-
-    def rule(self, near: Sequence[Any], letter: Any) -> Any:
-        previous, here, following = near
-        return self.following(previous, here, letter) - following
-
-    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
-        previous, here, following = near
-        return 0 * previous + self._b, -2 * letter * here, 0 * following - 1
+    def at(self, letter: Any) -> dict[str, Any]:
+        return {"a": letter, "b": self._b}
 
     def following(self, previous: Any, here: Any, letter: Any) -> Any:
         return 1 - letter * here * here + self._b * previous
@@ -108,7 +133,7 @@ class Henon:
 
 
 @dataclass(frozen=True, eq=False)
-class Pinball:
+class Pinball(_Bound):
     """The pinball map of a convex table of one component, on bounce parameters that count turns; the letter is `lam`.
 
     Forwards a ball lands where the chord makes the angle `-lam*eta` with the normal; backwards it came
@@ -120,25 +145,12 @@ class Pinball:
     """
 
     table: Table
-    words: Arithmetic = field(default_factory=lambda: ARRAYS)
     label: str = "pinball"
     turn: int = 1
 
-    def over(self, words: Arithmetic) -> "Pinball":
-        return replace(self, words=words)
-
-    @cached_property
-    def lifted(self) -> "Pinball":
-        return self.over(jets(self.words))
-
-    def rule(self, near: Sequence[Any], letter: Any) -> Any:
-        previous, here, following = near
-        return self.angle(here, following)[0] + letter * self.angle(here, previous)[0]
-
-    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
-        previous, here, following = near
-        forth, back = self.angle(here, following), self.angle(here, previous)
-        return letter * back[2], forth[1] + letter * back[1], forth[2]
+    @property
+    def ring(self) -> Recurrence:
+        return Chords(self.table, (0,))
 
     def following(self, previous: Any, here: Any, letter: Any) -> Any:
         return self._other_end(here, -letter * self.angle(here, previous)[0], 0)
@@ -152,8 +164,7 @@ class Pinball:
     @cached_property
     def angle(self) -> Callable[..., Any]:
         """The angle of a chord with the normal at its start, and its derivatives by both ends."""
-        loaded: Callable[..., Any] = load(chord_kernel(self.table, 0, 0, 1), self.words)
-        return loaded
+        return chord_angles(self.table, self.words)(0, 0, 1)
 
     def _other_end(self, here: Any, phi: Any, turns: int) -> Any:
         """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`."""
@@ -173,17 +184,10 @@ class Pinball:
         return x
 
 
-@cache
-def angle_over(table: Table, arrays: bool) -> Callable[..., Any]:
-    """The angle of a chord in float64, on arrays or, which is faster, on single numbers."""
-    loaded: Callable[..., Any] = load(chord_kernel(table, 0, 0, 1), ARRAYS if arrays else FLOAT64)
-    return loaded
-
-
 def landing(table: Table, here: Any, phi: Any, turns: int) -> Any:
     """Newton's method between bounds: the angle falls from pi/2 to -pi/2 on the way round."""
     arrays = bool(np.ndim(here) or np.ndim(phi))
-    angle = angle_over(table, arrays)
+    angle = chord_angles(table, ARRAYS if arrays else FLOAT64)(0, 0, 1)
     pick: Callable[[Any, Any, Any], Any] = np.where if arrays else _either
     if not arrays and not abs(phi) < math.pi / 2:
         return math.nan

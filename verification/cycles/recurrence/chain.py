@@ -7,7 +7,7 @@ the cycle's derivative attracts, so in a dissipative map rounding errors (and th
 out along the chain instead of multiplying. A pivot that may be 0 ends in `nan` balls: nothing proved.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -27,6 +27,11 @@ class Chain:
         if len(self.diagonal) < 2:
             raise ValueError(f"chain: {len(self.diagonal)} row is no chain; a cycle has at least 2 bounces")
 
+    @property
+    def rows(self) -> list[tuple[Any, Any, Any]]:
+        """The three entries of each row."""
+        return list(zip(self.lower, self.diagonal, self.upper, strict=True))
+
     def times(self, x: Sequence[Any]) -> Vector:
         """The matrix times `x`.
 
@@ -39,6 +44,23 @@ class Chain:
             self.lower[i] * padded[i] + self.diagonal[i] * padded[i + 1] + self.upper[i] * padded[i + 2]
             for i in range(n)
         ]
+
+
+def trace_and_determinant(rows: Iterable[tuple[Any, Any, Any]], turn: int = 1) -> tuple[Any, Any]:
+    """Trace and determinant of the monodromy matrix, from the three derivatives of the rule at each bounce.
+
+    Where the orbit closes by a symmetry the matrix is that of the map followed by the symmetry undone: `turn` is -1
+    for a mirror.
+
+    >>> trace_and_determinant([(2, 3, 1), (2, 3, 1)])
+    (5.0, 4.0)
+    """
+    m: list[list[Any]] = [[1, 0], [0, 1]]
+    determinant: Any = 1
+    for before, here, after in rows:
+        m = [m[1], [-(before * a + here * b) / after for a, b in zip(*m, strict=True)]]
+        determinant = determinant * before / after
+    return turn * (m[0][0] + m[1][1]), determinant
 
 
 class Elimination:

@@ -9,8 +9,12 @@ import pytest
 
 from verification.app.shell.cli import main
 
-DOCS = Path(__file__).parents[1] / "docs"
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
+READ = sorted([*PAGES, *ROOT.glob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
+FOLDERS = ("symbolic", "numeric", "verification", "tests", "benchmarks", "docs", "notebooks")
+PATHS = re.compile(rf"`((?:{'|'.join(FOLDERS)})/[\w./*]*)`")
 PYTHON = [page for page in PAGES if ">>> " in page.read_text()]
 COMMANDS = [
     pytest.param(page, block, id=f"{page.stem}-{number}")
@@ -49,7 +53,13 @@ def test_every_page_is_reached_from_the_index(page):
     assert page.stem == "index" or str(page.relative_to(DOCS).with_suffix("")) in entries
 
 
-@pytest.mark.parametrize("page", PAGES, ids=named)
+@pytest.mark.parametrize("page", sorted([*PAGES, *ROOT.glob("*.md")]), ids=named)
 def test_links_between_pages_lead_somewhere(page):
-    for link in re.findall(r"\]\(([^)#:]+\.md)\)", page.read_text()):
+    for link in re.findall(r"\]\(([^)#:]+\.\w+)\)", page.read_text()):
         assert (page.parent / link).is_file(), link
+
+
+@pytest.mark.parametrize("page", READ, ids=named)
+def test_files_that_a_page_names_are_there(page):
+    for path in PATHS.findall(page.read_text()):
+        assert list(ROOT.glob(path.rstrip("/"))), path

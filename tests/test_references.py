@@ -3,6 +3,7 @@
 import re
 import tomllib
 import unicodedata
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -12,11 +13,10 @@ BIBLIOGRAPHY = ROOT / "docs" / "references.bib"
 FOLDERS = ("docs", "symbolic", "numeric", "verification", "notebooks", "benchmarks", "tests")
 READ = {".md", ".py", ".ipynb", ".j2", ".html", ".toml"}
 APART = {ROOT / "docs" / "references.md", Path(__file__)}
-PRINTED = ROOT / "verification" / "claims" / "printed"  # the paper's own words, with its own citations
+PRINTED = ROOT / "verification" / "paper" / "claims" / "printed"  # the paper's own words, with its own citations
 TEXTS = sorted(
     path
-    for folder in FOLDERS
-    for path in (ROOT / folder).rglob("*")
+    for path in chain(*((ROOT / folder).rglob("*") for folder in FOLDERS), ROOT.glob("*.md"))
     if path.suffix in READ and "_build" not in path.parts and PRINTED not in path.parents and path not in APART
 )
 YEAR = r"(?:1[6-9]|20)\d\d"

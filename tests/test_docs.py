@@ -1,6 +1,7 @@
 """The documentation is true: its Python gives what it shows, its commands run, its pages are all reached."""
 
 import doctest
+import importlib.util
 import re
 import shlex
 from pathlib import Path
@@ -21,6 +22,11 @@ COMMANDS = [
     for page in PAGES
     for number, block in enumerate(re.findall(r"```console\n(.*?)```", page.read_text(), re.DOTALL))
 ]
+
+
+spec = importlib.util.spec_from_file_location("rooms", DOCS / "rooms.py")
+ROOMS = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(ROOMS)
 
 
 def named(page):
@@ -63,3 +69,8 @@ def test_links_between_pages_lead_somewhere(page):
 def test_files_that_a_page_names_are_there(page):
     for path in PATHS.findall(page.read_text()):
         assert list(ROOT.glob(path.rstrip("/"))), path
+
+
+def test_the_picture_of_the_rooms_is_what_the_import_contracts_say():
+    """`python docs/rooms.py` draws it anew."""
+    assert ROOMS.PICTURE.read_text() == ROOMS.picture()

@@ -1,5 +1,6 @@
 """The documentation is true: its Python gives what it shows, its commands run, its pages are all reached."""
 
+import ast
 import doctest
 import importlib.util
 import re
@@ -54,9 +55,11 @@ def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("page", PAGES, ids=named)
 def test_every_page_is_reached_from_the_index(page):
-    entries = re.findall(r"^[A-Za-z_/0-9]+$", (DOCS / "index.md").read_text(), re.MULTILINE)
+    above = page.parent.parent / f"{page.parent.name}.md"  # a room of the reference stands under its storey
+    home = above if above.is_file() else DOCS / "index.md"
+    entries = re.findall(r"^[A-Za-z_/0-9]+$", home.read_text(), re.MULTILINE)
 
-    assert page.stem == "index" or str(page.relative_to(DOCS).with_suffix("")) in entries
+    assert page.stem == "index" or str(page.relative_to(home.parent).with_suffix("")) in entries
 
 
 @pytest.mark.parametrize("page", sorted([*PAGES, *ROOT.glob("*.md")]), ids=named)
@@ -74,3 +77,17 @@ def test_files_that_a_page_names_are_there(page):
 def test_the_picture_of_the_rooms_is_what_the_import_contracts_say():
     """`python docs/rooms.py` draws it anew."""
     assert ROOMS.PICTURE.read_text() == ROOMS.picture()
+
+
+def test_the_reference_has_every_module_and_nothing_else():
+    """`python docs/rooms.py` writes it anew."""
+    assert {path: path.read_text() for path in ROOMS.REFERENCE.rglob("*.md")} == ROOMS.reference()
+
+
+@pytest.mark.parametrize("module", [name for storey in ROOMS.orders()[""] for name in ROOMS.modules(storey)])
+def test_every_public_object_of_a_module_is_in_the_reference(module):
+    """The reference shows what has a docstring, so that a public object without one would be missing."""
+    body = ast.parse((ROOT / Path(*module.split("."))).with_suffix(".py").read_text()).body
+    public = [node for node in body if isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name[0] != "_"]
+
+    assert [node.name for node in public if not ast.get_docstring(node)] == []

@@ -12,7 +12,7 @@ BIN := $(VENV)/bin
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
 verify: $(VENV)/main.stamp
 	@rm -f report/report.json
-	@status=0; $(BIN)/pinball verify --report report --work docs/work_precision.json || status=$$?; \
+	@status=0; $(BIN)/pinball verify --report report --work benchmarks/records/work_precision.json || status=$$?; \
 	test $$status -le 1 && test -f report/report.json
 
 test: lint
@@ -41,7 +41,7 @@ dist: $(VENV)/dist.stamp
 
 # What moved since the dossier was measured; a machine that is busy moves something, and that is no failure.
 bench: $(VENV)/bench.stamp
-	-$(BIN)/pinball bench --compare docs/bench.json
+	-$(BIN)/pinball bench --compare benchmarks/records/bench.json
 	-$(BIN)/python benchmarks/work_precision.py --compare
 	-$(BIN)/python benchmarks/extremes.py --check
 

@@ -2,11 +2,10 @@
 
     python benchmarks/dossier.py
 
-writes the page from `docs/bench.json` (`pinball bench --json`), `docs/work_precision.json`, `docs/leave_out.md`,
-`docs/mutation.md`, `verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`; each is written
-by the
-command that the page names. The words are in `dossier.md` beside this file. Nothing is measured here, and a test
-holds the page to its sources.
+writes the page from `bench.json` (`pinball bench --json`) and `work_precision.json` in `benchmarks/records`,
+`docs/leave_out.md`, `docs/mutation.md`, `verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`;
+each is written by the command that the page names. The words are in `dossier.md` beside this file. Nothing is measured
+here, and a test holds the page to its sources.
 """
 
 import json
@@ -193,7 +192,7 @@ def fuzz(text, corpus):
 
 def page():
     """The text of the page."""
-    bench, work = load("docs/bench.json"), load("docs/work_precision.json")
+    bench, work = load("benchmarks/records/bench.json"), load("benchmarks/records/work_precision.json")
     record, rows = load("verification/measure/extremes/recorded.json"), [Row.from_dict(row) for row in work["rows"]]
     loose = [f"`{name}`" for name, about in work["questions"].items() if not about["certified"]]
     return TEXT.read_text().format(

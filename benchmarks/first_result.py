@@ -62,7 +62,7 @@ index. *Modules* are those of `numeric` and the packages beside it (of llvmlite 
 is the peak of the resident set above that of a process that only imports NumPy, and *time* the processor's from
 NumPy's import to the answer, the shortest of three runs on a busy machine.
 
-`python benchmarks/first_result.py page` writes this page; `tests/verification/test_leave_out_page.py` holds
+`python benchmarks/first_result.py page` writes this page; `tests/verification/measure/test_leave_out_page.py` holds
 operations, state and modules to their line. The split by kind of instruction is in [kernels.md](kernels.md).
 """
 COLD = """

@@ -6,29 +6,31 @@
     python benchmarks/mutation.py run --only 'symbolic/*.py' --near         a quick sieve: the module's own tests alone
     python benchmarks/mutation.py run --only symbolic/proofs/zero.py --again survived --budget 100  what passed it
     python benchmarks/mutation.py list --only symbolic/proofs/zero.py              survivors as they stand
-    python benchmarks/mutation.py page                      docs/mutation.json and docs/mutation.md
+    python benchmarks/mutation.py page                      benchmarks/records/mutation.json and docs/mutation.md
 
 `run` asks the tests that execute the mutated statement, quickest first, until their own seconds (as `cover` measured
 them, under a tracer) add up to the budget; where a statement runs at import, all whose file imports its module. The
 module's own tests come before all others. What survived is asked again, with a larger budget, by `--again survived`; a
 mutant keeps its verdict when lines move. `--sample 0.2 --seed 1` takes a random part. A survivor needs a test, or a
-reason in docs/mutation.toml: `page` puts both together, and keeps the figures of modules that this machine has not run.
-State is kept in report/mutation/; nothing in the tree is written but the page.
+reason in benchmarks/records/mutation.toml: `page` counts both, and keeps the figures of modules that this machine has
+not run. State is kept in report/mutation/; nothing in the tree is written but record and page.
 """
 
 import argparse
 import ast
 import json
 import random
+import subprocess
 import sys
 import time
 from collections import Counter, defaultdict
 from fnmatch import fnmatch
 from functools import cache
+from importlib.metadata import version
 from os import waitpid
 
 from mutation_mutants import ROOT, STATE, STOREYS, Mutant, mutants
-from mutation_page import reason, write_page
+from mutation_page import given, write_page
 from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, reached, warm
 
 COVER, RESULTS = STATE / "cover.json", STATE / "results.jsonl"
@@ -123,11 +125,17 @@ def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[
     if not args.again:
         return [mutant for mutant in found if mutant.key not in known]
     again = ("survived", "uncovered", "timeout", "killed") if args.again == "all" else (args.again,)
-    open_ones = [mutant for mutant in found if mutant.key in known and known[mutant.key]["status"] in again]
-    return [mutant for mutant in open_ones if not reason(path, mutant.old, mutant.new)]
+    explained, open_ones = {place: counts.copy() for place, counts in given().items()}, []
+    for mutant in (mutant for mutant in found if mutant.key in known and known[mutant.key]["status"] in again):
+        left = explained.get((path, mutant.function), Counter())
+        if left[mutant.operator] > 0:
+            left[mutant.operator] -= 1
+        else:
+            open_ones.append(mutant)
+    return open_ones
 
 
-def run_module(path: str, chosen: list[Mutant], plan: Plan, fresh: set[str], args: argparse.Namespace) -> None:
+def run_module(path: str, chosen: list[Mutant], plan: Plan, args: argparse.Namespace) -> None:
     """In a server of its own: imports what does not depend on the module, then asks about each mutant."""
     for name in independent(name_of(path)):
         __import__(name)
@@ -135,15 +143,13 @@ def run_module(path: str, chosen: list[Mutant], plan: Plan, fresh: set[str], arg
         tests = plan.tests(mutant, args.budget, args.near)
         status, test, seconds = ask(path, mutant.text, tests) if tests else ("uncovered", "", 0.0)
         known = {"key": mutant.key, "operator": mutant.operator, "status": status, "test": test, "seconds": seconds}
-        drawn = args.fresh or mutant.key in fresh
-        append(RESULTS, known | {"tests": len(tests), "budget": args.budget, "fresh": drawn})
+        append(RESULTS, known | {"tests": len(tests), "budget": args.budget})
         say(f"{time.strftime('%H:%M:%S')} {path}:{mutant.line} {number}/{len(chosen)} {status} {seconds:.1f} s {test}")
 
 
 def running(args: argparse.Namespace) -> None:
     """Module by module, a fork server for each; at most as many at once as there are workers."""
     plan, known = Plan(), results()
-    fresh = {key for key, entry in known.items() if entry.get("fresh")}
     warm()
     busy = []
     for path in modules(args.only):
@@ -152,38 +158,46 @@ def running(args: argparse.Namespace) -> None:
             continue
         if len(busy) >= args.workers:
             waitpid(busy.pop(0), 0)
-        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, fresh, args)))
+        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, args)))
     for child in busy:
         waitpid(child, 0)
 
 
-def tables(args: argparse.Namespace) -> dict[str, dict]:
-    """For each module that was run: how many mutants there are, how many were asked, the verdicts, the survivors."""
-    known, found = results(), {}
-    for path in modules(args.only):
-        every = mutants(path)
-        asked = [(mutant, known[mutant.key]) for mutant in every if mutant.key in known]
-        if not asked:
-            continue
-        count = Counter(entry["status"] for _, entry in asked)
-        alive = [
-            {"line": mutant.line, "operator": mutant.operator, "before": mutant.old, "after": mutant.new}
-            for mutant, entry in asked
-            if entry["status"] in ("survived", "uncovered")
-        ]
-        fresh = [entry["status"] not in ("survived", "uncovered") for _, entry in asked if entry.get("fresh")]
-        found[path] = {"mutants": len(every), "asked": len(asked), **count, "alive": alive}
-        found[path] |= {"fresh": len(fresh), "fresh_killed": sum(fresh)}
+def asked(args: argparse.Namespace) -> dict[str, tuple[int, list[tuple[Mutant, str]]]]:
+    """For each module that was run: how many mutants there are, and those that were asked with their verdicts."""
+    known = results()
+    every = {path: mutants(path) for path in modules(args.only)}
+    pairs = {path: [(m, known[m.key]["status"]) for m in found if m.key in known] for path, found in every.items()}
+    return {path: (len(every[path]), found) for path, found in pairs.items() if found}
+
+
+def is_alive(status: str) -> bool:
+    """Whether no test noticed."""
+    return status in ("survived", "uncovered")
+
+
+def figures(args: argparse.Namespace) -> dict[str, dict]:
+    """What the record keeps of each module: counts, and how many survivors each function has of each operator."""
+    head = ["git", "rev-parse", "--short", "HEAD"]
+    at = subprocess.run(head, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    found: dict[str, dict] = {}
+    for path, (total, pairs) in asked(args).items():
+        count, alive = Counter(status for _, status in pairs), defaultdict(Counter)
+        for mutant, status in pairs:
+            alive[mutant.function][mutant.operator] += is_alive(status)
+        kept = {name: +operators for name, operators in alive.items() if +operators}
+        found[path] = {"at": at, "mutants": total, "asked": len(pairs), "killed": count["killed"]}
+        found[path] |= {"timeout": count["timeout"], "alive": kept}
     return found
 
 
 def listing(args: argparse.Namespace) -> None:
-    """The table and the survivors, as text."""
-    for path, entry in tables(args).items():
-        killed = entry.get("killed", 0) + entry.get("timeout", 0)
-        say(f"{path}: {entry['mutants']} mutants, {entry['asked']} asked, {killed} killed")
-        for alive in entry["alive"]:
-            say(f"  {path}:{alive['line']} {alive['operator']}\n    - {alive['before']}\n    + {alive['after']}")
+    """Counts and survivors, as text."""
+    for path, (total, pairs) in asked(args).items():
+        say(f"{path}: {total} mutants, {len(pairs)} asked, {sum(not is_alive(status) for _, status in pairs)} killed")
+        for mutant in (mutant for mutant, status in pairs if is_alive(status)):
+            place = f"{path}:{mutant.line} {mutant.function} {mutant.operator}"
+            say(f"  {place}\n    - {mutant.old}\n    + {mutant.new}")
 
 
 def main() -> None:
@@ -197,7 +211,6 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=1, help="modules at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
     parser.add_argument("--near", action="store_true", help="a first sieve: the module's own tests alone")
-    parser.add_argument("--fresh", action="store_true", help="these are drawn after the last test was written")
     parser.add_argument("--again", default="", choices=["", "survived", "uncovered", "timeout", "all"])
     args = parser.parse_args()
     if args.verb == "cover":
@@ -207,7 +220,7 @@ def main() -> None:
     elif args.verb == "list":
         listing(args)
     else:
-        write_page(tables(args))
+        write_page(figures(args), f"cosmic-ray {version('cosmic-ray')}")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ the one with the other border (COMPARISONS), each number by the next and the one
 `False`, `break` and `continue` change places; a sign or a `not` is taken away, a `not` is added to a condition; a loop
 runs zero times; what an `except` names is not caught; a decorator is dropped.
 
-Left out, and why (the page says the same): see LEFT_OUT.
+Left out, and why: see LEFT_OUT of mutation_page.py, which the page prints.
 """
 
 import ast
@@ -42,16 +42,6 @@ OPERATORS = (
     "core/ZeroIterationForLoop", "core/ExceptionReplacer", "core/RemoveDecorator", "core/NumberReplacer",
 )  # fmt: skip
 MEMOS = ("cache", "lru_cache", "memoised")  # decorators that change speed only
-LEFT_OUT = {
-    "the other replacements of an operator (`*` by `>>`, `<` by `is`, ...)": "nearly all raise a `TypeError` at once,"
-    " and would only raise the share",
-    "`VariableReplacer`, `VariableInserter`": "they need names as arguments and put random numbers in",
-    "mutants in type annotations and under `if TYPE_CHECKING`": "not executed",
-    "docstrings and other text": "cosmic-ray does not change text; doctests are tests here",
-    "`@cache` and `@lru_cache`, taken away or of another size": "a memo changes the time, not the result",
-    "mutants that do not compile, or have the syntax tree of the original or of another mutant": "no mutants, or"
-    " counted already (`not a == b` is `a != b`)",
-}
 
 
 @dataclass(frozen=True)
@@ -60,6 +50,7 @@ class Mutant:
 
     path: str
     operator: str
+    function: str
     line: int
     old: str
     new: str
@@ -84,6 +75,19 @@ def statements(tree: ast.Module) -> list[tuple[int, int]]:
             last = max(first, inside[0].lineno - 1) if inside and hasattr(inside[0], "lineno") else node.end_lineno
             spans.append((first, last))
     return spans
+
+
+def function_at(tree: ast.AST, line: int) -> str:
+    """The innermost function or class around a line, as `Class.method`; empty outside of all."""
+    for node in ast.iter_child_nodes(tree):
+        if not hasattr(node, "lineno"):
+            continue
+        first = min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", []))])
+        if first <= line <= node.end_lineno:
+            own = [node.name] if isinstance(node, ast.FunctionDef | ast.ClassDef) else []
+            inner = function_at(node, line)
+            return ".".join([*own, inner] if inner else own)
+    return ""
 
 
 def is_unseen(node) -> bool:
@@ -161,7 +165,8 @@ def mutants(path: str) -> list[Mutant]:
 
 def made(path: str, source: str) -> list[Mutant]:
     """The mutants of a text; the same syntax tree is not counted twice."""
-    spans, same = statements(ast.parse(source)), {shape_of(source)}
+    tree = ast.parse(source)
+    spans, same = statements(tree), {shape_of(source)}
     repeats: Counter[tuple[str, str]] = Counter()
     found = []
     for operator, occurrence, line in sorted(positions(source), key=lambda position: position[2]):
@@ -176,7 +181,9 @@ def made(path: str, source: str) -> list[Mutant]:
         old, new = changed(source, text)
         around = [span for span in spans if span[0] <= line <= span[1]]
         statement = min(around, key=lambda span: span[1] - span[0], default=(line, line))
-        found.append(Mutant(path, operator, line, old, new, repeats[old, new], statement, text))
+        found.append(
+            Mutant(path, operator, function_at(tree, line), line, old, new, repeats[old, new], statement, text)
+        )
         repeats[old, new] += 1
     return found
 

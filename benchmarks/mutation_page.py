@@ -1,38 +1,57 @@
-"""The page on mutation testing, from docs/mutation.json (what was measured) and docs/mutation.toml (why some survive).
+"""The page on mutation testing: figures from benchmarks/records/mutation.json, reasons from mutation.toml beside it.
 
-An entry of the TOML file is a `[[reason]]` with the `module`, a sentence `why`, and the mutants it speaks of: `changes`
-are texts "line before -> line after" as `list` and the JSON file have them, `lines` are lines before, all of whose
-survivors it explains.
+A survivor is known by its module, its function and its operator, so that no record breaks when a line moves or is
+written again. An entry of the TOML file is a `[[reason]]` with the `module`, the `function` (empty outside of
+functions), a sentence `why`, and `operators`: how many survivors of which operator it explains.
 """
 
 import json
 import tomllib
+from collections import Counter
 from functools import cache
-from importlib.metadata import version
+from pathlib import Path
 
-from mutation_mutants import LEFT_OUT, ROOT
-
-FIGURES, REASONS, PAGE = (ROOT / "docs" / f"mutation.{end}" for end in ("json", "toml", "md"))
-OPEN = "Neither killed nor explained yet"
+ROOT = Path(__file__).resolve().parent.parent
+RECORDS = ROOT / "benchmarks" / "records"
+FIGURES, REASONS, PAGE = RECORDS / "mutation.json", RECORDS / "mutation.toml", ROOT / "docs" / "mutation.md"
+LEFT_OUT = {
+    "the other replacements of an operator (`*` by `>>`, `<` by `is`, ...)": "nearly all raise a `TypeError` at once,"
+    " and would only raise the share",
+    "`VariableReplacer`, `VariableInserter`": "they need names as arguments and put random numbers in",
+    "mutants in type annotations and under `if TYPE_CHECKING`": "not executed",
+    "docstrings and other text": "cosmic-ray does not change text; doctests are tests here",
+    "`@cache` and `@lru_cache`, taken away or of another size": "a memo changes the time, not the result",
+    "mutants that do not compile, or have the syntax tree of the original or of another mutant": "no mutants, or"
+    " counted already (`not a == b` is `a != b`)",
+}
 HEAD = """\
 # Mutation testing
 
 A mutant is the package with one small mistake: a `+` for a `-`, a `<` for a `<=`, a 3 for a 2. The tests kill it when
-one of them fails. This page counts the mutants that they do not kill, and says of each why. It is written by
-`python benchmarks/mutation.py page`; `make mutation` measures what has not been measured.
-
-Mutants are made with the operators of cosmic-ray {version}. A coverage run says which tests execute which statement. A
-fork for each mutant, in which no module that depends on it has been imported before, asks these tests: the module's own
-first, the quickest first. No memo and no file of an earlier run is left, so nothing hides a mutant. A test has three
-times its own seconds and five more; one that is stopped by then has failed (`timeout`), as has a module that cannot be
-imported.
+one of them fails. This page has the figures. They come from `benchmarks/records/mutation.json` by
+`python benchmarks/mutation.py page`; `make mutation` measures again.
 
 {summary}
 
+## How it is measured
+
+Mutants are made with the operators of {made_with}. A coverage run says which tests execute which statement. A
+fork for each mutant, in which no module that depends on it has been imported before, asks these tests: the module's own
+first, the quickest first. No memo and no file of an earlier run is left, so nothing hides a mutant. A test has three
+times its own seconds and five more; one that is stopped by then has failed (`timeout`), as has a module that cannot be
+imported. A survivor needs a test, or a reason in `benchmarks/records/mutation.toml`, under its module and function.
+
+Left out are:
+
+{left_out}
+
 ## By module
 
-| module | mutants | killed | of these by timeout | survived | share killed | explained |
-|---|---|---|---|---|---|---|
+The figures are of the text that a module had at the commit in the last column, under the name that it has now; modules
+that were written later are not here, and where two files became one their figures are added.
+
+| module | mutants | killed | of these by timeout | survived | share killed | explained | commit |
+|---|---|---|---|---|---|---|---|
 """
 
 
@@ -46,84 +65,67 @@ def killed(entry: dict) -> int:
     return entry.get("killed", 0) + entry.get("timeout", 0)
 
 
+def survived(entry: dict) -> int:
+    """How many mutants of a module no test noticed."""
+    return sum(sum(operators.values()) for operators in entry["alive"].values())
+
+
 @cache
-def given() -> list[dict]:
-    """The entries of the file with the reasons."""
-    return tomllib.loads(REASONS.read_text()).get("reason", [])
-
-
-def reason(path: str, before: str, after: str) -> str:
-    """Why this mutant survives; empty when nobody has said."""
-    for entry in given():
-        named = f"{before} -> {after}" in entry.get("changes", []) or before in entry.get("lines", [])
-        if named and entry["module"] == path:
-            return entry["why"].strip()
-    return ""
-
-
-def reasons(path: str, alive: list[dict]) -> dict[str, list[dict]]:
-    """The survivors of a module under the reasons given for them."""
-    found: dict[str, list[dict]] = {}
-    for mutant in alive:
-        found.setdefault(reason(path, mutant["before"], mutant["after"]) or OPEN, []).append(mutant)
+def given() -> dict[tuple[str, str], Counter[str]]:
+    """How many survivors of each operator are explained, by module and function."""
+    found: dict[tuple[str, str], Counter[str]] = {}
+    for entry in tomllib.loads(REASONS.read_text())["reason"]:
+        found.setdefault((entry["module"], entry["function"]), Counter()).update(entry["operators"])
     return found
+
+
+def explained(path: str, alive: dict[str, dict[str, int]]) -> int:
+    """How many of a module's survivors have a reason."""
+    pairs = [(given().get((path, function), Counter()), operators) for function, operators in alive.items()]
+    return sum(min(count, known[operator]) for known, operators in pairs for operator, count in operators.items())
 
 
 def summary(name: str, figures: dict[str, dict]) -> str:
     """One sentence on a storey."""
     asked, total = (sum(entry[key] for entry in figures.values()) for key in ("asked", "mutants"))
-    hits = sum(map(killed, figures.values()))
-    alive = sum(len(entry["alive"]) for entry in figures.values())
-    opened = sum(len(reasons(path, entry["alive"]).get(OPEN, [])) for path, entry in figures.items())
+    hits, alive = sum(map(killed, figures.values())), sum(map(survived, figures.values()))
+    reasons = sum(explained(path, entry["alive"]) for path, entry in figures.items())
     every = "all " if asked == total else ""
     text = f"`{name}`: {hits} of {every}{asked} mutants killed, {percent(hits / asked)}; {alive} survive, "
-    text += f"of which {alive - opened} are explained below" if opened else "each explained below"
-    if asked < total:
-        text += f". Asked was a random part of {total} mutants"
-    fresh, fresh_hits = (sum(entry.get(key, 0) for entry in figures.values()) for key in ("fresh", "fresh_killed"))
-    if fresh and asked < total:
-        from numeric.dynamics.kinds import wilson  # here: no mutant is asked after the package was imported
-
-        share = wilson(fresh_hits, fresh)
-        text += f". Of {fresh} mutants drawn at random after the last test was written {fresh_hits} are killed, "
-        text += f"{percent(fresh_hits / fresh)}; Wilson's 95 % interval for all that were not asked before is "
-        text += f"{percent(share.low)} to {percent(share.high)}"
-    return text + "."
+    text += f"of which {reasons} have a reason" if reasons < alive else "each with a reason"
+    return text + (f". Asked was a random part of {total} mutants." if asked < total else ".")
 
 
 def row(path: str, entry: dict) -> str:
     """The line of a module in the table."""
-    asked, opened = entry["asked"], len(reasons(path, entry["alive"]).get(OPEN, []))
-    part = f"{asked}" if asked == entry["mutants"] else f"{asked} of {entry['mutants']}"
-    cells = [f"`{path}`", part, killed(entry), entry.get("timeout", 0), len(entry["alive"])]
-    cells += [percent(killed(entry) / asked), len(entry["alive"]) - opened]
+    part = f"{entry['asked']}" if entry["asked"] == entry["mutants"] else f"{entry['asked']} of {entry['mutants']}"
+    cells = [f"`{path}`", part, killed(entry), entry.get("timeout", 0), survived(entry)]
+    cells += [percent(killed(entry) / entry["asked"]), explained(path, entry["alive"]), entry["at"]]
     return "| " + " | ".join(map(str, cells)) + " |\n"
 
 
-def survivors(path: str, entry: dict) -> str:
-    """A module's survivors, reason by reason."""
-    text = f"\n### `{path}`\n"
-    for why, mutants in reasons(path, entry["alive"]).items():
-        text += f"\n{why}:\n\n" if why == OPEN else f"\n{why}\n\n"
-        for mutant in mutants:
-            text += f"    {mutant['line']:>3} - {mutant['before']}\n        + {mutant['after']}\n"
-    return text
-
-
-def page(figures: dict[str, dict]) -> str:
+def page(record: dict) -> str:
     """The whole page."""
-    storeys = sorted({path.partition("/")[0] for path in figures}, reverse=True)
-    parts = {name: {path: entry for path, entry in figures.items() if path.startswith(name + "/")} for name in storeys}
-    text = HEAD.format(version=version("cosmic-ray"), summary="\n\n".join(summary(*part) for part in parts.items()))
-    text += "".join(row(path, entry) for path, entry in sorted(figures.items()))
-    text += "\n## What is left out\n\n" + "".join(f"- {what}: {why}.\n" for what, why in LEFT_OUT.items())
-    text += "\n## Survivors\n\nLine, before (-) and after (+).\n"
-    return text + "".join(survivors(path, entry) for path, entry in sorted(figures.items()) if entry["alive"])
+    modules: dict[str, dict] = record["modules"]
+    storeys = sorted({path.partition("/")[0] for path in modules}, reverse=True)
+    parts = {name: {path: entry for path, entry in modules.items() if path.startswith(name + "/")} for name in storeys}
+    text = HEAD.format(
+        made_with=record["made_with"],
+        summary="\n\n".join(summary(*part) for part in parts.items()),
+        left_out="\n".join(f"- {what}: {why}." for what, why in LEFT_OUT.items()),
+    )
+    return text + "".join(row(path, entry) for path, entry in sorted(modules.items()))
 
 
-def write_page(new: dict[str, dict]) -> None:
-    """Merges new figures into those that are kept, and writes the page."""
-    figures = (json.loads(FIGURES.read_text()) if FIGURES.is_file() else {}) | new
-    figures = {path: entry for path, entry in sorted(figures.items()) if (ROOT / path).is_file() and entry["mutants"]}
-    FIGURES.write_text(json.dumps(figures, indent=1) + "\n")
-    PAGE.write_text(page(figures))
+def known() -> dict:
+    """The record as it stands."""
+    return json.loads(FIGURES.read_text())
+
+
+def write_page(new: dict[str, dict], made_with: str) -> None:
+    """Merges new figures into those that are kept, a line for each module, and writes the page."""
+    modules = {path: entry for path, entry in (known()["modules"] | new).items() if (ROOT / path).is_file()}
+    lines = [f" {json.dumps(path)}: {json.dumps(entry)}" for path, entry in sorted(modules.items())]
+    body = ",\n".join(lines)
+    FIGURES.write_text(f'{{"made_with": {json.dumps(made_with)}, "modules": {{\n{body}\n}}}}\n')
+    PAGE.write_text(page(known()))

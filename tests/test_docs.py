@@ -1,6 +1,8 @@
 """The documentation is true: its Python gives what it shows, its commands run, its pages are all reached."""
 
+import ast
 import doctest
+import importlib.util
 import re
 import shlex
 from pathlib import Path
@@ -9,14 +11,23 @@ import pytest
 
 from verification.app.shell.cli import main
 
-DOCS = Path(__file__).parents[1] / "docs"
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
+READ = sorted([*PAGES, *ROOT.glob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
+FOLDERS = ("symbolic", "numeric", "verification", "tests", "benchmarks", "docs", "notebooks")
+PATHS = re.compile(rf"`((?:{'|'.join(FOLDERS)})/[\w./*]*)`")
 PYTHON = [page for page in PAGES if ">>> " in page.read_text()]
 COMMANDS = [
     pytest.param(page, block, id=f"{page.stem}-{number}")
     for page in PAGES
     for number, block in enumerate(re.findall(r"```console\n(.*?)```", page.read_text(), re.DOTALL))
 ]
+
+
+spec = importlib.util.spec_from_file_location("rooms", DOCS / "rooms.py")
+ROOMS = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(ROOMS)
 
 
 def named(page):
@@ -44,12 +55,39 @@ def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("page", PAGES, ids=named)
 def test_every_page_is_reached_from_the_index(page):
-    entries = re.findall(r"^[A-Za-z_/0-9]+$", (DOCS / "index.md").read_text(), re.MULTILINE)
+    above = page.parent.parent / f"{page.parent.name}.md"  # a room of the reference stands under its storey
+    home = above if above.is_file() else DOCS / "index.md"
+    entries = re.findall(r"^[A-Za-z_/0-9]+$", home.read_text(), re.MULTILINE)
 
-    assert page.stem == "index" or str(page.relative_to(DOCS).with_suffix("")) in entries
+    assert page.stem == "index" or str(page.relative_to(home.parent).with_suffix("")) in entries
 
 
-@pytest.mark.parametrize("page", PAGES, ids=named)
+@pytest.mark.parametrize("page", sorted([*PAGES, *ROOT.glob("*.md")]), ids=named)
 def test_links_between_pages_lead_somewhere(page):
-    for link in re.findall(r"\]\(([^)#:]+\.md)\)", page.read_text()):
+    for link in re.findall(r"\]\(([^)#:]+\.\w+)\)", page.read_text()):
         assert (page.parent / link).is_file(), link
+
+
+@pytest.mark.parametrize("page", READ, ids=named)
+def test_files_that_a_page_names_are_there(page):
+    for path in PATHS.findall(page.read_text()):
+        assert list(ROOT.glob(path.rstrip("/"))), path
+
+
+def test_the_picture_of_the_rooms_is_what_the_import_contracts_say():
+    """`python docs/rooms.py` draws it anew."""
+    assert ROOMS.PICTURE.read_text() == ROOMS.picture()
+
+
+def test_the_reference_has_every_module_and_nothing_else():
+    """`python docs/rooms.py` writes it anew."""
+    assert {path: path.read_text() for path in ROOMS.REFERENCE.rglob("*.md")} == ROOMS.reference()
+
+
+@pytest.mark.parametrize("module", [name for storey in ROOMS.orders()[""] for name in ROOMS.modules(storey)])
+def test_every_public_object_of_a_module_is_in_the_reference(module):
+    """The reference shows what has a docstring, so that a public object without one would be missing."""
+    body = ast.parse((ROOT / Path(*module.split("."))).with_suffix(".py").read_text()).body
+    public = [node for node in body if isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name[0] != "_"]
+
+    assert [node.name for node in public if not ast.get_docstring(node)] == []

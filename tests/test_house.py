@@ -18,8 +18,7 @@ CODE = sorted(path for storey in STOREYS for path in (ROOT / storey).rglob("*.py
 FOLDERS = ("docs", "notebooks", "benchmarks", "tests", *STOREYS)
 WORDS = sorted(
     path
-    for folder in FOLDERS
-    for path in (ROOT / folder).rglob("*")
+    for path in chain(*((ROOT / folder).rglob("*") for folder in FOLDERS), ROOT.glob("*"))
     if path.suffix in {".md", ".py", ".ipynb", ".toml", ".j2", ".html", ".bib", ".cff"} and "_build" not in path.parts
 )
 TESTS = sorted(path for path in (ROOT / "tests").rglob("*.py") if "golden" not in path.parts)

@@ -3,6 +3,7 @@
 import re
 import tomllib
 import unicodedata
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,7 @@ APART = {ROOT / "docs" / "references.md", Path(__file__)}
 PRINTED = ROOT / "verification" / "paper" / "claims" / "printed"  # the paper's own words, with its own citations
 TEXTS = sorted(
     path
-    for folder in FOLDERS
-    for path in (ROOT / folder).rglob("*")
+    for path in chain(*((ROOT / folder).rglob("*") for folder in FOLDERS), ROOT.glob("*.md"))
     if path.suffix in READ and "_build" not in path.parts and PRINTED not in path.parents and path not in APART
 )
 YEAR = r"(?:1[6-9]|20)\d\d"

@@ -1,6 +1,6 @@
 """The text of a kernel: blocks of lanes, each bounced many times, for one family, one law and one question.
 
-    void run(double *state, const double *lam, const double *shape, double *record,
+    void run(double state[], const double lam[], const double shape[], double record[],
              int64 width, int64 first, int64 last, int64 bounces)
 
 `state` holds one row of `width` doubles for each field: the ball's own, then `code` and `lost` when the

@@ -1,4 +1,4 @@
-"""Tables: components, the paper's own, formulas that users type, validity, symmetry, laws and scenes."""
+"""Tables: components, the paper's own, typed formulas, validity, symmetry, laws and scenes."""
 
 import lazy_loader
 

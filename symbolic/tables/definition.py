@@ -206,6 +206,7 @@ def built(document: Mapping[str, Any]) -> "Table":
 
 
 def name_of(boundary: Mapping[str, Any]) -> str:
+    """The name of a boundary: the paper's, the user's own, or the way it is written."""
     kind = next((key for key in ("polar", "parametric") if key in boundary), "piecewise")
     return str(boundary.get("table") or boundary.get("name") or kind)
 
@@ -229,6 +230,7 @@ def _vocabulary() -> set[str]:
 
 
 def contraction_text(given: Any) -> str:
+    """A contraction as exact text; it must lie in [0, 1]."""
     value = exact("lam", given)
     if not 0 <= value <= 1:
         raise ValueError(f"lam = {given} is no contraction; accepted: numbers in [0, 1]")
@@ -242,6 +244,7 @@ def _expression(label: str, text: str) -> "Expr":
 
 
 def known_entries(label: str, entry: Any, keys: tuple[str, ...]) -> None:
+    """Refuses an entry that is no table, or that says something under a key that means nothing."""
     if not isinstance(entry, Mapping):
         raise ValueError(f"{label} is {entry!r}; it must be a table with the entries {', '.join(keys)}")
     for key in entry:
@@ -256,12 +259,14 @@ def _list(key: str, said: Mapping[str, Any]) -> list[Any]:
 
 
 def text_entry(label: str, given: Any) -> str:
+    """An entry that must be text."""
     if not isinstance(given, str):
         raise ValueError(f"scene: {label} = {given!r} is no text; put it in quotation marks")
     return given
 
 
 def word_entry(label: str, given: Any) -> str:
+    """An entry that must be a name."""
     if not isinstance(given, str) or not WORD.fullmatch(given):
         raise ValueError(f"scene: {label} = {given!r} is no name; accepted: letters, digits, '_', '-' and blanks")
     return given

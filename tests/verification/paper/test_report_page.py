@@ -148,7 +148,7 @@ def test_every_character_that_latex_acts_on_is_escaped():
 
 
 def test_measured_diagrams_end_the_page():
-    found = diagrams(Path(__file__).parents[3] / "docs" / "work_precision.json")
+    found = diagrams(Path(__file__).parents[3] / "benchmarks" / "records" / "work_precision.json")
 
     assert len(found) >= 10
     html = page(RESULTS, {}, found[:1])

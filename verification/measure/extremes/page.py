@@ -220,10 +220,10 @@ def _short(x: float | None) -> str:
 
 WORDS = f"""# Stiff and extreme cases
 
-Every case below is a labelled fixture (`verification/extremes/`), run by every kernel from the same rounded state
-and held against a truth with 100 digits: a ball proved to enclose the first hit, or where balls refuse the
-definition of the map in mpmath. `python benchmarks/extremes.py --longer` measures it and writes this page;
-`tests/verification/test_extremes.py` holds every verdict to its record.
+Every case below is a labelled fixture (`verification/measure/extremes/`), run by every kernel from the same
+rounded state and held against a truth with 100 digits: a ball proved to enclose the first hit, or where balls refuse
+the definition of the map in mpmath. `python benchmarks/extremes.py --longer` measures it and writes this page;
+`tests/verification/measure/test_extremes.py` holds every verdict to its record.
 
 With data `x`, truth `f(x)` and answer `y`: the **forward error** is `|y - f(x)|`; the **backward error** is the
 smallest `(dx, dy)` with `y + dy = f(x + dx)`, to first order (the mixed error of {{cite:p}}`Higham2002`); the

@@ -1,4 +1,4 @@
-"""The map to any precision, in mpmath and in balls, with the first hit proved; and strategies that draw its points."""
+"""The map to any precision, in mpmath and in balls, with the first hit proved."""
 
 import lazy_loader
 

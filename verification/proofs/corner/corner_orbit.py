@@ -98,6 +98,6 @@ def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb,
         notes["kind"] = (
             "border collision: the piecewise linear half return meets every hypothesis of robust chaos above "
             "lambda-star, where it has two saddles (orbits of period 4) and an attractor without a stable cycle, and "
-            "none of them below; what the map itself does just above is proved in certificates.birth"
+            "none of them below; what the map itself does just above is proved by a trapping polygon"
         )
     return value, notes

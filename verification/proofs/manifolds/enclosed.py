@@ -83,7 +83,7 @@ def around_zero(radius: arb) -> acb:
 
 def size(x: Any) -> arb:
     """An upper bound of the absolute value."""
-    return arb(abs(x).abs_upper())
+    return arb(abs(arb(x) if isinstance(x, int) else x).abs_upper())
 
 
 def enclosed_saddle(orbit: Orbit, map: PlaneMap, letter: acb) -> Saddle:

@@ -26,7 +26,7 @@ from verification.measure.extremes.kernels import KERNELS, LONGDOUBLE, TEXTBOOK
 from verification.measure.extremes.near import SMALL, Measured, Stability
 from verification.measure.extremes.page import rows
 
-DOCS = Path(page.__file__).parent.parent.parent / "docs"
+DOCS = Path(page.__file__).parents[3] / "docs"
 WIDE = np.finfo(np.longdouble).nmant >= 63
 
 

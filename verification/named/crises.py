@@ -189,7 +189,8 @@ def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
     """The quarters of a scan's steps, upwards, in which an attractor reaches farther at once than it ever has.
 
     It is compared with the farthest that it has come before, so that the end of a window, where it is as wide again as
-    before the window, is no widening; and in the quarter it has to grow as much, which steady growth does not.
+    before the window, is no widening; and in the quarter it has to grow by half of `AT_ONCE`, where steady growth by
+    `AT_ONCE` in a step leaves a quarter.
     """
     found: list[tuple[Extent, Extent]] = []
     before: Extent | None = None
@@ -199,16 +200,17 @@ def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
         here = extent(map.at(float(lam)))
         if here is None:
             continue
-        if before is not None and _beyond(here, farthest):
+        if before is not None and _beyond(here, farthest, AT_ONCE):
             low, high = narrowed(alpha, (before, here), (here.lam - before.lam) / 4)
-            if _beyond(high, np.maximum(farthest, low.lengths)):
+            if _beyond(high, np.maximum(farthest, low.lengths), AT_ONCE / 2):
                 found.append((low, high))
         before, farthest = here, np.maximum(farthest, here.lengths)
     return found
 
 
-def _beyond(here: Extent, farthest: Array) -> bool:
-    return bool(np.any(np.array(here.lengths) > (1 + AT_ONCE) * farthest))
+def _beyond(here: Extent, farthest: Array, part: float) -> bool:
+    """Is one of the lengths longer than the farthest by this part?"""
+    return bool(np.any(np.array(here.lengths) > (1 + part) * farthest))
 
 
 def narrowed(alpha: str, step: tuple[Extent, Extent], tolerance: float) -> tuple[Extent, Extent]:

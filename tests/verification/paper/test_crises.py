@@ -112,6 +112,14 @@ def test_a_scan_of_extents_takes_no_window_and_no_steady_growth_for_a_widening()
     assert widenings("0.08", np.arange(0.4370, 0.4391, 5e-4)) == []
 
 
+@pytest.mark.parametrize(("n", "low"), [(2, 0.6275), (3, 0.6520)])
+def test_a_scan_of_extents_finds_the_widenings_in_angle_alone_not_far_above_their_tangencies(n, low):
+    """Not at them: just above, 200,000 bounces see the new part or miss it."""
+    (step,) = widenings("0.08", np.arange(low, low + 0.0031, 5e-4))
+
+    assert 0 < step[1].lam - contact(f"interior-crisis-{n}", SHAPE).letter < 5e-4
+
+
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_the_largest_exit_angle_grows_at_once_across_an_interior_crisis_and_steadily_before_it(n):
     at = contact(f"interior-crisis-{n}", SHAPE).letter

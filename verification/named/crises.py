@@ -12,7 +12,7 @@ reach at either end of the diameter and its area, and `widenings` the steps of a
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -186,10 +186,11 @@ def extent(map: PinballMap) -> Extent | None:
 
 
 def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
-    """The steps of a scan, upwards, in which an attractor reaches farther at once than it ever has.
+    """The quarters of a scan's steps, upwards, in which an attractor reaches farther at once than it ever has.
 
     It is compared with the farthest that it has come before, so that the end of a window, where it is as wide again as
-    before the window, is no widening. Steps of 5e-4 or less tell growth at once from steady growth.
+    before the window, is no widening; and in the quarter it has to grow by half of `AT_ONCE`, where steady growth by
+    `AT_ONCE` in a step leaves a quarter.
     """
     found: list[tuple[Extent, Extent]] = []
     before: Extent | None = None
@@ -199,24 +200,35 @@ def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
         here = extent(map.at(float(lam)))
         if here is None:
             continue
-        if before is not None and np.any(np.array(here.lengths) > (1 + AT_ONCE) * farthest):
-            found.append((before, here))
+        if before is not None and _beyond(here, farthest, AT_ONCE):
+            low, high = narrowed(alpha, (before, here), (here.lam - before.lam) / 4)
+            if _beyond(high, np.maximum(farthest, low.lengths), AT_ONCE / 2):
+                found.append((low, high))
         before, farthest = here, np.maximum(farthest, here.lengths)
     return found
 
 
-def narrowed(alpha: str, step: tuple[Extent, Extent], tolerance: float) -> tuple[float, float]:
-    """The contractions between which the attractor widens, by bisection of a step of `widenings`.
+def _beyond(here: Extent, farthest: Array, part: float) -> bool:
+    """Is one of the lengths longer than the farthest by this part?"""
+    return bool(np.any(np.array(here.lengths) > (1 + part) * farthest))
+
+
+def narrowed(alpha: str, step: tuple[Extent, Extent], tolerance: float) -> tuple[Extent, Extent]:
+    """Extents on both sides of a widening, by bisection of a step around it.
 
     Just above a crisis the new part is visited so seldom that the orbits may miss it: the lower end may be too high.
     """
     low, high = step
     widest = int(np.argmax(np.array(high.lengths) / np.array(low.lengths)))
     level = (low.lengths[widest] + high.lengths[widest]) / 2
-    ends = [low.lam, high.lam]
     map = PinballMap("egg", lam=low.lam, alpha=alpha)
-    while ends[1] - ends[0] > tolerance:
-        middle = (ends[0] + ends[1]) / 2
+    while high.lam - low.lam > tolerance:
+        middle = (low.lam + high.lam) / 2
         here = extent(map.at(middle))
-        ends[int(here is not None and here.lengths[widest] > level)] = middle
-    return ends[0], ends[1]
+        if here is None:  # a window: nothing wide is there
+            low = replace(low, lam=middle)
+        elif here.lengths[widest] > level:
+            high = here
+        else:
+            low = here
+    return low, high

@@ -279,15 +279,15 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     return Found(ball, checks, made if held else None, notes)
 
 
-def at_period(kind: str, digits: int, alpha: Expr, period: Expr) -> Found:
-    """Where a window or a small family of some period ends, its bands join, or an attractor reaches its saddle."""
+def one_of(kind: str, letter: str, digits: int, alpha: Expr, **which: Expr) -> Found:
+    """Where a window or a small family of some period ends or its bands join, or the n-th interior crisis is."""
     from verification.proofs.manifolds.known import CONTACTS
 
-    name = f"{kind}-{period}"
+    name = f"{kind}-{which[letter]}"
     if name not in CONTACTS:
         known = sorted(int(other.rpartition("-")[2]) for other in CONTACTS if other.rpartition("-")[0] == kind)
         listed = ", ".join(str(other) for other in known)
-        raise ValueError(f"locate {kind}: period = {period} is not known; accepted: {listed}")
+        raise ValueError(f"locate {kind}: {letter} = {which[letter]} is not known; accepted: {listed}")
     return egg_crisis(name, digits, alpha)
 
 
@@ -312,15 +312,15 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "symmetry-breaking": (symmetry_breaking, ("alpha",)),
     "merging-crisis": (lambda digits, alpha: egg_crisis("merging", digits, alpha), ("alpha",)),
     "boundary-crisis": (lambda digits, alpha: egg_crisis("boundary", digits, alpha), ("alpha",)),
-    "band-merging": (partial(at_period, "band-merging"), ("alpha", "period")),
+    "band-merging": (partial(one_of, "band-merging", "period"), ("alpha", "period")),
     "symmetry-restoring": (lambda digits, alpha: egg_crisis("symmetry-restoring", digits, alpha), ("alpha",)),
-    "interior-crisis": (partial(at_period, "interior-crisis"), ("alpha", "period")),
-    "window-end": (partial(at_period, "window-end"), ("alpha", "period")),
-    "window-merging": (partial(at_period, "window-merging"), ("alpha", "period")),
-    "family-end": (partial(at_period, "family-end"), ("alpha", "period")),
-    "family-merging": (partial(at_period, "family-merging"), ("alpha", "period")),
+    "interior-crisis": (partial(one_of, "interior-crisis", "n"), ("alpha", "n")),
+    "window-end": (partial(one_of, "window-end", "period"), ("alpha", "period")),
+    "window-merging": (partial(one_of, "window-merging", "period"), ("alpha", "period")),
+    "family-end": (partial(one_of, "family-end", "period"), ("alpha", "period")),
+    "family-merging": (partial(one_of, "family-merging", "period"), ("alpha", "period")),
 }
 USUAL = {  # letters that need not be given
     "band-merging": {"period": Integer(4)},
-    "interior-crisis": {"period": Integer(12)},
+    "interior-crisis": {"n": Integer(1)},
 }

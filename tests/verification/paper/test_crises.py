@@ -93,11 +93,11 @@ def test_balls_see_eight_bands_become_four_where_the_tangency_is():
 
 def test_a_scan_of_extents_finds_the_one_widening_and_the_tangency_lies_where_it_is():
     """Two methods that share only the map: farthest points of orbits, and manifolds that touch."""
-    at = contact("interior-crisis-12", SHAPE).letter
+    at = contact("interior-crisis-1", SHAPE).letter
     (step,) = widenings("0.08", np.arange(0.4265, 0.4301, 5e-4))
     low, high = narrowed("0.08", step, 2e-6)
 
-    assert low < at < high
+    assert low.lam < at < high.lam
     before, after = (extent(PinballMap("egg", lam=lam, alpha="0.08")) for lam in (at - 1e-5, at + 1e-5))
     assert after.angle > 1.02 * before.angle
     assert after.near > 1.2 * before.near
@@ -106,9 +106,28 @@ def test_a_scan_of_extents_finds_the_one_widening_and_the_tangency_lies_where_it
 
 
 def test_a_scan_of_extents_takes_no_window_and_no_steady_growth_for_a_widening():
-    """0.405 and 0.42 lie in windows, after which the attractor is as wide as it was before."""
+    """0.405 and 0.42 lie in windows, after which the attractor is as wide as before; at 0.438 a length grows fast."""
     assert widenings("0.08", np.arange(0.4035, 0.4071, 5e-4)) == []
     assert widenings("0.08", np.arange(0.4185, 0.4226, 5e-4)) == []
+    assert widenings("0.08", np.arange(0.4370, 0.4391, 5e-4)) == []
+
+
+@pytest.mark.parametrize(("n", "low"), [(2, 0.6275), (3, 0.6520)])
+def test_a_scan_of_extents_finds_the_widenings_in_angle_alone_not_far_above_their_tangencies(n, low):
+    """Not at them: just above, 200,000 bounces see the new part or miss it."""
+    (step,) = widenings("0.08", np.arange(low, low + 0.0031, 5e-4))
+
+    assert 0 < step[1].lam - contact(f"interior-crisis-{n}", SHAPE).letter < 5e-4
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_the_largest_exit_angle_grows_at_once_across_an_interior_crisis_and_steadily_before_it(n):
+    at = contact(f"interior-crisis-{n}", SHAPE).letter
+    lams = (at - 7e-4, at - 1e-4, at + 5e-4)
+    first, below, above = (extent(PinballMap("egg", lam=lam, alpha="0.08")).angle for lam in lams)
+
+    assert below < 1.01 * first
+    assert above > 1.01 * below
 
 
 def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_side_goes_there():
@@ -119,7 +138,8 @@ def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_si
 @pytest.mark.parametrize(
     ("kind", "saddle", "letter"),
     [
-        ("interior-crisis-12", "saddle of period 12", "0.42841919075459522651"),
+        ("interior-crisis-1", "saddle of period 12", "0.42841919075459522651"),
+        ("interior-crisis-2", "cycle of period 12", "0.62896277067297284149"),
         ("boundary", "triangle", "0.66214427335822441948"),
         ("merging", "cycle of period 8", "0.44343524608185121825"),
     ],
@@ -133,6 +153,14 @@ def test_a_located_crisis_names_its_mechanism_and_what_is_not_proved(kind, saddl
     )
     assert saddle in found.notes["mechanism"]
     assert found.ball.overlaps(arb(letter))  # the tangency to twenty digits
+
+
+def test_a_cycle_that_closes_with_a_turn_has_no_certificate_and_the_tangency_is_proved_all_the_same():
+    found = egg_crisis("interior-crisis-3", 8, SHAPE)
+
+    assert {name for name, value in found.checks.items() if value is None} == {"shadowing_fold", "is_the_crisis"}
+    assert found.ball.overlaps(arb("0.65345597578810961117"))  # by a fold to 22 digits
+    assert found.proof.certified
 
 
 @pytest.mark.parametrize(("printed", "verdict"), [("0.66", Verdict.SUPPORTED)])

@@ -159,7 +159,7 @@ def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_mul
 
 
 @pytest.mark.parametrize(
-    "kind", ["window-end-9", "window-end-15", "family-end-8", "family-merging-8", "interior-crisis-12"]
+    "kind", ["window-end-9", "window-end-15", "family-end-8", "family-merging-8", "interior-crisis-1"]
 )
 def test_the_folds_of_shadowing_cycles_approach_the_ends_of_windows_at_the_rate_of_the_saddle(kind):
     """Two methods: each round of the saddle more brings the fold nearer by its unstable multiplier."""

@@ -26,7 +26,7 @@ LETTERS = ("lam", "alpha", "n", "period")
 @click.option("--digits", type=click.IntRange(1, 20_000), default=30, show_default=True, help="Decimal digits.")
 @click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat.")
 @click.option("--alpha", metavar="NUMBER", help="The shape of the egg, for the names that need one.")
-@click.option("--n", metavar="INTEGER", help="Which doubling: from period 2^(n-1) to 2^n.")
+@click.option("--n", metavar="INTEGER", help="Which doubling, of period 2^(n-1) to 2^n, or which interior crisis.")
 @click.option("--period", metavar="INTEGER", help="Of the attractors that a window, a family or bands began with.")
 @click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
 @json_option

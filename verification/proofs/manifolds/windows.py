@@ -295,7 +295,7 @@ WINDOWS = {
         0.4284191907546,
     ),
     "interior-crisis-2": homoclinic(
-        Orbit("cycle of period 12, 4 bounces and a turn", (-0.07156026, 2.367991, 5.604774, 8.125316), 1, (5, 3)),
+        Orbit("cycle of 4 bounces and a turn", (-0.07156026, 2.367991, 5.604774, 8.125316), Closure(1, (5, 3))),
         15,
         1,
         0.0010931310,
@@ -303,7 +303,7 @@ WINDOWS = {
         0.6289627706730,
     ),
     "interior-crisis-3": homoclinic(
-        Orbit("cycle of period 5", (-0.04810539, 2.369335, 5.583150, 8.101284, 10.31333), 1, (6, 3)),
+        Orbit("cycle of period 5", (-0.04810539, 2.369335, 5.583150, 8.101284, 10.31333), Closure(1, (6, 3))),
         19,
         1,
         0.00016865854,

@@ -44,12 +44,10 @@ def question(package: str) -> str:
 
 
 def fitted(said: str, name: str, width: float) -> str:
-    """The words that stand beside a name: the whole sentence, or what it says before its colon."""
+    """The words that stand beside a name: the whole sentence, or as many of its clauses as there is room for."""
     room = (width - 30 - BOLD * len(name)) / LETTER
-    short = said if len(said) <= room else said.partition(":")[0] + "."
-    if len(short) > room:
-        raise ValueError(f"{name}: its first sentence has {len(short)} letters, and {room:.0f} fit into the picture")
-    return short
+    parts = [said, *(f"{said[: stop.start()]}." for stop in reversed([*re.finditer(r"[:;,]", said)]))]
+    return next((part for part in parts if len(part) <= room), "")
 
 
 def drawn(package: str, rooms: dict[str, list[str]], top: float, inset: float) -> tuple[list[str], float]:

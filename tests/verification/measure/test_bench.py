@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from verification.app.shell.cli import main
+from verification.measure.speed import baselines
 from verification.measure.speed.baselines import HEIGHT, WIDTH, diagram, magnitude
 from verification.measure.speed.bench import LAWS, Row, frontier, multiprecision_rows
 from verification.measure.speed.labelled import cases
@@ -124,3 +125,19 @@ def test_a_diagram_of_like_errors_is_plain():
 
     assert lines[0].strip().startswith("2e-15")
     assert lines[HEIGHT - 1].strip().startswith("2e-16")
+
+
+def test_an_installed_package_looks_for_no_benchmarks_beside_it(tmp_path, monkeypatch):
+    (tmp_path / "benchmarks").mkdir()
+    (tmp_path / "benchmarks" / "textbook.py").write_text("raise SystemExit('not ours')")
+    monkeypatch.setattr(baselines, "ROOT", tmp_path)
+    monkeypatch.setattr(baselines, "FOLDER", tmp_path / "benchmarks")
+
+    assert baselines.module("textbook") is None
+
+
+def test_bench_says_where_its_baselines_are(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(baselines, "ROOT", tmp_path)
+    assert main(["bench", "--scene", "circle", "--digits", "20", "--runs", "1", "--no-accuracy"]) == 0
+
+    assert baselines.MISSING in " ".join(capsys.readouterr().out.split())

@@ -44,7 +44,7 @@ def command(
     the others of its run, changed by more than a factor 1.5, or an error grew tenfold.
     """
     from verification.measure.speed import bench, labelled
-    from verification.measure.speed.baselines import baseline_rows
+    from verification.measure.speed.baselines import MISSING, baseline_rows, is_checkout
     from verification.measure.work.compare import earlier, moved, of_bench
 
     before = earlier(Path(compare)) if compare else []
@@ -71,6 +71,8 @@ def command(
     output.write(document | ({"moved": changes} if compare else {}))
     for name in chosen:
         show(output.console, name, [row for row in rows if row.scene == name])
+    if baselines and not is_checkout():
+        output.console.print(f"\n{MISSING}")
     if cases:
         show_cases(output.console, cases)
     output.console.print(

@@ -29,6 +29,7 @@ def command(question: str | None, out: str | None, runs: int, most_digits: int, 
     are distances from a certified ball. In the table `*` marks the Pareto front: nothing else is both quicker
     and more exact; `!` marks a method whose error is larger than it claims.
     """
+    from verification.measure.speed.baselines import MISSING, is_checkout
     from verification.measure.work.compare import QUESTIONS
     from verification.measure.work.compare import question as asked
     from verification.measure.work.question import measured
@@ -52,6 +53,8 @@ def command(question: str | None, out: str | None, runs: int, most_digits: int, 
         sure = "a certified ball" if each.certified else "a long run with its error bar, not a proof"
         output.console.print(f"\n{each.title}: {each.answers}\nerror {each.unit}, against {sure}")
         output.console.print(plain(own))
+    if not is_checkout():
+        output.console.print(f"\n{MISSING}")
     if path is not None:
         from verification.measure.work.figure import drawn, image
 

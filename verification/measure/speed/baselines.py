@@ -1,7 +1,7 @@
 """The baselines of the benchmark folder: naive NumPy + lambdify, scalar numba, and the paper's own ways.
 
-They are written as one would write them first and are no part of the installed package; without
-the folder, or without numba, the benchmark goes on with its own rows only.
+They are written as one would write them first and are no part of the installed package: they need a checkout, or the
+source distribution. Elsewhere, or without numba, the benchmark goes on with its own rows only, and says so.
 
 A diagram of errors against times, in text: from float64 to a thousand digits on one page.
 """
@@ -21,15 +21,22 @@ from verification.maps.exact import ExactMap
 from verification.measure.speed.bench import LAWS, Row, best
 from verification.measure.speed.labelled import DIGITS, SCENES
 
-FOLDER = Path(__file__).resolve().parents[3] / "benchmarks"
+ROOT = Path(__file__).resolve().parents[3]
+FOLDER = ROOT / "benchmarks"
+MISSING = "The baselines need a checkout, or the source distribution: benchmarks/ is no part of the installed package."
 BALLS = 24  # whose errors are measured
 LAM = 0.95
+
+
+def is_checkout() -> bool:
+    """Whether the package runs from its source tree: what lies beside an installed one is somebody else's."""
+    return (ROOT / "pyproject.toml").is_file() and FOLDER.is_dir()
 
 
 def module(name: str) -> ModuleType | None:
     """A module of the benchmark folder, or None when it cannot be had."""
     path = FOLDER / f"{name}.py"
-    if not path.exists():
+    if not is_checkout() or not path.exists():
         return None
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None

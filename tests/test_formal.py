@@ -89,7 +89,11 @@ def test_without_coq_make_formal_says_in_one_sentence_what_it_needs(tmp_path):
     for tool in ("sh", "env"):
         (tmp_path / tool).symlink_to(shutil.which(tool))
     result = subprocess.run(
-        [make, "formal"], cwd=ROOT, env={**os.environ, "PATH": str(tmp_path)}, capture_output=True, text=True
+        [make, "--no-print-directory", "formal"],
+        cwd=ROOT,
+        env={**os.environ, "PATH": str(tmp_path), "MAKEFLAGS": ""},
+        capture_output=True,
+        text=True,
     )
 
     assert result.returncode == 2

@@ -139,7 +139,7 @@ def test_the_attractor_nears_the_boundary_of_the_period_3_basins_and_only_one_si
     ("kind", "saddle", "letter"),
     [
         ("interior-crisis-1", "saddle of period 12", "0.42841919075459522651"),
-        ("interior-crisis-2", "cycle of period 12", "0.62896277067297284149"),
+        ("interior-crisis-2", "cycle of 4 bounces and a turn", "0.62896277067297284149"),
         ("boundary", "triangle", "0.66214427335822441948"),
         ("merging", "cycle of period 8", "0.44343524608185121825"),
     ],

@@ -11,7 +11,7 @@ from sympy import cos, lambdify, sin, symbols
 
 from symbolic import tables
 from symbolic.tables.geometry import velocity
-from symbolic.tables.symbols import theta as parameter
+from symbolic.tables.table import theta as parameter
 
 
 class Lambdified:

@@ -12,8 +12,8 @@ from rich.progress import track
 
 from numeric import PinballMap
 from symbolic.tables import egg
+from verification.named.attractors import Row, branches, row
 from verification.named.branches import Branch, End, Event
-from verification.named.census import Row, branches, row
 
 
 def table_of_rows(rows: Sequence[Row]) -> str:

@@ -20,14 +20,13 @@ from sympy import Expr, Integer, N, Rational, acos, pi
 
 from symbolic import tables
 from symbolic.cycles.polygons import saddle_node
-from symbolic.tables.symbols import alpha as letter
-from verification.arithmetic.balls import exact_balls
-from verification.arithmetic.words import balls, bits_of, working
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.cascade import ladder
-from verification.cycles.shooting.newton import GUARD, System, floats, levels, refined
-from verification.cycles.shooting.problem import Problem
-from verification.cycles.shooting.small import corner
+from symbolic.tables.table import alpha as letter
+from verification.arithmetic.balls import balls, bits_of, exact_balls, working
+from verification.cycles.recurrence.cascade import ladder
+from verification.cycles.recurrence.critical import corner
+from verification.cycles.recurrence.newton import GUARD, System, floats, levels, refined
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.named.feigenbaum import limit, ratio
 from verification.named.files import checked, document
 from verification.named.locate import GMPY2, locate
@@ -35,7 +34,7 @@ from verification.proofs.corner.corner_orbit import SpecialClaim, specially_prov
 from verification.proofs.corner.half_return import birth
 from verification.proofs.corner.return_map import kink_falls, minimum_at_kink
 from verification.proofs.periodic.bifurcation import Claim, proved
-from verification.proofs.periodic.exclusion import no_triangles
+from verification.proofs.periodic.triangles import no_triangles
 
 ALPHA: Expr = Rational(2, 25)
 DIGITS = (16, 50, 100, 300, 1000, 3000, 10_000)

@@ -25,13 +25,12 @@ from numeric import PinballMap
 from symbolic.tables import egg
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import branch
-from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.cascade import next_critical
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import Array
-from verification.cycles.shooting.attracting import next_critical
-from verification.cycles.shooting.problem import Problem
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import Array, BifurcationKind
+from verification.named.curves import Rung, cascade
 from verification.named.locate import certify
-from verification.named.tongue import Rung, cascade
 
 ALPHA = Rational(2, 25)
 POINTS = 50

@@ -15,7 +15,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table as Shown
 
-from verification.cycles.shooting.newton import refined
+from verification.cycles.recurrence.newton import refined
 from verification.named import crises
 from verification.proofs.manifolds import shadows as passages
 from verification.proofs.manifolds.known import SHAPE, contact, crisis, table

@@ -14,11 +14,11 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+from verification.measure.extremes.labelled import SCENES
 from verification.measure.extremes.near import Stability
-from verification.measure.speed.baselines import duration
-from verification.measure.speed.labelled import SCENES
+from verification.measure.work.bench import duration
 from verification.measure.work.choice import crossovers, entries
-from verification.measure.work.prose import times
+from verification.measure.work.figure import times
 from verification.measure.work.row import Row, footer, front, short
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -13,8 +13,7 @@ import numpy as np
 from numeric import PinballMap
 from numeric.dynamics.exponents import Count
 from numeric.dynamics.statistics import estimate
-from numeric.pinball.growth import Growth
-from numeric.pinball.sampling import interior_starts
+from numeric.pinball.sampling import Growth, interior_starts
 
 SCENES = (
     ("cardioid", {}, "0"),

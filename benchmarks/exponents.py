@@ -9,7 +9,7 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec, starting
-from verification.measure.speed.bench import BALLS, LAWS, SCENES, attracted, best
+from verification.measure.work.bench import BALLS, LAWS, SCENES, attracted, best
 
 BOUNCES = 1000
 

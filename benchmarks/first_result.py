@@ -19,8 +19,8 @@ from pathlib import Path
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec, fields
 from numeric.kernels.text import kernel_text, operations
-from verification.measure.speed.bench import LAWS
-from verification.measure.speed.labelled import SCENES
+from verification.measure.extremes.labelled import SCENES
+from verification.measure.work.bench import LAWS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "leave_out.md"
@@ -37,7 +37,7 @@ import json, pathlib, sys, time
 import numpy
 began = time.process_time()
 from numeric import PinballMap
-from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import Growth
 map = PinballMap({name!r}, lam={lam!r}{shape})
 {asked}
 tops = sorted({{module.partition(".")[0] for module in sys.modules}} - set(sys.stdlib_module_names))

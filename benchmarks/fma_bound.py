@@ -17,8 +17,8 @@ import numpy as np
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text, operations
-from verification.measure.speed.bench import BALLS, LAWS, attracted
-from verification.measure.speed.labelled import SCENES
+from verification.measure.extremes.labelled import SCENES
+from verification.measure.work.bench import BALLS, LAWS, attracted
 
 CHAINS, LANES, PASSES = 12, 8, 20_000
 BOUNCES, RUNS = 100, 100

@@ -11,11 +11,9 @@ import sys
 
 import atheris
 
-with atheris.instrument_imports(
-    include=["symbolic.tables.formula", "symbolic.tables.formula_bounds", "verification.app"]
-):
+with atheris.instrument_imports(include=["symbolic.tables.formula", "symbolic.tables.formula", "verification.app"]):
     from symbolic.tables.formula import FUNCTIONS, number, parse
-    from verification.app.shell.scene import scene, start_of
+    from verification.app.scene import scene, start_of
 
 WORDS = (
     *FUNCTIONS, "theta", "pi", "E", "+", "-", "*", "/", "**", "^", "(", ")", "0", "1", "2", "3", "9", ".", "e", "1e9",

@@ -11,7 +11,7 @@ import tempfile
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from verification.app.shell.cli import main
+from verification.app.cli import main
 
 KEPT = Path(__file__).parents[1] / "tests" / "verification" / "golden" / "values.json"
 EGG = "--alpha 0.08"

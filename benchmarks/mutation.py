@@ -1,11 +1,11 @@
 """Mutation testing: does a test notice when a line is wrong?
 
     python benchmarks/mutation.py cover                     once: which test runs which line of symbolic and numeric
-    python benchmarks/mutation.py cover tests/symbolic/test_zero.py symbolic/proofs/zero.py  again, for what has changed
+    python benchmarks/mutation.py cover tests/symbolic/test_zero.py symbolic/expressions/signs.py  again
     python benchmarks/mutation.py run --only 'symbolic/*.py'                resumes; the smallest modules come first
     python benchmarks/mutation.py run --only 'symbolic/*.py' --near         a quick sieve: the module's own tests alone
-    python benchmarks/mutation.py run --only symbolic/proofs/zero.py --again survived --budget 100  what passed it
-    python benchmarks/mutation.py list --only symbolic/proofs/zero.py              survivors as they stand
+    python benchmarks/mutation.py run --only symbolic/expressions/signs.py --again survived --budget 100  what passed it
+    python benchmarks/mutation.py list --only symbolic/expressions/signs.py              survivors as they stand
     python benchmarks/mutation.py page                      benchmarks/records/mutation.json and docs/mutation.md
 
 `run` asks the tests that execute the mutated statement, quickest first, until their own seconds (as `cover` measured

@@ -13,9 +13,9 @@ import sys
 import numpy as np
 
 from numeric.pinball.sampling import interior_starts
-from numeric.sweeps.parameter_space import egg, parameter_space
+from numeric.sweeps.fields import egg, parameter_space
 from numeric.sweeps.run import run
-from numeric.sweeps.scenes import map_of, measured
+from numeric.sweeps.sweep import map_of, measured
 
 WIDE = np.round(np.arange(0.051, 0.0600, 0.001), 6), np.round(np.arange(0.3, 0.96, 5e-4), 6)
 NARROW = np.round(np.arange(0.030, 0.0505, 0.001), 6), np.round(np.arange(0.8, 0.99, 5e-5), 6)

@@ -11,7 +11,7 @@ import numpy as np
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec
 from numeric.pinball.sampling import phase_starts
-from verification.measure.speed.bench import SCENES
+from verification.measure.work.bench import SCENES
 
 BALLS, PART = 8192, 2000
 

@@ -14,11 +14,9 @@ import numpy as np
 
 from numeric.dynamics.basins import starts_at
 from numeric.kernels.spec import KernelSpec, starting
-from numeric.sweeps.basins import basins
-from numeric.sweeps.parameter_space import egg, parameter_space
-from numeric.sweeps.pools import on_threads
-from numeric.sweeps.scenes import map_of, spread, text_of
-from numeric.sweeps.sweep import cores
+from numeric.sweeps.fields import basins, egg, parameter_space
+from numeric.sweeps.run import on_threads
+from numeric.sweeps.sweep import cores, map_of, spread, text_of
 from symbolic import Scene
 
 TURNS = 10

@@ -14,10 +14,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from verification.measure.work.choice import TABLE, written
-from verification.measure.work.compare import QUESTIONS, moved, question
-from verification.measure.work.figure import drawn, image
-from verification.measure.work.prose import paragraph
+from verification.measure.work.choice import QUESTIONS, TABLE, moved, question, written
+from verification.measure.work.figure import drawn, image, paragraph
 from verification.measure.work.question import measured
 from verification.measure.work.row import Row, baseline, facts, footer, front, markdown
 

@@ -38,7 +38,9 @@ def orders() -> dict[str, list[str]]:
 
 def question(package: str) -> str:
     """The first sentence of a package's docstring."""
-    text = (ROOT / Path(*package.split(".")) / "__init__.py").read_text(encoding="utf-8")
+    folder = ROOT / Path(*package.split("."))
+    path = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")  # a room may be one module
+    text = path.read_text(encoding="utf-8")
     said = (ast.get_docstring(ast.parse(text)) or "").partition("\n\n")[0].replace("\n", " ").replace("`", "")
     return re.split(r"(?<=[.?])\s", said)[0]
 

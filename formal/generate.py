@@ -11,14 +11,13 @@ from pathlib import Path
 
 from sympy import Add, Expr, Matrix, Mul, Pow, Symbol, atan, cos, fraction, pi, sin
 
-from symbolic.cycles.cycle import Cycle, monodromy
-from symbolic.cycles.named import cuspless_horizontal, egg_diameter, major_axis, minor_axis
+from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter, major_axis, minor_axis, monodromy
 from symbolic.cycles.polygons import largest_tilt, required_tilt, saddle_node, tilt_tangent
 from symbolic.cycles.thresholds import alpha_hat, alpha_tilde, lambda_c, lambda_minus
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid, cuspless, egg, ellipse
 from symbolic.tables.formula import parse
-from symbolic.tables.symbols import K0, K1, a, alpha, cos_eta1, cos_phi0, lam, t, theta
+from symbolic.tables.table import K0, K1, a, alpha, cos_eta1, cos_phi0, lam, t, theta
 
 HERE = Path(__file__).parent
 GENERATED = HERE / "Generated.v"

@@ -9,8 +9,7 @@ from IPython.display import Math, display
 from sympy import simplify, symbols
 
 from symbolic.motion import collision
-from symbolic.tables.notation import latex
-from symbolic.tables.symbols import cos_eta1, cos_phi0, lam
+from symbolic.tables.table import cos_eta1, cos_phi0, lam, latex
 
 
 def show(left, right):

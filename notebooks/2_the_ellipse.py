@@ -9,11 +9,11 @@ from sympy import Rational, factor, simplify, sqrt
 
 from symbolic import tables
 from symbolic.cycles import cycle as cycles
-from symbolic.cycles import double_normal, thresholds
-from symbolic.cycles.named import major_axis, minor_axis
+from symbolic.cycles import thresholds
+from symbolic.cycles import thresholds as double_normal
+from symbolic.cycles.cycle import major_axis, minor_axis
 from symbolic.tables import geometry
-from symbolic.tables.notation import latex
-from symbolic.tables.symbols import a, lam
+from symbolic.tables.table import a, lam, latex
 
 
 def show(left, right):

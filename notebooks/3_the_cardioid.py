@@ -10,9 +10,9 @@ from sympy import N, Rational
 
 from symbolic import tables
 from symbolic.cycles import cardioid_slap as slap_cardioid
-from symbolic.tables import arclength as length
 from symbolic.tables import geometry
-from symbolic.tables.notation import latex
+from symbolic.tables import geometry as length
+from symbolic.tables.table import latex
 
 
 def show(left, right):
@@ -84,7 +84,7 @@ assert np.min(twice) < float(infimum) * (1 + 1e-3)
 
 # +
 from symbolic.cycles import defocusing
-from symbolic.tables.symbols import lam
+from symbolic.tables.table import lam
 
 show(r"\liminf \tfrac1n \log|D(T^n)(1, 0)| \geq", defocusing.least_exponent())
 bound = [float(defocusing.least_stretch(n).subs(lam, Rational(1, 2))) for n in range(2, 30)]

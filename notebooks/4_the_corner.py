@@ -9,8 +9,8 @@ from IPython.display import Math, display
 
 from symbolic.cycles import cycle as cycles
 from symbolic.cycles import thresholds
-from symbolic.cycles.named import cuspless_horizontal
-from symbolic.tables.notation import latex
+from symbolic.cycles.cycle import cuspless_horizontal
+from symbolic.tables.table import latex
 from verification.named.locate import locate
 
 

@@ -8,10 +8,10 @@
 from IPython.display import Math, display
 from sympy import N, Rational, S
 
-from symbolic.cycles import double_normal, polygons, thresholds
-from symbolic.cycles.named import egg_diameter
-from symbolic.tables.notation import latex
-from symbolic.tables.symbols import alpha, lam
+from symbolic.cycles import polygons, thresholds
+from symbolic.cycles import thresholds as double_normal
+from symbolic.cycles.cycle import egg_diameter
+from symbolic.tables.table import alpha, lam, latex
 from verification.named.locate import locate
 
 

@@ -9,10 +9,9 @@ import numpy as np
 from mpmath import nstr
 from sympy import Rational
 
-from verification.arithmetic.words import FLOAT64
+from verification.arithmetic.balls import FLOAT64
 from verification.proofs.manifolds.known import TRIANGLE, contact, table
-from verification.proofs.manifolds.saddle import saddle
-from verification.proofs.manifolds.series import local
+from verification.proofs.manifolds.saddle import local, saddle
 
 SHAPE = Rational(2, 25)
 # -

@@ -9,12 +9,11 @@ from sympy import S, pi
 
 from numeric import PinballMap
 from symbolic import tables
-from symbolic.cycles import double_normal
+from symbolic.cycles import thresholds as double_normal
 from symbolic.cycles.cycle import Cycle
-from symbolic.motion.convexity import convexity
+from symbolic.motion.chords import convexity
 from symbolic.tables import geometry
-from symbolic.tables.notation import latex
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import latex, theta
 
 
 def show(left, right):
@@ -53,8 +52,8 @@ print(float(found.nu_plus), float(found.nu_minus))
 
 # +
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.problem import Problem
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.named.locate import certify
 
 problem = Problem(flower, (0, 0), BifurcationKind.FLIP, free="lam")

@@ -13,10 +13,10 @@ Nothing is imported before it is asked for: `import numeric` alone loads neither
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from numeric.flights.status import Status
+    from numeric.flights.family import Status
     from numeric.pinball.map import PinballMap
-    from numeric.pinball.results import Exponents, Orbit, Slap
     from numeric.pinball.sampling import Starts, interior_starts, phase_grid, phase_starts
+    from numeric.pinball.states import Exponents, Orbit, Slap
 
 __all__ = [
     "Exponents",
@@ -32,9 +32,9 @@ __all__ = [
 
 if not TYPE_CHECKING:
     HOMES = {
-        "flights.status": ("Status",),
+        "flights.family": ("Status",),
         "pinball.map": ("PinballMap",),
-        "pinball.results": ("Exponents", "Orbit", "Slap"),
+        "pinball.states": ("Exponents", "Orbit", "Slap"),
         "pinball.sampling": ("Starts", "interior_starts", "phase_grid", "phase_starts"),
     }
 

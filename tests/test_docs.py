@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.app.shell.cli import main
+from verification.app.cli import main
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

@@ -23,7 +23,7 @@ WORDS = sorted(
 )
 TESTS = sorted(path for path in (ROOT / "tests").rglob("*.py") if "golden" not in path.parts)
 READERS_OF_TEXT = {"eval", "sympify", "parse_expr", "__import__"}
-EXECUTES = {Path("symbolic/generation/text.py")}  # compiles what it has written itself
+EXECUTES = {Path("symbolic/expressions/text.py")}  # compiles what it has written itself
 LINES = 400
 
 

@@ -2,6 +2,6 @@
 
 import sys
 
-from verification.app.shell.cli import main
+from verification.app.cli import main
 
 sys.exit(main())

@@ -2,8 +2,17 @@
 
 Coefficients are the nearest doubles to near-minimax polynomials; truncation stays below 2e-17, so
 what remains is rounding. tests/numeric/backends/test_functions.py holds them against 50 digits.
+
+Complex arithmetic on pairs, for points and directions in the plane.
+
+The one zero of a function in an interval: Newton without questions, then Newton with a bracket.
+
+The unconditional steps cost no branch; a lane that has not converged inside its bracket by then
+enters a loop that keeps a change of sign and cannot leave it. Lanes that are done stay as they are,
+so that no lane's result depends on its neighbours.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 ATAN = (
@@ -66,3 +75,186 @@ def turn(ops: Any, x: Any, quarters: int = 2) -> tuple[Any, Any]:
     if quarters > 1:
         across = ops.select(ops.number(1.5) < j, -across, across)
     return along, ops.times_sign(across, x)
+
+
+Pair = tuple[Any, Any]
+
+
+def times(z: Pair, w: Pair) -> Pair:
+    """`z*w`.
+
+    >>> times((1, 2), (3, 4))
+    (-5, 10)
+    """
+    return z[0] * w[0] - z[1] * w[1], z[0] * w[1] + z[1] * w[0]
+
+
+def conjugate(z: Pair) -> Pair:
+    """The mirror image in the x axis; the inverse of a unit vector."""
+    return z[0], -z[1]
+
+
+def squared(z: Pair) -> Pair:
+    """`z*z`, with the real part as a product so that nothing cancels twice."""
+    return (z[0] - z[1]) * (z[0] + z[1]), (z[0] + z[0]) * z[1]
+
+
+def dot(z: Pair, w: Pair) -> Any:
+    """The scalar product, `Re(conj(z)*w)`."""
+    return z[0] * w[0] + z[1] * w[1]
+
+
+def cross(z: Pair, w: Pair) -> Any:
+    """`Im(conj(z)*w)`, positive when `w` lies to the left of `z`."""
+    return z[0] * w[1] - z[1] * w[0]
+
+
+def exact_cross(ops: Any, z: Pair, w: Pair) -> Any:
+    """`cross` to two units in the last place even where it almost vanishes, by Kahan [JeannerodLouvetMuller2013]."""
+    product = z[1] * w[0]
+    lost = ops.fma(-z[1], w[0], product)
+    return ops.fma(z[0], w[1], -product) + lost
+
+
+def exact_dot(ops: Any, z: Pair, w: Pair) -> Any:
+    """`dot`, as `exact_cross`."""
+    return exact_cross(ops, (z[0], -z[1]), (w[1], w[0]))
+
+
+def product_and_rest(ops: Any, x: Any, y: Any) -> Pair:
+    """`x*y` rounded, and what the rounding lost, exactly."""
+    product = ops.product(x, y)
+    return product, ops.fma(x, y, -product)
+
+
+def cross_and_rest(ops: Any, z: Pair, w: Pair) -> Pair:
+    """`cross`, and what it lost, to twice the digits."""
+    (x, x_rest), (y, y_rest) = product_and_rest(ops, z[0], w[1]), product_and_rest(ops, z[1], w[0])
+    total = x - y
+    back = total - x
+    return total, ((x - (total - back)) - (y + back)) + (x_rest - y_rest)
+
+
+def unit(ops: Any, z: Pair) -> Pair:
+    """`z` with its length set to one again, when it is one up to rounding."""
+    short = ops.fma(-z[0], z[0], ops.fma(-z[1], z[1], ops.number(1.0)))
+    half = short * ops.number(0.5)
+    return ops.fma(z[0], half, z[0]), ops.fma(z[1], half, z[1])
+
+
+def normalised(ops: Any, z: Pair) -> Pair:
+    """`z` divided by its length, whatever that is."""
+    scale = ops.number(1.0) / ops.sqrt(dot(z, z))
+    return unit(ops, (z[0] * scale, z[1] * scale))
+
+
+TOLERANCE = 2.0**-27  # of the last Newton correction: the error left is its square
+ENOUGH = 200  # passes of the bracketed loop, of which every second one at worst halves the bracket
+
+
+Low = Any | Callable[[], Any]
+
+
+def value_and_slope(p: list[Any], x: Any) -> tuple[Any, Any]:
+    """A polynomial, constant first, and its derivative at `x`.
+
+    >>> value_and_slope([5, 0, 1], 3)
+    (14, 6)
+    """
+    value, slope = p[-1] * x + p[-2], p[-1]
+    for c in reversed(p[:-2]):
+        slope = slope * x + value
+        value = value * x + c
+    return value, slope
+
+
+def halley(p: list[Any], x: Any) -> Any:
+    """One step of Halley's method on a polynomial: third order for one division."""
+    value, slope, half = p[-1] * x + p[-2], p[-1], None
+    for c in reversed(p[:-2]):
+        half = slope if half is None else half * x + slope
+        slope = slope * x + value
+        value = value * x + c
+    if half is None:
+        return x - value / slope
+    return x - value * slope / (slope * slope - value * half)
+
+
+def bracketed_zero(
+    ops: Any,
+    function: Callable[[Any], tuple[Any, Any]],
+    x: Any,
+    low: Low,
+    high: Any,
+    scale: Any,
+    newton: int,
+    wanted: Any = None,
+    accepts: Callable[[Any], Any] | None = None,
+) -> Any:
+    """The only zero in `[low, high]` of a function that is negative at `low` and positive at `high`.
+
+    `function` returns value and slope; `scale` is the size below which the zero's absolute error
+    counts; `newton` is the number of steps before anything is asked. A lower bound that is dear may be
+    given as a function, which is called when a lane needs it, with a cheap test `accepts` in its place.
+    Lanes outside the mask `wanted` are left where Newton took them.
+    """
+    step = x
+    for _ in range(newton):
+        value, slope = function(x)
+        step = value / slope
+        x = x - step
+    tolerance = ops.number(TOLERANCE)
+    done = (abs(step) <= tolerance * ops.maximum(abs(x), scale)) & (x <= high)
+    done = done & (accepts(x) if accepts is not None else low <= x)
+    if wanted is not None:
+        done = done | ops.negated(wanted)
+    unfinished = ops.negated(done)
+
+    def bracketed() -> list[Any]:
+        bottom = low() if callable(low) else low
+        inside = (bottom < x) & (x < high)
+        start = ops.select(inside, x, ops.number(0.5) * (bottom + high))
+        flag = ops.select(unfinished, ops.number(1.0), ops.number(0.0))
+        state = [start, bottom, high, flag, high - bottom]
+        found = ops.repeat(lambda state: ops.number(0.5) < state[3], improved, state, ENOUGH)[0]
+        return [ops.select(unfinished, found, x)]
+
+    def improved(state: list[Any]) -> list[Any]:
+        x, low, high, flag, before = state
+        value, slope = function(x)
+        below = value < ops.number(0.0)
+        low, high = ops.select(below, x, low), ops.select(below, high, x)
+        step = value / slope
+        middle, newton = ops.number(0.5) * (low + high), x - step
+        good = (low < newton) & (newton < high) & (abs(step) <= before)
+        moved = ops.select(good, newton, middle)
+        change = abs(moved - x)
+        small = tolerance * ops.maximum(abs(moved), scale)
+        exact = value == ops.number(0.0)
+        settled = (good & (abs(step) <= small)) | exact | (high - low <= ops.number(2.0**-26) * small)
+        return [
+            ops.select(exact, x, moved),
+            low,
+            high,
+            ops.select(settled, ops.number(0.0), flag),
+            ops.number(0.5) * change,
+        ]
+
+    return ops.when(unfinished, [x], bracketed)[0]
+
+
+def polynomial_zero(
+    ops: Any,
+    p: list[Any],
+    x: Any,
+    low: Low,
+    high: Any,
+    scale: Any,
+    steps: tuple[int, int],
+    wanted: Any = None,
+    accepts: Callable[[Any], Any] | None = None,
+) -> Any:
+    """`ops.zero` of a polynomial given by its coefficients; `steps` of Halley, then of Newton."""
+    for _ in range(steps[0]):
+        x = halley(p, x)
+    return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)

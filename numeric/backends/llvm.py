@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from numeric.backends import functions
-from numeric.backends.roots import bracketed_zero, polynomial_zero
+from numeric.backends.functions import bracketed_zero, polynomial_zero
 
 Fold = float | None
 

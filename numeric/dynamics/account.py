@@ -6,7 +6,7 @@
 
     log|det D(T^n)| = n*log(lam) + sum of log(cos(lam*eta_k)/cos(eta_k)) + log(cos(phi_0)/cos(phi_n)).
 
-See `symbolic.motion.contraction` for the derivation and for what follows from it.
+See `symbolic.motion.collision` for the derivation and for what follows from it.
 """
 
 from typing import Any, NamedTuple
@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey
-from numeric.dynamics.kinds import Attractor, Kind
 from numeric.dynamics.phase_points import Places
+from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
-from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import Growth
 
 METHOD = (
     "batch means over orbits and blocks, batches merged until their ends matter little and put right with the "

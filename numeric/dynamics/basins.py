@@ -20,9 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import classify, wilson
-from numeric.dynamics.kinds import Attractor, Share
 from numeric.dynamics.phase_points import Array, Places, places
-from numeric.dynamics.recognition import UNSETTLED, Labels, at_clouds, at_cycles
+from numeric.dynamics.recognition import UNSETTLED, Attractor, Labels, Share, at_clouds, at_cycles
 from numeric.pinball.sampling import boundary
 
 TRANSIENT = 1000

@@ -14,11 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from numeric.backends import plane
-from numeric.backends.plane import Pair
-from numeric.flights.boundary import Boundary, Frame
-from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Family, Landing, grazing
-from numeric.flights.status import Status
+from numeric.backends import functions as plane
+from numeric.backends.functions import Pair
+from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Boundary, Family, Frame, Landing, Status, grazing
 
 
 class Cardioid(Family):

@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from numeric.flights.boundary import Boundary, Frame
-from numeric.flights.family import SLAP, Family, Landing
+from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing
 
 
 class Circle(Family):

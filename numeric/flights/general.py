@@ -11,11 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from numeric.backends import plane
-from numeric.backends.plane import Pair
-from numeric.flights.boundary import Boundary
-from numeric.flights.family import NEAR, Family, Landing, grazing, reflected
-from numeric.flights.status import Status
+from numeric.backends import functions as plane
+from numeric.backends.functions import Pair
+from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
 
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end

@@ -6,11 +6,9 @@ needs come from `symbolic.motion.flight` through the blueprint.
 
 from typing import Any
 
-from numeric.backends import plane
-from numeric.backends.plane import Pair
-from numeric.flights.boundary import Boundary
-from numeric.flights.family import SLAP, Family, Landing, grazing, reflected
-from numeric.flights.status import Status
+from numeric.backends import functions as plane
+from numeric.backends.functions import Pair
+from numeric.flights.family import SLAP, Boundary, Family, Landing, Status, grazing, reflected
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
 

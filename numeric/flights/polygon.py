@@ -7,11 +7,9 @@ sides that share a corner compare the same number there. State: the side, the pa
 
 from typing import Any
 
-from numeric.backends import plane
-from numeric.backends.plane import Pair
-from numeric.flights.boundary import Boundary
-from numeric.flights.family import NEAR, Family, Landing, grazing, reflected
-from numeric.flights.status import Status
+from numeric.backends import functions as plane
+from numeric.backends.functions import Pair
+from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
 
 FAR = 2.0**100  # as far as nothing was met
 

@@ -5,8 +5,7 @@ A new one is a module beside these and a line here.
 
 from importlib import import_module
 
-from numeric.flights.boundary import Boundary
-from numeric.flights.family import Family
+from numeric.flights.family import Boundary, Family
 
 FAMILIES = (
     ("circle", "Circle"),

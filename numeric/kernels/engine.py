@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Arrays
 from numeric.flights.family import Family
 from numeric.kernels import machine
 from numeric.kernels.spec import KernelSpec, fields, rescaled

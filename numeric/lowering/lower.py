@@ -11,14 +11,11 @@ from typing import Any
 from sympy import Expr, Float, Pow, Symbol, cos, pi, sin
 from sympy import sympify as exact
 
-from numeric.lowering.program import Builder, Node, Program
-from numeric.lowering.table_ir import Blueprint, Part, ShapeRange
+from numeric.lowering.program import Blueprint, Builder, Node, Part, Program, ShapeRange
 from symbolic import tables
 from symbolic.motion import flight
-from symbolic.tables.geometry import velocity
-from symbolic.tables.symbols import theta
-from symbolic.tables.symmetry import Symmetry, group
-from symbolic.tables.table import Component, Table
+from symbolic.tables.geometry import Symmetry, group, velocity
+from symbolic.tables.table import Component, Table, theta
 from symbolic.tables.validity import closed_and_finite
 
 

@@ -8,21 +8,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from numeric.flights.boundary import Boundary
-from numeric.flights.family import NEAR, PINBALL, SLAP, law_of
+from numeric.flights.family import NEAR, PINBALL, SLAP, Boundary, law_of
 from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
 from numeric.kernels.spec import KernelSpec, starting
 from numeric.lowering.cache import key_of
-from numeric.lowering.table_ir import Blueprint, blueprint
+from numeric.lowering.program import Blueprint, blueprint
 from numeric.pinball.coordinates import States
-from numeric.pinball.growth import Growth
-from numeric.pinball.inputs import angles, components, contraction, counted, real, shape_value
-from numeric.pinball.results import Exponents, Orbit, Slap
+from numeric.pinball.sampling import Growth
+from numeric.pinball.states import Exponents, Orbit, Slap, angles, components, contraction, counted, real, shape_value
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
-    from numeric.pinball.arclength import ArcLength
+    from numeric.pinball.coordinates import ArcLength
 
 Array = NDArray[np.float64]
 
@@ -74,7 +72,7 @@ class PinballMap:
     @cached_property
     def arclength(self) -> "ArcLength":
         """Arc length and its inverse, on every component."""
-        from numeric.pinball.arclength import ArcLength
+        from numeric.pinball.coordinates import ArcLength
 
         return ArcLength(self.states)
 
@@ -170,7 +168,7 @@ class PinballMap:
         >>> int(component), float(theta)
         (0, 1.5707963267948966)
         """
-        from numeric.pinball.location import located
+        from numeric.pinball.coordinates import located
 
         return located(self.states, real("x", x), real("y", y))
 

@@ -7,8 +7,8 @@ from functools import cache
 
 from sympy import Expr, I, Interval, Poly, Rational, Symbol, atan, cancel, cos, expand, pi, sin, sqrt, together
 
-from symbolic.generation.text import Kernel, kernel
-from symbolic.proofs.signs import Finding, Outcome, conjunction, nonnegative, positive
+from symbolic.expressions.signs import Finding, Outcome, conjunction, nonnegative, positive
+from symbolic.expressions.text import Kernel, kernel
 
 q = Symbol("q", real=True)  # the landing point
 y = Symbol("y", real=True)  # q of the launching point, where both are needed

@@ -2,19 +2,45 @@
 
 Exit and incidence angles follow from the chords that meet at a point, so nothing but the points is
 typed in. Paper: end of section 2.1.
+
+Where the multipliers of a cycle lie, decided from trace and determinant of its monodromy.
+
+The characteristic polynomial is `mu**2 - trace*mu + det`; its values at 1 and -1 and the size of
+`det` decide everything (Jury's criterion), so no root is ever extracted.
+
+The cycles that the paper names or implies, each by its boundary points.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
-from sympy import Expr, Matrix, cancel, expand_trig, eye, factor, simplify, sqrt
+from sympy import (
+    Expr,
+    Integer,
+    Interval,
+    Matrix,
+    Rational,
+    S,
+    Symbol,
+    acos,
+    cancel,
+    expand,
+    expand_trig,
+    eye,
+    factor,
+    pi,
+    simplify,
+    solve,
+    sqrt,
+    symbols,
+    together,
+)
 
+from symbolic.expressions.signs import Box, Finding, conjunction, positive, vanishes
 from symbolic.motion.collision import derivative_matrix
-from symbolic.proofs.signs import Box
-from symbolic.proofs.zero import vanishes
-from symbolic.tables.ranges import parameter_box, root
-from symbolic.tables.symbols import lam, theta
-from symbolic.tables.table import Table
+from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
+from symbolic.tables.scene import parameter_box, root
+from symbolic.tables.table import Table, alpha, lam, theta
 
 
 @dataclass(frozen=True)
@@ -75,7 +101,7 @@ class Cycle:
         return simplify(leaving), simplify(arriving)
 
     def _repr_latex_(self) -> str:
-        from symbolic.tables.notation import equation  # a notebook asks for it, nothing else does
+        from symbolic.tables.table import equation  # a notebook asks for it, nothing else does
 
         return equation(rf"\text{{{self.table.name}, {self.name}:}}\quad D T^{{{len(self.bounces)}}}", monodromy(self))
 
@@ -107,7 +133,7 @@ def is_double_normal(cycle: Cycle) -> bool:
 
     Such a cycle exists for every contraction: exit and incidence angles all vanish.
 
-    >>> from symbolic.cycles.named import minor_axis
+    >>> from symbolic.cycles.cycle import minor_axis
     >>> is_double_normal(minor_axis())
     True
     """
@@ -137,7 +163,7 @@ def monodromy(cycle: Cycle, base: int = 0, contraction: Expr = lam) -> Matrix:
 
     The trace and the determinant do not depend on `base`; the entries do.
 
-    >>> from symbolic.cycles.named import minor_axis
+    >>> from symbolic.cycles.cycle import minor_axis
     >>> monodromy(minor_axis()).det().simplify()
     lam**2
     """
@@ -167,3 +193,134 @@ def multipliers(trace: Expr, det: Expr) -> tuple[Expr, Expr]:
     """
     half = sqrt(discriminant(trace, det)) / 2
     return trace / 2 + half, trace / 2 - half
+
+
+def inside_unit_circle(trace: Expr, det: Expr, box: Box) -> Finding:
+    """Are both multipliers smaller than 1 in modulus, everywhere in the box?
+
+    >>> from sympy import Rational, S
+    >>> inside_unit_circle(S.Zero, Rational(1, 2), {}).outcome.name
+    'PROVED'
+    """
+    return conjunction(positive(1 - trace + det, box), positive(1 + trace + det, box), positive(1 - det, box))
+
+
+def saddle(trace: Expr, det: Expr, box: Box) -> Finding:
+    """Is `0 < mu_minus < 1 < mu_plus`?
+
+    >>> from sympy import Rational, S
+    >>> saddle(S(3), S(1), {}).outcome.name
+    'PROVED'
+    """
+    return conjunction(positive(trace - 1 - det, box), positive(det, box))
+
+
+def real_and_distinct(trace: Expr, det: Expr, box: Box) -> Finding:
+    """Are the multipliers real and different?"""
+    return positive(trace**2 - 4 * det, box)
+
+
+def complex_pair(trace: Expr, det: Expr, box: Box) -> Finding:
+    """Are the multipliers complex conjugates off the real line? Their modulus is then `sqrt(det)`."""
+    return positive(4 * det - trace**2, box)
+
+
+def contracting_norm() -> Finding:
+    """Is there for every attracting monodromy matrix a quadratic norm in which it contracts?
+
+    For the companion matrix `M` of any trace and determinant inside Jury's triangle, `N - M.T*N*M = 1` has a positive
+    definite solution `N`; a matrix that is no multiple of the identity is similar to its companion matrix, and a
+    multiple contracts as it is. So near an attracting cycle, where `DT` is continuous, it contracts too.
+
+    >>> contracting_norm().outcome.name
+    'PROVED'
+    """
+    det, share = symbols("det share", real=True)  # trace = share*(1 + det)
+    inside = {det: Interval.open(-1, 1), share: Interval.open(-1, 1)}
+    first, mixed, last = symbols("first mixed last")
+    companion, norm = Matrix([[0, 1], [-det, share * (1 + det)]]), Matrix([[first, mixed], [mixed, last]])
+    (found,) = solve(list(norm - companion.T * norm * companion - eye(2)), [first, mixed, last], dict=True)
+    solution = norm.subs(found)
+    return conjunction(positive(solution[0, 0], inside), positive(solution.det().factor(), inside))
+
+
+c = Symbol("c", real=True)  # cos(theta) of a bounce of the egg's orbit between parallel tangents
+
+
+def diameter() -> Cycle:
+    """A diameter of the circle. Paper: section 3.1."""
+    return Cycle("diameter", circle, ((0, S.Zero), (0, pi)))
+
+
+def major_axis() -> Cycle:
+    """The long axis of the ellipse. Paper: section 3.2."""
+    return Cycle("major axis", ellipse, ((0, S.Zero), (0, pi)))
+
+
+def minor_axis() -> Cycle:
+    """The short axis of the ellipse. Paper: section 3.2."""
+    return Cycle("minor axis", ellipse, ((0, pi / 2), (0, -pi / 2)))
+
+
+def cardioid_vertical() -> Cycle:
+    """The chord from `s = 2` to `s = -2`. Paper: section 4, caption of the slap map."""
+    return Cycle("vertical", cardioid, ((0, pi / 3), (0, -pi / 3)))
+
+
+def cuspless_vertical() -> Cycle:
+    """The same chord in the cuspless cardioid. Paper: section 5."""
+    return Cycle("vertical", cuspless, ((0, pi / 3), (0, -pi / 3)))
+
+
+def cuspless_horizontal() -> Cycle:
+    """The orbit along `y = 0`, from the wall's centre to the rightmost point. Paper: section 5.1."""
+    return Cycle("horizontal", cuspless, ((1, S.Zero), (0, S.Zero)))
+
+
+def egg_diameter(K: int | Expr = 3, angle: Expr = S.Zero) -> Cycle:
+    """The chord of the egg from `angle` through the centre: vertex to flat for odd K. Paper: section 6.3.
+
+    For even K a vertex faces a vertex (`angle = 0`) and a flat point a flat point (`pi/K`).
+    """
+    return Cycle("diameter", egg(K), ((0, angle), (0, angle + pi)))
+
+
+def egg_parallel() -> Cycle:
+    """The egg's period-2 orbit between parallel tangents that is not a diameter. Paper: section 6.2.
+
+    Its bounces lie at `theta` and `-theta`, where the tangent is horizontal; `alpha` is then a
+    rational function of `c = cos(theta)`, which runs from 0 at `alpha = 0` down to the root of
+    `16*c**4 - 18*c**2 + 10*c + 3` at `alpha = 1/10`, above -2/9.
+    """
+    shape = parallel_shape()
+    table = egg(3)
+    given = table.components[0]
+    point = tuple(coordinate.subs(alpha, shape) for coordinate in given.point)
+    return Cycle(
+        "parallel tangents",
+        replace(table, components=(replace(given, point=point),), shapes=()),
+        ((0, acos(c)), (0, -acos(c))),
+        ((c, Interval(Rational(-2, 9), 0)),),
+    )
+
+
+def parallel_shape() -> Expr:
+    """`alpha` as a function of `c` on `egg_parallel`: where the height `rho*sin(theta)` is stationary.
+
+    >>> parallel_shape()
+    -c/(16*c**4 - 18*c**2 + 3)
+    """
+    _, y = egg(3).components[0].point
+    slope = y.diff(theta).subs(theta, acos(c))
+    (shape,) = solve(expand(slope.expand(trig=True)), alpha)
+    return together(shape)
+
+
+def egg_triangle(at_flat: bool = True) -> Cycle:
+    """The equilateral period-3 orbit of the elastic egg, at the flat points or at the vertices.
+
+    Paper: section 6.4 (`lambda = 1`). Counterclockwise; the mirror image runs clockwise.
+    """
+    first = pi / 3 if at_flat else Integer(0)
+    third = 2 * pi / 3
+    return Cycle("triangle", egg(3), tuple((0, first + k * third) for k in range(3)))

@@ -36,7 +36,7 @@ on every orbit off the cusp, whether or not it has exponents; the bound tends to
 by a distance that depends on `lam < 1` alone: no orbit converges to the cusp.
 
 *At `lam = 1`* the gain exceeds 1 on every chord, so by Birkhoff's theorem its mean logarithm is positive for almost
-every start; `log(c)` and `log(cos(phi))` have finite means (`symbolic.motion.contraction`), so by Oseledets' theorem
+every start; `log(c)` and `log(cos(phi))` have finite means (`symbolic.motion.collision`), so by Oseledets' theorem
 the
 exponents exist for almost every start, and `nu_plus = -nu_minus > 0`. No bound for all starts follows.
 
@@ -74,12 +74,11 @@ from sympy import (
     tan,
 )
 
+from symbolic.expressions.signs import Finding, Outcome, conjunction, nonnegative, positive, vanishes
 from symbolic.motion.collision import derivative_matrix
-from symbolic.proofs.signs import Finding, Outcome, conjunction, nonnegative, positive
-from symbolic.proofs.zero import vanishes
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import curvature, velocity
-from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
+from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t, theta
 
 half, delta = symbols("half delta", real=True)  # theta0/2, and half the way from theta0 to theta1
 C = Symbol("C", real=True)  # cos(delta)

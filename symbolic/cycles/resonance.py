@@ -13,8 +13,8 @@ from typing import Any
 from sympy import QQ, Expr, Symbol
 from sympy.polys.fields import field
 
-from symbolic.cycles.twist import CUBIC, QUARTIC, Map, Series, bounce, chord, composed, plus, put
-from symbolic.tables.symbols import alpha
+from symbolic.cycles.normal_forms import CUBIC, QUARTIC, Map, Series, bounce, chord, composed, plus, put
+from symbolic.tables.table import alpha
 
 LETTER = Symbol("alpha")
 

@@ -68,12 +68,11 @@ from sympy import (
 )
 
 from symbolic.cycles.defocusing import BOUNDARY, expands, half
+from symbolic.expressions.signs import Finding, Outcome, conjunction, vanishes
 from symbolic.motion.collision import derivative_matrix
-from symbolic.proofs.signs import Finding, Outcome, conjunction
-from symbolic.proofs.zero import vanishes
 from symbolic.tables import cuspless
 from symbolic.tables.geometry import curvature
-from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
+from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t, theta
 
 c = Symbol("c", real=True)  # cos(theta/2) on the arc
 angle = Symbol("eta", real=True)  # at the wall

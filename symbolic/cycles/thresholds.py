@@ -1,14 +1,111 @@
-"""The closed thresholds of the paper, derived from the stability numbers of its period-2 cycles.
+"""Every cycle of period 2, in one number: `P = (1 + t*K0)*(1 + t*K1)`.
+
+A cycle of period 2 runs along a chord that is normal to the boundary at both ends (its exit angle
+`phi` satisfies `phi = -lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord
+retraced is normal too). Its monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`,
+whatever the table. All the thresholds of the paper's period-2 orbits follow from `P`:
+
+    |mu| < 1    exactly when  -((1-lam)/(1+lam))**2 < P < 1,
+    mu complex  exactly when  0 < P < 4*lam/(1+lam)**2     (then |mu| = lam).
+
+The closed thresholds of the paper, derived from the stability numbers of its period-2 cycles.
 
 Each is written so that no digit cancels and nothing is 0/0 in the paper's range. Paper: eqs. for
 lambda_+-(a) (section 3.3), lambda_c (5.1), alpha-tilde and alpha-hat (6.3).
+
+The determinant of a cycle's monodromy matrix, and when it can be 1: what forbids Neimark-Sacker bifurcations.
+
+Around a cycle the cosines of exit angles do not telescope against those of incidence: with `phi = -lam*eta`
+
+    det M = prod lam*cos(lam*eta)/cos(eta) = prod f(lam*eta)/f(eta),    f(x) = x*cos(x),
+
+which is `lam**p` only when every bounce is along the normal, and larger otherwise. Since `f` grows up to the root
+of `x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for
+every `lam < 1`: no Neimark-Sacker bifurcation. Beyond it factors exceed 1, and so may the product.
+
+A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta`
+(`symbolic.cycles.polygons`), with
+`gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts exactly when `gamma*tan(gamma) < 1`: the triangle (30 degrees) and
+the square (45) do, the pentagon (54) and all beyond do not, and are born expanding.
 """
 
-from sympy import Expr, S, pi, simplify, sqrt
+from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt
 
-from symbolic.cycles.double_normal import flip_contraction, stability_number
-from symbolic.cycles.named import cuspless_horizontal, egg_diameter
-from symbolic.tables.symbols import a, alpha, lam
+from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter
+from symbolic.cycles.polygons import half_turn
+from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive
+from symbolic.motion.collision import area_factor, derivative_matrix
+from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
+
+
+def stability_number(cycle: Cycle) -> Expr:
+    """`P = (1 + t*K0)*(1 + t*K1)` of a cycle of period 2, free of units.
+
+    >>> from symbolic.cycles.cycle import cuspless_horizontal, egg_diameter
+    >>> stability_number(cuspless_horizontal())
+    -11/16
+    >>> stability_number(egg_diameter())
+    (alpha**2 - 18*alpha - 1)*(alpha**2 + 18*alpha - 1)/((alpha - 1)**2*(alpha + 1)**2)
+    """
+    start, end = cycle.frames
+    length = cycle.length(0)
+    return factor(simplify((1 + length * start.curvature) * (1 + length * end.curvature)))
+
+
+def general_trace_and_determinant() -> tuple[Expr, Expr]:
+    """Trace and determinant of the monodromy of any double normal, from the derivative matrix.
+
+    >>> trace, det = general_trace_and_determinant()
+    >>> simplify(trace - trace_of((1 + t * K0) * (1 + t * K1))), simplify(det)
+    (0, lam**2)
+    """
+    there = derivative_matrix(K0, K1, t, S.One, S.One)
+    back = derivative_matrix(K1, K0, t, S.One, S.One)
+    monodromy = back * there
+    return monodromy.trace(), monodromy.det()
+
+
+def trace_of(P: Expr, contraction: Expr = lam) -> Expr:
+    """The trace of the monodromy matrix of a double normal with stability number `P`.
+
+    >>> trace_of(S.Zero)
+    -2*lam
+    """
+    return (1 + contraction) ** 2 * P - 2 * contraction
+
+
+def flip_contraction(P: Expr) -> Expr:
+    """The contraction at which a multiplier is -1, for `-1 <= P < 0`; below it the cycle is stable.
+
+    >>> from sympy import Rational
+    >>> flip_contraction(Rational(-1, 4))
+    1/3
+    """
+    r = sqrt(-P)
+    return (1 - r) / (1 + r)
+
+
+def focus_contraction(P: Expr) -> Expr:
+    """The contraction above which the multipliers are complex, for `0 <= P <= 1`.
+
+    >>> from sympy import Rational
+    >>> focus_contraction(Rational(3, 4))
+    1/3
+    """
+    r = sqrt(1 - P)
+    return (1 - r) / (1 + r)
+
+
+def stable_while_nonnegative(P: Expr, box: Box) -> Finding:
+    """Are both multipliers inside the unit circle because `0 <= P < 1` and `lam < 1` on the box?
+
+    `1 - trace + det = (1+lam)**2*(1 - P)` and `1 + trace + det = (1+lam)**2*P + (1-lam)**2`.
+
+    >>> from sympy import Interval
+    >>> stable_while_nonnegative(S.Zero, {lam: Interval.Ropen(0, 1)}).outcome.name
+    'PROVED'
+    """
+    return conjunction(positive(1 - P, box), nonnegative(P, box), positive(1 - lam, box))
 
 
 def lambda_minus() -> Expr:
@@ -110,3 +207,48 @@ def even_stability_numbers(K: int | Expr) -> tuple[Expr, Expr]:
     if S(K).is_odd:
         raise ValueError(f"egg: K = {K} is odd; its diameters run from a vertex to a flat point (see alpha_tilde)")
     return stability_number(egg_diameter(K)), stability_number(egg_diameter(K, pi / K))
+
+
+def flux(x: Expr) -> Expr:
+    """`f(x) = x*cos(x)`, whose ratio over a reflection is the factor of area.
+
+    >>> from symbolic.tables.table import lam
+    >>> simplify(flux(lam * eta) / flux(eta) - area_factor())
+    0
+    """
+    return x * cos(x)
+
+
+def flux_slope(x: Expr) -> Expr:
+    """`f'(x) = cos(x) - x*sin(x)`: positive where contraction is certain, zero where `x*tan(x) = 1`."""
+    return cos(x) - x * sin(x)
+
+
+def cycle_determinant(angles: list[Expr]) -> Expr:
+    """`det M` of a cycle with these incidence angles.
+
+    >>> from sympy import S
+    >>> cycle_determinant([S.Zero, S.Zero])
+    lam**2
+    """
+    return simplify(prod(area_factor().subs(eta, angle) for angle in angles))
+
+
+def polygon_slope(p: int, q: int) -> Expr:
+    """`f'(gamma)` of the polygon: positive when it contracts near `lam = 1`, negative when it expands.
+
+    >>> bool(polygon_slope(1, 4) > 0), bool(polygon_slope(1, 5) < 0), bool(polygon_slope(2, 5) > 0)
+    (True, True, True)
+    """
+    return flux_slope(half_turn(p, q))
+
+
+def polygon_factor(delta: Expr, p: int, q: int) -> Expr:
+    """`det M` of one bounce of a polygon whose normal is tilted by `delta`: `f(gamma - delta)/f(gamma + delta)`.
+
+    >>> from sympy import S
+    >>> polygon_factor(S.Zero, 1, 5)
+    1
+    """
+    gamma = half_turn(p, q)
+    return flux(gamma - delta) / flux(gamma + delta)

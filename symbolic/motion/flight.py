@@ -13,6 +13,8 @@ Paper: the flights of section 2.
 
 The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text
 that SymPy proves is the text that the numeric kernels run. Complex numbers are pairs.
+
+The pinball map of the unit circle, explicit. Paper: section 3.1.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,9 +22,8 @@ from typing import Any
 
 from sympy import Expr, I, S, cos, exp, expand, im, pi, re, simplify, sin, symbols
 
-from symbolic.tables.fourier import boundary_coefficients
-from symbolic.tables.symbols import theta
-from symbolic.tables.table import Component
+from symbolic.tables.geometry import boundary_coefficients
+from symbolic.tables.table import Component, lam, phi, s, theta
 
 Complex = tuple[Any, Any]
 Harmonics = Mapping[int, tuple[Complex, Complex]]  # C_k and S_k by k
@@ -167,3 +168,33 @@ def _product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
         for j, b in enumerate(q):
             total[i + j] = total[i + j] + a * b
     return total
+
+
+def flight(s: Expr = s, phi: Expr = phi) -> tuple[Expr, Expr]:
+    """`(s1, phi1)`: the ball advances by `pi - 2*phi` and keeps `lam` of its angle.
+
+    >>> flight()
+    (-2*phi + s + pi, lam*phi)
+    """
+    return s + pi - 2 * phi, lam * phi
+
+
+def iterate(n: int) -> tuple[Expr, Expr]:
+    """The map applied `n` times, not reduced modulo the perimeter.
+
+    >>> iterate(2)
+    (-2*lam*phi - 2*phi + s + 2*pi, lam**2*phi)
+    """
+    state: tuple[Expr, Expr] = (s, phi)
+    for _ in range(n):
+        state = flight(*state)
+    return state
+
+
+def limit_position() -> Expr:
+    """Where even bounces settle, as an arc length: `s - 2*phi/(1 - lam)`.
+
+    >>> limit_position().subs(lam, 0)
+    -2*phi + s
+    """
+    return s - 2 * phi / (1 - lam)

@@ -75,7 +75,7 @@ def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
     from sympy import cos, pi, sin
 
     from symbolic import tables
-    from symbolic.tables.symbols import theta
+    from symbolic.tables.table import theta
 
     held = dict(table.fixed)
     K = _points(table) if table.name == "egg" else POINTS
@@ -100,7 +100,7 @@ def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _points(table: "Table") -> int:
     """`K` of an egg: the highest frequency of its boundary is `K + 1`."""
-    from symbolic.tables.fourier import boundary_coefficients
+    from symbolic.tables.geometry import boundary_coefficients
 
     waves = boundary_coefficients(table.components[0])
     return max(2, max(waves) - 1) if waves else POINTS
@@ -173,7 +173,7 @@ def _symbols(letters: Iterable[str]) -> "dict[str, Symbol]":
     """`theta`, and the shape's letters as real symbols."""
     from sympy import Symbol
 
-    from symbolic.tables.symbols import theta
+    from symbolic.tables.table import theta
 
     return {letter: Symbol(letter, real=True) for letter in letters} | {theta.name: theta}
 

@@ -2,13 +2,50 @@
 
 Signs: the boundary runs counterclockwise, the normal points inwards, and the curvature of a
 focusing component is negative (the paper's convention; textbooks use the opposite sign).
+
+Arc length: a closed form where the speed allows one, the exact integral otherwise.
+
+Where `speed**2 = p + q*cos(n*theta)` the length is an incomplete elliptic integral of the second
+kind; at parameter 1 (the cardioid) it degenerates to a sine.
+
+The symmetries of a table, found and proved: rotations and reflections about the origin that keep its boundary.
+
+They form a cyclic or a dihedral group. One that turns the boundary parameter into `+theta + shift` keeps
+exit angles, one that turns it into `-theta + shift` negates them, and both take orbits of the pinball map to
+orbits: an attractor has images, and a stabiliser.
+
+A boundary as a finite Fourier sum `z = x + i*y = sum_k c_k exp(i*k*theta)`, when it is one.
 """
 
-from sympy import Expr, Matrix, expand, simplify, sqrt
+from dataclasses import dataclass
+from functools import cache, reduce
+from math import gcd
+
+from sympy import (
+    Dummy,
+    Expr,
+    I,
+    Integral,
+    Matrix,
+    Poly,
+    Rational,
+    S,
+    Symbol,
+    conjugate,
+    cos,
+    elliptic_e,
+    exp,
+    expand,
+    pi,
+    simplify,
+    sin,
+    sqrt,
+)
+from sympy.polys.polyerrors import PolynomialError
 from sympy.simplify.fu import TR8
 
-from symbolic.tables.symbols import theta
-from symbolic.tables.table import Component
+from symbolic.expressions.signs import vanishes
+from symbolic.tables.table import Component, Table, theta
 
 
 def velocity(component: Component) -> Matrix:
@@ -90,3 +127,261 @@ def trigonometric(expression: Expr) -> Expr:
         if summed == expression:
             return summed
         expression = summed
+
+
+def arc_length(component: Component) -> Expr:
+    """Arc length from `theta = 0` to `theta`, negative for negative `theta`.
+
+    Paper: section 4 (cardioid). The closed form of a cusped component holds between its cusps.
+
+    >>> from symbolic.tables import cardioid, ellipse
+    >>> arc_length(cardioid.components[0])
+    4*sin(theta/2)
+    >>> arc_length(ellipse.components[0])
+    elliptic_e(theta, 1 - a**2)
+    """
+    squared = expand(speed(component) ** 2)
+    c = coefficients(squared)
+    if c is not None and len(c) <= 3 and all(c[-k] == c[k] for k in c):
+        p, n = c.get(0, S.Zero), max(c)
+        q = 2 * c[n] if n else S.Zero
+        if simplify(squared - p - q * cos(n * theta)) == 0:
+            return _elliptic(p, q, max(n, 1))
+    dummy = Dummy("theta", real=True)
+    return Integral(speed(component).subs(theta, dummy), (dummy, 0, theta))
+
+
+def _elliptic(p: Expr, q: Expr, n: int) -> Expr:
+    """The integral of `sqrt(p + q*cos(n*theta))` from 0."""
+    half = Rational(n, 2) * theta
+    parameter = simplify(2 * q / (p + q))
+    if parameter == 0:
+        return sqrt(p) * theta
+    primitive = sin(half) if parameter == 1 else elliptic_e(half, parameter)
+    return sqrt(p + q) * primitive * Rational(2, n)
+
+
+def positions(table: Table) -> tuple[Expr, ...]:
+    """The paper's arc length `s(theta)` on each component, counted counterclockwise from the origin.
+
+    Not wrapped: a paper that draws `s` symmetrically takes it modulo `perimeter(table)`.
+
+    >>> from symbolic.tables import cuspless
+    >>> positions(cuspless)
+    (4*sin(theta/2) + 9*sqrt(3)/4, theta)
+    """
+    first, start = table.origin
+    count = len(table.components)
+    found: dict[int, Expr] = {}
+    reached = -arc_length(table.components[first]).subs(theta, start)
+    for step in range(count):
+        index = (first + step) % count
+        component = table.components[index]
+        length = arc_length(component)
+        if step:
+            reached = simplify(reached - length.subs(theta, component.start))
+        found[index] = length + reached
+        reached = found[index].subs(theta, component.end)
+    return tuple(found[index] for index in range(count))
+
+
+def perimeter(table: Table) -> Expr:
+    """The length of the whole boundary.
+
+    >>> from symbolic.tables import cardioid, cuspless
+    >>> perimeter(cardioid), perimeter(cuspless)
+    (8, 9*sqrt(3)/2)
+    """
+    total = S.Zero
+    for component in table.components:
+        length = arc_length(component)
+        total += length.subs(theta, component.end) - length.subs(theta, component.start)
+    return simplify(total)
+
+
+CIRCLE = 4  # of its infinitely many symmetries, those of the square are listed
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """`theta` on component `i` goes to `sign*theta + shift[i]` on component `onto[i]`; `sign*phi` is the exit angle.
+
+    In the plane it is the rotation by `angle`, after the reflection `y -> -y` when `sign` is -1.
+    """
+
+    name: str
+    sign: int
+    angle: Expr
+    onto: tuple[int, ...]
+    shift: tuple[Expr, ...]
+
+    @property
+    def matrix(self) -> Matrix:
+        """The orthogonal matrix.
+
+        >>> Symmetry("half turn", 1, pi, (0,), (pi,)).matrix
+        Matrix([
+        [-1,  0],
+        [ 0, -1]])
+        """
+        c, s = cos(self.angle), sin(self.angle)
+        return Matrix([[c, -s * self.sign], [s, c * self.sign]])
+
+
+@cache
+def group(table: Table) -> tuple[Symmetry, ...]:
+    """The symmetries that are proved, the identity first.
+
+    Complete for the paper's tables but the circle, of which only the symmetries of the square are listed: a
+    symmetry keeps the curvature, so it permutes the vertices of an ellipse (`a > 1`) or an egg
+    (`alpha > 0`), the cusp, or the wall.
+
+    >>> from symbolic.tables import cardioid, cuspless, egg, ellipse
+    >>> [len(group(table)) for table in (ellipse.at(a=2), cardioid, cuspless, egg(3).at(alpha="0.08"))]
+    [4, 2, 2, 6]
+    >>> [symmetry.name for symmetry in group(cuspless)]
+    ['identity', 'reflection in the line at 0']
+    """
+    turns, axes = _of_one(table) if len(table.components) == 1 else _of_many(table)
+    return (*turns, *axes)
+
+
+def order_of_rotation(component: Component) -> int:
+    """How many turns of the parameter are symmetries: the common divisor of all differences of frequencies.
+
+    `z(theta + d) = exp(i*w)*z(theta)` asks `k*d = w`, up to whole turns, of every frequency `k` of `z = x + i*y`.
+
+    >>> from symbolic.tables import egg
+    >>> order_of_rotation(egg(5).components[0])
+    5
+    """
+    waves = boundary_coefficients(component)
+    if waves is None:
+        return 1
+    first = next(iter(waves))
+    return reduce(gcd, (k - first for k in waves), 0) or CIRCLE
+
+
+def _of_one(table: Table) -> tuple[list[Symmetry], list[Symmetry]]:
+    """Shifts by `2*pi*k/n`, and reflections in `n` axes if there is one at 0 or `pi/(2*n)`."""
+    component = table.components[0]
+    n = order_of_rotation(component)
+    shifts = [2 * pi * k / n for k in range(n)]
+    turns = [_one(component, 1, shift) for shift in shifts]
+    first = [shift for shift in (S.Zero, pi / n) if _one(component, -1, shift)][:1]
+    axes = [_one(component, -1, begin + shift) for begin in first for shift in shifts]
+    return [found for found in turns if found], [found for found in axes if found]
+
+
+def _one(component: Component, sign: int, shift: Expr) -> Symmetry | None:
+    """The symmetry `theta -> sign*theta + shift` of a boundary of one closed component, if it is one."""
+    waves = boundary_coefficients(component)
+    if waves is None:
+        found = Symmetry(_name(sign, shift), sign, shift, (0,), (shift,))
+        return found if _keeps(component, component, found.matrix, sign, shift) else None
+    first = next(k for k in waves if k)
+    for angle in (first * shift % (2 * pi), (first * shift + pi) % (2 * pi)):
+        if all(_turned(c, (angle - k * shift) / pi, sign) for k, c in waves.items()):
+            return Symmetry(_name(sign, angle), sign, angle, (0,), (shift,))
+    return None
+
+
+def _turned(c: Expr, half_turns: Expr, sign: int) -> bool:
+    """Is a coefficient (its conjugate in a reflection), turned by so many half turns, the coefficient itself?"""
+    turned = c if sign > 0 else conjugate(c)
+    return bool(half_turns.is_Integer and vanishes(S.NegativeOne**half_turns * turned - c))
+
+
+def _of_many(table: Table) -> tuple[list[Symmetry], list[Symmetry]]:
+    """The identity, and reflections in the two axes that permute the components, ends to ends."""
+    parts = table.components
+    same = Symmetry("identity", 1, S.Zero, tuple(range(len(parts))), (S.Zero,) * len(parts))
+    axes = []
+    for angle in (S.Zero, pi):
+        found = Symmetry(_name(-1, angle), -1, angle, (), ())
+        onto, shifts = [], []
+        for part in parts:
+            for index, image in enumerate(parts):
+                shift = simplify(part.start + image.end)
+                if _keeps(part, image, found.matrix, -1, shift):
+                    onto.append(index)
+                    shifts.append(shift)
+                    break
+        if len(onto) == len(parts):
+            axes.append(Symmetry(found.name, -1, angle, tuple(onto), tuple(shifts)))
+    return [same], axes
+
+
+def _keeps(part: Component, image: Component, matrix: Matrix, sign: int, shift: Expr) -> bool:
+    """Is the image of a point the point of the image?"""
+    moved = matrix * Matrix(part.point)
+    target = [coordinate.subs(theta, sign * theta + shift) for coordinate in image.point]
+    return all(vanishes(expand(left - right, trig=True)) for left, right in zip(moved, target, strict=True))
+
+
+def _name(sign: int, angle: Expr) -> str:
+    if sign > 0:
+        return "identity" if angle == 0 else f"rotation by {angle}"
+    return f"reflection in the line at {angle / 2}"
+
+
+def coefficients(expression: Expr) -> dict[int, Expr] | None:
+    """The nonzero `c_k` of a trigonometric polynomial in `theta`, by `k`; None when it is not one.
+
+    >>> coefficients(2 * cos(theta) ** 2)
+    {-2: 1/2, 0: 1, 2: 1/2}
+    >>> coefficients(1 / (2 + cos(theta))) is None
+    True
+    """
+    u = Dummy("u")
+    text = S(expression).rewrite(exp) if S(expression).has(cos, sin) else S(expression)
+    rational = expand(expand(text).replace(exp, lambda power: u ** expand(power / (I * theta))))
+    if rational.has(theta):
+        return None
+    lowest = min([0, *(-_degree(term, 1 / u) for term in rational.as_ordered_terms())])
+    try:
+        poly = Poly(expand(rational * u**-lowest), u)
+    except PolynomialError:
+        return None
+    terms = {power[0] + lowest: c for power, c in poly.terms() if c != 0}
+    return dict(sorted(terms.items()))
+
+
+def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
+    """The `c_k` of `z = x + i*y` on a component.
+
+    >>> from symbolic.tables import cardioid
+    >>> boundary_coefficients(cardioid.components[0])
+    {0: 1/2, 1: 1, 2: 1/2}
+    """
+    x, y = component.point
+    return coefficients(x + I * y)
+
+
+def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
+    """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
+
+    Here `x = g*theta` with `g` the common divisor of the frequencies.
+
+    >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
+    >>> p.subs(T, 0), value
+    (3, 1)
+    """
+    c = coefficients(expression)
+    if c is None:
+        return None
+    step = reduce(gcd, (abs(k) for k in c), 0) or 1
+    n = max((abs(k) for k in c), default=0) // step
+    T = Dummy("T", real=True)
+    total = S.Zero
+    for k, value in c.items():
+        power = k // step
+        wave = (1 + (1 if power > 0 else -1) * I * T) ** (2 * abs(power))
+        total += value * wave * (1 + T**2) ** (n - abs(power))
+    at_pi = sum((value * S.NegativeOne ** (k // step) for k, value in c.items()), S.Zero)
+    return expand(expand(total).as_real_imag()[0]), T, expand(at_pi)
+
+
+def _degree(term: Expr, base: Expr) -> int:
+    power = term.as_powers_dict().get(1 / base, 0)
+    return -int(power) if S(power).is_Integer else 0

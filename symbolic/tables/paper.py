@@ -9,8 +9,7 @@ from collections.abc import Iterable
 from sympy import Expr, Interval, Rational, S, cos, oo, pi, sin, sqrt
 
 from symbolic.tables.formula import parse
-from symbolic.tables.symbols import a, alpha, theta
-from symbolic.tables.table import Component, Mark, Shape, Table
+from symbolic.tables.table import Component, Mark, Shape, Table, a, alpha, theta
 from symbolic.tables.validity import closed_and_finite, counterclockwise_and_simple, positive_radius, validated
 
 __all__ = ["arc", "cardioid", "circle", "cuspless", "egg", "ellipse", "named", "parametric", "piecewise", "polar"]

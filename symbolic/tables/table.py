@@ -1,16 +1,39 @@
-"""What a table is: smooth components in a closed, simple, counterclockwise chain.
+"""The paper's letters, each with the assumptions the paper makes.
+
+One object per letter: two symbols of the same name and different assumptions are different to
+SymPy, so everything in the package takes its letters from here.
+
+What a table is: smooth components in a closed, simple, counterclockwise chain.
 
 A table is written down once, as exact expressions in the boundary parameter `theta`; everything
 else in the package is derived from it. Paper: section 2, the definition of `Gamma`.
+
+LaTeX with the paper's letters.
 """
 
 from dataclasses import dataclass, replace
 
-from sympy import Expr, Float, Interval, Rational, S, Symbol
+from sympy import Basic, Expr, Float, Interval, Matrix, Rational, S, Symbol
+from sympy import latex as sympy_latex
 from sympy import sympify as exact  # converts Python numbers; never called on text
 
-from symbolic.proofs.signs import interval_text
-from symbolic.tables.symbols import theta
+from symbolic.expressions.signs import interval_text
+
+theta = Symbol("theta", real=True)  # boundary parameter; the polar angle for polar tables
+s = Symbol("s", real=True)  # arc length, counterclockwise
+phi = Symbol("phi", real=True)  # exit angle from the inward normal, positive towards the tangent
+eta = Symbol("eta", real=True)  # incidence angle; the elastic law is phi = -eta
+lam = Symbol("lam", nonnegative=True)  # contraction of the angle, lambda in the paper
+t = Symbol("t", positive=True)  # length of a flight
+
+a = Symbol("a", positive=True)  # half the major axis of the ellipse
+alpha = Symbol("alpha", nonnegative=True)  # shape of the egg
+
+K0 = Symbol("K0", real=True)  # curvature where a flight leaves, negative when focusing
+K1 = Symbol("K1", real=True)  # curvature where it lands
+cos_phi0 = Symbol("cos_phi0", positive=True)  # cosine of the exit angle where a flight leaves
+cos_eta1 = Symbol("cos_eta1", positive=True)  # cosine of the incidence angle where it lands
+
 
 Pair = tuple[Expr, Expr]
 
@@ -110,7 +133,6 @@ class Table:
         raise ValueError(f"{self.name}: no component {name}; it has: {names}")
 
     def _repr_latex_(self) -> str:
-        from symbolic.tables.notation import latex  # a notebook asks for it, nothing else does
 
         return rf"$\displaystyle {latex(self)}$"
 
@@ -139,3 +161,61 @@ def exact_number(label: str, given: Expr | int | str) -> Expr:
 def _substituted(component: Component, values: dict[Symbol, Expr]) -> Component:
     x, y = (coordinate.subs(values) for coordinate in component.point)
     return replace(component, point=(x, y), start=component.start.subs(values), end=component.end.subs(values))
+
+
+SPECIAL = {
+    lam: r"\lambda",
+    phi: r"\varphi",
+    eta: r"\eta",
+    K0: "K_{0}",
+    K1: "K_{1}",
+    cos_phi0: r"\cos \varphi_{0}",
+    cos_eta1: r"\cos \eta_{1}",
+}
+
+
+def latex(expression: Expr | Matrix | Component | Table) -> str:
+    """`expression` in LaTeX, in the paper's letters; a component is its parametrisation.
+
+    >>> from symbolic.tables.table import alpha
+    >>> latex(lam * alpha)
+    '\\\\alpha \\\\lambda'
+    >>> from symbolic.tables import cuspless
+    >>> latex(cuspless.component("wall").point[0])
+    '- \\\\frac{1}{4}'
+    """
+    if isinstance(expression, Table):
+        return r" \\ ".join(latex(component) for component in expression.components)
+    if isinstance(expression, Component):
+        x, y = (latex(coordinate) for coordinate in expression.point)
+        return rf"\left({x}, {y}\right), \quad {latex(expression.start)} \leq \theta \leq {latex(expression.end)}"
+    return str(sympy_latex(expression, symbol_names=_names(expression)))
+
+
+def equation(left: str, right: Expr | Matrix) -> str:
+    """A displayed equation for a notebook cell; `left` is LaTeX already.
+
+    >>> equation(r"\\varphi", -lam * eta)
+    '$\\\\displaystyle \\\\varphi = - \\\\eta \\\\lambda$'
+    """
+    return rf"$\displaystyle {left} = {latex(right)}$"
+
+
+def letter(name: str) -> str:
+    """A name of the code as the paper's letter, with what follows as a subscript.
+
+    >>> letter("theta_next"), letter("lam"), letter("mu0")
+    ('\\\\theta_{\\\\mathrm{next}}', '\\\\lambda', '\\\\mu_{0}')
+    """
+    stem, _, tail = name.partition("_")
+    digits = stem[len(stem.rstrip("0123456789")) :]
+    stem = stem[: len(stem) - len(digits)]
+    base = {"lam": r"\lambda", "phi": r"\varphi"}.get(stem) or str(sympy_latex(Symbol(stem)))
+    parts = [digits] if digits else []
+    parts += [rf"\mathrm{{{tail}}}"] if tail else []
+    return base + (f"_{{{','.join(parts)}}}" if parts else "")
+
+
+def _names(expression: Expr | Matrix) -> dict[Basic, str]:
+    symbols = sorted(expression.free_symbols, key=str)
+    return {s: SPECIAL.get(s) or letter(s.name) for s in symbols}

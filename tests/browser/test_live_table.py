@@ -8,7 +8,7 @@ from urllib.request import urlopen
 import pytest
 from playwright.sync_api import expect
 
-from verification.app.live.page import serve
+from verification.app.live import serve
 
 PATIENCE = 30_000  # milliseconds
 

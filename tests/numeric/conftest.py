@@ -12,8 +12,7 @@ import pytest
 os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
-from numeric.backends.arrays import Arrays
-from numeric.backends.scalars import Scalars
+from numeric.backends.scalars import Arrays, Scalars
 from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text, operations
 

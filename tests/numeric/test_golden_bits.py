@@ -16,7 +16,7 @@ from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec, starting
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 FILE = Path(__file__).parent / "golden_bits.json"
 STADIUM = tables.piecewise(

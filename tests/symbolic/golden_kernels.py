@@ -3,13 +3,12 @@
 import sys
 from pathlib import Path
 
-from symbolic.generation.text import Kernel, kernel, module_text
+from symbolic.expressions.text import Kernel, kernel, module_text
 from symbolic.motion.chords import chord_kernel, collision_kernel
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from symbolic.tables.geometry import curvature
-from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t, theta
-from symbolic.tables.table import Table
+from symbolic.tables.table import K0, K1, Table, cos_eta1, cos_phi0, lam, t, theta
 
 TABLES: dict[str, Table] = {
     "circle": circle,

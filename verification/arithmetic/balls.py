@@ -1,13 +1,21 @@
-"""Exact expressions to complex balls: enclosures that contain the true value, at a stated precision.
+"""What the words of the generated kernels mean, for each kind of number.
+
+`load(kernel, arithmetic)` binds them. Precision is an argument: mpmath comes in as a context object,
+balls with their number of bits. Ball operations between kernels round at the global `flint.ctx`, so
+whoever computes with balls does it inside `working(bits)`, which puts the old precision back.
+
+Exact expressions to complex balls: enclosures that contain the true value, at a stated precision.
 
 Stretches of a line as balls: cut into touching pieces, halved, joined.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 from flint import acb, arb, ctx, fmpq
 from sympy import (
     Abs,
@@ -31,7 +39,81 @@ from sympy import (
     tan,
 )
 
-FUNCTIONS: Mapping[type, Callable[[acb], acb]] = {
+Arithmetic = Mapping[str, Any]
+FUNCTIONS = ("sqrt", "sin", "cos", "atan", "exp", "log")
+
+FLOAT64: dict[str, Any] = {word: getattr(math, word) for word in FUNCTIONS} | {"q": lambda p, n: p / n, "pi": math.pi}
+ARRAYS: Arithmetic = FLOAT64 | {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
+
+
+def multiprecision(context: Any) -> Arithmetic:
+    """Numbers of an mpmath context, at the precision that this context has when they are used.
+
+    >>> import mpmath
+    >>> fifty = mpmath.MPContext()
+    >>> fifty.dps = 50
+    >>> multiprecision(fifty)["q"](1, 3)
+    mpf('0.33333333333333333333333333333333333333333333333333311')
+    """
+    return {word: getattr(context, word) for word in FUNCTIONS} | {
+        "q": lambda p, n: context.mpf(p) / n,
+        "pi": context.pi,
+    }
+
+
+def balls(bits: int) -> Arithmetic:
+    """Balls that contain the true value; constants are enclosed with `bits` bits.
+
+    >>> third = balls(128)["q"](1, 3)
+    >>> with working(128):
+    ...     print((3 * third).contains(1), third.is_exact())
+    True False
+    """
+
+    def rational(p: int, n: int) -> arb:
+        with ctx.workprec(bits):
+            return arb(fmpq(p, n))
+
+    with ctx.workprec(bits):
+        pi = arb.pi()
+    return {word: _of_ball(word) for word in FUNCTIONS} | {"q": rational, "pi": pi}
+
+
+@contextmanager
+def working(bits: int) -> Iterator[None]:
+    """Ball arithmetic rounds to `bits` bits inside, and as before outside, whatever happens.
+
+    >>> before = ctx.prec
+    >>> with working(333):
+    ...     print(ctx.prec)
+    333
+    >>> ctx.prec == before
+    True
+    """
+    with ctx.workprec(bits):
+        yield
+
+
+def bits_of(digits: int, guard: int = 0) -> int:
+    """The bits that hold `digits` decimal digits, and `guard` more.
+
+    >>> bits_of(50), bits_of(50, 30)
+    (167, 197)
+    """
+    return math.ceil(digits * math.log2(10)) + guard
+
+
+def _of_ball(word: str) -> Callable[[Any], arb]:
+    method = getattr(arb, word)
+
+    def function(x: Any) -> arb:
+        made: arb = method(x) if type(x) is arb else method(arb(x))
+        return made
+
+    return function
+
+
+BALL_FUNCTIONS: Mapping[type, Callable[[acb], acb]] = {
     sin: acb.sin,
     cos: acb.cos,
     tan: acb.tan,
@@ -104,8 +186,8 @@ def _ball(e: Expr) -> acb:
         if isinstance(power, Rational) and power.q == 2:
             return _ball(base).sqrt() ** int(power.p)
         return (_ball(power) * _ball(base).log()).exp()
-    if type(e) in FUNCTIONS:
-        return FUNCTIONS[type(e)](_ball(e.args[0]))
+    if type(e) in BALL_FUNCTIONS:
+        return BALL_FUNCTIONS[type(e)](_ball(e.args[0]))
     raise ValueError(f"no enclosure is known for {type(e).__name__} in {e}")
 
 

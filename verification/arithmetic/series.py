@@ -9,7 +9,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from verification.arithmetic.words import FUNCTIONS, Arithmetic, balls
+from verification.arithmetic.balls import FUNCTIONS, Arithmetic, balls
 
 
 class Jet:
@@ -68,7 +68,7 @@ class Jet:
 def jets(base: Arithmetic) -> Arithmetic:
     """The words of the kernels for jets over the numbers of `base`.
 
-    >>> from verification.arithmetic.words import FLOAT64
+    >>> from verification.arithmetic.balls import FLOAT64
     >>> jets(FLOAT64)["atan"](Jet(0.0, 1.0, 0.0, 0.0)).c[3] * 3
     -1.0
     """

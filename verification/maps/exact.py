@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap, Status
 from numeric.backends.scalars import Scalars
-from numeric.flights.boundary import Frame
-from numeric.flights.family import NEAR, law_of
+from numeric.flights.family import NEAR, Frame, law_of
 from numeric.flights.general import General
 
 GUARD = 30  # digits more than asked for: a grazing flight loses as many as its angle has zeros

@@ -6,7 +6,7 @@ system and proved there (`verification.named.locate.certify`).
 
 The period doublings that a cycle of the egg goes through as `lam` grows, each proved, and where they accumulate.
 
-`verification.cycles.shooting.cascade` climbs the paper's cascade, from period 4 at the diameters. This one starts
+`verification.cycles.recurrence.cascade` climbs the paper's cascade, from period 4 at the diameters. This one starts
 from any attracting
 cycle that random balls reach, such as those of higher period to which section 6.6 ascribes isolated chaotic regions.
 """
@@ -20,19 +20,18 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.dynamics.cycles import Cycle, polished
+from numeric.dynamics.attractors import moved
 from numeric.dynamics.phase_points import Places, embedded, places
-from numeric.dynamics.symmetry import moved
+from numeric.dynamics.recognition import Cycle, polished
 from numeric.pinball.sampling import interior_starts
 from symbolic.tables import egg
-from symbolic.tables.symmetry import Symmetry
+from symbolic.tables.geometry import Symmetry
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.recurrence.closure import IDENTITY, MIRROR, Closure
-from verification.cycles.shooting.attracting import FEIGENBAUM, doubled, next_critical
-from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Problem
+from verification.cycles.recurrence.cascade import FEIGENBAUM, doubled, next_critical
+from verification.cycles.recurrence.newton import floats
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import IDENTITY, MIRROR, BifurcationKind, Closure
 from verification.named.locate import certify
 
 STEP, LEAST = 1.2e-2, 1e-9
@@ -94,7 +93,7 @@ def ends(
 ) -> tuple[End, End]:
     """Both ends of the branch through a cycle at `lam`.
 
-    >>> from symbolic.tables.symmetry import group
+    >>> from symbolic.tables.geometry import group
     >>> from symbolic.tables import cuspless
     >>> map = PinballMap("cuspless", lam=0.05)
     >>> axis = polished(map, places([0, 1], [0.0, 0.0], 0.0))

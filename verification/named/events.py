@@ -20,16 +20,14 @@ from sympy import Expr, S
 from symbolic.tables import egg
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import Event, branch
-from verification.cycles.continuation.curves import Curve, curve
-from verification.cycles.continuation.symmetry import rotations
-from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.continuation.search import all_cycles
+from verification.cycles.continuation.switching import Curve, curve
+from verification.cycles.continuation.systems import rotations
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.closure import IDENTITY, MIRROR
-from verification.cycles.recurrence.recurrence import Array
-from verification.cycles.search.search import all_cycles
-from verification.cycles.shooting.problem import Problem
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
+from verification.named.curves import TWO, largest_shape
 from verification.named.locate import certify
-from verification.named.tongue import TWO, largest_shape
 from verification.proofs.periodic.bifurcation import Proof
 
 

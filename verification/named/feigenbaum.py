@@ -14,7 +14,7 @@ import mpmath
 from sympy import Expr
 
 from verification.arithmetic.balls import decimal
-from verification.cycles.shooting.cascade import rung
+from verification.cycles.recurrence.cascade import rung
 from verification.named.locate import certify
 
 DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # [Feigenbaum1979]; OEIS A006890

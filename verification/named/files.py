@@ -16,21 +16,20 @@ from sympy import Expr
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
 from symbolic.tables.formula import number
-from symbolic.tables.fourier import boundary_coefficients
-from symbolic.tables.symbols import alpha as alpha_letter
-from symbolic.tables.symbols import lam as lam_letter
+from symbolic.tables.geometry import boundary_coefficients
 from symbolic.tables.table import Table
-from verification.arithmetic.words import working
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.recurrence.closure import Closure
-from verification.cycles.shooting.problem import Problem
+from symbolic.tables.table import alpha as alpha_letter
+from symbolic.tables.table import lam as lam_letter
+from verification.arithmetic.balls import working
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind, Closure
 from verification.named.locate import closed_form
 from verification.proofs.corner.corner import NEAR
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
 from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 
 if TYPE_CHECKING:
-    from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof
+    from verification.proofs.manifolds.proof import TangencyClaim, TangencyProof
 
 SCHEMA = 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
@@ -170,7 +169,7 @@ def checked(given: Mapping[str, Any]) -> "Proof | SpecialProof | TangencyProof":
     The name is part of the statement: a file under another name than its equations have is refused.
     """
     if given.get("kind") == "tangency" and given.get("schema") == SCHEMA:
-        from verification.proofs.manifolds import claim as tangency  # NumPy, which no other certificate needs
+        from verification.proofs.manifolds import proof as tangency  # NumPy, which no other certificate needs
 
         contact = tangency.claim_of(given)
         _rightly_named(given, contact)

@@ -16,23 +16,22 @@ from sympy import Expr, Integer, N, S, acos
 
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
-from symbolic.generation.text import kernel, load
-from symbolic.tables.symbols import alpha as alpha_letter
-from symbolic.tables.symbols import lam as lam_letter
-from verification.arithmetic.balls import decimal, exact_balls
+from symbolic.expressions.text import kernel, load
+from symbolic.tables.table import alpha as alpha_letter
+from symbolic.tables.table import lam as lam_letter
+from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
 from verification.arithmetic.progress import telling
-from verification.arithmetic.words import balls, bits_of, working
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting import cascade as ladder
-from verification.cycles.shooting.newton import Step, refined
-from verification.cycles.shooting.problem import Problem
-from verification.cycles.shooting.small import corner, focus
+from verification.cycles.recurrence import cascade as ladder
+from verification.cycles.recurrence.critical import corner, focus
+from verification.cycles.recurrence.newton import Step, refined
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
 from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
 from verification.proofs.periodic.interval_newton import Status
 
 if TYPE_CHECKING:
-    from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other name needs
+    from verification.proofs.manifolds.proof import TangencyProof  # NumPy, which no other name needs
 
 MOST_DIGITS = 20_000
 BUDGET = 4_000_000  # bounces times digits: some ten minutes

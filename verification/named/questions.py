@@ -18,8 +18,7 @@ from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
     from verification.cycles.continuation.branch import Branch, Event
-    from verification.cycles.search.catalogue import Found
-    from verification.cycles.search.search import Searched
+    from verification.cycles.continuation.search import Found, Searched
     from verification.named.locate import Located
 
 SHOWN = 12  # rows of a table in a notebook
@@ -111,7 +110,7 @@ def find_cycles(
     >>> find_cycles(ellipse, period=2)
     PeriodicOrbits(2: 1 stable)
     """
-    from verification.cycles.search.search import all_cycles
+    from verification.cycles.continuation.search import all_cycles
 
     if (period is None) == (up_to is None):
         raise ValueError("find_cycles: give one of period=N and up_to=N")

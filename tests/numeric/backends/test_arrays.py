@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Arrays
 
 OPS = Arrays()
 PI_TAIL = 1.2246467991473532e-16  # pi less its double

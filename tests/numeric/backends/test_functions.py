@@ -4,10 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from numeric.backends.arrays import Arrays
-from numeric.backends.functions import angle, turn
-from numeric.backends.plane import exact_cross, unit
-from numeric.backends.roots import halley, polynomial_zero, value_and_slope
+from numeric.backends.functions import angle, exact_cross, halley, polynomial_zero, turn, unit, value_and_slope
+from numeric.backends.scalars import Arrays
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()

@@ -6,8 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from numeric.backends.arrays import Arrays
 from numeric.backends.llvm import Lane, Lanes
+from numeric.backends.scalars import Arrays
 from numeric.flights.family import Family, Landing
 from numeric.kernels.engine import Engine
 from numeric.kernels.spec import KernelSpec

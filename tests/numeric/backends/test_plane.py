@@ -5,8 +5,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from numeric.backends import plane
-from numeric.backends.arrays import Arrays
+from numeric.backends import functions as plane
+from numeric.backends.scalars import Arrays
 
 EPS = 2.0**-52
 OPS = Arrays()

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from numeric.backends.arrays import Arrays
-from numeric.backends.roots import TOLERANCE, bracketed_zero, halley, polynomial_zero, value_and_slope
+from numeric.backends.functions import TOLERANCE, bracketed_zero, halley, polynomial_zero, value_and_slope
+from numeric.backends.scalars import Arrays
 
 EPS = 2.0**-52
 OPS = Arrays()

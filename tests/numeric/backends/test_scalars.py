@@ -3,7 +3,7 @@
 import mpmath
 import pytest
 
-from numeric.backends.roots import value_and_slope
+from numeric.backends.functions import value_and_slope
 from numeric.backends.scalars import Scalars
 
 MP = mpmath.MPContext()

@@ -8,15 +8,14 @@ import pytest
 from sympy import Rational
 
 from numeric import PinballMap, Status
-from numeric.dynamics.attractors import UNSETTLED, Kind, classify, find, wilson
-from numeric.dynamics.cycles import polished
+from numeric.dynamics.attractors import UNSETTLED, Kind, classify, find, moved, wilson
 from numeric.dynamics.phase_points import Places, advanced, embedded, places
-from numeric.dynamics.symmetry import moved
+from numeric.dynamics.recognition import polished
 from numeric.pinball.sampling import interior_starts
 from symbolic.tables import cardioid, cuspless, egg, ellipse
-from symbolic.tables.symmetry import group
-from verification.app.shell.cli import main
-from verification.cycles.shooting.cascade import ladder
+from symbolic.tables.geometry import group
+from verification.app.cli import main
+from verification.cycles.recurrence.cascade import ladder
 from verification.named.attractors import certificate
 
 EGG = egg(3).at(alpha="0.08")

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.dynamics.attractors import Kind, find
+from numeric.dynamics.attractors import Kind, find, moved
 from numeric.dynamics.basins import Window, entropies, grid, intermingling, labels, random_points, starts_at, whole
 from numeric.dynamics.phase_points import advanced, embedded
-from numeric.dynamics.symmetry import moved
-from numeric.dynamics.uncertainty import fitted, uncertainty
+from numeric.dynamics.statistics import fitted, uncertainty
 from symbolic.tables import egg
-from symbolic.tables.symmetry import group
+from symbolic.tables.geometry import group
 
 RNG = 5
 

@@ -8,11 +8,10 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.dynamics.account import account, checked, volume
 from numeric.dynamics.exponents import CHANGED, Count, surveyed
-from numeric.dynamics.kinds import Kind
 from numeric.dynamics.phase_points import Places, places
+from numeric.dynamics.recognition import Kind
 from numeric.dynamics.statistics import autocorrelation_time, estimate
-from numeric.pinball.growth import Growth
-from numeric.pinball.sampling import Starts, interior_starts, phase_starts
+from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_starts
 from symbolic import tables
 from verification.named.attractors import certified_exponents, exponents
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap, Status
-from numeric.backends.arrays import Arrays
-from numeric.backends.roots import value_and_slope
+from numeric.backends.functions import value_and_slope
+from numeric.backends.scalars import Arrays
 from numeric.flights.cardioid import Cardioid
 
 ARC = np.zeros(24, dtype=np.int64)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap, Status
-from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Arrays
 from numeric.flights.cuspless import Cuspless
 
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Arrays
 from numeric.flights.cardioid import Cardioid
 from numeric.flights.family import NEAR, Family, Landing, grazing, law_of
 

@@ -10,8 +10,7 @@ from sympy import Rational, cos, expand, pi, sin, symbols
 from numeric.lowering.lower import seen_ahead
 from symbolic import tables
 from symbolic.motion.flight import ONE, chord_polynomial, flight_residual, harmonics, point_at, support
-from symbolic.tables.symbols import alpha, theta
-from symbolic.tables.table import Component
+from symbolic.tables.table import Component, alpha, theta
 
 
 @pytest.mark.parametrize("table", [tables.circle, tables.ellipse, tables.cardioid], ids=lambda table: table.name)

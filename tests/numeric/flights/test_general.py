@@ -11,7 +11,7 @@ from numeric import PinballMap
 from numeric.flights.general import General
 from numeric.kernels.spec import KernelSpec
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 from verification.maps import strategies
 from verification.maps.exact import ExactMap, errors
 

@@ -7,7 +7,7 @@ from sympy import Rational, cos, sin
 from numeric import PinballMap, Status
 from numeric.kernels.spec import KernelSpec
 from symbolic import tables
-from symbolic.tables.symbols import theta as symbol
+from symbolic.tables.table import theta as symbol
 
 HERE = np.zeros(24, dtype=np.int64)
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.backends.arrays import Arrays
-from numeric.flights.near_grazing import above_the_wall, sharp_back, sharpened
+from numeric.backends.scalars import Arrays
+from numeric.flights.cuspless import above_the_wall, sharp_back, sharpened
 
 EPS = 2.0**-52
 OPS = Arrays()

@@ -7,7 +7,7 @@ from sympy import Rational
 from numeric import PinballMap, phase_starts
 from numeric.flights.general import General
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 from verification.maps.exact import ExactMap, errors
 
 

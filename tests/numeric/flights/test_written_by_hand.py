@@ -8,9 +8,9 @@ from numeric.flights.cardioid import Cardioid
 from numeric.flights.circle import Circle
 from numeric.flights.cuspless import Cuspless
 from symbolic import tables
-from symbolic.proofs.zero import vanishes
-from symbolic.tables.arclength import arc_length
-from symbolic.tables.symbols import theta
+from symbolic.expressions.signs import vanishes
+from symbolic.tables.geometry import arc_length
+from symbolic.tables.table import theta
 
 
 class Exact:

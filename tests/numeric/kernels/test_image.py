@@ -9,7 +9,7 @@ import pytest
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.image import MAGIC, entered, image
+from numeric.kernels.machine import MAGIC, entered, image
 from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text
 

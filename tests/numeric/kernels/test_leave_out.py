@@ -11,7 +11,7 @@ import pytest
 from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec, fields
 from numeric.kernels.text import alive, kernel_text, operations
-from verification.measure.speed.bench import SCENES, operation_table
+from verification.measure.work.bench import SCENES, operation_table
 
 PAGE = Path(__file__).parent.parent.parent.parent / "docs" / "kernels.md"
 HEAVY = ("sympy", "mpmath", "flint", "matplotlib", "scipy", "numba", "hypothesis", "click", "rich")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Arrays
 from numeric.flights.circle import Circle
 from numeric.flights.harmonic import Harmonic
 from numeric.kernels.spec import FAR, TANGENT, KernelSpec, fields, rescaled, starting

@@ -8,13 +8,11 @@ from sympy import Float, Rational, Symbol, cos, exp, pi, sin, sqrt, sympify, tan
 
 from numeric.backends.scalars import Scalars
 from numeric.lowering.lower import converted, drawn, named, seen_ahead
-from numeric.lowering.program import Builder
-from numeric.lowering.table_ir import blueprint
+from numeric.lowering.program import Builder, blueprint
 from symbolic import tables
 from symbolic.motion.flight import ONE, chord_polynomial
 from symbolic.tables.geometry import velocity
-from symbolic.tables.symbols import theta
-from symbolic.tables.table import Component, Table
+from symbolic.tables.table import Component, Table, theta
 
 MP = mpmath.MPContext()
 MP.dps = 40

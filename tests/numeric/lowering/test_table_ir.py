@@ -4,9 +4,9 @@ from fractions import Fraction
 
 import pytest
 
-from numeric.lowering import table_ir as blueprints
+from numeric.lowering import program as blueprints
 from numeric.lowering.lower import drawn
-from numeric.lowering.table_ir import Blueprint, ShapeRange, blueprint
+from numeric.lowering.program import Blueprint, ShapeRange, blueprint
 from symbolic import tables
 
 

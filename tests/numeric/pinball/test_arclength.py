@@ -10,9 +10,9 @@ from scipy.special import jv
 from sympy import Rational, cos, pi, sin, sqrt
 
 from numeric import PinballMap
-from numeric.pinball.arclength import MOST, Waves, chebyshev
+from numeric.pinball.coordinates import MOST, Waves, chebyshev
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from verification.app.shell.cli import main
+from verification.app.cli import main
 
 
 def run(capsys, *arguments):

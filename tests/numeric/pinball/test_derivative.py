@@ -8,7 +8,7 @@ from sympy import lambdify
 
 from numeric import PinballMap
 from symbolic.motion.collision import derivative_matrix
-from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
+from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.maps import strategies
 from verification.maps.exact import ExactMap
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.pinball.growth import Growth
+from numeric.pinball.sampling import Growth
 
 
 @pytest.mark.parametrize("lam", [0, 0.6, 1])

@@ -8,9 +8,8 @@ import pytest
 from sympy import Rational, S, cos, pi, sin, sqrt
 
 from numeric import PinballMap
-from numeric.pinball.inputs import angles, components, contraction, counted, real, shape_value
-from symbolic.tables.symbols import theta
-from symbolic.tables.table import Component, Table
+from numeric.pinball.states import angles, components, contraction, counted, real, shape_value
+from symbolic.tables.table import Component, Table, theta
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ import pytest
 from sympy import cos, pi, sin
 
 from numeric import PinballMap
-from numeric.pinball.location import located
+from numeric.pinball.coordinates import located
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 EPS = 2.0**-52
 LENS = tables.piecewise(

@@ -6,7 +6,7 @@ from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap, Status
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 EPS = 2.0**-52
 LAWS = [0, 0.3, 1]

@@ -9,7 +9,7 @@ from numeric import PinballMap
 from numeric.pinball import sampling
 from numeric.pinball.sampling import interior_starts, longest, phase_grid, phase_starts
 from symbolic import tables
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 MANY = 40_000
 WAISTED = tables.polar(1 + cos(3 * theta) / 4)  # not convex, and of the general kind

@@ -7,13 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from numeric.sweeps.bifurcation import bifurcation
-from numeric.sweeps.parameter_space import parameter_space
-from numeric.sweeps.pools import UnfinishedError
-from numeric.sweeps.run import run
-from numeric.sweeps.scenes import text_of
+from numeric.sweeps.fields import bifurcation, parameter_space
+from numeric.sweeps.run import UnfinishedError, run
 from numeric.sweeps.store import opened
-from numeric.sweeps.sweep import Axis, Field, Sweep, cost
+from numeric.sweeps.sweep import Axis, Field, Sweep, cost, text_of
 from symbolic import Scene
 
 TIMES = Axis("x", np.arange(7.0), "1", "first factor", 3), Axis("y", np.arange(5), "1", "second factor", 2)

@@ -20,9 +20,9 @@ import pytest
 import xarray as xr
 from distributed.comm.core import CommClosedError
 
-from numeric.sweeps.parameter_space import parameter_space
+from numeric.sweeps.fields import parameter_space
 from numeric.sweeps.run import run
-from verification.app.shell.cli import main
+from verification.app.cli import main
 
 ROOT = Path(__file__).parents[3]
 PARTS = 12
@@ -171,7 +171,7 @@ def test_a_scheduler_that_goes_away_is_told_and_nothing_is_lost(cluster, tmp_pat
 
     store = tmp_path / "store"
     with monkeypatch.context() as patched:
-        patched.setattr("numeric.sweeps.pools._shared_out", gone)
+        patched.setattr("numeric.sweeps.run._shared_out", gone)
         assert main(["sweep", *SPACE, "--store", str(store), "--scheduler", cluster.scheduler_address]) == 1
 
     said = (
@@ -183,7 +183,7 @@ def test_a_scheduler_that_goes_away_is_told_and_nothing_is_lost(cluster, tmp_pat
 
 @pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1:1"])
 def test_a_scheduler_that_is_not_there_is_told(address, capsys, monkeypatch):
-    monkeypatch.setattr("numeric.sweeps.pools.ANSWER", 0.5)
+    monkeypatch.setattr("numeric.sweeps.run.ANSWER", 0.5)
 
     assert main(["sweep", *SPACE, "--scheduler", address]) == 2
     assert f"--scheduler {address}: no Dask scheduler answers there; accepted: " in capsys.readouterr().err

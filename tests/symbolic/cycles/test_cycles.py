@@ -3,32 +3,30 @@
 import pytest
 from sympy import Matrix, Rational, S, cancel, pi, simplify, sqrt
 
-from symbolic.cycles.cycle import (  # fmt: skip
+from symbolic.cycles.cycle import (
     Cycle,
-    discriminant,
-    flight_matrix,
-    is_double_normal,
-    is_elastic,
-    monodromy,
-    multipliers,
-    trace_and_determinant,
-)
-from symbolic.cycles.named import (  # fmt: skip
     cardioid_vertical,
     cuspless_horizontal,
     cuspless_vertical,
     diameter,
+    discriminant,
     egg_diameter,
     egg_parallel,
     egg_triangle,
+    flight_matrix,
+    is_double_normal,
+    is_elastic,
     major_axis,
     minor_axis,
+    monodromy,
+    multipliers,
     parallel_shape,
+    trace_and_determinant,
 )
+from symbolic.expressions.signs import vanishes
 from symbolic.motion.collision import derivative_matrix
-from symbolic.proofs.zero import vanishes
 from symbolic.tables import circle, egg, ellipse
-from symbolic.tables.symbols import a, alpha, lam
+from symbolic.tables.table import a, alpha, lam
 
 DOUBLE_NORMALS = [
     diameter(), major_axis(), minor_axis(), cardioid_vertical(), cuspless_vertical(), cuspless_horizontal(),

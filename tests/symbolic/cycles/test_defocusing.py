@@ -30,9 +30,8 @@ from symbolic.cycles.defocusing import (
     turning_defect,
     x,
 )
-from symbolic.proofs.signs import Outcome
-from symbolic.proofs.zero import vanishes
-from symbolic.tables.symbols import lam
+from symbolic.expressions.signs import Outcome, vanishes
+from symbolic.tables.table import lam
 
 
 def test_every_step_of_the_proof_is_an_identity():

@@ -3,9 +3,9 @@
 import pytest
 from sympy import Rational, S, Symbol, cos, diff, pi, simplify, tan
 
-from symbolic.cycles.determinant import cycle_determinant, flux, flux_slope, polygon_factor, polygon_slope
 from symbolic.cycles.polygons import half_turn
-from symbolic.tables.symbols import lam
+from symbolic.cycles.thresholds import cycle_determinant, flux, flux_slope, polygon_factor, polygon_slope
+from symbolic.tables.table import lam
 
 x, delta = Symbol("x"), Symbol("delta")
 

@@ -8,8 +8,18 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from sympy import Interval, Rational, S, Symbol, simplify, sqrt
 
-from symbolic.cycles.cycle import discriminant, trace_and_determinant
-from symbolic.cycles.double_normal import (  # fmt: skip
+from symbolic.cycles.cycle import (
+    cardioid_vertical,
+    cuspless_horizontal,
+    diameter,
+    discriminant,
+    egg_diameter,
+    egg_parallel,
+    major_axis,
+    minor_axis,
+    trace_and_determinant,
+)
+from symbolic.cycles.thresholds import (
     flip_contraction,
     focus_contraction,
     general_trace_and_determinant,
@@ -17,17 +27,8 @@ from symbolic.cycles.double_normal import (  # fmt: skip
     stable_while_nonnegative,
     trace_of,
 )
-from symbolic.cycles.named import (  # fmt: skip
-    cardioid_vertical,
-    cuspless_horizontal,
-    diameter,
-    egg_diameter,
-    egg_parallel,
-    major_axis,
-    minor_axis,
-)
-from symbolic.proofs.signs import Outcome
-from symbolic.tables.symbols import K0, K1, a, alpha, lam, t
+from symbolic.expressions.signs import Outcome
+from symbolic.tables.table import K0, K1, a, alpha, lam, t
 
 mp = mpmath.MPContext()
 mp.dps = 60

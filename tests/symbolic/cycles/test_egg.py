@@ -8,7 +8,7 @@ import pytest
 from sympy import Rational, S, symbols
 from sympy import cos as cosine
 
-from symbolic.cycles.egg import (
+from symbolic.cycles.polygons import (
     COSINE,
     centre_beyond_boundary,
     centre_far_inside,
@@ -21,7 +21,7 @@ from symbolic.cycles.egg import (
 )
 from symbolic.tables import egg
 from symbolic.tables.geometry import curvature
-from symbolic.tables.symbols import alpha, theta
+from symbolic.tables.table import alpha, theta
 
 
 def beyond_the_boundary(shape, at):

@@ -5,9 +5,8 @@ import math
 import pytest
 from sympy import Rational, sqrt
 
-from symbolic.cycles.cycle import monodromy
-from symbolic.cycles.flip_jets import a, arc_jets, coefficient, least_bend, return_map
-from symbolic.cycles.named import cuspless_horizontal
+from symbolic.cycles.cycle import cuspless_horizontal, monodromy
+from symbolic.cycles.normal_forms import a, arc_jets, coefficient, least_bend, return_map
 
 
 def test_a_straight_wall_has_the_monodromy_of_the_horizontal_orbit():

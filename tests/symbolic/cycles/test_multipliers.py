@@ -8,8 +8,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Interval, Rational, S, Symbol
 
-from symbolic.cycles.multipliers import complex_pair, inside_unit_circle, real_and_distinct, saddle
-from symbolic.proofs.signs import Outcome
+from symbolic.cycles.cycle import complex_pair, inside_unit_circle, real_and_distinct, saddle
+from symbolic.expressions.signs import Outcome
 
 mp = mpmath.MPContext()
 mp.dps = 60

@@ -3,10 +3,10 @@
 import pytest
 from sympy import Rational, nsolve, pi
 
-from symbolic.cycles import named as named_cycles
-from symbolic.cycles.named import c, egg_diameter, egg_parallel, egg_triangle, parallel_shape
+from symbolic.cycles import cycle as named_cycles
+from symbolic.cycles.cycle import c, egg_diameter, egg_parallel, egg_triangle, parallel_shape
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.symbols import lam, theta
+from symbolic.tables.table import lam, theta
 
 PLACES = {
     "diameter": (circle, [(0, 0), (0, pi)]),

@@ -19,10 +19,10 @@ from symbolic.cycles.polygons import (
     tilt_tangent,
     turn_trace_and_determinant,
 )
-from symbolic.proofs.zero import vanishes
+from symbolic.expressions.signs import vanishes
 from symbolic.tables import egg
 from symbolic.tables.geometry import curvature, normal, tangent
-from symbolic.tables.symbols import K0, alpha, lam, t, theta
+from symbolic.tables.table import K0, alpha, lam, t, theta
 
 mp = mpmath.MPContext()
 mp.dps = 60

@@ -9,9 +9,9 @@ from numeric import PinballMap
 from symbolic.cycles.polygons import elastic_trace
 from symbolic.cycles.resonance import Pair, at_shape, flat_triangle
 from symbolic.tables import egg
-from symbolic.tables.symbols import alpha
-from verification.arithmetic.words import working
-from verification.proofs.periodic.twist import twist
+from symbolic.tables.table import alpha
+from verification.arithmetic.balls import working
+from verification.proofs.periodic.bifurcation import twist
 
 THIRD, FOURTH = Rational(1, 13), Rational(1, 19)
 

@@ -28,9 +28,9 @@ from symbolic.cycles.cardioid_slap import (
     q,
     quiet_near_the_cusp,
 )
-from symbolic.generation.text import load
-from symbolic.proofs.signs import Outcome
-from verification.arithmetic.words import balls, multiprecision
+from symbolic.expressions.signs import Outcome
+from symbolic.expressions.text import load
+from verification.arithmetic.balls import balls, multiprecision
 
 FACTS = (lands_first, derived, expands, quiet_near_the_cusp, gentle_elsewhere)
 LANDINGS = st.fractions(Fraction(-156, 100), Fraction(78, 100), max_denominator=1000)

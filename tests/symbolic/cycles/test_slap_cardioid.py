@@ -27,11 +27,10 @@ from symbolic.cycles.cardioid_slap import (  # fmt: skip
     y,
     zeros,
 )
-from symbolic.proofs.signs import Outcome
-from symbolic.proofs.zero import vanishes
+from symbolic.expressions.signs import Outcome, vanishes
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import curvature, normal
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 mp = mpmath.MPContext()
 mp.dps = 50

@@ -6,8 +6,8 @@ from sympy import Rational, cos, pi, sqrt
 from symbolic.cycles import splitting
 from symbolic.cycles.defocusing import half
 from symbolic.cycles.splitting import angle, c, clear, clearance, diameters, grazing, least_rate, rate, splits
-from symbolic.proofs.signs import Outcome
-from symbolic.tables.symbols import K0
+from symbolic.expressions.signs import Outcome
+from symbolic.tables.table import K0
 
 
 def test_the_cones_of_both_tables_are_proved():

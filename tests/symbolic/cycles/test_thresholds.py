@@ -7,10 +7,8 @@ from fractions import Fraction
 import pytest
 from sympy import Expr, Interval, Rational, S, Symbol, cancel, lambdify, simplify, sqrt
 
-from symbolic.cycles.cycle import discriminant, trace_and_determinant
-from symbolic.cycles.double_normal import stability_number, trace_of
-from symbolic.cycles.named import cuspless_horizontal, egg_diameter, minor_axis
-from symbolic.cycles.thresholds import (  # fmt: skip
+from symbolic.cycles.cycle import cuspless_horizontal, discriminant, egg_diameter, minor_axis, trace_and_determinant
+from symbolic.cycles.thresholds import (
     alpha_hat,
     alpha_tilde,
     complex_up_to,
@@ -19,11 +17,12 @@ from symbolic.cycles.thresholds import (  # fmt: skip
     lambda_minus,
     lambda_plus,
     shape_of_tilt,
+    stability_number,
     tilt,
+    trace_of,
 )
-from symbolic.proofs.signs import positive
-from symbolic.proofs.zero import vanishes
-from symbolic.tables.symbols import a, alpha, lam
+from symbolic.expressions.signs import positive, vanishes
+from symbolic.tables.table import a, alpha, lam
 
 EPS = Fraction(1, 2**52)
 ODD = [3, 5, 7, Symbol("K", integer=True, positive=True, odd=True)]

@@ -5,10 +5,10 @@ from itertools import product
 import pytest
 from sympy import Rational, S, diff, expand, simplify, sqrt, symbols
 
+from symbolic.cycles.cycle import egg_diameter as diameter
 from symbolic.cycles.cycle import monodromy, trace_and_determinant
-from symbolic.cycles.named import egg_diameter as diameter
-from symbolic.cycles.twist import bounce, chord, composed, egg_diameter, plus, powers, put, times, twist_of_odd
-from symbolic.tables.symbols import alpha, lam
+from symbolic.cycles.normal_forms import bounce, chord, composed, egg_diameter, plus, powers, put, times, twist_of_odd
+from symbolic.tables.table import alpha, lam
 
 x, p, y = symbols("x p y")
 H = {

@@ -7,8 +7,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Function, Matrix, Rational, S, atan, diff, pi, simplify, symbols
 
-from symbolic.cycles.cycle import Cycle, monodromy
-from symbolic.cycles.named import (
+from symbolic.cycles.cycle import (
+    Cycle,
     cardioid_vertical,
     cuspless_horizontal,
     cuspless_vertical,
@@ -17,16 +17,16 @@ from symbolic.cycles.named import (
     egg_triangle,
     major_axis,
     minor_axis,
+    monodromy,
 )
-from symbolic.generation.text import load
+from symbolic.expressions.signs import vanishes
+from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_angle, chord_kernel, collision_kernel, collision_rule
 from symbolic.motion.chords import theta0 as t0
 from symbolic.motion.chords import theta1 as t1
-from symbolic.proofs.zero import vanishes
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.symbols import alpha, lam
-from symbolic.tables.table import Table
-from verification.arithmetic.words import FLOAT64, balls, multiprecision, working
+from symbolic.tables.table import Table, alpha, lam
+from verification.arithmetic.balls import FLOAT64, balls, multiprecision, working
 
 DOUBLE_NORMALS = [
     diameter, major_axis, minor_axis, cardioid_vertical, cuspless_vertical, cuspless_horizontal, egg_diameter

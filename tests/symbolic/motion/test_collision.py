@@ -7,8 +7,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Expr, Function, Matrix, Rational, S, Symbol, cos, diff, pi, simplify
 
-from symbolic.motion import circle
-from symbolic.motion.collision import (  # fmt: skip
+from symbolic.motion import flight as circle
+from symbolic.motion.collision import (
     UNIFORM,
     birkhoff_matrix,
     derivative_matrix,
@@ -19,7 +19,7 @@ from symbolic.motion.collision import (  # fmt: skip
 )
 from symbolic.tables import ellipse
 from symbolic.tables.geometry import curvature, speed
-from symbolic.tables.symbols import K0, K1, a, cos_eta1, cos_phi0, eta, lam, phi, s, t, theta
+from symbolic.tables.table import K0, K1, a, cos_eta1, cos_phi0, eta, lam, phi, s, t, theta
 
 mp = mpmath.MPContext()
 mp.dps = 90

@@ -2,10 +2,17 @@
 
 from sympy import Rational, S, cos, diff, limit, log, oo, pi, simplify, sin, symbols, tan
 
-from symbolic.motion.contraction import area_factor, elastic_mean, image_share, steepening, telescoped, weak_dissipation
-from symbolic.motion.invariants import joachimsthal_defect
-from symbolic.proofs.zero import vanishes
-from symbolic.tables.symbols import eta, lam
+from symbolic.expressions.signs import vanishes
+from symbolic.motion.collision import (
+    area_factor,
+    elastic_mean,
+    image_share,
+    joachimsthal_defect,
+    steepening,
+    telescoped,
+    weak_dissipation,
+)
+from symbolic.tables.table import eta, lam
 
 
 def test_a_bounce_contracts_by_the_slope_of_sin_lam_eta_against_sin_eta():

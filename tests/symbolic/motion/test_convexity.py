@@ -3,11 +3,10 @@
 import pytest
 from sympy import Interval, Rational, S, Symbol, cos, pi, sin
 
-from symbolic.motion.convexity import convexity
-from symbolic.proofs.signs import Outcome
+from symbolic.expressions.signs import Outcome
+from symbolic.motion.chords import convexity
 from symbolic.tables import circle
-from symbolic.tables.symbols import lam, theta
-from symbolic.tables.table import Component, Table
+from symbolic.tables.table import Component, Table, lam, theta
 
 DIRECTIONS = {
     "right, T = 0": (S.One, S.Zero),

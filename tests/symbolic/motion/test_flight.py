@@ -14,8 +14,7 @@ from symbolic.motion.flight import (
     times,
 )
 from symbolic.tables import circle, cuspless, egg, ellipse
-from symbolic.tables.symbols import theta
-from symbolic.tables.table import Component
+from symbolic.tables.table import Component, theta
 
 UNIT = (Rational(3, 5), Rational(4, 5))  # exp(i*theta) with cos = 3/5
 E, B = (Rational(5, 13), Rational(12, 13)), (Rational(-7, 25), Rational(24, 25))

@@ -8,9 +8,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Abs, Expr, Float, Rational, S, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
 
-from symbolic.tables.formula import FUNCTIONS, number, parse
-from symbolic.tables.formula_bounds import flaw
-from symbolic.tables.symbols import theta
+from symbolic.tables.formula import FUNCTIONS, flaw, number, parse
+from symbolic.tables.table import theta
 
 SECONDS = 5  # the slowest formula found takes 1 s
 

@@ -3,8 +3,8 @@
 import pytest
 from sympy import Abs, Add, I, Rational, S, Symbol, cos, exp, log, pi, sin, sinh, sqrt, symbols, zoo
 
-from symbolic.tables.formula_bounds import flaw, is_exponent, is_huge, levels, modest
-from symbolic.tables.symbols import theta
+from symbolic.tables.formula import flaw, is_exponent, is_huge, levels, modest
+from symbolic.tables.table import theta
 
 
 def nested(inside, depth):

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from sympy import Abs, Expr, Float, I, Rational, S, Symbol, conjugate, cos, exp, expand, pi, simplify, sin, sqrt, tan
 
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.fourier import boundary_coefficients, coefficients, in_half_tangent
-from symbolic.tables.symbols import a, alpha, theta
+from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent
+from symbolic.tables.table import a, alpha, theta
 
 TABLES = [circle, ellipse, cardioid, egg(2), egg(3), egg(5)]
 SMALL = st.integers(-3, 3)

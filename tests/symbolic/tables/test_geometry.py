@@ -4,11 +4,10 @@ import mpmath
 import pytest
 from sympy import Expr, Function, Matrix, Rational, S, Symbol, cos, integrate, pi, simplify, sin, sqrt
 
-from symbolic.proofs.zero import vanishes
+from symbolic.expressions.signs import vanishes
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from symbolic.tables.geometry import curvature, evolute, normal, speed, tangent, trigonometric, turning, velocity
-from symbolic.tables.symbols import a, alpha, theta
-from symbolic.tables.table import Component
+from symbolic.tables.table import Component, a, alpha, theta
 
 mp = mpmath.MPContext()
 mp.dps = 30

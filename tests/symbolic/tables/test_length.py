@@ -5,10 +5,8 @@ import pytest
 from sympy import Integral, Rational, S, Symbol, cos, elliptic_e, pi, simplify, sin, sqrt
 
 from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
-from symbolic.tables.arclength import arc_length, perimeter, positions
-from symbolic.tables.geometry import speed, trigonometric
-from symbolic.tables.symbols import a, alpha, theta
-from symbolic.tables.table import Component, Table
+from symbolic.tables.geometry import arc_length, perimeter, positions, speed, trigonometric
+from symbolic.tables.table import Component, Table, a, alpha, theta
 
 mp = mpmath.MPContext()
 mp.dps = 30

@@ -6,8 +6,7 @@ from sympy import Matrix, Rational, cos
 from symbolic.motion.chords import collision_rule
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cuspless, egg
-from symbolic.tables.notation import equation, latex, letter
-from symbolic.tables.symbols import alpha, eta, lam, phi, theta
+from symbolic.tables.table import alpha, equation, eta, lam, latex, letter, phi, theta
 
 
 @pytest.mark.parametrize(

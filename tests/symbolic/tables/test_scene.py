@@ -12,7 +12,7 @@ from sympy import Rational, cos, sqrt
 
 from symbolic import tables
 from symbolic.tables.scene import Law, Scene
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 
 TRIANGLE = """
 name = "triangle"

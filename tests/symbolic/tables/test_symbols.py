@@ -3,7 +3,7 @@
 import pytest
 from sympy import Abs, Symbol, conjugate, sqrt
 
-from symbolic.tables import symbols as letters
+from symbolic.tables import table as letters
 
 LETTERS = {name: letter for name, letter in vars(letters).items() if isinstance(letter, Symbol)}
 POSITIVE = {"t", "a", "cos_phi0", "cos_eta1"}  # lengths, and cosines of angles inside a quarter turn

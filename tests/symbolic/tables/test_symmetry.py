@@ -4,8 +4,8 @@ import pytest
 from sympy import Matrix, Rational, S, cos, eye, pi, simplify, sin
 
 from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
-from symbolic.tables.symbols import alpha, theta
-from symbolic.tables.symmetry import group, order_of_rotation
+from symbolic.tables.geometry import group, order_of_rotation
+from symbolic.tables.table import alpha, theta
 
 TABLES = (ellipse.at(a=2), cardioid, cuspless, egg(3).at(alpha="0.08"), egg(4).at(alpha="0.02"), egg(7))
 PEAR = polar(1 / (9 + cos(theta)), name="pear")

@@ -5,13 +5,11 @@ import re
 import pytest
 from sympy import Interval, Rational, S, Symbol, pi, simplify, sqrt
 
-from symbolic.motion.convexity import convexity
-from symbolic.proofs.signs import Outcome, positive
-from symbolic.proofs.zero import vanishes
+from symbolic.expressions.signs import Outcome, positive, vanishes
+from symbolic.motion.chords import convexity
 from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, named, piecewise
 from symbolic.tables.geometry import turning
-from symbolic.tables.symbols import a, alpha, theta
-from symbolic.tables.table import Mark, Table, interval_text
+from symbolic.tables.table import Mark, Table, a, alpha, interval_text, theta
 from symbolic.tables.validity import enclosed_area
 
 TABLES = [circle, ellipse, cardioid, cuspless, egg(2), egg(3), egg(4), egg(7)]

@@ -9,14 +9,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin, sqrt, tan
 
-from symbolic.proofs.signs import Outcome
+from symbolic.expressions.signs import Outcome
 from symbolic.tables import arc, cardioid, cuspless, egg, ellipse, named, parametric, piecewise, polar
-from symbolic.tables.arclength import perimeter
-from symbolic.tables.crossing import chord_of_length_zero
-from symbolic.tables.fourier import boundary_coefficients
-from symbolic.tables.symbols import a, theta
-from symbolic.tables.table import Component, Shape, Table
-from symbolic.tables.validity import enclosed_area, radius_sign, validated
+from symbolic.tables.geometry import boundary_coefficients, perimeter
+from symbolic.tables.table import Component, Shape, Table, a, theta
+from symbolic.tables.validity import chord_of_length_zero, enclosed_area, radius_sign, validated
 
 b = Symbol("b")
 

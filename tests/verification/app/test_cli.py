@@ -17,11 +17,10 @@ import verification.paper.report
 from symbolic import tables
 from symbolic.tables.definition import PAPER
 from symbolic.tables.scene import Scene
-from symbolic.tables.symbols import theta
-from verification.app.shell import cli
-from verification.app.shell.cli import COMMANDS, main
-from verification.app.shell.output import Output, json_option
-from verification.app.shell.scene import scene_options, table_options
+from symbolic.tables.table import theta
+from verification.app import cli
+from verification.app.cli import COMMANDS, Output, json_option, main
+from verification.app.scene import scene_options, table_options
 
 Verdict = Enum("Verdict", {name.upper(): name for name in ("confirmed", "corrected", "refuted", "supported", "open")})
 
@@ -125,9 +124,7 @@ def test_json_goes_to_a_file(engine, tmp_path):
 
 
 def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path):
-    monkeypatch.setattr(
-        "verification.app.shell.output.write_whole", lambda *_: (_ for _ in ()).throw(OSError(28, "full"))
-    )
+    monkeypatch.setattr("verification.app.cli.write_whole", lambda *_: (_ for _ in ()).throw(OSError(28, "full")))
 
     with pytest.raises(ValueError, match="full") as caught:
         Output(str(tmp_path / "x.json")).write({"schema": 1})
@@ -279,7 +276,7 @@ def test_a_missing_extra_is_one_sentence_with_the_command_that_brings_it(package
 
 
 def test_help_loads_no_mathematics():
-    loaded = "import sys; from verification.app.shell import cli; cli.main(['--help']); "
+    loaded = "import sys; from verification.app import cli; cli.main(['--help']); "
     loaded += "print(sorted(sys.modules), file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, check=True, timeout=60)
 

@@ -7,9 +7,8 @@ import shlex
 import numpy as np
 import pytest
 
-from verification.app.live.choice import TABLES, Choice
-from verification.app.live.page import LiveTable
-from verification.app.shell.cli import main
+from verification.app.cli import main
+from verification.app.live import TABLES, Choice, LiveTable
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from verification.app.shell.cli import main
+from verification.app.cli import main
 
 CARDIOID = ("lyapunov", "cardioid", "--lam", "0.5", "--bounces", "200", "--orbits", "20", "--seed", "1")
 

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from numeric.sweeps.basins import basins
-from numeric.sweeps.exponents import KINDS, exponents
+from numeric.sweeps.fields import KINDS, basins, exponents
 from numeric.sweeps.run import run
 from symbolic import Scene
-from verification.app.shell.cli import main
-from verification.app.shell.sweeping import span
+from verification.app.cli import main
+from verification.app.scene import span
 
 
 def document(capsys, *arguments):
@@ -117,7 +116,7 @@ def test_bad_input_is_one_sentence(arguments, said, capsys):
 
 
 def test_a_dry_run_of_basins_looks_for_no_attractor(monkeypatch, capsys):
-    monkeypatch.setattr("numeric.sweeps.basins.find", None)
+    monkeypatch.setattr("numeric.sweeps.fields.find", None)
 
     arguments = ["basins", "cuspless", "--lam", "0.09", "--columns", "1000", "--rows", "1000", "--dry-run"]
     found = document(capsys, *arguments)

@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from verification.app.shell import output
-from verification.app.shell.output import Output
+from verification.app import cli as output
+from verification.app.cli import Output
 from verification.arithmetic.progress import heard, silent, telling
 
 

@@ -9,10 +9,9 @@ from sympy import Rational
 
 from numeric import PinballMap
 from symbolic.tables import circle, cuspless, egg, ellipse
-from verification.app.commands.cycles import command as cycles
-from verification.cycles.search.cells import fixed_points
-from verification.cycles.search.newton import Corrector
-from verification.cycles.search.search import all_cycles
+from verification.app.commands.orbit import cycles_command as cycles
+from verification.cycles.continuation.cells import Corrector, fixed_points
+from verification.cycles.continuation.search import all_cycles
 from verification.proofs.periodic.completeness import no_others
 from verification.proofs.slap_map.periodic_points import periodic_points
 

@@ -14,8 +14,8 @@ from sympy import pi as exact_pi
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import alpha_tilde, lambda_c
 from symbolic.tables import cuspless, egg
-from symbolic.tables.symbols import alpha as letter
-from symbolic.tables.symbols import lam as lam_letter
+from symbolic.tables.table import alpha as letter
+from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.cycles.continuation import linear
 from verification.cycles.continuation.arc import End, Steps
@@ -23,14 +23,12 @@ from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.linear import spectrum
 from verification.cycles.continuation.starts import dataset, named
 from verification.cycles.continuation.switching import switched
-from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.recurrence.cascade import ladder
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.closure import Closure
-from verification.cycles.recurrence.explicit import cubic, delayed, henon, logistic
-from verification.cycles.shooting.cascade import ladder
+from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
 from verification.named.events import proof_of
 from verification.named.locate import locate
-from verification.plots.branches import runs
+from verification.plots.dynamics import runs
 
 ALPHA = Rational(2, 25)
 TABLE = egg(3).at(alpha=ALPHA)

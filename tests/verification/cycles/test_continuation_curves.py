@@ -9,22 +9,25 @@ from sympy import Rational, lambdify
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg
-from symbolic.tables.symbols import alpha as alpha_letter
-from symbolic.tables.symbols import lam as lam_letter
-from verification.arithmetic.words import FLOAT64
+from symbolic.tables.table import alpha as alpha_letter
+from symbolic.tables.table import lam as lam_letter
+from verification.arithmetic.balls import FLOAT64
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import branch
-from verification.cycles.continuation.curves import Special, curve
-from verification.cycles.continuation.normal import coefficients
-from verification.cycles.continuation.systems import Critical
-from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.continuation.switching import Special, curve
+from verification.cycles.continuation.systems import Critical, coefficients
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.closure import Closure
-from verification.cycles.recurrence.explicit import henon
-from verification.cycles.shooting.normal_form import normal_form
-from verification.cycles.shooting.problem import Linearised, Problem, Rows
-from verification.named.tongue import accumulation, cascade, fold, largest_shape
-from verification.named.torus import contracting_up_to, double_one, expanding_cycle
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows, normal_form
+from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, henon
+from verification.named.curves import (
+    accumulation,
+    cascade,
+    contracting_up_to,
+    double_one,
+    expanding_cycle,
+    fold,
+    largest_shape,
+)
 
 CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified rungs: `verification.named.feigenbaum.accumulation`
 AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]

@@ -6,12 +6,11 @@ from sympy import Rational
 
 from symbolic.cycles.thresholds import lambda_c
 from symbolic.tables import cuspless
-from verification.arithmetic.balls import real_ball
-from verification.arithmetic.words import working
-from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Problem
+from verification.arithmetic.balls import real_ball, working
+from verification.cycles.recurrence.newton import floats
+from verification.cycles.recurrence.problem import Problem
 from verification.named.locate import locate
-from verification.proofs.corner import doubled_branch as blown
+from verification.proofs.corner import corner_orbit as blown
 
 
 def test_the_unstable_orbits_of_period_4_are_there_up_to_the_doubling_itself():

@@ -8,15 +8,14 @@ from hypothesis import strategies as st
 from sympy import Matrix, Rational, cos, diff, log, sin, sqrt, symbols
 from sympy import atan as arctan
 
-from symbolic.generation.text import kernel, load
+from symbolic.expressions.text import kernel, load
 from symbolic.tables import cuspless, egg, polar
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
+from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.series import Jet, jets
-from verification.arithmetic.words import FLOAT64
-from verification.cycles.recurrence.bifurcations import BifurcationKind
 from verification.cycles.recurrence.chain import Chain, Elimination
-from verification.cycles.recurrence.closure import MIRROR
-from verification.cycles.shooting.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.recurrence import MIRROR, BifurcationKind
 
 fractions = st.fractions(-3, 3, max_denominator=7)
 

@@ -12,12 +12,19 @@ from hypothesis.extra import numpy as arrays
 from sympy import Rational
 
 from symbolic.tables import egg
-from verification.app.commands.cycles import command as cycles
-from verification.arithmetic.words import FLOAT64
-from verification.cycles.shooting.condition import Conditioning, largest_row_sum, norm_of_inverse
-from verification.cycles.shooting.newton import Solution, UnsettledError, in_floats, refined
-from verification.cycles.shooting.problem import Problem
-from verification.cycles.shooting.small import corner
+from verification.app.commands.orbit import cycles_command as cycles
+from verification.arithmetic.balls import FLOAT64
+from verification.cycles.recurrence.critical import corner
+from verification.cycles.recurrence.newton import (
+    Conditioning,
+    Solution,
+    UnsettledError,
+    in_floats,
+    largest_row_sum,
+    norm_of_inverse,
+    refined,
+)
+from verification.cycles.recurrence.problem import Problem
 from verification.measure.extremes import near
 
 FINE = near.nearly_round(near.FINE_GAP)

@@ -8,12 +8,12 @@ from sympy import Rational
 
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg
-from symbolic.tables.symbols import lam
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.attracting import attractor, characteristic, next_critical
-from verification.cycles.shooting.newton import floats, levels, refined
-from verification.cycles.shooting.problem import Problem
-from verification.cycles.shooting.small import corner
+from symbolic.tables.table import lam
+from verification.cycles.recurrence.cascade import attractor, characteristic, next_critical
+from verification.cycles.recurrence.critical import corner
+from verification.cycles.recurrence.newton import floats, levels, refined
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 

@@ -7,11 +7,10 @@ from flint import arb
 from sympy import Rational, cos
 
 from symbolic.tables import cardioid, cuspless, egg, polar
-from symbolic.tables.symbols import theta
-from verification.arithmetic.balls import exact_balls
-from verification.arithmetic.words import working
-from verification.cycles.shooting.newton import refined
-from verification.cycles.shooting.problem import Problem
+from symbolic.tables.table import theta
+from verification.arithmetic.balls import exact_balls, working
+from verification.cycles.recurrence.newton import refined
+from verification.cycles.recurrence.problem import Problem
 from verification.maps.first_hit import first_hits
 from verification.proofs.periodic.bifurcation import Claim, proved
 

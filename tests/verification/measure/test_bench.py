@@ -6,11 +6,10 @@ from decimal import Decimal
 import numpy as np
 import pytest
 
-from verification.app.shell.cli import main
-from verification.measure.speed import baselines
-from verification.measure.speed.baselines import HEIGHT, WIDTH, diagram, magnitude
-from verification.measure.speed.bench import LAWS, Row, frontier, multiprecision_rows
-from verification.measure.speed.labelled import cases
+from verification.app.cli import main
+from verification.measure.extremes.labelled import cases
+from verification.measure.work import bench as baselines
+from verification.measure.work.bench import HEIGHT, LAWS, WIDTH, Row, diagram, frontier, magnitude, multiprecision_rows
 
 
 @pytest.fixture(scope="module")

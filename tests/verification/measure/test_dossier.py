@@ -1,6 +1,6 @@
 """`docs/numerics.md` and `docs/mutation.md` are what their sources say: nobody edits a number there by hand."""
 
-from verification.measure.speed.baselines import module
+from verification.measure.work.bench import module
 
 DOSSIER, MUTANTS = module("dossier"), module("mutation_page")
 
@@ -10,7 +10,7 @@ def test_the_dossier_is_made_from_the_measurements_that_are_committed():
 
 
 def test_a_sentence_on_each_storeys_mutants_is_taken_over():
-    text = "# Page\n\n`symbolic`: 9 of 10.\n\n`numeric`: 8 of 10.\n\n| `symbolic/proofs/zero.py` | 1 |\n"
+    text = "# Page\n\n`symbolic`: 9 of 10.\n\n`numeric`: 8 of 10.\n\n| `symbolic/expressions/signs.py` | 1 |\n"
 
     assert DOSSIER.mutation(text) == "`symbolic`: 9 of 10.\n\n`numeric`: 8 of 10."
 

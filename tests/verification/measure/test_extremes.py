@@ -9,19 +9,18 @@ import pytest
 from sympy import N, Rational, sqrt
 
 from numeric import PinballMap, Status
-from symbolic.cycles.cycle import trace_and_determinant
-from symbolic.cycles.named import egg_diameter, minor_axis
+from symbolic.cycles.cycle import egg_diameter, minor_axis, trace_and_determinant
 from symbolic.cycles.polygons import saddle_node
-from symbolic.tables.symbols import a, alpha, lam
-from verification.arithmetic.words import multiprecision
+from symbolic.tables.table import a, alpha, lam
+from verification.arithmetic.balls import multiprecision
 from verification.cycles.recurrence.chain import trace_and_determinant as monodromy
-from verification.cycles.shooting.condition import Conditioning
-from verification.cycles.shooting.newton import refined
-from verification.cycles.shooting.problem import Linearised, Rows
-from verification.cycles.shooting.small import corner, corner_angle
-from verification.measure.extremes import cases, near, page, products
-from verification.measure.extremes.cases import CASES
-from verification.measure.extremes.flights import Asked, Truth, findings
+from verification.cycles.recurrence.critical import corner, corner_angle
+from verification.cycles.recurrence.newton import Conditioning, refined
+from verification.cycles.recurrence.problem import Linearised, Rows
+from verification.measure.extremes import flights as cases
+from verification.measure.extremes import kernels as products
+from verification.measure.extremes import near, page
+from verification.measure.extremes.flights import CASES, Asked, Truth, findings
 from verification.measure.extremes.kernels import KERNELS, LONGDOUBLE, TEXTBOOK
 from verification.measure.extremes.near import SMALL, Measured, Stability
 from verification.measure.extremes.page import rows

@@ -6,14 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from numeric.backends.arrays import Arrays
+from numeric.backends.scalars import Arrays
 from numeric.flights.cardioid import Cardioid
 from numeric.flights.cuspless import Cuspless
 from numeric.flights.general import General
 from numeric.flights.harmonic import Harmonic
 from verification.measure.extremes import kernels
-from verification.measure.extremes.cases import CASES
-from verification.measure.extremes.flights import Asked, Truth
+from verification.measure.extremes.flights import CASES, Asked, Truth
 from verification.measure.extremes.kernels import LONGDOUBLE, PI, PI_LOW, WIDE, Wide, made_unit, sharpened
 
 pytestmark = pytest.mark.skipif(np.finfo(np.longdouble).nmant < 63, reason="no 80-bit floats on this machine")

@@ -2,8 +2,8 @@
 
 import pytest
 
-from verification.measure.speed.baselines import module
-from verification.measure.speed.labelled import SCENES
+from verification.measure.extremes.labelled import SCENES
+from verification.measure.work.bench import module
 
 PAGE = module("first_result")
 LINES = [

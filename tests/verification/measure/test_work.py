@@ -13,11 +13,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from numeric import PinballMap
-from verification.app.shell.cli import main
+from verification.app.cli import main
 from verification.maps.exact import ExactMap
-from verification.measure.speed.baselines import module
-from verification.measure.work.choice import Entry, cheapest, crossovers, digits_lost, entries, for_orbit, table
-from verification.measure.work.compare import QUESTIONS, moved, question
+from verification.measure.work.bench import module
+from verification.measure.work.choice import (
+    QUESTIONS,
+    Entry,
+    cheapest,
+    crossovers,
+    digits_lost,
+    entries,
+    for_orbit,
+    moved,
+    question,
+    table,
+)
 from verification.measure.work.exponents import proved
 from verification.measure.work.figure import drawn, height, image
 from verification.measure.work.question import Claimed, Method, Question, available, distance, measured, sampled

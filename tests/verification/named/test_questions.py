@@ -7,7 +7,7 @@ from sympy import Rational
 
 from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
-from symbolic.tables.symbols import alpha
+from symbolic.tables.table import alpha
 from verification.named.questions import certify, find_cycles, follow
 
 EGG = Scene("egg", alpha="2/25", lam="1/2")

@@ -8,11 +8,11 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.dynamics.attractors import Kind
 from symbolic.cycles.polygons import saddle_node
-from symbolic.proofs.signs import Finding, Outcome
+from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables import cuspless, egg
-from symbolic.tables.symbols import alpha
+from symbolic.tables.table import alpha
+from verification.named.attractors import branches, coexisting, row
 from verification.named.branches import Event
-from verification.named.census import branches, coexisting, row
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import basins as on_basins
 from verification.paper.report.verdicts import catalogue

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from symbolic.proofs.signs import Finding, Outcome
+from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import conclusions as on_conclusions
 from verification.paper.report.verdicts import catalogue
-from verification.proofs.periodic.curve import Sign
+from verification.proofs.periodic.over_interval import Sign
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNKNOWN = Finding(Outcome.UNKNOWN, "perhaps")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sympy import Rational
 
-from symbolic.proofs.signs import Finding, Outcome
+from symbolic.expressions.signs import Finding, Outcome
 from verification.named.locate import locate
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import basins as on_basins
@@ -20,9 +20,8 @@ from verification.paper.ellipse import circle as on_circle
 from verification.paper.report.verdicts import catalogue
 from verification.paper.shared import attractors as on_attractors
 from verification.paper.shared import located as on_located
-from verification.proofs.slap_map import critical_points as slap_critical
-from verification.proofs.slap_map.critical_points import one_zero
-from verification.proofs.slap_map.periodic_points import PeriodicPoints
+from verification.proofs.slap_map import periodic_points as slap_critical
+from verification.proofs.slap_map.periodic_points import PeriodicPoints, one_zero
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNKNOWN = Finding(Outcome.UNKNOWN, "no proof")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from symbolic.proofs.signs import Finding, Outcome
+from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.cardioid.splitting import bounced
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import cascade as on_egg_cascade

@@ -10,11 +10,10 @@ import pytest
 from sympy import Rational
 
 from numeric import PinballMap
-from symbolic.cycles.cycle import discriminant
-from symbolic.cycles.double_normal import stability_number, trace_of
-from symbolic.cycles.named import minor_axis
-from symbolic.tables.symbols import a, lam
-from verification.app.shell.cli import main
+from symbolic.cycles.cycle import discriminant, minor_axis
+from symbolic.cycles.thresholds import stability_number, trace_of
+from symbolic.tables.table import a, lam
+from verification.app.cli import main
 from verification.paper.figures import basins, cardioid, circle_ellipse, cuspless, egg, egg_dynamics
 from verification.paper.figures import circle_ellipse as evolutes
 from verification.paper.figures.catalogue import pictures
@@ -224,7 +223,7 @@ def test_the_same_panels_give_the_same_bytes():
 
 def test_the_list_and_the_data_alone_need_no_matplotlib():
     code = (
-        "import sys; from verification.app.shell.cli import main; "
+        "import sys; from verification.app.cli import main; "
         "status = [main(['figure', '--list']), main(['figure', 'cuspless-s4', '--json', '-'])]; "
         "sys.exit(any(status) or 'matplotlib' in sys.modules)"
     )

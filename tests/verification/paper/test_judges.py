@@ -3,8 +3,8 @@
 import pytest
 from sympy import Interval, S, log, pi, sqrt, symbols
 
-from symbolic.proofs.signs import Finding, Outcome, positive
-from symbolic.tables.symbols import alpha, lam
+from symbolic.expressions.signs import Finding, Outcome, positive
+from symbolic.tables.table import alpha, lam
 from verification.paper.cardioid import cardioid as on_cardioid
 from verification.paper.claims.claim import Claim, Judgement, Verdict
 from verification.paper.claims.judges import (

@@ -9,8 +9,8 @@ from flint import arb
 from sympy import Rational
 
 from symbolic.cycles.defocusing import away, least_stretch
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import lam
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables.table import lam
 from verification.paper.cardioid import attractor as on_cardioid_attractor
 from verification.paper.cardioid import attractor as on_defocusing
 from verification.paper.claims.claim import Verdict
@@ -140,8 +140,8 @@ def test_an_expanding_cycle_that_is_not_proved_refutes_nothing(monkeypatch):
 def test_the_certified_cycle_has_the_determinant_that_its_angles_give():
     """A second method: the sum rule on float64 angles."""
     from numeric import PinballMap
-    from numeric.dynamics.cycles import polished
     from numeric.dynamics.phase_points import places
+    from numeric.dynamics.recognition import polished
 
     map = PinballMap("cardioid", lam="0.9")
     phi = [-0.484, 0.051, -1.126, -1.151, -1.098, -1.034, -0.962, -0.877, -0.759]

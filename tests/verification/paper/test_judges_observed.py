@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sympy import S
 
-from symbolic.proofs.signs import Finding, Outcome
+from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.cardioid import domains as on_domains
 from verification.paper.cardioid import observed as on_observed
 from verification.paper.claims.claim import Verdict

@@ -5,8 +5,8 @@ import pytest
 
 from numeric import PinballMap
 from symbolic.cycles.splitting import least_rate
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import lam
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables.table import lam
 from verification.paper.cardioid import splitting as on_splitting
 from verification.paper.claims.claim import Verdict
 from verification.paper.report.verdicts import catalogue

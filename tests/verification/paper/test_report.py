@@ -6,8 +6,8 @@ from enum import Enum
 
 import pytest
 
+from verification.app.cli import write_whole
 from verification.app.commands.verify import write_report
-from verification.app.shell.output import write_whole
 from verification.paper.report.markdown import markdown
 from verification.paper.report.report import VERDICTS, document, section_order, summary
 

@@ -8,11 +8,11 @@ from flint import arb
 from sympy import Interval, Rational
 
 from numeric import PinballMap
-from numeric.dynamics.cycles import polished
 from numeric.dynamics.phase_points import places
-from symbolic.cycles.twist import egg_diameter
+from numeric.dynamics.recognition import polished
+from symbolic.cycles.normal_forms import egg_diameter
 from symbolic.tables import egg, ellipse
-from symbolic.tables.symbols import alpha
+from symbolic.tables.table import alpha
 from verification.named.branches import cascade
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import elastic as on_elastic
@@ -25,7 +25,7 @@ from verification.paper.egg.parameter_space import (
     periods_at,
 )
 from verification.paper.report.verdicts import catalogue
-from verification.proofs.periodic.twist import Twist, twist
+from verification.proofs.periodic.bifurcation import Twist, twist
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 

@@ -9,8 +9,8 @@ from flint import arb
 
 from numeric import PinballMap
 from symbolic.motion.collision import derivative_matrix
-from symbolic.tables.symbols import K0, K1, cos_eta1, cos_phi0, lam, t
-from verification.arithmetic.words import FLOAT64, working
+from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
+from verification.arithmetic.balls import FLOAT64, working
 from verification.named.locate import locate
 from verification.proofs.corner.border_collision import Kind, exponents, extent, fixed_point, kind, robust
 from verification.proofs.corner.corner import ARC, WALL, at_corner, enclosed

@@ -11,13 +11,12 @@ from hypothesis import strategies as st
 from sympy import Rational
 
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from verification.arithmetic.balls import exact_balls
-from verification.arithmetic.words import balls, working
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.newton import refined
-from verification.cycles.shooting.problem import Linearised, Problem, Rows
-from verification.cycles.shooting.small import corner
-from verification.maps.admissible import convex, inside, minimal
+from verification.arithmetic.balls import balls, exact_balls, working
+from verification.cycles.recurrence.critical import corner
+from verification.cycles.recurrence.newton import refined
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.maps.first_hit import convex, inside, minimal
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Claim, proved
 from verification.proofs.periodic.interval_newton import Status, contraction

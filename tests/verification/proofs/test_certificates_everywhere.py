@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from sympy import Rational
 
 from symbolic.tables import cuspless, egg
-from verification.arithmetic.words import working
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.attracting import attractor, cycle_at, doubled
-from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Problem
+from verification.arithmetic.balls import working
+from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled
+from verification.cycles.recurrence.newton import floats
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.proofs.periodic.interval_newton import Status, krawczyk
 from verification.proofs.periodic.over_interval import Stability, everywhere, stability
 

@@ -11,23 +11,19 @@ from sympy import Rational, acos
 
 from numeric import PinballMap
 from symbolic.cycles.polygons import saddle_node
-from symbolic.proofs.signs import Outcome
-from symbolic.tables.symbols import alpha as letter
-from verification.arithmetic.balls import exact_balls
-from verification.arithmetic.words import working
-from verification.cycles.shooting.critical import polygon_fold
-from verification.cycles.shooting.newton import refined
+from symbolic.expressions.signs import Outcome
+from symbolic.tables.table import alpha as letter
+from verification.arithmetic.balls import exact_balls, working
+from verification.cycles.recurrence.critical import polygon_fold
+from verification.cycles.recurrence.newton import refined
 from verification.named.feigenbaum import DELTA, aitken, limit, ratio, wynn
 from verification.named.locate import closed_form
 from verification.paper.egg.sets import points_of_period_4, without_triangles
-from verification.proofs.corner.flights import ARC, BITS, WALL, Flights, Piece, fourth_on_wall
 from verification.proofs.corner.half_return import birth
-from verification.proofs.corner.return_map import minimum_at_kink
-from verification.proofs.periodic.branch import flips_nowhere
-from verification.proofs.periodic.curve import doubling_curve
-from verification.proofs.periodic.exclusion import no_triangles
+from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
 from verification.proofs.periodic.interval_newton import Status, contraction
-from verification.proofs.periodic.projection import PRODUCED, SLAP, witness
+from verification.proofs.periodic.over_interval import doubling_curve
+from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
 from verification.proofs.slap_map import periodic_points as slap
 from verification.proofs.slap_map.periodic_points import periodic_points
 

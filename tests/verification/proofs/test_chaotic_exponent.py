@@ -11,18 +11,15 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from numeric import PinballMap
-from numeric.pinball.growth import Growth
-from numeric.pinball.sampling import interior_starts
+from numeric.pinball.sampling import Growth, interior_starts
 from symbolic.cycles.cardioid_slap import branch
-from symbolic.generation.text import load
+from symbolic.expressions.text import load
+from verification.arithmetic.balls import ARRAYS, bits_of, working
 from verification.arithmetic.series import expanded
-from verification.arithmetic.words import ARRAYS, bits_of, working
 from verification.proofs.slap_map import chaotic_exponent
-from verification.proofs.slap_map.candidate import Pieces, candidate
+from verification.proofs.slap_map.candidate import Judge, Pieces, candidate
 from verification.proofs.slap_map.chaotic_exponent import judged, symmetric
-from verification.proofs.slap_map.residual import Judge
-from verification.proofs.slap_map.transfer import Branches, variation
-from verification.proofs.slap_map.ulam import inverted, spread, ulam
+from verification.proofs.slap_map.transfer import Branches, inverted, spread, ulam, variation
 
 HALF = np.pi / 2
 DIGITS = 8

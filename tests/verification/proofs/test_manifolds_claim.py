@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from verification.app.shell.cli import main
+from verification.app.cli import main
 from verification.named.files import checked, document
-from verification.proofs.manifolds.claim import TangencyClaim, claim_of, worked_through
 from verification.proofs.manifolds.known import CONTACTS, SHAPE
+from verification.proofs.manifolds.proof import TangencyClaim, claim_of, worked_through
 
 VALUE = "0.662144273358224419482534547746"  # by a cycle that shadows the tangency: docs/crises.md
 CLAIM = TangencyClaim(CONTACTS["boundary"], SHAPE, VALUE, 20)

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational
 
-from verification.arithmetic.words import multiprecision, working
-from verification.cycles.recurrence.closure import Closure
+from verification.arithmetic.balls import multiprecision, working
+from verification.cycles.recurrence.recurrence import Closure
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
     bounds,
@@ -25,8 +25,7 @@ from verification.proofs.manifolds.enclosed import (
 from verification.proofs.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
 from verification.proofs.manifolds.pair import Precision, one_cycle, pair, scale, smaller
 from verification.proofs.manifolds.plane_map import Henon
-from verification.proofs.manifolds.saddle import Orbit, saddle
-from verification.proofs.manifolds.series import horner, local
+from verification.proofs.manifolds.saddle import Orbit, horner, local, saddle
 
 EGG = table(SHAPE)
 OUTER = 1000

@@ -11,14 +11,13 @@ from flint import arb, arb_mat
 from sympy import Rational
 
 from symbolic.tables import cardioid
-from verification.arithmetic.words import FLOAT64, multiprecision, working
-from verification.cycles.recurrence.closure import Closure
+from verification.arithmetic.balls import FLOAT64, multiprecision, working
+from verification.cycles.recurrence.recurrence import Closure
 from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
 from verification.proofs.manifolds.pair import Precision
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
-from verification.proofs.manifolds.saddle import Orbit, saddle
-from verification.proofs.manifolds.series import local
+from verification.proofs.manifolds.saddle import Orbit, local, saddle
 from verification.proofs.manifolds.tangency import Contact, Gap, tangency
 from verification.proofs.manifolds.touching import Point, Touching, flight
 

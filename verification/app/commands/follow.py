@@ -7,9 +7,8 @@ import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.shell.cli import DONE, FAILED
-from verification.app.shell.output import Output, json_option
-from verification.app.shell.scene import table_options
+from verification.app.cli import DONE, FAILED, Output, json_option
+from verification.app.scene import table_options
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -223,7 +222,7 @@ def show_curve(console: "Console", row: dict[str, Any]) -> None:
 
 def drawn(branches: list["Branch"], path: str) -> None:
     """Writes the picture."""
-    from verification.plots.branches import plotted
+    from verification.plots.dynamics import plotted
 
     if Path(path).suffix not in (".png", ".pdf", ".svg"):
         raise ValueError(f"--plot {path} has no known ending; accepted: .png, .pdf, .svg")

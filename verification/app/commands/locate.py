@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verification.app.shell.cli import DONE, FAILED
-from verification.app.shell.output import Output, json_option, write_whole
+from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
 
 if TYPE_CHECKING:
     from verification.named.locate import Located

@@ -11,16 +11,14 @@ import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.shell.scene import scene_options
-from verification.app.shell.sweeping import How, carried_out, sweep_options
+from verification.app.scene import How, carried_out, scene_options, sweep_options
 
 if TYPE_CHECKING:
     import xarray as xr
 
 from typing import TYPE_CHECKING
 
-from verification.app.shell.scene import table_options
-from verification.app.shell.sweeping import lams_option, over, seed_option
+from verification.app.scene import lams_option, over, seed_option, table_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from verification.app.shell.sweeping import span
+from verification.app.scene import span
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,8 +59,8 @@ def basins_command(
 ) -> int:
     """The attractor that each cell of phase space reaches; attractors are found from random starts first."""
     from numeric.dynamics.basins import Window
-    from numeric.sweeps.basins import basins
-    from numeric.sweeps.scenes import text_of
+    from numeric.sweeps.fields import basins
+    from numeric.sweeps.sweep import text_of
 
     ends = None
     if window is not None:
@@ -83,7 +81,7 @@ def basins_lines(found: "xr.Dataset") -> list[str]:
     """What share of the cells each attractor takes, and a small picture in letters."""
     import numpy as np
 
-    from numeric.sweeps.basins import attractors_of
+    from numeric.sweeps.fields import attractors_of
 
     label = found.label.values
     shown = []
@@ -129,7 +127,7 @@ def bifurcation_command(
     scene: Scene, lams: str, orbits: int, points: int, transient: int, bounces: int, seed: int, how: How
 ) -> int:
     """Where random balls are after a long time, for each contraction; starts as in the paper's appendix."""
-    from numeric.sweeps.bifurcation import bifurcation
+    from numeric.sweeps.fields import bifurcation
 
     text, values = over(scene, lams)
     sweep = bifurcation(text, values, orbits, points, bounces, transient, seed)
@@ -201,7 +199,7 @@ def parameter_space(
     """
     import numpy as np
 
-    from numeric.sweeps import parameter_space as space
+    from numeric.sweeps import fields as space
 
     shapes = np.array(span("--alphas", alphas, high=Fraction(1, K * K + 1)))
     sweep = space.parameter_space(shapes, np.array(span("--lams", lams)), starts, bounces, transient, K, seed)
@@ -232,7 +230,7 @@ def exponents(
     scene: Scene, lams: str, orbits: int, groups: int, bounces: int, transient: int, seed: int, how: How
 ) -> int:
     """Both Lyapunov exponents against the contraction, with standard errors, for each attractor."""
-    from numeric.sweeps import exponents as kind
+    from numeric.sweeps import fields as kind
 
     text, values = over(scene, lams)
     return carried_out(kind.exponents(text, values, orbits, groups, bounces, transient, seed), how, table_of_groups)

@@ -1,7 +1,7 @@
 """A branch of cycles in one letter: followed both ways from a start, with what happens on it.
 
 Each event is a zero of a test function between two points, located on the curve
-(`verification.cycles.recurrence.bifurcations` names them).
+(`verification.cycles.recurrence.recurrence` names them).
 """
 
 from collections.abc import Callable
@@ -13,12 +13,9 @@ import numpy as np
 from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
 from verification.cycles.continuation.linear import Spectrum
-from verification.cycles.continuation.normal import Coefficients, coefficients
-from verification.cycles.continuation.symmetry import parts, whole
-from verification.cycles.continuation.systems import Cycles
-from verification.cycles.recurrence.bifurcations import BifurcationKind
+from verification.cycles.continuation.systems import Coefficients, Cycles, coefficients, parts, whole
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence
+from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Letters, Recurrence
 
 NOISE = 1e-9  # a test function that small has no sign
 NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
@@ -92,7 +89,7 @@ def branch(
     """The branch through the cycle near `x` at `letter = value`, both ways, inside `interval`.
 
     >>> from sympy import Symbol
-    >>> from verification.cycles.recurrence.explicit import logistic
+    >>> from verification.cycles.recurrence.recurrence import logistic
     >>> found = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.9))
     >>> [(event.what.value, round(event.value, 9)) for event in found.events]
     [('period doubling', 3.0)]

@@ -12,8 +12,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from verification.cycles.recurrence.closure import Closure
-from verification.cycles.recurrence.recurrence import Array, Terms
+from verification.cycles.recurrence.recurrence import Array, Closure, Terms
 
 DENSE = 96  # unknowns up to which a dense factorisation is the faster one
 

@@ -13,7 +13,7 @@ import numpy as np
 from sympy import Expr, N, S
 
 from symbolic import tables
-from symbolic.cycles import named as named_cycles
+from symbolic.cycles import cycle as named_cycles
 from symbolic.cycles.cycle import Cycle
 from symbolic.tables.table import Table
 from verification.cycles.continuation.arc import Point
@@ -110,7 +110,7 @@ def dataset(branch: Branch) -> "xarray.Dataset":
     """Dimensions `point`, `bounce` and `which` (multiplier); the letter and the event are coordinates.
 
     >>> from verification.cycles.continuation.branch import branch as followed
-    >>> from verification.cycles.recurrence.explicit import logistic
+    >>> from verification.cycles.recurrence.recurrence import logistic
     >>> table = dataset(followed(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4)))
     >>> [str(name) for name in table["event"].values if name], table["x"].dims
     (['period doubling'], ('point', 'bounce'))

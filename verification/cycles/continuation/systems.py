@@ -1,4 +1,18 @@
-"""What is followed: a cycle in one letter, or a bifurcating cycle in two.
+"""The coefficients of normal forms in float64, for any recurrence, from Taylor series along the null vector.
+
+As in `verification.cycles.recurrence.problem`, which has the certified ones: with `v` and `w` the vectors of
+the singular ring, `e` the amplitude along `v` and `F` the rules,
+
+    fold:  letter = critical - ([e**2] w.F)/(w.dF/dletter) * e**2,
+    flip:  letter = critical - ([e**3] w.F)/speed * e**2,   speed = d(w A v)/dletter along the cycle.
+
+The symmetries of a table and of its cycles: which part of a cycle makes up the whole.
+
+A rotation by `2*pi/k`, or the mirror `theta -> -theta`, that maps the boundary to itself maps cycles to
+cycles. A cycle that is its own image after `m` of its `n` bounces is a ring of `m` bounces that closes
+by the symmetry. Where a multiplier 1 is no fold, such a cycle gives way to two that lack the symmetry.
+
+What is followed: a cycle in one letter, or a bifurcating cycle in two.
 
 A cycle has as many rules as bounces, so one letter makes a branch. Where it bifurcates, a vector `v`
 comes back unchanged (fold) or negated (flip), `A v = 0`; bordered by two fixed vectors `b`, `c` the
@@ -7,11 +21,17 @@ there. `g = 0` is the one equation more for one letter more, and `dg = -w dA v` 
 """
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
+from math import pi, remainder
 from typing import Any
 
 import numpy as np
+from sympy import Matrix, Rational, cos, expand_trig, simplify, sin
+from sympy import pi as exact_pi
 
+from symbolic.tables.table import Table, theta
+from verification.arithmetic.balls import ARRAYS
+from verification.arithmetic.series import Jet, jets
 from verification.cycles.continuation.linear import (
     Spectrum,
     along,
@@ -22,9 +42,145 @@ from verification.cycles.continuation.linear import (
     solved,
     spectrum,
 )
-from verification.cycles.continuation.normal import bend_of
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.recurrence.recurrence import Array, Letters, Recurrence, Terms
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.problem import mirrored
+from verification.cycles.recurrence.recurrence import (
+    IDENTITY,
+    Array,
+    BifurcationKind,
+    Closure,
+    Letters,
+    Recurrence,
+    Terms,
+    around,
+)
+
+JETS = jets(ARRAYS)
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """`branch` of `letter = critical + branch*e**2`, `e` the root mean square amplitude, and what it means.
+
+    `supercritical` is that of a flip: the doubled cycle is born on the side where the old one is unstable.
+    """
+
+    branch: float
+    bend: float
+    speed: float
+    supercritical: bool | None = None
+
+
+def bend_of(recurrence: Recurrence, x: Array, at: Letters, kind: BifurcationKind, v: Array, w: Array) -> float:
+    """`[e**2] w.F` at a fold; at a flip `[e**3] w.F` on the curve whose second order is solved for."""
+    second = _series(recurrence, x, at, kind.multiplier, [v])
+    if kind is BifurcationKind.FOLD:
+        return float(w @ second[2])
+    matrix = ring_matrix(recurrence.terms(x, at, 1), recurrence.closure)
+    bent = solved(matrix, -second[2])
+    return float(w @ _series(recurrence, x, at, kind.multiplier, [v, bent])[3])
+
+
+def coefficients(recurrence: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> Coefficients:
+    """The normal form of a cycle where it folds or flips in `letter`."""
+    terms = recurrence.terms(x, at, 2)
+    v, w = null_vectors(ring_matrix(terms, recurrence.closure, kind.multiplier))
+    bend = bend_of(recurrence, x, at, kind, v, w)
+    if kind is BifurcationKind.FOLD:
+        speed = float(w @ terms.by[letter])
+        return Coefficients(-bend / speed, bend, speed)
+    by_bounce, by_letter = along(terms, recurrence.closure, v, w, kind.multiplier)
+    motion = solved(ring_matrix(terms, recurrence.closure), -terms.by[letter])
+    speed = float(by_letter[letter] + by_bounce @ motion)
+    lower, _, upper = terms.slope
+    turn = recurrence.closure.turn * float(w[-1] * upper[-1] * v[0] - w[0] * lower[0] * v[-1])
+    return Coefficients(-bend / speed, bend, speed, bend * turn < 0 if turn else None)
+
+
+def _series(recurrence: Recurrence, x: Array, at: Letters, sign: int, directions: list[Array]) -> tuple[Any, ...]:
+    """Taylor coefficients of the rules on `x + directions[0]*e + directions[1]*e**2`, one order more than given."""
+    order = len(directions) + 1
+    rows = [x, *directions, *([np.zeros_like(x)] * (order - len(directions)))]
+    closure = recurrence.closure
+    ring = [around(closure, x)]
+    for k, row in enumerate(rows[1:], 1):
+        close = closure.turn * sign**k
+        ring.append(np.concatenate([[close * row[-1]], row, [close * row[0]]]))
+    before, here, after = (Jet(*(a[part] for a in ring)) for part in (slice(0, -2), slice(1, -1), slice(2, None)))
+    return tuple(
+        np.asarray(c, dtype=float) + np.zeros_like(x) for c in recurrence.rule(JETS, (before, here, after), at).c
+    )
+
+
+SAME = 1e-7  # radians
+ORDERS = range(12, 1, -1)
+
+
+@cache
+def rotations(table: Table) -> int:
+    """The largest `k` up to 12 such that a turn by `2*pi/k` is proved to map the table to itself.
+
+    >>> from symbolic.tables import cuspless, egg
+    >>> rotations(egg(3)), rotations(cuspless)
+    (3, 1)
+    """
+    if len(table.components) > 1:
+        return 1
+    point = Matrix(table.components[0].point)
+    for k in ORDERS:
+        angle = 2 * exact_pi * Rational(1, k)
+        turned = Matrix([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]]) * point
+        values = {theta: Rational(1, 3)} | {p.symbol: Rational(1, 97) for p in table.shapes}
+        gap = (turned - point.subs(theta, theta + angle)).subs(values)
+        if max(abs(float(x)) for x in gap) > SAME:
+            continue
+        if all(simplify(expand_trig(x)) == 0 for x in turned - point.subs(theta, theta + angle)):
+            return k
+    return 1
+
+
+@cache
+def symmetries(table: Table) -> tuple[Closure, ...]:
+    """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first."""
+    k = rotations(table)
+    turns = [(j, k) if j else (0, 1) for j in range(k)]
+    mirror = all(mirrored(component) for component in table.components)
+    return tuple([Closure(-1, s) for s in turns] if mirror else []) + tuple(Closure(1, s) for s in turns[1:])
+
+
+def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
+    """The rings, shorter than this one, that make up a full cycle by a symmetry; the shortest first.
+
+    >>> from symbolic.tables import egg
+    >>> triangle = Chords(egg(3).at(alpha="2/25"), (0, 0, 0))
+    >>> [(ring.period, ring.closure.turn) for ring, _ in parts(triangle, np.pi / 3 * np.array([1.0, 3.0, 5.0]))]
+    [(1, 1)]
+    """
+    n, found = ring.period, []
+    if ring.closure != IDENTITY:
+        return []
+    for m in (m for m in range(1, n) if n % m == 0):
+        for g in symmetries(ring.table):
+            if all(_maps(ring, g, x, i, m) for i in range(n)):
+                found.append((replace(ring, components=ring.components[:m], closure=g), x[:m].copy()))
+    return found
+
+
+def _maps(ring: Chords, g: Closure, x: Array, i: int, m: int) -> bool:
+    j = (i + m) % ring.period
+    image = g.carried(x[i], g.radians, 1)
+    gap = remainder(x[j] - image, 2 * pi) if len(ring.table.components) == 1 else x[j] - image
+    return ring.components[j] == ring.components[i] and abs(gap) < SAME
+
+
+def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:
+    """The full cycle of `n` bounces that a part makes up."""
+    pieces, piece = [x], x
+    while len(pieces) * part.period < n:
+        piece = part.closure.carried(piece, part.closure.radians, 1)
+        pieces.append(piece)
+    return replace(part, components=part.components * len(pieces), closure=IDENTITY), np.concatenate(pieces)
+
 
 PARAMETER = 4.0  # a letter counts as much as an angle of this many radians moved by every bounce
 

@@ -7,21 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from symbolic.generation.text import load
+from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
+from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
 from verification.arithmetic.series import Jet
-from verification.arithmetic.words import ARRAYS, FLOAT64, Arithmetic
-from verification.cycles.recurrence.closure import IDENTITY, Closure
-from verification.cycles.recurrence.recurrence import Array, Letters, Rule, Slopes, Terms, around
-from verification.maps.admissible import convex
+from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Letters, Rule, Slopes, Terms, around
+from verification.maps.first_hit import convex
 
 
 class ChordAngles:
     """The angle of a chord with the normal at its start, between any two components, over one kind of number.
 
     >>> from symbolic.tables import circle
-    >>> from verification.arithmetic.words import FLOAT64
+    >>> from verification.arithmetic.balls import FLOAT64
     >>> round(ChordAngles(circle, FLOAT64)(0, 0, 0)(0.0, 3.0)[0], 12)  # (pi - 3)/2
     0.070796326795
     """
@@ -126,7 +125,7 @@ class Chords:
         """The collision rule at single bounces.
 
         >>> from symbolic.tables import ellipse
-        >>> from verification.arithmetic.words import FLOAT64
+        >>> from verification.arithmetic.balls import FLOAT64
         >>> low, high = -np.pi / 2, np.pi / 2
         >>> value, _ = Chords(ellipse.at(a=2), (0, 0)).over(FLOAT64)(0, (low, high, low), {"lam": 0.5})
         >>> abs(value) < 1e-15

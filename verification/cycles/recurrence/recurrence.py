@@ -1,19 +1,147 @@
-"""A periodic orbit as a ring of three-term rules: what every question is asked of, a billiard's or any other map's.
+"""The bifurcations of cycles: one list, and for each the equation that defines it.
+
+    fold                 det(M - 1) = 0 and the branch turns in the parameter
+    pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
+    branch point         det(M - 1) = 0, the branch goes straight on, no symmetry is broken
+    period doubling      det(M + 1) = 0
+    Neimark-Sacker       det M = 1 with multipliers on the unit circle
+    neutral saddle       det M = 1 with real multipliers: no bifurcation
+    border collision     a bounce meets a join of the boundary
+
+`M` is the monodromy matrix. A bifurcating cycle solves one equation more than it has bounces, for one parameter more:
+`bordering` is 0. `verification.cycles.recurrence.critical` solves for any of them, and for several at once.
+
+How a periodic orbit closes: by the identity, or by a symmetry of the table that carries a part of it to the next.
+
+A periodic orbit as a ring of three-term rules: what every question is asked of, a billiard's or any other map's.
 
 At each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the ring closes by a symmetry
 (`closure`). The derivatives of the rules by the three neighbours are the linearised map, so its multipliers come from
 three diagonals and no derivative of the map is needed.
+
+Maps whose bifurcations are published: the engine that follows billiards must find them too.
+
+Logistic, `x -> r*x*(1 - x)` [May1976]. Henon, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three
+successive `x` [Henon1976]. Delayed logistic, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cache
+from itertools import combinations_with_replacement
+from math import pi
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from sympy import Expr, Symbol, diff
 
-from verification.arithmetic.words import Arithmetic
-from verification.cycles.recurrence.closure import Closure
+from symbolic.expressions.text import Kernel, kernel, load
+from verification.arithmetic.balls import ARRAYS, Arithmetic
+from verification.cycles.recurrence.chain import Chain, Elimination, trace_and_determinant
+
+
+class BifurcationKind(Enum):
+    """What happens to a cycle as a parameter varies; the value is the field's word for it."""
+
+    FOLD = "fold"
+    PITCHFORK = "pitchfork"
+    BRANCH_POINT = "branch point"
+    FLIP = "period doubling"
+    TORUS = "Neimark-Sacker"
+    NEUTRAL_SADDLE = "neutral saddle"
+    BORDER_COLLISION = "border collision"
+
+    @property
+    def multiplier(self) -> int:
+        """The critical multiplier, 1 or -1, of the ring that is solved for: the part that flips, at a pitchfork.
+
+        >>> BifurcationKind.FOLD.multiplier, BifurcationKind.PITCHFORK.multiplier
+        (1, -1)
+        """
+        return -1 if self.solved is BifurcationKind.FLIP else 1
+
+    @property
+    def solved(self) -> "BifurcationKind | None":
+        """The kind whose equations are solved for, on the part that flips at a pitchfork; None where there are none."""
+        return SOLVED.get(self)
+
+    def bordering(self, rows: Sequence[tuple[Any, Any, Any]], turn: int) -> Any:
+        """The number that is 0 at the bifurcation, from the rule's three derivatives at each bounce.
+
+        `turn` is that of the symmetry by which the ring closes.
+
+        >>> rows = [(2, -3, 1), (2, -3, 1)]  # multipliers 1 and 4: det(M + 1) is 10
+        >>> [kind.bordering(rows, 1) for kind in (BifurcationKind.FOLD, BifurcationKind.FLIP, BifurcationKind.TORUS)]
+        [0.0, -3.3333333333333335, 3.0]
+        """
+        if self in (BifurcationKind.TORUS, BifurcationKind.NEUTRAL_SADDLE):
+            return trace_and_determinant(rows, turn)[1] - 1
+        if self.solved is None:
+            raise ValueError(f"a {self.value} is no zero of one equation in the multipliers")
+        sign = turn * self.multiplier
+        if len(rows) == 1:
+            ((before, here, after),) = rows
+            return sign * before + here + sign * after
+        lower, diagonal, upper = zip(*rows, strict=True)
+        return Elimination(Chain(lower, diagonal, upper, sign)).rest
+
+
+SOLVED = {
+    BifurcationKind.FOLD: BifurcationKind.FOLD,
+    BifurcationKind.FLIP: BifurcationKind.FLIP,
+    BifurcationKind.PITCHFORK: BifurcationKind.FLIP,
+}
+
+
+@dataclass(frozen=True)
+class Closure:
+    """`x[n] = turn*x[0] + 2*pi*p/q` with `shift = (p, q)`; an orbit that closes by the identity is a whole cycle.
+
+    Half of a mirror-symmetric cycle has `turn = -1`; one bounce of a polygon turns by `p/q`.
+    """
+
+    turn: int = 1
+    shift: tuple[int, int] = (0, 1)
+
+    @property
+    def radians(self) -> float:
+        """The shift in float64."""
+        p, q = self.shift
+        return 2 * pi * p / q
+
+    def angle(self, words: Arithmetic) -> Any:
+        """The shift in radians, in any kind of number."""
+        p, q = self.shift
+        return 2 * words["pi"] * words["q"](p, q) if p else 0
+
+    def padded(self, x: Sequence[Any], angle: Any) -> list[Any]:
+        """`x[-1], x[0], ..., x[n]`, with the shift's `angle` in the same numbers.
+
+        >>> Closure(-1).padded([1, 2], 0)
+        [-2, 1, 2, -1]
+        """
+        return [self.turn * (x[-1] - angle), *x, self.turn * x[0] + angle]
+
+    def carried(self, x: Any, angle: Any, rounds: int) -> Any:
+        """`x` carried ahead by so many rounds of the orbit, or back."""
+        for _ in range(abs(rounds)):
+            x = self.turn * x + angle if rounds > 0 else self.turn * (x - angle)
+        return x
+
+    def twice(self) -> "Closure":
+        """How the orbit run through twice closes.
+
+        >>> Closure(-1, (2, 3)).twice(), Closure(1, (1, 3)).twice()
+        (Closure(turn=1, shift=(0, 1)), Closure(turn=1, shift=(2, 3)))
+        """
+        p, q = self.shift
+        return IDENTITY if self.turn == -1 or p == 0 else Closure(1, (2 * p, q))
+
+
+IDENTITY, MIRROR = Closure(), Closure(-1)
+
 
 Array = NDArray[np.float64]
 Letters = Mapping[str, float]
@@ -77,3 +205,111 @@ class Recurrence(Protocol):
 
     def obstacle(self, x: Array, at: Letters) -> str:
         """Why `x` is no cycle although the rules hold; empty when nothing is in the way."""
+
+
+BEFORE, HERE, AFTER = (Symbol(name, real=True) for name in ("before", "here", "after"))
+
+
+@dataclass(frozen=True)
+class Explicit:
+    """Cycles of a map given by a formula: `residual` in `BEFORE`, `HERE`, `AFTER` and `parameters`."""
+
+    name: str
+    residual: Expr
+    parameters: tuple[Symbol, ...]
+    period: int
+    closure: Closure = IDENTITY
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return f"{self.name}, period {self.period}"
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The parameters' names."""
+        return tuple(p.name for p in self.parameters)
+
+    def terms(self, x: Array, at: Letters, order: int) -> Terms:
+        """The rule and its derivatives up to second order, whatever `order` is."""
+        ring, values = around(self.closure, x), [at[name] for name in self.letters]
+        made = load(_explicit(self.residual, self.parameters), ARRAYS)(ring[:-2], ring[1:-1], ring[2:], *values)
+        full = [np.broadcast_to(np.asarray(v, dtype=float), x.shape) for v in made]
+        n = len(self.parameters)
+        pairs = list(combinations_with_replacement(range(3), 2))
+        by = dict(zip(self.letters, full[4 : 4 + n], strict=True))
+        bend = dict(zip(pairs, full[4 + n : 10 + n], strict=True))
+        rest = full[10 + n :]
+        mixed = {name: (rest[3 * i], rest[3 * i + 1], rest[3 * i + 2]) for i, name in enumerate(self.letters)}
+        return Terms(full[0], (full[1], full[2], full[3]), by, bend, mixed)
+
+    def rule(self, arithmetic: Arithmetic, ring: tuple[Any, Any, Any], at: Letters) -> Any:
+        """The rule at `(before, here, after)`."""
+        return load(_plain(self.residual, self.parameters), arithmetic)(*ring, *(at[name] for name in self.letters))[0]
+
+    def over(self, arithmetic: Arithmetic) -> Rule:
+        """The rule at one bounce, the same at each.
+
+        >>> from fractions import Fraction
+        >>> henon(1).over({"q": Fraction})(0, (1, 2, 3), {"a": 1, "b": 5})
+        (1, (-5, 4, 1))
+        """
+        residual = load(_sloped(self.residual, self.parameters), arithmetic)
+
+        def rule(i: int, near: Sequence[Any], at: Mapping[str, Any]) -> tuple[Any, Slopes]:
+            value, *slopes = residual(*near, *(at[name] for name in self.letters))
+            before, here, after = slopes
+            return value, (before, here, after)
+
+        return rule
+
+    def doubled(self) -> "Explicit":
+        """The ring run through twice."""
+        return replace(self, period=2 * self.period, closure=self.closure.twice())
+
+    def obstacle(self, x: Array, at: Letters) -> str:
+        """Nothing is ever in the way of a formula."""
+        return ""
+
+
+@cache
+def _plain(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
+    return kernel("rule", [BEFORE, HERE, AFTER, *parameters], {"residual": residual})
+
+
+@cache
+def _sloped(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
+    slopes = {f"d_{s}": diff(residual, s) for s in (BEFORE, HERE, AFTER)}
+    return kernel("rule_and_slopes", [BEFORE, HERE, AFTER, *parameters], {"residual": residual} | slopes)
+
+
+@cache
+def _explicit(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
+    ring = (BEFORE, HERE, AFTER)
+    values = {"residual": residual} | {f"d_{s}": diff(residual, s) for s in (*ring, *parameters)}
+    values |= {f"d_{r}_{s}": diff(residual, r, s) for r, s in combinations_with_replacement(ring, 2)}
+    values |= {f"d_{p}_{s}": diff(residual, p, s) for p in parameters for s in ring}
+    return kernel("rule_and_derivatives", [BEFORE, HERE, AFTER, *parameters], values)
+
+
+r, a, b = (Symbol(name, real=True) for name in "rab")
+
+
+def logistic(period: int) -> Explicit:
+    """Cycles of the logistic map; the letter is `r`."""
+    return Explicit("logistic", AFTER - r * HERE * (1 - HERE), (r,), period)
+
+
+def henon(period: int) -> Explicit:
+    """Cycles of the Henon map; the letters are `a` and `b`."""
+    return Explicit("Henon", AFTER - 1 + a * HERE**2 - b * BEFORE, (a, b), period)
+
+
+def delayed(period: int) -> Explicit:
+    """Cycles of the delayed logistic map; the letter is `r`."""
+    return Explicit("delayed logistic", AFTER - r * HERE * (1 - BEFORE), (r,), period)
+
+
+def cubic(period: int) -> Explicit:
+    """Cycles of `x -> r*x - x**3`; the letter is `r`."""
+    return Explicit("cubic", AFTER - r * HERE + HERE**3, (r,), period)

@@ -24,16 +24,24 @@ from sympy import Expr, N, Rational, acos, pi, sqrt, tan
 from symbolic import tables
 from symbolic.cycles import polygons
 from symbolic.cycles.thresholds import alpha_tilde
-from symbolic.tables.symbols import alpha as alpha_letter
-from symbolic.tables.symbols import lam as lam_letter
-from verification.arithmetic.words import bits_of, multiprecision
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.attracting import doubled
-from verification.cycles.shooting.cascade import rung
-from verification.cycles.shooting.condition import ROUNDINGS, Conditioning, costs_half, norm_of_inverse
-from verification.cycles.shooting.newton import Solution, UnsettledError, in_floats, refined
-from verification.cycles.shooting.problem import Problem
-from verification.measure.extremes.kernels import DOUBLE
+from symbolic.tables.table import alpha as alpha_letter
+from symbolic.tables.table import lam as lam_letter
+from verification.arithmetic.balls import bits_of, multiprecision
+from verification.cycles.recurrence.cascade import doubled, rung
+from verification.cycles.recurrence.newton import (
+    ROUNDINGS,
+    Conditioning,
+    Solution,
+    UnsettledError,
+    costs_half,
+    in_floats,
+    norm_of_inverse,
+    refined,
+)
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
+
+DOUBLE = 2.0**-52  # the unit of rounding
 
 SMALL = ROUNDINGS  # units: a dozen roundings, each of them explained by the data
 UNIT, DIGITS = 2.0**-52, 15  # of a float64

@@ -21,10 +21,10 @@ from numeric import PinballMap
 from numeric.dynamics.phase_points import places
 from numeric.kernels.spec import KernelSpec
 from symbolic.tables import egg
-from verification.cycles.shooting.newton import floats, given
-from verification.cycles.shooting.problem import Problem
-from verification.measure.extremes.kernels import DOUBLE, made_unit
-from verification.measure.extremes.near import WRONG, Finding, Measured
+from verification.cycles.recurrence.newton import floats, given
+from verification.cycles.recurrence.problem import Problem
+from verification.measure.extremes.kernels import made_unit
+from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured
 from verification.named.attractors import certificate
 
 Array = NDArray[np.float64]

@@ -13,8 +13,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from verification.measure.extremes import flights, near, products
-from verification.measure.extremes.cases import CASES
+from verification.measure.extremes import flights, near
+from verification.measure.extremes import kernels as products
+from verification.measure.extremes.flights import CASES
 from verification.measure.extremes.kernels import KERNELS, TEXTBOOK
 from verification.measure.extremes.near import SMALL, Finding, Stability
 from verification.measure.extremes.orbits import SHORT, orbits

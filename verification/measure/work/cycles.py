@@ -13,14 +13,12 @@ from sympy import N, Rational, acos
 from numeric import PinballMap
 from symbolic import tables
 from symbolic.cycles import polygons
-from symbolic.tables.symbols import alpha as alpha_letter
-from symbolic.tables.symbols import lam
-from symbolic.tables.table import Table
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.attracting import cycle_at, doubled
-from verification.cycles.shooting.cascade import Rung, ladder
-from verification.cycles.shooting.problem import Problem
-from verification.measure.speed.baselines import module
+from symbolic.tables.table import Table, lam
+from symbolic.tables.table import alpha as alpha_letter
+from verification.cycles.recurrence.cascade import Rung, cycle_at, doubled, ladder
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question
 from verification.measure.work.sought import DIGITS, Sought, last, to_digits
 from verification.named.locate import certify, closed_form
@@ -66,9 +64,9 @@ def whole(proof: Proof) -> Proof:
 
 def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
     """The exit angle at the first bounce, to three decimals."""
-    from verification.arithmetic.words import FLOAT64
-    from verification.cycles.shooting.newton import floats
-    from verification.cycles.shooting.problem import Rows
+    from verification.arithmetic.balls import FLOAT64
+    from verification.cycles.recurrence.newton import floats
+    from verification.cycles.recurrence.problem import Rows
 
     out, _ = Rows(problem, FLOAT64).angles(floats(problem, start), 1)
     return round(float(out[0][0]), 3 if problem.period < 10 else 9)

@@ -15,17 +15,16 @@ from numeric import PinballMap
 from numeric.kernels.spec import KernelSpec as Run
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
-from symbolic.generation.text import Kernel, kernel, load
+from symbolic.expressions.text import Kernel, kernel, load
 from symbolic.motion.chords import chord_angle, chord_kernel, theta0, theta1
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.geometry import curvature, speed, velocity
-from symbolic.tables.symbols import theta
-from symbolic.tables.table import Table
-from verification.arithmetic.words import Arithmetic, balls, bits_of, working
+from symbolic.tables.table import Table, theta
+from verification.arithmetic.balls import Arithmetic, balls, bits_of, working
 from verification.cycles.recurrence.chain import Vector
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.maps.exact import ExactMap
-from verification.measure.speed.baselines import module
+from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question
 from verification.measure.work.sought import DIGITS, Sought, to_digits
 

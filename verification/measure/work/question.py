@@ -29,8 +29,7 @@ import mpmath
 import numpy as np
 from flint import arb, fmpq
 
-from verification.arithmetic.balls import as_ball
-from verification.arithmetic.words import bits_of, working
+from verification.arithmetic.balls import as_ball, bits_of, working
 from verification.measure.work.row import Row, timed
 
 COUNTS = ("balls", "points")  # the units of settings that say how many answers a call gives
@@ -263,7 +262,7 @@ def main(arguments: Sequence[str]) -> None:
     """Answers on standard output."""
     import mpmath
 
-    from verification.measure.work.compare import question
+    from verification.measure.work.choice import question
 
     name, method, runs, *settings = arguments
     if mpmath.libmp.BACKEND != "python":

@@ -10,7 +10,7 @@ from decimal import Decimal
 from statistics import median, quantiles
 from typing import Any
 
-from verification.measure.speed.baselines import duration
+from verification.measure.work.bench import duration
 
 BALLS = ("error", "least", "promise")  # fields that a float may not hold
 SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # of the errors that are written as floats
@@ -178,7 +178,7 @@ def short(number: Decimal) -> str:
 
 def facts() -> dict[str, str]:
     """Machine, versions, and how busy the machine was, for a footer."""
-    from verification.measure.speed.bench import machine_facts
+    from verification.measure.work.bench import machine_facts
 
     load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
     return machine_facts() | {"load": load}

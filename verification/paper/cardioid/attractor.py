@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 from sympy import log, sin
 
 from numeric import PinballMap
-from numeric.pinball.growth import Growth
-from numeric.pinball.sampling import interior_starts
+from numeric.pinball.sampling import Growth, interior_starts
 from symbolic.cycles.defocusing import expands, least_exponent
-from symbolic.motion.contraction import log_cosine_mean
-from symbolic.proofs.signs import Finding
+from symbolic.expressions.signs import Finding
+from symbolic.motion.collision import log_cosine_mean
 from symbolic.tables import cardioid
-from symbolic.tables.arclength import arc_length
-from symbolic.tables.symbols import theta
+from symbolic.tables.geometry import arc_length
+from symbolic.tables.table import theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, equal, judges, zero
 from verification.paper.shared.contraction import TENTHS, at_most_zero

@@ -10,8 +10,8 @@ import numpy as np
 
 from numeric import PinballMap
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import lam as letter
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import enclose
 from verification.arithmetic.progress import telling
 from verification.paper.cardioid.cuspless import attracting_below
@@ -21,9 +21,8 @@ from verification.paper.shared.located import certified, located, subcritical
 from verification.proofs.corner.border_collision import Kind
 from verification.proofs.corner.corner import ARC
 from verification.proofs.corner.evidence import Attractor, border, measured, saddles, strips_of_the_map
-from verification.proofs.corner.flights import fourth_on_wall
 from verification.proofs.corner.half_return import Birth, birth
-from verification.proofs.corner.return_map import kink_falls, minimum_at_kink
+from verification.proofs.corner.return_map import fourth_on_wall, kink_falls, minimum_at_kink
 
 PROVED_TO, NEAR = 0.1, 1e-6  # a contraction, and a distance from lambda-star
 ANGLE = 0.04  # what "phi close to 0" is taken for: phi-star is -0.029

@@ -14,17 +14,13 @@ from symbolic.cycles.cardioid_slap import (
     slope_squared,
     slow_region,
 )
-from symbolic.cycles.cycle import Cycle, is_double_normal
-from symbolic.cycles.double_normal import stability_number
-from symbolic.cycles.named import cardioid_vertical
-from symbolic.motion.collision import determinant
-from symbolic.motion.contraction import growth_defects, telescoped
-from symbolic.proofs.signs import Finding, conjunction, positive
+from symbolic.cycles.cycle import Cycle, cardioid_vertical, is_double_normal
+from symbolic.cycles.thresholds import stability_number
+from symbolic.expressions.signs import Finding, conjunction, positive
+from symbolic.motion.collision import determinant, growth_defects, telescoped
 from symbolic.tables import cardioid
-from symbolic.tables.arclength import arc_length
-from symbolic.tables.geometry import curvature, evolute, velocity
-from symbolic.tables.symbols import s, theta
-from symbolic.tables.table import Component
+from symbolic.tables.geometry import arc_length, curvature, evolute, velocity
+from symbolic.tables.table import Component, s, theta
 from verification.paper.claims.claim import LETTERS, Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, identity, judges, zero
 

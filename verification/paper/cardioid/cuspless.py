@@ -2,16 +2,22 @@
 
 from sympy import Expr, Interval, Matrix, Rational, S, Symbol, cos, diff, pi, simplify
 
-from symbolic.cycles.cycle import frame, is_double_normal, monodromy, multipliers, trace_and_determinant
-from symbolic.cycles.double_normal import stability_number
-from symbolic.cycles.named import cardioid_vertical, cuspless_horizontal, cuspless_vertical
-from symbolic.cycles.thresholds import lambda_c
+from symbolic.cycles.cycle import (
+    cardioid_vertical,
+    cuspless_horizontal,
+    cuspless_vertical,
+    frame,
+    is_double_normal,
+    monodromy,
+    multipliers,
+    trace_and_determinant,
+)
+from symbolic.cycles.thresholds import lambda_c, stability_number
+from symbolic.expressions.signs import Finding, nonnegative, positive
 from symbolic.motion.collision import derivative_matrix, exit_angle
-from symbolic.proofs.signs import Finding, nonnegative, positive
 from symbolic.tables import cuspless
-from symbolic.tables.arclength import perimeter, positions
-from symbolic.tables.geometry import turning, velocity
-from symbolic.tables.symbols import K1, eta, lam, theta
+from symbolic.tables.geometry import perimeter, positions, turning, velocity
+from symbolic.tables.table import K1, eta, lam, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, digits, equal, greater, identity, judges, on_range, shown, zero
 

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from sympy import S
 
 from numeric import PinballMap
-from symbolic.cycles.cycle import trace_and_determinant
-from symbolic.cycles.flip_jets import a, coefficient, least_bend, return_map
-from symbolic.cycles.named import cuspless_horizontal
+from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
+from symbolic.cycles.normal_forms import a, coefficient, least_bend, return_map
 from verification.paper.cardioid.attractor import FIFTHS, LONG, coverage
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, greater, judges, shown, zero

@@ -13,9 +13,9 @@ from numeric import PinballMap
 from numeric.pinball.sampling import phase_starts
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.splitting import grazing, least_rate, radius_defects, rate, splits
+from symbolic.expressions.signs import Finding
 from symbolic.motion.collision import derivative_matrix
-from symbolic.proofs.signs import Finding
-from symbolic.tables.symbols import K0, cos_eta1, cos_phi0, lam
+from symbolic.tables.table import K0, cos_eta1, cos_phi0, lam
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, zero
 from verification.paper.shared.attractors import STARTS, chaotic, found, unsettled

@@ -11,8 +11,8 @@ from typing import Any, TypeAlias
 from flint import arb
 from sympy import Expr, Interval, Matrix, Symbol, oo
 
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables import symbols
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables import table as symbols
 from symbolic.tables.formula import parse
 
 LETTERS: dict[str, Symbol] = {name: value for name, value in vars(symbols).items() if isinstance(value, Symbol)}

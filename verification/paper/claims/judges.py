@@ -13,8 +13,7 @@ from sympy import Expr, Interval, Matrix, Rational, S, Symbol, oo
 from sympy.logic.boolalg import Boolean
 from sympy.logic.inference import satisfiable
 
-from symbolic.proofs.signs import Box, Finding, Outcome, conjunction, placed
-from symbolic.proofs.zero import vanishes
+from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, placed, vanishes
 from verification.arithmetic.balls import enclose, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Number
 
@@ -60,7 +59,7 @@ def mended(claim: Claim, wrong: str, right: str) -> Claim:
 def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
     """Are two formulas the same function? Proved by reduction to 0, refuted by a ball that excludes 0.
 
-    >>> from symbolic.tables.symbols import lam
+    >>> from symbolic.tables.table import lam
     >>> equal(lam**2 - 1, (lam - 1) * (lam + 1), {}).outcome.name
     'PROVED'
     >>> equal(lam, 2 * lam, {}).outcome.name

@@ -13,9 +13,8 @@ from numeric.dynamics.attractors import Attractor, Kind
 from numeric.dynamics.basins import Window, intermingling, labels, random_points, starts_at, whole
 from numeric.dynamics.phase_points import Array
 from numeric.dynamics.recognition import Labels
-from numeric.dynamics.uncertainty import Uncertainty, uncertainty
-from symbolic.cycles.cycle import is_double_normal
-from symbolic.cycles.named import egg_diameter
+from numeric.dynamics.statistics import Uncertainty, uncertainty
+from symbolic.cycles.cycle import egg_diameter, is_double_normal
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import judges
 from verification.paper.shared.attractors import SHAPE, found, unsettled

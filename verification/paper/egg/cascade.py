@@ -6,14 +6,14 @@ import numpy as np
 from flint import fmpq
 from sympy import Integer, Rational
 
-from numeric.sweeps.parameter_space import parameter_space
+from numeric.sweeps.fields import parameter_space
 from numeric.sweeps.run import run
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import tilt
-from symbolic.proofs.signs import Finding, Outcome, positive
+from symbolic.expressions.signs import Finding, Outcome, positive
 from symbolic.tables import egg as table_of
-from symbolic.tables.symbols import alpha
-from verification.cycles.shooting.attracting import attractor
+from symbolic.tables.table import alpha
+from verification.cycles.recurrence.cascade import attractor
 from verification.named.branches import cascade
 from verification.paper.cardioid.splitting import bounced, ends_of_period
 from verification.paper.claims.claim import Claim, Judgement

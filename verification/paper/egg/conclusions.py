@@ -11,15 +11,15 @@ from sympy import Rational, S
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor
-from numeric.dynamics.splitting import jump, slopes
+from numeric.dynamics.exponents import jump, slopes
 from symbolic import tables
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.thresholds import even_stability_numbers
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import alpha, lam
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables.table import alpha, lam
 from verification.named.attractors import certificate
 from verification.named.branches import Cascade, cascade
-from verification.named.torus import double_one, expanding_cycle
+from verification.named.curves import double_one, expanding_cycle
 from verification.paper.cardioid.border import chaos, corner
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, zero
@@ -27,8 +27,8 @@ from verification.paper.ellipse.ellipse import LIMIT, lyapunov
 from verification.paper.shared.attractors import JOIN, SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
 from verification.paper.shared.samples import sampled
 from verification.proofs.manifolds.known import CONTACTS
-from verification.proofs.periodic.curve import doubling_curve
 from verification.proofs.periodic.interval_newton import Status
+from verification.proofs.periodic.over_interval import doubling_curve
 
 MIXED = ("0.1", "0.43", "0.5", "0.6", "0.7", "0.83")  # contractions of the egg at alpha = 0.08
 DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # where orbits of these periods attract

@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
-from verification.arithmetic.words import FLOAT64
+from verification.arithmetic.balls import FLOAT64
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import judges
 from verification.paper.shared.samples import sampled
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
-from verification.proofs.manifolds.saddle import saddle
-from verification.proofs.manifolds.series import local
+from verification.proofs.manifolds.saddle import local, saddle
 
 SHAPE = Rational(2, 25)
 SEED = 1

@@ -17,13 +17,13 @@ from sympy import (
     sin,
 )
 
-from symbolic.cycles.egg import COSINE, curvature_slope_polynomial, squared_speed_polynomial, turning_polynomial
-from symbolic.cycles.named import egg_diameter
-from symbolic.motion.circle import flight
-from symbolic.motion.convexity import convexity
-from symbolic.proofs.signs import Finding, positive
+from symbolic.cycles.cycle import egg_diameter
+from symbolic.cycles.polygons import COSINE, curvature_slope_polynomial, squared_speed_polynomial, turning_polynomial
+from symbolic.expressions.signs import Finding, positive
+from symbolic.motion.chords import convexity
+from symbolic.motion.flight import flight
 from symbolic.tables import egg
-from symbolic.tables.symbols import alpha, lam, phi, theta
+from symbolic.tables.table import alpha, lam, phi, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, identity, judges, zero
 

@@ -9,18 +9,18 @@ from sympy import Interval, Rational, S, cancel
 from numeric import PinballMap
 from numeric.dynamics.phase_points import places
 from numeric.pinball.sampling import phase_starts
-from numeric.sweeps.scenes import measured
-from symbolic.cycles.twist import egg_diameter
-from symbolic.motion.circle import flight
-from symbolic.motion.convexity import convexity
-from symbolic.proofs.signs import Finding, Outcome, positive
+from numeric.sweeps.sweep import measured
+from symbolic.cycles.normal_forms import egg_diameter
+from symbolic.expressions.signs import Finding, Outcome, positive
+from symbolic.motion.chords import convexity
+from symbolic.motion.flight import flight
 from symbolic.tables import egg
-from symbolic.tables.symbols import alpha, lam, phi
+from symbolic.tables.table import alpha, lam, phi
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, judges, zero
 from verification.paper.shared.samples import sampled
-from verification.proofs.periodic.twist import Twist, twist
+from verification.proofs.periodic.bifurcation import Twist, twist
 
 END = Rational(1, 10)
 SMALL = Interval.Lopen(0, Rational(39, 1000))

@@ -4,12 +4,12 @@ from math import gcd
 
 from sympy import Interval, Poly, Rational, Symbol, cancel, cos, cyclotomic_poly, pi
 
-from symbolic.cycles.double_normal import stability_number
-from symbolic.cycles.named import c, egg_diameter, egg_parallel, parallel_shape
+from symbolic.cycles.cycle import c, egg_diameter, egg_parallel, parallel_shape
 from symbolic.cycles.polygons import elastic_trace
 from symbolic.cycles.resonance import flat_triangle
-from symbolic.proofs.signs import Finding, positive
-from symbolic.tables.symbols import alpha
+from symbolic.cycles.thresholds import stability_number
+from symbolic.expressions.signs import Finding, positive
+from symbolic.tables.table import alpha
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, greater, judges, shown, zero
 from verification.paper.egg.egg import ROUND, at

@@ -12,11 +12,11 @@ from numeric.dynamics.phase_points import Places
 from numeric.pinball.sampling import interior_starts, phase_starts
 from symbolic import tables
 from symbolic.cycles.polygons import required_tilt
-from symbolic.proofs.signs import positive
-from symbolic.tables.symbols import alpha, lam, theta
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.shooting.attracting import FEIGENBAUM, doubled, next_critical
-from verification.cycles.shooting.problem import Problem
+from symbolic.expressions.signs import positive
+from symbolic.tables.table import alpha, lam, theta
+from verification.cycles.recurrence.cascade import FEIGENBAUM, doubled, next_critical
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement

@@ -11,9 +11,9 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
-from numeric.sweeps.parameter_space import egg, parameter_space
+from numeric.sweeps.fields import egg, parameter_space
 from numeric.sweeps.run import run
-from numeric.sweeps.scenes import Measured, map_of, measured
+from numeric.sweeps.sweep import Measured, map_of, measured
 from verification.named.branches import cascade
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import judges

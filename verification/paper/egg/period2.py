@@ -11,13 +11,19 @@ from sympy import (
     sqrt,
 )
 
-from symbolic.cycles.cycle import is_double_normal, monodromy, trace_and_determinant
-from symbolic.cycles.double_normal import stability_number, trace_of
-from symbolic.cycles.named import c, egg_diameter, egg_parallel, parallel_shape
-from symbolic.cycles.thresholds import alpha_hat, alpha_tilde, complex_up_to, tilt
+from symbolic.cycles.cycle import (
+    c,
+    egg_diameter,
+    egg_parallel,
+    is_double_normal,
+    monodromy,
+    parallel_shape,
+    trace_and_determinant,
+)
+from symbolic.cycles.thresholds import alpha_hat, alpha_tilde, complex_up_to, stability_number, tilt, trace_of
+from symbolic.expressions.signs import Finding, conjunction, nonnegative, positive
 from symbolic.motion.collision import slap_derivative
-from symbolic.proofs.signs import Finding, conjunction, nonnegative, positive
-from symbolic.tables.symbols import alpha, lam
+from symbolic.tables.table import alpha, lam
 from verification.arithmetic.progress import telling
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import (
@@ -33,7 +39,7 @@ from verification.paper.claims.judges import (
     zero,
 )
 from verification.paper.egg.egg import ROUND, SHAPES, at
-from verification.proofs.slap_map.critical_points import OneZero, one_zero
+from verification.proofs.slap_map.periodic_points import OneZero, one_zero
 
 W2 = tilt() ** 2  # 1 - P on the diameters
 

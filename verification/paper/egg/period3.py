@@ -16,10 +16,9 @@ from sympy import (
     tan,
 )
 
-from symbolic.cycles.cycle import is_elastic, trace_and_determinant
-from symbolic.cycles.egg import COSINE
-from symbolic.cycles.named import egg_triangle
+from symbolic.cycles.cycle import egg_triangle, is_elastic, trace_and_determinant
 from symbolic.cycles.polygons import (
+    COSINE,
     contraction_slope,
     elastic_trace,
     fold_margin,
@@ -30,9 +29,9 @@ from symbolic.cycles.polygons import (
     saddle_node,
     tilt_tangent,
 )
-from symbolic.motion.circle import flight, iterate
-from symbolic.proofs.signs import Finding, conjunction, nonnegative, positive
-from symbolic.tables.symbols import alpha, lam, phi, s, theta
+from symbolic.expressions.signs import Finding, conjunction, nonnegative, positive
+from symbolic.motion.flight import flight, iterate
+from symbolic.tables.table import alpha, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, digits, greater, identity, implied, judges, shown, zero
 from verification.paper.egg.egg import FULL, ROUND, SHAPES, at

@@ -6,18 +6,16 @@ from math import tau
 from sympy import Expr, Rational
 
 from numeric.dynamics.phase_points import places
-from symbolic.cycles.cycle import is_double_normal
-from symbolic.cycles.named import cuspless_horizontal, cuspless_vertical
+from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, is_double_normal
 from symbolic.cycles.polygons import near_flat, saddle_node
-from symbolic.proofs.signs import Finding
+from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
-from symbolic.tables.symbols import alpha, lam
+from symbolic.tables.table import alpha, lam
 from verification.arithmetic.progress import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, shown
-from verification.proofs.periodic.exclusion import no_triangles
-from verification.proofs.periodic.projection import PRODUCED, SLAP, witness
+from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
 from verification.proofs.slap_map.periodic_points import PeriodicPoints, periodic_points
 
 SHAPE = Rational(2, 25)

@@ -7,23 +7,21 @@ from flint import arb
 from sympy import Rational, S
 
 from numeric.dynamics.phase_points import places
-from symbolic.cycles.cycle import trace_and_determinant
-from symbolic.cycles.named import egg_diameter
+from symbolic.cycles.cycle import egg_diameter, trace_and_determinant
 from symbolic.cycles.polygons import saddle_node
-from symbolic.proofs.signs import Finding
+from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
-from symbolic.tables.symbols import alpha, lam
+from symbolic.tables.table import alpha, lam
 from verification.arithmetic.progress import telling
-from verification.cycles.shooting import cascade as ladder
-from verification.cycles.shooting.attracting import attractor, cycle_at, doubled
+from verification.cycles.recurrence import cascade as ladder
+from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled
 from verification.named.attractors import certificate
 from verification.named.feigenbaum import accumulation
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, zero
 from verification.paper.egg.period3 import side_of_fold
-from verification.proofs.periodic.branch import contracts, flips_nowhere
-from verification.proofs.periodic.curve import doubling_curve
-from verification.proofs.periodic.over_interval import Stability, everywhere, stability
+from verification.proofs.periodic.over_interval import Stability, doubling_curve, everywhere, stability
+from verification.proofs.periodic.triangles import contracts, flips_nowhere
 
 SHAPE = Rational(2, 25)
 PANEL_B = Rational(39, 100)  # the contraction of panel (b) of the figure with the attractors

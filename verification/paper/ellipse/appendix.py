@@ -18,12 +18,11 @@ from sympy import (
     together,
 )
 
-from symbolic.motion.circle import iterate
-from symbolic.motion.collision import determinant, exit_angle
-from symbolic.motion.contraction import growth_defects
-from symbolic.proofs.signs import positive
+from symbolic.expressions.signs import positive
+from symbolic.motion.collision import determinant, exit_angle, growth_defects
+from symbolic.motion.flight import iterate
 from symbolic.tables import ellipse
-from symbolic.tables.symbols import a, eta, lam, phi, s
+from symbolic.tables.table import a, eta, lam, phi, s
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, greater, judges, zero
 

@@ -2,10 +2,10 @@
 
 from sympy import Expr, Interval, Matrix, S, Symbol, cos, expand, limit, oo, pi, powsimp, simplify, sin
 
-from symbolic.motion.circle import flight, iterate, limit_position
+from symbolic.expressions.signs import Finding, conjunction, positive
 from symbolic.motion.collision import derivative_matrix, exit_angle
-from symbolic.proofs.signs import Finding, conjunction, positive
-from symbolic.tables.symbols import eta, lam, phi, s
+from symbolic.motion.flight import flight, iterate, limit_position
+from symbolic.tables.table import eta, lam, phi, s
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, identity, judges, zero
 

@@ -5,15 +5,13 @@ The two axes of the ellipse, as the claims need them.
 
 from sympy import Expr, Interval, Matrix, Rational, S, cos, oo, pi, sin, symbols
 
-from symbolic.cycles.cycle import is_double_normal, trace_and_determinant
-from symbolic.cycles.double_normal import stability_number, stable_while_nonnegative
-from symbolic.cycles.multipliers import saddle
-from symbolic.cycles.named import major_axis, minor_axis
-from symbolic.motion.invariants import gradient, joachimsthal_defect
-from symbolic.proofs.signs import Box, Finding, nonnegative, positive
+from symbolic.cycles.cycle import is_double_normal, major_axis, minor_axis, saddle, trace_and_determinant
+from symbolic.cycles.thresholds import stability_number, stable_while_nonnegative
+from symbolic.expressions.signs import Box, Finding, nonnegative, positive
+from symbolic.motion.collision import gradient, joachimsthal_defect
 from symbolic.tables import ellipse
 from symbolic.tables.geometry import curvature, evolute, velocity
-from symbolic.tables.symbols import a, lam, theta
+from symbolic.tables.table import a, lam, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, identity, judges, on_range, zero
 

@@ -3,12 +3,12 @@
 from sympy import Expr, Function, Integer, Interval, Matrix, Rational, S, acos, cancel, cos, oo, sqrt
 
 from symbolic import tables
-from symbolic.cycles.egg import COSINE, in_cosine
-from symbolic.motion.circle import flight, iterate
+from symbolic.cycles.polygons import COSINE, in_cosine
+from symbolic.expressions.signs import Finding, nonnegative, positive
 from symbolic.motion.collision import birkhoff_matrix, derivative_matrix, determinant, exit_angle, slap_derivative
-from symbolic.proofs.signs import Finding, nonnegative, positive
+from symbolic.motion.flight import flight, iterate
 from symbolic.tables.geometry import turning
-from symbolic.tables.symbols import K1, a, alpha, cos_eta1, cos_phi0, eta, lam, phi, s, theta
+from symbolic.tables.table import K1, a, alpha, cos_eta1, cos_phi0, eta, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, greater, identity, judges, zero
 

@@ -4,13 +4,10 @@ from collections.abc import Callable
 
 from sympy import Expr, Integer, Interval, Matrix, S, Symbol, diag, eye, limit, oo, sqrt, symbols
 
-from symbolic.cycles.cycle import discriminant, monodromy, multipliers
-from symbolic.cycles.double_normal import stability_number, stable_while_nonnegative
-from symbolic.cycles.multipliers import saddle
-from symbolic.cycles.named import major_axis, minor_axis
-from symbolic.cycles.thresholds import lambda_minus, lambda_plus
-from symbolic.proofs.signs import Box, Finding, conjunction, nonnegative, positive
-from symbolic.tables.symbols import a, lam
+from symbolic.cycles.cycle import discriminant, major_axis, minor_axis, monodromy, multipliers, saddle
+from symbolic.cycles.thresholds import lambda_minus, lambda_plus, stability_number, stable_while_nonnegative
+from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive
+from symbolic.tables.table import a, lam
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, digits, equal, greater, identity, judges, zero
 from verification.paper.ellipse.ellipse import BEYOND, major, minor

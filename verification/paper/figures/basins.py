@@ -6,7 +6,7 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import classify
-from numeric.dynamics.kinds import Kind
+from numeric.dynamics.recognition import Kind
 from numeric.pinball.sampling import phase_grid
 from verification.paper.figures.cuspless import cycle_points, orbit_on
 from verification.paper.figures.phase import by_angle, by_arc_length, facts

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 from numpy.typing import NDArray
 
 from numeric.pinball.sampling import interior_starts
-from numeric.sweeps.scenes import floor_of
+from numeric.sweeps.sweep import floor_of
 from verification.plots.sheet import Array, Curve
 
 BALLS = 40

@@ -11,7 +11,7 @@ import numpy as np
 
 from numeric import PinballMap
 from symbolic.tables.geometry import evolute
-from symbolic.tables.symbols import theta
+from symbolic.tables.table import theta
 from verification.paper.figures.phase import facts, flights, outline
 from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Panel, Panels, scaled, sheet
 
@@ -21,12 +21,10 @@ if TYPE_CHECKING:
 from typing import TYPE_CHECKING
 
 from numeric.pinball.sampling import interior_starts
-from symbolic.cycles.cycle import discriminant
-from symbolic.cycles.double_normal import stability_number, trace_of
-from symbolic.cycles.named import minor_axis
-from symbolic.cycles.thresholds import lambda_minus
-from symbolic.tables.symbols import a as a_letter
-from symbolic.tables.symbols import lam as lam_letter
+from symbolic.cycles.cycle import discriminant, minor_axis
+from symbolic.cycles.thresholds import lambda_minus, stability_number, trace_of
+from symbolic.tables.table import a as a_letter
+from symbolic.tables.table import lam as lam_letter
 from verification.paper.figures.phase import SEED
 from verification.paper.figures.phase import slap_by_angle as by_angle
 from verification.plots.sheet import DARK, FAINT, graphs
@@ -46,9 +44,9 @@ TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
 @cache
 def centres(table: str, **shape: str) -> Callable[[Array], tuple[Array, Array]]:
     """The centre of curvature of the first component against `theta`, from the exact formula."""
-    from symbolic.generation.text import kernel, load
+    from symbolic.expressions.text import kernel, load
     from symbolic.tables import named
-    from verification.arithmetic.words import ARRAYS
+    from verification.arithmetic.balls import ARRAYS
 
     x, y = evolute(named(table).at(**shape).components[0])
     return load(kernel("evolute", [theta], {"x": x, "y": y}), ARRAYS)
@@ -122,8 +120,8 @@ def draw_configuration(panels: Panels) -> "Figure":
 
 def eigenvalues(fine: float = 1.0) -> Panels:
     """Both moduli on the minor axis at `a = 5`, from the stability number; and `lambda_-(5)`."""
-    from symbolic.generation.text import kernel, load
-    from verification.arithmetic.words import ARRAYS
+    from symbolic.expressions.text import kernel, load
+    from verification.arithmetic.balls import ARRAYS
 
     P = stability_number(minor_axis()).subs(a_letter, LONG)
     trace = trace_of(P)

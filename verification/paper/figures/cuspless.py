@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 from numeric import Orbit
 from numeric.dynamics.attractors import find
-from numeric.dynamics.kinds import Attractor, Kind
+from numeric.dynamics.recognition import Attractor, Kind
 
 JOIN = 3**0.5 / 4  # the arc length of the lower join; the upper one is at -JOIN
 BALLS = 60  # orbits that show an attractor

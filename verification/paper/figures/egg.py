@@ -8,8 +8,8 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.pinball.sampling import phase_starts
 from symbolic.cycles.polygons import near_flat
-from symbolic.tables.symbols import alpha as alpha_letter
-from symbolic.tables.symbols import lam as lam_letter
+from symbolic.tables.table import alpha as alpha_letter
+from symbolic.tables.table import lam as lam_letter
 from verification.paper.figures.phase import SEED, balls_of, by_angle, facts, outline, polar
 from verification.paper.figures.phase import slap_by_angle as slap_graph
 from verification.plots.sheet import (

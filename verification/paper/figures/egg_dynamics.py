@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 from typing import TYPE_CHECKING
 
 from symbolic.cycles.thresholds import alpha_tilde
-from symbolic.tables.symbols import lam as lam_letter
+from symbolic.tables.table import lam as lam_letter
 from verification.plots.sheet import Raster
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-from numeric.sweeps.pools import on_threads
+from numeric.sweeps.run import on_threads
 from numeric.sweeps.store import Memory
 from numeric.sweeps.sweep import Array, Sweep, cores
 
@@ -134,8 +134,8 @@ def draw_attractors(panels: Panels) -> "Figure":
 
 def bifurcation(fine: float = 1.0) -> Panels:
     """Where balls from random starts are after a long time, for contractions around the cascade and the merging."""
-    from numeric.sweeps.bifurcation import bifurcation as sweep
-    from numeric.sweeps.scenes import text_of
+    from numeric.sweeps.fields import bifurcation as sweep
+    from numeric.sweeps.sweep import text_of
     from symbolic.tables.scene import Scene
 
     lams = np.linspace(*RANGE, scaled(300, fine**0.5, 4))
@@ -169,12 +169,12 @@ NAMES = ("no chaos found", "chaos", "undecided")
 def parameter_space(fine: float = 1.0) -> Panels:
     """Which pairs `(alpha, lam)` have a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
 
-    Each sign counts beyond twice its error (`numeric.sweeps.scenes`); a pair with no chaotic orbit and one whose
+    Each sign counts beyond twice its error (`numeric.sweeps.sweep`); a pair with no chaotic orbit and one whose
     sign its error leaves open is undecided.
     """
-    from numeric.sweeps.parameter_space import parameter_space as sweep
-    from symbolic.generation.text import kernel, load
-    from verification.arithmetic.words import ARRAYS
+    from numeric.sweeps.fields import parameter_space as sweep
+    from symbolic.expressions.text import kernel, load
+    from verification.arithmetic.balls import ARRAYS
 
     side, starts = scaled(40, fine**0.5, 3), scaled(100, min(fine, 1.0), 4)
     bounces = scaled(1000, min(fine, 2.0), 40)
@@ -211,7 +211,7 @@ def draw_parameter_space(panels: Panels) -> "Figure":
 def swept(sweep: Sweep) -> dict[str, Array]:
     """The fields of a sweep by name.
 
-    >>> from numeric.sweeps.parameter_space import parameter_space
+    >>> from numeric.sweeps.fields import parameter_space
     >>> import numpy as np
     >>> int(swept(parameter_space(np.array([0.0]), np.array([0.5]), 3, 40, 40))["chaotic"][0, 0])
     0

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from latex2mathml.converter import convert
 from markupsafe import Markup, escape
 
-from symbolic.tables.notation import letter
+from symbolic.tables.table import letter
 
 PAPER = {  # the paper's own macros
     r"\defeq": ":=",

@@ -13,7 +13,7 @@ from functools import cache
 from importlib import import_module
 from importlib.resources import files
 
-from symbolic.proofs.signs import Finding, Outcome
+from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict, load
 from verification.paper.claims.judges import JUDGES

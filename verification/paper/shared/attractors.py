@@ -14,11 +14,11 @@ from sympy import Rational, Symbol, limit, oo, pi
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
-from numeric.dynamics.splitting import angles, jump, slopes
+from numeric.dynamics.exponents import angles, jump, slopes
 from symbolic import tables
-from symbolic.motion.circle import flight
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import lam, phi
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.motion.flight import flight
+from symbolic.tables.table import lam, phi
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges

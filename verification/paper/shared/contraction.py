@@ -8,9 +8,9 @@ from sympy import Rational, log, pi, sin
 
 from numeric.dynamics.phase_points import places
 from symbolic import tables
-from symbolic.motion.contraction import area_factor, image_share, log_cosine_mean, telescoped
-from symbolic.proofs.signs import Finding
-from symbolic.tables.symbols import lam
+from symbolic.expressions.signs import Finding
+from symbolic.motion.collision import area_factor, image_share, log_cosine_mean, telescoped
+from symbolic.tables.table import lam
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, zero

@@ -16,17 +16,14 @@ from numeric import PinballMap
 from numeric.dynamics.phase_points import places
 from numeric.pinball.sampling import interior_starts
 from symbolic import tables
-from symbolic.cycles.multipliers import contracting_norm
-from symbolic.cycles.named import major_axis
+from symbolic.cycles.cycle import contracting_norm, major_axis
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.motion.contraction import area_factor, steepening, weak_dissipation
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import a, alpha, eta, lam
-from verification.arithmetic.balls import enclose
-from verification.arithmetic.words import working
-from verification.cycles.shooting.attracting import cycle_at, doubled
-from verification.cycles.shooting.cascade import ladder
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.motion.collision import area_factor, steepening, weak_dissipation
+from symbolic.tables.table import a, alpha, eta, lam
+from verification.arithmetic.balls import enclose, working
+from verification.cycles.recurrence.cascade import cycle_at, doubled, ladder
 from verification.named.attractors import Certificate, certificate, exponents
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, rounded, zero

@@ -6,7 +6,7 @@ from functools import cache
 from flint import arb
 from sympy import Expr, Integer, Rational
 
-from symbolic.proofs.signs import Finding, conjunction
+from symbolic.expressions.signs import Finding, conjunction
 from verification.named.locate import Located, locate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, digits, judges

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.pinball.growth import Growth
-from numeric.pinball.sampling import interior_starts, phase_starts
+from numeric.pinball.sampling import Growth, interior_starts, phase_starts
 from symbolic.cycles.polygons import saddle_node
-from symbolic.proofs.signs import Finding, Outcome
-from symbolic.tables.symbols import alpha
+from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables.table import alpha
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import digits, judges
 

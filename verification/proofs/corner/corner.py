@@ -13,13 +13,12 @@ from typing import Any
 from flint import arb
 from sympy import pi, sqrt
 
-from symbolic.generation.text import kernel, load
+from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
-from verification.arithmetic.balls import exact_balls
-from verification.arithmetic.words import Arithmetic, bits_of, working
-from verification.cycles.shooting.newton import refined
-from verification.cycles.shooting.small import corner
+from verification.arithmetic.balls import Arithmetic, bits_of, exact_balls, working
+from verification.cycles.recurrence.critical import corner
+from verification.cycles.recurrence.newton import refined
 from verification.proofs.corner.border_collision import robust
 from verification.proofs.corner.polygon import Piece
 from verification.proofs.periodic.interval_newton import Status, contraction

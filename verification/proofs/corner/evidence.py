@@ -18,7 +18,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from verification.arithmetic.words import working
+from verification.arithmetic.balls import working
 from verification.proofs.corner.border_collision import (
     Extent,
     Kind,

@@ -34,9 +34,8 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from verification.arithmetic.balls import cuts, halves, joined
+from verification.arithmetic.balls import cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
-from verification.arithmetic.words import working
 from verification.proofs.corner.corner import ARC, WALL, enclosed
 from verification.proofs.corner.mean_value import BITS, Bounce, Quantity, at_corner, beyond, corners, on_arc, parameter
 from verification.proofs.corner.polygon import (

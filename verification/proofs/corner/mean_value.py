@@ -12,10 +12,10 @@ from functools import cache
 
 from flint import arb
 
-from symbolic.generation.text import load
+from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
-from verification.arithmetic.words import balls, working
+from verification.arithmetic.balls import balls, working
 from verification.proofs.corner import corner
 from verification.proofs.corner.corner import ARC, WALL
 

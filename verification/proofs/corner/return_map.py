@@ -1,4 +1,14 @@
-"""The fourth collision near `lambda-star`: its least position is at a kink, and crosses the corner there.
+"""Flights in the cuspless cardioid, in balls: where a piece of phase space lands.
+
+A landing is enclosed by an interval Newton step on the chord angle, from a guess in floats.
+
+Where the fourth collision falls, for every angle and every contraction of a range. Paper: section 5.2.
+
+A ball leaves the upper corner of the cuspless cardioid at an angle near 0. The paper's plot shows
+that up to `lambda-star` the fourth collision lies beyond the corner, on the wall (`s_4 > s*`). Boxes of
+angle and contraction are followed in balls until every one has landed strictly inside the wall.
+
+The fourth collision near `lambda-star`: its least position is at a kink, and crosses the corner there.
 
 A ball leaves the upper corner of the cuspless cardioid towards `theta1` on the arc; its second bounce
 is near the lower corner, its fourth the distance `s4` beyond the upper one (on the wall when positive:
@@ -8,14 +18,20 @@ minimum is the kink; and the value there falls with `lam`. It is 0 at `lambda-st
 So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
+from typing import Any
 
 from flint import arb
+from sympy import pi, sqrt
 
-from verification.arithmetic.balls import cuts, halves, joined
+from symbolic.expressions.text import kernel, load
+from symbolic.motion.chords import chord_kernel
+from symbolic.tables import cuspless
+from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
-from verification.arithmetic.words import working
 from verification.proofs.corner.corner import ARC, WALL, enclosed
 from verification.proofs.corner.mean_value import (
     BITS,
@@ -29,6 +45,171 @@ from verification.proofs.corner.mean_value import (
     on_arc,
     parameter,
 )
+
+Angles = dict[tuple[int, int], Callable[..., Any]]
+TURN = 6.283185307179586
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of a component, the exit angles there, and the slope of the slap map that led there."""
+
+    component: int
+    theta: arb
+    slope: arb
+    phi: arb
+
+
+@cache
+def _loaded() -> tuple[Angles, Angles, dict[int, arb]]:
+    pairs = ((ARC, ARC), (ARC, WALL), (WALL, ARC))
+    kernels = {pair: chord_kernel(cuspless, *pair, 1) for pair in pairs}
+    enclosing = {pair: load(made, balls(BITS)) for pair, made in kernels.items()}
+    guessing = {pair: load(made, FLOAT64) for pair, made in kernels.items()}
+    with working(BITS):
+        arc, wall = load(kernel("ends", [], {"arc": 2 * pi / 3, "wall": sqrt(3) / 4}), balls(BITS))()
+    return enclosing, guessing, {ARC: arc, WALL: wall}
+
+
+class Flights:
+    """The map of the cuspless cardioid on pieces, for all contractions of a ball."""
+
+    def __init__(self, lam: arb | int = 0) -> None:
+        self.lam = lam
+        self.balls, self.floats, self.ends = _loaded()
+
+    def iterated(self, pieces: list[Piece], n: int) -> list[Piece] | None:
+        """The images under `n` flights; None when one could not be enclosed."""
+        for _ in range(n):
+            following: list[Piece] = []
+            for piece in pieces:
+                landed = self.landing(piece)
+                if landed is None:
+                    return None
+                following += landed
+            pieces = following
+        return pieces
+
+    def landing(self, piece: Piece) -> list[Piece] | None:
+        """The image of a piece: one piece, or up to three when it may straddle the joins; None when not enclosed.
+
+        The table is convex, so a root of the chord angle that is proved to lie on the boundary is the
+        landing. Floats guess on which part: the wall when the ray passes between the corners. When the root
+        there may lie beyond a corner, the place where the ray meets the line of the wall tells which parts
+        are possible: the upper arc unless that is below the upper corner, the lower one unless it is above the
+        lower corner, and each of them has to be enclosed.
+        """
+        if piece.component == WALL:
+            landed = self._root(piece, ARC, -1.05, 1.05)
+            return [landed] if landed and abs(landed.theta) < self.ends[ARC] else None
+        start, edge = float(piece.theta.mid()), float(self.ends[ARC])
+        roots = {
+            "upper": lambda: self._root(piece, ARC, start, edge + 0.2),
+            "wall": lambda: self._root(piece, WALL, -0.6, 0.6),
+            "lower": lambda: self._root(piece, ARC, TURN - edge - 0.2, start + TURN),
+        }
+        guess = self._guess(start, float(piece.phi.mid()), edge)
+        first = roots[guess]()
+        if first is None:
+            return None
+        if abs(first.theta) < self.ends[first.component]:
+            return [first]
+        wall = first if guess == "wall" else roots["wall"]()
+        if wall is None:
+            return None
+        found: list[Piece | None] = [wall]
+        if not wall.theta > -self.ends[WALL]:  # the wall's parameter grows downwards
+            found.append(first if guess == "upper" else roots["upper"]())
+        if not wall.theta < self.ends[WALL]:
+            found.append(first if guess == "lower" else roots["lower"]())
+        return _all(*found)
+
+    def _guess(self, start: float, phi: float, edge: float) -> str:
+        near = self.floats[ARC, ARC]
+        if start > edge - 1e-6 or (start > -edge + 1e-6 and near(start, -edge)[0] > phi):
+            return "lower"
+        return "upper" if start < -edge + 1e-6 or near(start, edge)[0] < phi else "wall"
+
+    def _root(self, piece: Piece, target: int, low: float, high: float) -> Piece | None:
+        """The landing on a component, enclosed by an interval Newton step from a guess in floats."""
+        angle, near = self.balls[piece.component, target], self.floats[piece.component, target]
+        start, phi = float(piece.theta.mid()), float(piece.phi.mid())
+        for _ in range(60):
+            middle = (low + high) / 2  # the angle falls along the boundary
+            low, high = (middle, high) if near(start, middle)[0] > phi else (low, middle)
+        guess = (low + high) / 2 - (TURN if high > TURN / 2 else 0)
+        radius = 4 * float(piece.theta.rad() + piece.phi.rad()) + 1e-12
+        for _ in range(6):
+            box = arb(guess, radius)
+            image = guess - (angle(piece.theta, arb(guess))[0] - piece.phi) / angle(piece.theta, box)[2]
+            if image.is_finite() and box.contains_interior(image):
+                over = angle(piece.theta, image)
+                phi_1 = -self.lam * self.balls[target, piece.component](image, piece.theta)[0] + arb(0)
+                return Piece(target, image, -piece.slope * over[1] / over[2], phi_1)
+            radius *= 2
+        return None
+
+
+def _all(*pieces: Piece | None) -> list[Piece] | None:
+    found = [p for p in pieces if p is not None]
+    return found if len(found) == len(pieces) else None
+
+
+ROUNDING = 2.0**-50  # neighbouring boxes overlap
+SMALLEST = 2.0**-40
+
+
+@dataclass(frozen=True)
+class Fourth:
+    """True when every box landed inside the wall, None when the budget ended; and the boxes it took."""
+
+    on_wall: bool | None
+    boxes: int
+
+
+def fourth_on_wall(
+    angle: float,
+    lowest: float,
+    highest: float,
+    budget: int = 50_000,
+    or_lower: bool = False,
+    tick: Tick = silent,
+) -> Fourth:
+    """Does the fourth collision lie on the wall for all `|phi| <= angle`, `lowest <= lam <= highest`?
+
+    `or_lower` accepts the lower half of the arc as well: `s_4 > s*` is all that is asked then.
+
+    >>> fourth_on_wall(0.01, 0.0, 0.03).on_wall
+    True
+    """
+    queue, boxes = [(0.0, angle, (lowest + highest) / 2, (highest - lowest) / 2)], 0
+    area = angle * (highest - lowest) / 2 or 1.0
+    with working(BITS):
+        while queue:
+            phi, wide, lam, half = queue.pop()
+            boxes += 1
+            if boxes > budget or max(wide, half) < SMALLEST:
+                return Fourth(None, boxes)
+            if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING), or_lower):
+                tick(wide * half / area)
+                continue
+            if wide > half:
+                queue += [(phi - wide / 2, wide / 2, lam, half), (phi + wide / 2, wide / 2, lam, half)]
+            else:
+                queue += [(phi, wide, lam - half / 2, half / 2), (phi, wide, lam + half / 2, half / 2)]
+    return Fourth(True, boxes)
+
+
+def _lands_inside(phi: arb, lam: arb, or_lower: bool) -> bool:
+    flights = Flights(lam)
+    images = flights.iterated([Piece(ARC, flights.ends[ARC], arb(1), phi)], 4)
+    if images is None:
+        return False
+    edge = flights.ends[WALL]
+    if or_lower:
+        return all(bool(p.theta > -edge) if p.component == WALL else bool(p.theta < 0) for p in images)
+    return all(p.component == WALL and bool(abs(p.theta) < edge) for p in images)
+
 
 LONGEST_THETA, LONGEST_LAM = 2e-3, 5e-4  # sides of boxes
 MARGIN = 1e-6  # of the angles at the ends

@@ -33,12 +33,21 @@ from typing import Any
 
 from flint import acb, acb_mat, arb, ctx, fmpq
 
+from verification.arithmetic.balls import FUNCTIONS, Arithmetic
 from verification.arithmetic.series import Jet
-from verification.arithmetic.words import FUNCTIONS, Arithmetic
 from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.proofs.manifolds.plane_map import PlaneMap
-from verification.proofs.manifolds.saddle import Orbit, Saddle, matrix, padded, slopes
-from verification.proofs.manifolds.series import direction, doubled, horner, neighbours
+from verification.proofs.manifolds.saddle import (
+    Orbit,
+    Saddle,
+    direction,
+    doubled,
+    horner,
+    matrix,
+    neighbours,
+    padded,
+    slopes,
+)
 
 NEWTON = 12
 Rows = list[list[Any]]

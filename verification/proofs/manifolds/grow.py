@@ -20,10 +20,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.arithmetic.words import ARRAYS, FLOAT64
+from verification.arithmetic.balls import ARRAYS, FLOAT64
 from verification.proofs.manifolds.plane_map import PlaneMap
-from verification.proofs.manifolds.saddle import Orbit, saddle
-from verification.proofs.manifolds.series import Local, local
+from verification.proofs.manifolds.saddle import Local, Orbit, local, saddle
 from verification.proofs.manifolds.tangency import Contact, Touch, tangency
 
 FIRST = 24  # points of a round before any is added
@@ -57,7 +56,7 @@ def branch(local: Local, side: int, length: float, spacing: float = 0.02, turnin
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
     >>> from verification.proofs.manifolds.saddle import Orbit, saddle
-    >>> from verification.proofs.manifolds.series import local
+    >>> from verification.proofs.manifolds.saddle import local
     >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> 5 < branch(local(fixed, unstable=True), 1, 5).length < 5.1
     True

@@ -26,13 +26,12 @@ import mpmath
 from sympy import Expr, Rational
 
 from symbolic.tables import egg
+from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.progress import telling
-from verification.arithmetic.words import FLOAT64
-from verification.cycles.recurrence.closure import Closure
-from verification.cycles.shooting.newton import refined
-from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
+from verification.cycles.recurrence.newton import refined
+from verification.cycles.recurrence.recurrence import Closure
 from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.proof import LEAST_DIGITS, sharpened
+from verification.proofs.manifolds.proof import LEAST_DIGITS, TangencyClaim, TangencyProof, sharpened, worked_through
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.shadows import Shadow, shadow
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 from flint import acb, arb
 
+from verification.arithmetic.balls import FLOAT64, bits_of
 from verification.arithmetic.series import Jet
-from verification.arithmetic.words import FLOAT64, bits_of
 from verification.proofs.manifolds.enclosed import (
     Enclosed,
     TooWideError,
@@ -24,8 +24,7 @@ from verification.proofs.manifolds.enclosed import (
     size,
 )
 from verification.proofs.manifolds.plane_map import PlaneMap
-from verification.proofs.manifolds.saddle import Orbit, Saddle, saddle
-from verification.proofs.manifolds.series import Local, horner, local
+from verification.proofs.manifolds.saddle import Local, Orbit, Saddle, horner, local, saddle
 
 REACH = 0.04  # how far the outer disc moves a bounce at most: little beside a chord, so that the rule stays finite
 SMALLER = 3  # units that are tried before the last one

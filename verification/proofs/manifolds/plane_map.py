@@ -16,11 +16,10 @@ import numpy as np
 from sympy import Expr
 
 from symbolic.tables.table import Table
+from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
 from verification.arithmetic.series import Jet, jets
-from verification.arithmetic.words import ARRAYS, FLOAT64, Arithmetic
 from verification.cycles.recurrence.chords import Chords, chord_angles
-from verification.cycles.recurrence.explicit import henon
-from verification.cycles.recurrence.recurrence import Recurrence, Rule
+from verification.cycles.recurrence.recurrence import Recurrence, Rule, henon
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found in float64
 NEWTON = 60  # steps at most after that, in other numbers and order by order in jets

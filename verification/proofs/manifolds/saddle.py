@@ -3,15 +3,25 @@
 After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = turn*x[i] + shift`: a
 triangle is one bounce and a turn by a third, a chord between two mirror images one bounce and a mirror.
 The multipliers are those of the map followed by that symmetry undone.
+
+Local invariant manifolds by the parameterisation method: Taylor series with the map acting as `z -> mu*z`.
+
+Each bounce of a saddle has a series `P[i](z)` with `P[i](0) = x[i]` and, around the end,
+`P[i+p](z) = sign*P[i](mu*z) + shift`. The rule at three neighbours, as a power series in `z`, has to
+vanish: order `k` is the linearised rule on displacements with the factor `mu**k`, singular at `k = 1`
+only, where it gives the direction. Newton's method on whole series doubles the orders that hold.
+With `mu` the unstable multiplier this is the unstable manifold, with the stable one the stable.
 """
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from verification.arithmetic.series import Jet
 from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.closure import IDENTITY, Closure
-from verification.cycles.shooting.small import solved
+from verification.cycles.recurrence.critical import solved
+from verification.cycles.recurrence.recurrence import IDENTITY, Closure
 from verification.proofs.manifolds.plane_map import PlaneMap, largest
 
 STEPS = 60
@@ -99,3 +109,153 @@ def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], letter: Any)
         raise ValueError(f"{map.label}: the {orbit.name} is no saddle at {float(letter)}; its multipliers are complex")
     larger = (trace + (1 if trace > 0 else -1) * map.words["sqrt"](square)) / 2
     return determinant / larger, larger
+
+
+Series = list[list[Any]]  # for each bounce the coefficients of 1, z, z**2, ...
+
+
+@dataclass(frozen=True)
+class Local:
+    """The local manifold over `-1 <= z <= 1`, where `z = 1` is `unit` along the eigenvector in the linear order.
+
+    `residual` is the largest rule found there.
+    """
+
+    saddle: Saddle
+    factor: Any
+    coefficients: tuple[tuple[Any, ...], ...]
+    unit: float
+    residual: float = 0.0
+
+    @property
+    def order(self) -> int:
+        """The highest power of `z`."""
+        return len(self.coefficients[0]) - 1
+
+    def points(self, z: Any) -> tuple[Any, Any]:
+        """Two neighbours of the orbit through `z`, in any kind of number that contains the coefficients."""
+        here = horner(self.coefficients[0], z)
+        if len(self.coefficients) > 1:
+            return here, horner(self.coefficients[1], z)
+        closure = self.saddle.orbit.closure
+        first = horner(self.coefficients[0], self.factor * z)
+        return here, closure.carried(first, closure.angle(self.saddle.map.words), 1)
+
+
+def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) -> Local:
+    """The manifold to `order`, scaled so that its last coefficient is about `tail`.
+
+    >>> from sympy import Rational
+    >>> from verification.proofs.manifolds.plane_map import Henon
+    >>> from verification.proofs.manifolds.saddle import Orbit, saddle
+    >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
+    >>> local(fixed, unstable=True).residual < 1e-14
+    True
+    """
+    factor = saddle.unstable if unstable else saddle.stable
+    rows = slopes(saddle.orbit, saddle.map, saddle.points, saddle.letter)
+    series: Series = [[x, v] for x, v in zip(saddle.points, direction(saddle, rows, factor), strict=True)]
+    while len(series[0]) <= order:
+        series = doubled(saddle, factor, series, min(2 * len(series[0]), order + 1))
+    unit = reach(series, tail) / float(max(abs(factor), abs(1 / factor)))
+    powers = _powers(saddle.letter * 0 + unit, order + 1)
+    made = Local(saddle, factor, tuple(tuple(x * u for x, u in zip(c, powers, strict=True)) for c in series), unit)
+    return replace(made, residual=residual(made))
+
+
+def direction(saddle: Saddle, rows: Sequence[tuple[Any, Any, Any]], factor: Any) -> list[Any]:
+    """The eigenvector, with the largest entry 1: the null vector of the linearised rules."""
+    entries = matrix(saddle.orbit, rows, factor)
+    p = len(entries)
+    if p == 1:
+        return [saddle.points[0] * 0 + 1]
+    found = solved([[*row[:-1], -row[-1]] for row in entries[:-1]])
+    vector = [*found, saddle.points[0] * 0 + 1]
+    largest = max(vector, key=abs)
+    return [v / largest for v in vector]
+
+
+def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
+    """One Newton step: `length` coefficients from series that hold to half as many."""
+    known, orbit = len(series[0]), saddle.orbit
+    powers = _powers(factor, length)
+    ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
+    map = saddle.map.lifted
+    triples = [ring[i : i + 3] for i in range(len(series))]
+    rules = [map.rule(triple, saddle.letter) for triple in triples]
+    slopes_of = [[_coefficients(s, length) for s in map.slopes(triple, saddle.letter)] for triple in triples]
+    found: Series = [[*c] for c in series]
+    zero = saddle.points[0] * 0
+    steps: Series = [[zero] * known for _ in series]
+    for k in range(known, length):
+        right = []
+        for i, rows in enumerate(slopes_of):
+            total = rules[i].c[k]
+            for j in range(known, k):
+                ends = around(orbit, [s[j] for s in steps], powers[j])
+                total = total + sum((row[k - j] * end for row, end in zip(rows, ends[i : i + 3], strict=True)), zero)
+            right.append(-total)
+        entries = matrix(orbit, [tuple(row[0] for row in rows) for rows in slopes_of], powers[k])
+        for c, s, x in zip(found, steps, solved([[*e, r] for e, r in zip(entries, right, strict=True)]), strict=True):
+            s.append(x)
+            c.append(x)
+    return found
+
+
+def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Jet]:
+    """The series of the bounces with one more on either side, as jets."""
+    sign, shift = saddle.orbit.closure.turn, saddle.orbit.closure.angle(saddle.map.words)
+    before = [sign * c / m for c, m in zip(series[-1], powers, strict=True)]
+    after = [sign * c * m for c, m in zip(series[0], powers, strict=True)]
+    before[0], after[0] = before[0] - sign * shift, after[0] + shift
+    return [Jet(*c) for c in (before, *series, after)]
+
+
+def around(orbit: Any, step: Sequence[Any], power: Any) -> list[Any]:
+    """One coefficient at each bounce, with one more on either side."""
+    return [orbit.closure.turn * step[-1] / power, *step, orbit.closure.turn * step[0] * power]
+
+
+def reach(series: Series, tail: float) -> float:
+    """How far along the eigenvector the last terms stay below about `tail`, and no term exceeds 1."""
+    last = len(series[0]) - 1
+    limits = [math.log(tail) if k > last - 2 else 0.0 for k in range(last + 1)]
+    logs = [(limits[k] - log_of(c[k])) / k for c in series for k in range(1, last + 1) if c[k] != 0]
+    return math.exp(min(logs))
+
+
+def log_of(x: Any) -> float:
+    """`log(abs(x))` of a number that may leave the range of floats."""
+    return math.log(abs(x)) if isinstance(x, float) else float(x.context.log(abs(x)))
+
+
+def residual(made: Local) -> float:
+    """The largest rule at a few parameters across the domain: what the truncation leaves."""
+    saddle, worst = made.saddle, 0.0
+    series = [list(c) for c in made.coefficients]
+    for share in (-1, -0.75, -0.4, 0.3, 0.7, 1):
+        values = []
+        for c in neighbours(saddle, series, _powers(made.factor, made.order + 1)):
+            values.append(horner(c.c, saddle.letter * 0 + share))
+        for i in range(len(series)):
+            worst = max(worst, abs(float(saddle.map.rule(values[i : i + 3], saddle.letter))))
+    return worst
+
+
+def horner(coefficients: Sequence[Any], z: Any) -> Any:
+    """The value of a polynomial."""
+    total = z * 0 + coefficients[-1]
+    for c in reversed(coefficients[:-1]):
+        total = total * z + c
+    return total
+
+
+def _powers(factor: Any, length: int) -> list[Any]:
+    found = [factor * 0 + 1]
+    while len(found) < length:
+        found.append(found[-1] * factor)
+    return found
+
+
+def _coefficients(x: Any, length: int) -> list[Any]:
+    return list(x.c) if isinstance(x, Jet) else [x] + [0 * x] * (length - 1)

@@ -28,12 +28,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.arithmetic.words import FLOAT64
-from verification.cycles.recurrence.bifurcations import BifurcationKind
-from verification.cycles.recurrence.closure import Closure
-from verification.cycles.shooting.problem import Problem
+from verification.arithmetic.balls import FLOAT64
+from verification.cycles.recurrence.problem import Problem
+from verification.cycles.recurrence.recurrence import BifurcationKind, Closure
 from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.series import horner
+from verification.proofs.manifolds.saddle import horner
 from verification.proofs.manifolds.tangency import Contact, Gap
 
 

@@ -13,11 +13,10 @@ from typing import Any
 
 import mpmath
 
+from verification.arithmetic.balls import FLOAT64, multiprecision
 from verification.arithmetic.series import Jet
-from verification.arithmetic.words import FLOAT64, multiprecision
 from verification.proofs.manifolds.plane_map import PlaneMap, floating
-from verification.proofs.manifolds.saddle import Orbit, saddle
-from verification.proofs.manifolds.series import Local, horner, local
+from verification.proofs.manifolds.saddle import Local, Orbit, horner, local, saddle
 
 STEPS = 30
 NOISE = 1e4  # times the goal: steps of secants that small and no longer shrinking are rounding

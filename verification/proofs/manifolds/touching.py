@@ -23,12 +23,12 @@ from typing import Literal
 
 from flint import arb, arb_mat
 
+from verification.arithmetic.balls import FLOAT64, balls
 from verification.arithmetic.series import Jet
-from verification.arithmetic.words import FLOAT64, balls
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.pair import Near, Pair, Precision, scale, smaller
 from verification.proofs.manifolds.plane_map import PlaneMap
-from verification.proofs.manifolds.series import Local, horner
+from verification.proofs.manifolds.saddle import Local, horner
 from verification.proofs.manifolds.tangency import Contact, rounds
 
 
@@ -49,10 +49,10 @@ def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int,
 
     Both are at least as many as take the ends of the contact into the domains of the series.
 
-    >>> from verification.arithmetic.words import FLOAT64
+    >>> from verification.arithmetic.balls import FLOAT64
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
     >>> from verification.proofs.manifolds.saddle import saddle
-    >>> from verification.proofs.manifolds.series import local
+    >>> from verification.proofs.manifolds.saddle import local
     >>> triangle, map = CONTACTS["boundary"], table(SHAPE).over(FLOAT64)
     >>> out, into = (local(saddle(triangle.unstable, map, triangle.letter), side) for side in (True, False))
     >>> len(flight(triangle, map, out, into, 2, 3).bounces)

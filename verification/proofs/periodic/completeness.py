@@ -16,13 +16,13 @@ import numpy as np
 from flint import arb
 from sympy import Expr
 
-from symbolic.generation.text import kernel, load
+from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
-from verification.arithmetic.words import balls, working
-from verification.cycles.continuation.symmetry import rotations
-from verification.cycles.search.catalogue import Catalogue
-from verification.cycles.shooting.problem import Problem
-from verification.maps.admissible import convex
+from verification.arithmetic.balls import balls, working
+from verification.cycles.continuation.search import Catalogue
+from verification.cycles.continuation.systems import rotations
+from verification.cycles.recurrence.problem import Problem
+from verification.maps.first_hit import convex
 from verification.proofs.periodic.interval_newton import Status, krawczyk
 
 BITS = 64
@@ -48,7 +48,7 @@ def no_others(
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
-    >>> from verification.cycles.search.search import all_cycles
+    >>> from verification.cycles.continuation.search import all_cycles
     >>> found = all_cycles(ellipse.at(a="3/2"), Rational(1, 4), 2).catalogue
     >>> no_others(found, Rational(1, 4), 2).complete
     True

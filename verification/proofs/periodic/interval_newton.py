@@ -18,10 +18,10 @@ from enum import Enum
 
 from flint import arb, arb_mat
 
-from verification.arithmetic.words import balls, working
+from verification.arithmetic.balls import balls, working
 from verification.cycles.recurrence.chain import Chain
-from verification.cycles.shooting.newton import System
-from verification.cycles.shooting.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.newton import System
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows
 
 
 class Status(Enum):
@@ -45,7 +45,7 @@ def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> En
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
-    >>> from verification.cycles.shooting.problem import Problem
+    >>> from verification.cycles.recurrence.problem import Problem
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> with working(100):
     ...     near, off = [arb("1.5707963268"), arb("-1.5707963268")], [arb("0.5"), arb("-1.5")]

@@ -1,4 +1,11 @@
-"""A cycle for every contraction of an interval, attracting or not: the interval in small balls.
+"""The doubling of the egg's diameters, for every contraction: supercritical all along `alpha-tilde`.
+
+On the curve the multiplier is -1 by a closed form, so only signs are left, and balls decide them on a
+cover of `0 <= lam <= 1`. With the vertex first, `turn = -(1 - lam**2)*u0*u1/d0` exactly, where `u`, `d`
+are the entries of the chain: its zero at `lam = 1` is divided out. The flip is supercritical when
+`bend` and `turn` differ in sign; at `lam = 1` the second multiplier is -1 too and the word has no sense.
+
+A cycle for every contraction of an interval, attracting or not: the interval in small balls.
 
 With `lam` a ball the interval Newton operator proves one cycle for each `lam` of it, and balls for
 trace and determinant of the monodromy matrix decide stability on it.
@@ -12,17 +19,66 @@ from enum import Enum
 from flint import arb, arb_mat
 from sympy import Rational
 
+from symbolic.cycles.thresholds import alpha_tilde
+from symbolic.expressions.text import kernel, load
+from symbolic.tables import egg
 from symbolic.tables.table import Table
+from symbolic.tables.table import lam as letter
+from verification.arithmetic.balls import balls, working
 from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.series import Jet, jets
-from verification.arithmetic.words import balls, working
 from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.shooting.newton import floats
-from verification.cycles.shooting.problem import Linearised, Problem, Rows
-from verification.maps.admissible import convex, inside, minimal
+from verification.cycles.recurrence.newton import floats
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows, normal_form
+from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.maps.first_hit import convex, inside, minimal
 from verification.proofs.periodic.interval_newton import Status, dense, krawczyk
 
-BITS = 96
+BITS = 80
+SMALLEST = 2.0**-40  # halves of halves must stay exact in floats
+
+
+@dataclass(frozen=True)
+class Sign:
+    """`supercritical` for all contractions, or None when the budget ended; and the balls it took."""
+
+    supercritical: bool | None
+    balls: int
+
+
+def doubling_curve(K: int = 3, budget: int = 4000, tick: Tick = silent) -> Sign:
+    """Is the period doubling of the diameters supercritical for every `0 <= lam < 1`?
+
+    >>> doubling_curve().supercritical
+    True
+    """
+    queue, spent = [(0.5, 0.5)], 0
+    with working(BITS):
+        curve = load(kernel("curve", [letter], {"alpha": alpha_tilde(K)}), balls(BITS))
+        while queue:
+            middle, half = queue.pop()
+            spent += 1
+            if spent > budget or half < SMALLEST:
+                return Sign(None, spent)
+            if _supercritical(K, arb(middle, half), curve(arb(middle, half))[0]):
+                tick(2 * half)
+            else:
+                queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
+    return Sign(True, spent)
+
+
+def _supercritical(K: int, lam: arb, alpha: arb) -> bool:
+    problem = Problem(egg(K), (0, 0), BifurcationKind.FLIP, "alpha", lam)
+    try:
+        at = Linearised(Rows(problem, balls(BITS)), [arb(0), arb.pi(), alpha])
+        bend = normal_form(at, balls(BITS)).bend
+    except ZeroDivisionError:
+        return False
+    chain = at.plain
+    return bool(-bend * chain.upper[0] * chain.upper[1] / chain.diagonal[0] < 0)
+
+
+BITS_OF_INTERVAL = 96
 ROUNDING = 2.0**-50  # neighbouring balls of lam overlap, whatever floats do to their ends
 
 
@@ -88,17 +144,17 @@ def everywhere(
 def _proved(
     table: Table, components: tuple[int, ...], theta: list[float], middle: float, half: float, radii: list[float]
 ) -> Stability:
-    with working(BITS):
+    with working(BITS_OF_INTERVAL):
         wide = Problem(table, components, lam=arb(middle, half + ROUNDING))
         thin = Problem(table, components, lam=arb(middle))
         centre = [arb(x) for x in theta]
-        over = krawczyk(wide, centre, radii, BITS)
-        at = krawczyk(thin, centre, radii, BITS)
+        over = krawczyk(wide, centre, radii, BITS_OF_INTERVAL)
+        at = krawczyk(thin, centre, radii, BITS_OF_INTERVAL)
         if over.status is not Status.UNIQUE or at.status is not Status.UNIQUE or convex(table) is not True:
             return Stability.UNKNOWN
         if not inside(table, components, over.zero) or not minimal(table, components, over.zero):
             return Stability.UNKNOWN
-        here = trace_and_determinant(Linearised(Rows(thin, balls(BITS)), at.zero).plain.rows)
+        here = trace_and_determinant(Linearised(Rows(thin, balls(BITS_OF_INTERVAL)), at.zero).plain.rows)
         slopes = _slopes(wide, over.zero)
         if slopes is None:
             return Stability.UNKNOWN
@@ -107,14 +163,14 @@ def _proved(
 
 def _slopes(problem: Problem, zero: list[arb]) -> tuple[arb, arb] | None:
     """The derivatives by `lam` of trace and determinant along the cycle, over the ball of `lam`."""
-    at = Linearised(Rows(problem, balls(BITS)), zero)
+    at = Linearised(Rows(problem, balls(BITS_OF_INTERVAL)), zero)
     try:
         motion = dense(at.plain).solve(arb_mat([[-b[0]] for b in at.into]))
     except ZeroDivisionError:
         return None
     moving = Problem(problem.table, problem.components, lam=Jet(problem.lam, 1))
     path = [Jet(x, motion[i, 0]) for i, x in enumerate(zero)]
-    trace, determinant = trace_and_determinant(Linearised(Rows(moving, jets(balls(BITS))), path).plain.rows)
+    trace, determinant = trace_and_determinant(Linearised(Rows(moving, jets(balls(BITS_OF_INTERVAL))), path).plain.rows)
     return trace.c[1], determinant.c[1]
 
 

@@ -41,12 +41,10 @@ from dataclasses import dataclass, replace
 
 from flint import arb
 
-from verification.arithmetic.words import bits_of, working
+from verification.arithmetic.balls import bits_of, working
 from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.slap_map.candidate import Pieces, candidate
-from verification.proofs.slap_map.residual import Judge
-from verification.proofs.slap_map.transfer import Variation, variation
-from verification.proofs.slap_map.ulam import Inverted, inverted
+from verification.proofs.slap_map.candidate import Judge, Pieces, candidate
+from verification.proofs.slap_map.transfer import Inverted, Variation, inverted, variation
 
 CELLS = 2048
 MIRRORED = 1024  # cells for densities that the mirror image negates

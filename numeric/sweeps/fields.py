@@ -1,0 +1,370 @@
+"""Basins of attraction on a grid of phase space. Paper: appendix, figures of basins.
+
+The attractors are found once, from random starts; then each cell's centre is a ball, and its label is the number of
+the attractor that it reaches.
+
+Bifurcation diagrams: where random balls are after a long time, against the contraction. Paper: section 6.6.
+
+Lyapunov exponents against the contraction, by attractor. Paper: sections 4.1 and 5.3, figures of exponents.
+
+Orbits that share an attractor make a group, and groups are never averaged together. The groups of one `lam` are
+numbered from the one with the most orbits on; the same number at two contractions need not be the same branch.
+
+Where in its parameter space the egg is chaotic. Paper: section 6.5, figure of parameter space.
+
+From each pair `(alpha, lam)` random balls are started as in the paper's appendix, and those are counted whose exponent
+is positive beyond its error (`numeric.sweeps.sweep`). The curve on top of the figure is the doubling of period 2.
+"""
+
+import json
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from numeric.dynamics.attractors import find
+from numeric.dynamics.basins import Window, labels, starts_at, whole
+from numeric.dynamics.exponents import Group, surveyed
+from numeric.dynamics.recognition import Attractor, Kind
+from numeric.dynamics.statistics import Estimate
+from numeric.sweeps.sweep import BLOCKS, Array, Axis, Field, Part, Sweep, map_of, measured, spread, text_of
+from symbolic.tables.scene import Scene
+
+BALLS = 1 << 15  # of a task, about; a fraction of a second for a thousand bounces
+FIELDS = (Field("label", ("sin_phi", "s"), "int16", "1", "number of the attractor, -1 for none of those found"),)
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """The task: the labels of some rows of cells."""
+
+    scene: str
+    lam: float
+    attractors: tuple[Attractor, ...]
+    transient: int
+
+    def __call__(self, part: Part) -> dict[str, Array]:
+        columns, rows = part.values["s"], part.values["sin_phi"]
+        map = map_of(self.scene, self.lam)
+        balls = starts_at(map, np.tile(columns, rows.size), np.repeat(rows, columns.size))
+        return {"label": labels(map, balls, self.attractors, self.transient).reshape(rows.size, columns.size)}
+
+
+def basins(
+    scene: str,
+    lam: float,
+    columns: int,
+    rows: int,
+    window: Window | None = None,
+    starts: int = 1000,
+    transient: int = 1000,
+    seed: int = 1,
+    table: Any = None,
+    known: tuple[Attractor, ...] | None = None,
+) -> Sweep:
+    """The sweep over the cells of a window, or of all phase space; with `table`, its symmetries give attractors too.
+
+    Attractors that are `known` already are not looked for.
+
+    >>> from symbolic import Scene
+    >>> from numeric.sweeps.sweep import text_of
+    >>> sweep = basins(text_of(Scene("cuspless")), 0.09, 4, 2, starts=100)
+    >>> sorted(set(sweep.task(sweep.part((0, 0)))["label"].ravel().tolist()))  # a chaotic attractor and period 2
+    [0, 1]
+    """
+    map = map_of(scene, lam)
+    attractors = find(map, starts, seed, table, transient) if known is None else known
+    where = window or whole(map)
+    cells = Cells(scene, lam, attractors, transient)
+    return Sweep(
+        name="basins",
+        about=f"Basins of attraction at lam = {lam:g}",
+        axes=(
+            Axis(
+                "sin_phi", _centres(where.sin_phi, rows), "1", "sine of the first exit angle", max(1, BALLS // columns)
+            ),
+            Axis("s", _centres(where.s, columns), "length", "arc length of the start, as in the paper"),
+        ),
+        fields=FIELDS,
+        task=cells,
+        seed=seed,
+        scene=scene,
+        settings={
+            "lam": lam,
+            "starts": starts,
+            "transient": transient,
+            "attractors": [described(attractor) for attractor in attractors],
+        },
+        collisions=columns * rows * transient,
+        map=partial(map_of, scene, lam),
+    )
+
+
+def described(attractor: Attractor) -> dict[str, Any]:
+    """An attractor in a few numbers: its kind, period, exponents, and one of its points."""
+    first = {"theta": float(attractor.points.theta[0]), "phi": float(attractor.points.phi[0])}
+    exponents = {"nu_plus": attractor.nu_plus, "nu_minus": attractor.nu_minus}
+    finite = {name: value if np.isfinite(value) else None for name, value in exponents.items()}
+    return (
+        {"kind": attractor.kind.name.lower(), "period": attractor.period, "family": attractor.family} | finite | first
+    )
+
+
+def attractors_of(settings: str) -> list[dict[str, Any]]:
+    """What `described` said of the attractors, from the settings that label a result."""
+    found: list[dict[str, Any]] = json.loads(settings)["attractors"]
+    return found
+
+
+def _centres(ends: tuple[float, float], count: int) -> Array:
+    return ends[0] + (np.arange(count) + 0.5) * ((ends[1] - ends[0]) / count)
+
+
+PARTICLES = 2000  # of a task, about; a fraction of a second for some thousand bounces
+POINT, ORBIT = ("lam", "orbit", "bounce"), ("lam", "orbit")
+DIAGRAM_FIELDS = (
+    Field("s", POINT, "float64", "length", "arc length of each bounce, as in the paper"),
+    Field("phi", POINT, "float64", "rad", "exit angle of each bounce"),
+    Field("theta", POINT, "float64", "rad", "boundary parameter of each bounce"),
+    Field("component", POINT, "int8", "1", "component of the boundary"),
+    Field("nu_plus", ORBIT, "float64", "1/bounce", "largest exponent of the orbit"),
+    Field("nu_plus_error", ORBIT, "float64", "1/bounce", "its standard error, over blocks of the orbit"),
+    Field("chaotic", ORBIT, "int8", "1", "1 where the exponent is positive beyond its error, else 0"),
+)
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """The task: the orbits of a few contractions, on their attractors."""
+
+    scene: str
+    orbits: int
+    points: int
+    bounces: int
+    transient: int
+
+    def __call__(self, part: Part) -> dict[str, Array]:
+        lams = part.values["lam"]
+        map, starts = spread(self.scene, lams, self.orbits, part.seed)
+        found = measured(map, starts, self.bounces, self.transient, threads=1)
+        orbit = map.orbit(found.end.theta, found.end.phi, self.points, found.end.component, threads=1)
+        s = map.arclength.s(orbit.theta, orbit.component)
+        s = np.where(orbit.code == 0, s, np.nan)
+        each = lams.size, self.orbits
+        shown = {"s": s, "phi": orbit.phi, "theta": orbit.theta, "component": orbit.component}
+        along = {name: np.moveaxis(x[1:], 0, -1).reshape(*each, self.points) for name, x in shown.items()}
+        ends = {"nu_plus": found.nu_plus, "nu_plus_error": found.nu_plus_error, "chaotic": found.chaotic}
+        return along | {name: x.reshape(each) for name, x in ends.items()}
+
+
+def bifurcation(
+    scene: str,
+    lams: Array,
+    orbits: int = 20,
+    points: int = 100,
+    bounces: int = 2000,
+    transient: int = 4000,
+    seed: int = 1,
+) -> Sweep:
+    """The sweep over `lams`: for each the last `points` bounces of `orbits` random balls. `s` is nan where one stopped.
+
+    >>> from symbolic import Scene
+    >>> from numeric.sweeps.sweep import text_of
+    >>> sweep = bifurcation(text_of(Scene("ellipse", a=2)), np.array([0.5]), orbits=3, points=4)
+    >>> found = sweep.task(sweep.part((0, 0, 0)))
+    >>> np.unique(found["theta"].round(6)).tolist()  # every ball ends on the minor axis
+    [-1.570796, 1.570796]
+    """
+    diagram = Diagram(scene, orbits, points, bounces // BLOCKS * BLOCKS, transient)
+    return Sweep(
+        name="bifurcation",
+        about=f"Attractors against the contraction, from {orbits} random balls each",
+        axes=(
+            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PARTICLES // orbits)),
+            Axis("orbit", np.arange(orbits), "1", "number of the ball"),
+            Axis("bounce", np.arange(points), "1", "number of the bounce, after the transient"),
+        ),
+        fields=DIAGRAM_FIELDS,
+        task=diagram,
+        seed=seed,
+        scene=scene,
+        settings={"bounces": diagram.bounces, "transient": transient, "blocks": BLOCKS},
+        collisions=len(lams) * orbits * (diagram.bounces + transient + points),
+        map=partial(map_of, scene, 0.5),
+    )
+
+
+KINDS = (*Kind, None)  # the number of each kind in the results; None for balls that settle on no attractor
+ON = ("lam", "group")
+MEANINGS = ", ".join(f"{i} {kind.name.lower() if kind else 'unsettled'}" for i, kind in enumerate(KINDS))
+EXPONENT_FIELDS = (
+    Field("orbits", ON, "int32", "orbits", "orbits of the group, -1 where there is no such group"),
+    Field("kind", ON, "int8", "1", f"what the orbits end on: {MEANINGS}"),
+    Field("period", ON, "int32", "bounces", "period of a cycle, else 0"),
+    Field("nu_plus", ON, "float64", "1/bounce", "larger exponent"),
+    Field("nu_plus_error", ON, "float64", "1/bounce", "its standard error"),
+    Field("nu_minus", ON, "float64", "1/bounce", "smaller exponent; nan at lam = 0, where it is minus infinity"),
+    Field("nu_minus_error", ON, "float64", "1/bounce", "its standard error"),
+    Field("total", ON, "float64", "1/bounce", "sum of both, the mean of log |det DT|"),
+    Field("total_error", ON, "float64", "1/bounce", "its standard error"),
+)
+
+
+@dataclass(frozen=True)
+class Surveys:
+    """The task: the groups of one contraction."""
+
+    scene: str
+    orbits: int
+    groups: int
+    bounces: int
+    transient: int
+
+    def __call__(self, part: Part) -> dict[str, Array]:
+        lam = float(part.values["lam"][0])
+        _, starts = spread(self.scene, np.array([lam]), self.orbits, part.seed)
+        survey = surveyed(map_of(self.scene, lam), starts, self.bounces, self.transient)
+        rows = [numbers(group) for group in survey.groups[: self.groups]]
+        none: dict[str, float] = {
+            field.name: -1 if field.dtype.startswith("int") else np.nan for field in EXPONENT_FIELDS
+        }
+        rows += [none] * (self.groups - len(rows))
+        return {field.name: np.array([[row[field.name] for row in rows]], field.dtype) for field in EXPONENT_FIELDS}
+
+
+def numbers(group: Group) -> dict[str, float]:
+    """The fields of one group."""
+    found: dict[str, float] = {
+        "orbits": group.members.size,
+        "kind": KINDS.index(group.attractor.kind if group.attractor else None),
+        "period": group.attractor.period if group.attractor else 0,
+    }
+    measured = group.measured
+    for name, value in (("nu_plus", measured.upper), ("nu_minus", measured.lower), ("total", measured.total)):
+        found[name], found[f"{name}_error"] = _pair(value)
+    return found
+
+
+def _pair(value: Estimate | None) -> tuple[float, float]:
+    return (np.nan, np.nan) if value is None else (value.mean, value.error)
+
+
+def exponents(
+    scene: str,
+    lams: Array,
+    orbits: int = 100,
+    groups: int = 6,
+    bounces: int = 4096,
+    transient: int = 2000,
+    seed: int = 1,
+) -> Sweep:
+    """The sweep over `lams`, with as many `groups` as are kept for each.
+
+    >>> from symbolic import Scene
+    >>> from numeric.sweeps.sweep import text_of
+    >>> sweep = exponents(text_of(Scene("ellipse", a=2)), np.array([0.5]), orbits=8, groups=2, bounces=512)
+    >>> found = sweep.task(sweep.part((0, 0)))
+    >>> found["period"].tolist(), found["total"].round(12).tolist()  # period 2 and log(1/2)
+    ([[2, -1]], [[-0.69314718056, nan]])
+    """
+    return Sweep(
+        name="exponents",
+        about=f"Lyapunov exponents against the contraction, from {orbits} random orbits each, by attractor",
+        axes=(
+            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", 1),
+            Axis("group", np.arange(groups), "1", "attractors, from the one that most orbits reach on"),
+        ),
+        fields=EXPONENT_FIELDS,
+        task=Surveys(scene, orbits, groups, bounces, transient),
+        seed=seed,
+        scene=scene,
+        settings={"orbits": orbits, "bounces": bounces, "transient": transient},
+        collisions=len(lams) * orbits * (bounces + transient),
+        map=partial(map_of, scene, 0.5),
+    )
+
+
+PARTICLES_EACH = 20_000  # of a task, at most; what a core does in a second or less
+
+SPACE_FIELDS = (
+    Field("chaotic", ("alpha", "lam"), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
+    Field(
+        "regular",
+        ("alpha", "lam"),
+        "int32",
+        "orbits",
+        "orbits whose largest exponent is not positive; the rest is undecided or stopped",
+    ),
+    Field("nu_max", ("alpha", "lam"), "float64", "1/bounce", "largest nu_plus of all orbits"),
+    Field("nu_max_error", ("alpha", "lam"), "float64", "1/bounce", "its standard error, over blocks of the orbit"),
+    Field("nu_min", ("alpha", "lam"), "float64", "1/bounce", "smallest nu_plus of all orbits"),
+)
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """The task: all orbits of a range of `lam` at a few `alpha`."""
+
+    K: int
+    starts: int
+    bounces: int
+    transient: int
+
+    def __call__(self, part: Part) -> dict[str, Array]:
+        rng = np.random.default_rng(part.seed)
+        seeds = rng.integers(0, 2**63, part.values["alpha"].size)
+        rows = [
+            self.row(float(a), part.values["lam"], int(s)) for a, s in zip(part.values["alpha"], seeds, strict=True)
+        ]
+        return {field.name: np.array([row[field.name] for row in rows]) for field in SPACE_FIELDS}
+
+    def row(self, alpha: float, lams: Array, seed: int) -> dict[str, Array]:
+        """The fields for one shape."""
+        map, starts = spread(egg(self.K, alpha), lams, self.starts, seed)
+        found = measured(map, starts, self.bounces, self.transient, threads=1)
+        nu, error, chaotic, regular = (
+            x.reshape(lams.size, self.starts)
+            for x in (found.nu_plus, found.nu_plus_error, found.chaotic, found.regular)
+        )
+        best = np.argmax(nu, axis=1)[:, None]
+        return {
+            "chaotic": chaotic.sum(axis=1),
+            "regular": regular.sum(axis=1),
+            "nu_max": np.take_along_axis(nu, best, 1)[:, 0],
+            "nu_max_error": np.take_along_axis(error, best, 1)[:, 0],
+            "nu_min": nu.min(axis=1),
+        }
+
+
+def egg(K: int, alpha: float) -> str:
+    """The scene of one shape, the decimal that `alpha` shows."""
+    return text_of(Scene("egg", alpha=Fraction(repr(float(alpha))), K=K))
+
+
+def parameter_space(
+    alphas: Array, lams: Array, starts: int = 100, bounces: int = 2000, transient: int = 2000, K: int = 3, seed: int = 1
+) -> Sweep:
+    """The sweep over all pairs.
+
+    >>> sweep = parameter_space(np.array([0.02, 0.09]), np.array([0.1, 0.3]), starts=3)
+    >>> sweep.task(sweep.part((1, 0)))["chaotic"].tolist()
+    [[0, 3]]
+    """
+    pairs = Pairs(K, starts, bounces // BLOCKS * BLOCKS, transient)
+    return Sweep(
+        name="parameter-space",
+        about=f"Chaos or none in the {K}-pointed egg, from {starts} random orbits for each pair",
+        axes=(
+            Axis("alpha", np.asarray(alphas, dtype=np.float64), "1", "shape of the egg", 1),
+            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PARTICLES_EACH // starts)),
+        ),
+        fields=SPACE_FIELDS,
+        task=pairs,
+        seed=seed,
+        scene=f"egg, K = {K}",
+        settings={"starts": starts, "bounces": pairs.bounces, "transient": transient, "blocks": BLOCKS},
+        collisions=len(alphas) * len(lams) * starts * (pairs.bounces + transient),
+        map=partial(map_of, egg(K, 0.08 * 10 / (1 + K * K)), 0.5),
+    )

@@ -1,0 +1,1 @@
+"""What expressions are: signs proved, and text generated that every number system reads."""

@@ -1,0 +1,377 @@
+"""Proofs that an expression vanishes identically.
+
+An expression built from rational operations, square roots, and sines and cosines of multiples of
+a few angles is a rational function on an algebraic variety: `sin**2 + cos**2 = 1`, `r**2 = x` for
+each root. Reducing its numerator modulo these relations to 0 proves the identity. A failed
+reduction refutes nothing.
+
+Proofs of the sign of a polynomial over a whole box of parameters, in exact arithmetic.
+
+One variable: Sturm's theorem counts the roots. Several: map the open box to the positive orthant
+by `x = (low + high*u)/(1 + u)`; if no coefficient in `u` is negative the polynomial is positive
+in the box (the Bernstein criterion), else the box is halved. Faces that belong to the box are
+judged by the same rule, one variable fewer, so ends of ranges are never lost and never assumed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from sympy import (
+    Dummy,
+    Expr,
+    Interval,
+    Poly,
+    Pow,
+    Rational,
+    S,
+    Symbol,
+    cos,
+    expand,
+    expand_trig,
+    factor_list,
+    minimal_polynomial,
+    oo,
+    sin,
+    tan,
+    together,
+)
+from sympy.polys.polyerrors import CoercionFailed, DomainError, PolynomialError
+
+
+def vanishes(expression: Expr) -> bool:
+    """True when `expression` is proved to be 0 wherever it is defined; False when it is not proved.
+
+    >>> from sympy import Rational, sqrt
+    >>> from symbolic.tables.table import theta
+    >>> vanishes(4 * cos(theta) ** 3 - 3 * cos(theta) - cos(3 * theta))
+    True
+    >>> vanishes(sqrt(5 + 2 * sqrt(6)) - sqrt(2) - sqrt(3))
+    True
+    >>> vanishes(cos(theta) - 1)
+    False
+    """
+    expression = S(expression)
+    if expression.is_zero:
+        return True
+    numerator = reduced_numerator(expression)
+    if numerator == 0:
+        return True
+    if not numerator.free_symbols and numerator.is_algebraic:
+        return bool(minimal_polynomial(numerator, Symbol("x")) == Symbol("x"))
+    return False
+
+
+def reduced_numerator(expression: Expr) -> Expr:
+    """The numerator of `expression` in lowest powers of its sines and square roots.
+
+    >>> from sympy import sqrt
+    >>> reduced_numerator(1 / sqrt(2) - sqrt(2) / 2)
+    0
+    """
+    expression = expand_trig(expand(expression.replace(tan, lambda x: sin(x) / cos(x))))
+    expression = expression.replace(_is_root, _standard_root)
+    numerator = expand(together(expression).as_numer_denom()[0])
+    numerator = _without_squared_sines(numerator)
+    roots = {p for p in numerator.atoms(Pow) if _is_root(p)}
+    bases = sorted({p.base for p in roots}, key=lambda base: (-base.count_ops(), str(base)))
+    for base in bases:
+        root = Symbol("root", nonnegative=True)
+        named = numerator.xreplace({p: root ** (2 * p.exp) for p in roots if p.base == base})
+        named = expand(together(named).as_numer_denom()[0])
+        numerator = expand(_remainder(named, root, base).subs(root, base**S.Half))
+        numerator = expand(together(numerator).as_numer_denom()[0])
+    return _without_squared_sines(numerator)
+
+
+def _is_root(expression: Expr) -> bool:
+    return isinstance(expression, Pow) and expression.exp.is_Rational and expression.exp.q == 2
+
+
+def _standard_root(power: Expr) -> Expr:
+    """A half-integer power with its base reduced and freed of rational factors."""
+    content, base = _without_squared_sines(power.base).as_content_primitive()
+    return content**power.exp * base**power.exp
+
+
+def _without_squared_sines(expression: Expr) -> Expr:
+    expression = expand(expression)
+    for angle in sorted({f.args[0] for f in expression.atoms(sin)}, key=str):
+        expression = _remainder(expression, sin(angle), 1 - cos(angle) ** 2)
+    return expression
+
+
+def _remainder(expression: Expr, generator: Expr, square: Expr) -> Expr:
+    """`expression` with `generator**2` replaced by `square` until it is at most linear in it."""
+    try:
+        terms = Poly(expression, generator).all_coeffs()[::-1]
+    except PolynomialError:
+        return expression
+    even = sum((c * square ** (k // 2) for k, c in enumerate(terms) if k % 2 == 0), S.Zero)
+    odd = sum((c * square ** (k // 2) for k, c in enumerate(terms) if k % 2 == 1), S.Zero)
+    return expand(even + odd * generator)
+
+
+Box = Mapping[Symbol, Interval]
+
+
+class Outcome(Enum):
+    """The three answers a proof can give."""
+
+    PROVED = "proved"
+    REFUTED = "refuted by a witness"
+    UNKNOWN = "nothing proved"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An outcome with its reason in one sentence; a refutation holds its witness in `at`, a value for each letter."""
+
+    outcome: Outcome
+    reason: str
+    at: tuple[tuple[Symbol, Expr], ...] = ()
+
+    def __bool__(self) -> bool:
+        return self.outcome is Outcome.PROVED
+
+
+def conjunction(*findings: Finding) -> Finding:
+    """All of them: refuted when one is, proved when every one is."""
+    for wanted in (Outcome.REFUTED, Outcome.UNKNOWN):
+        for finding in findings:
+            if finding.outcome is wanted:
+                return finding
+    return Finding(Outcome.PROVED, "; ".join(dict.fromkeys(f.reason for f in findings)))
+
+
+def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
+    """Is the rational function `expression` > 0 everywhere in `box`? (Its poles must lie outside.)
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> positive(1 - x * y, {x: Interval.Ropen(0, 1), y: Interval(0, 1)}).outcome.name
+    'PROVED'
+    >>> positive(x - y, {x: Interval(0, 1), y: Interval(0, 1)}).reason
+    'at x = 0, y = 0 the value is 0'
+    """
+    numerator, denominator = together(expression).as_numer_denom()
+    if denominator.free_symbols:
+        sign = positive(denominator, box, depth)
+        if sign.outcome is not Outcome.PROVED:
+            sign = positive(-denominator, box, depth)
+            if sign.outcome is not Outcome.PROVED:
+                return Finding(Outcome.UNKNOWN, f"the sign of the denominator {denominator} is open")
+            numerator = -numerator
+    elif denominator.is_negative:
+        numerator = -numerator
+    missing = sorted(str(x) for x in numerator.free_symbols - set(box))
+    if missing:
+        raise ValueError(f"positive: no range given for {', '.join(missing)}")
+    for x in sorted(numerator.free_symbols, key=str):
+        if not isinstance(box[x], Interval):
+            raise ValueError(f"positive: the range of {x} is {box[x]}; it must be an interval of more than one point")
+    finding = _positive(expand(numerator), dict(box), depth)
+    if finding is not None:
+        return finding if finding else placed(finding, box)
+    return Finding(Outcome.UNKNOWN, f"no certificate for {expression} > 0 within {depth} halvings")
+
+
+def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
+    """Is `expression >= 0` in `box`? Proved in the interior, and so by continuity on the closure.
+
+    >>> x = Symbol("x")
+    >>> nonnegative(x * (1 - x) ** 2, {x: Interval(0, 2)}).outcome.name
+    'PROVED'
+    """
+    kept = S.One
+    if expression.is_nonnegative:
+        return Finding(Outcome.PROVED, f"{expression} >= 0")
+    constant, factors = _factors(expression)
+    for factor, power in factors:
+        kept *= factor ** (power % 2)
+    inside = {x: r.interior for x, r in box.items()}
+    finding = positive(constant * kept, inside, depth)
+    if finding.outcome is Outcome.REFUTED and len(kept.free_symbols) > 1:  # a zero at one point refutes nothing here
+        used = {x: inside[x] for x in sorted(kept.free_symbols, key=str)}
+        negative = _witness(constant * kept, used, strictly=True)
+        if negative is None:
+            return Finding(Outcome.UNKNOWN, f"no certificate for {expression} >= 0 within {depth} halvings")
+        return negative
+    return finding
+
+
+def placed(finding: Finding, box: Box) -> Finding:
+    """A refutation whose witness has a value for every letter of the box: where a letter plays no part, any value.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> positive(x, {x: Interval(-1, 1), y: Interval(3, 4)}).at
+    ((x, -1), (y, 3))
+    """
+    rest = {x: _samples(r)[0] for x, r in box.items() if isinstance(r, Interval)}
+    point = rest | dict(finding.at)
+    return replace(finding, at=tuple(sorted(point.items(), key=str)))
+
+
+def _factors(expression: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
+    numerator, denominator = together(expression).as_numer_denom()
+    constant, factors = factor_list(numerator * denominator)
+    return constant, list(factors)
+
+
+def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+    used = sorted(p.free_symbols, key=str)
+    box = {x: box[x] for x in used}
+    witness = _witness(p, box)
+    if witness is not None:
+        return witness
+    if not used:
+        return Finding(Outcome.PROVED, f"{p} > 0") if p.is_positive else None
+    if not p.is_polynomial(*used):
+        return None
+    if len(used) == 1:
+        counted = _sturm(p, used[0], box[used[0]])
+        if counted is not None:
+            return counted
+    interior = _orthant(p, box)
+    if interior is None and depth > 0:
+        return _halved(p, box, depth)
+    if interior is None:
+        return None
+    faces = [_face(p, x, end, box, depth) for x in used for end in _ends(box[x])]
+    if any(face is None for face in faces):
+        return None
+    return conjunction(interior, *(face for face in faces if face is not None))
+
+
+def _face(p: Expr, x: Symbol, end: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+    """The finding on one face of the box; a witness there has the value `end` of `x`."""
+    face = _positive(expand(p.subs(x, end)), box, depth)
+    return face if face is None or face else replace(face, at=(*face.at, (x, end)))
+
+
+def _ends(interval: Interval) -> list[Expr]:
+    return ([] if interval.left_open else [interval.start]) + ([] if interval.right_open else [interval.end])
+
+
+def _samples(interval: Interval) -> list[Expr]:
+    low, high = interval.start, interval.end
+    if low is -oo:
+        inside = [(S.Zero if high is oo else high) - k for k in (Rational(1, 8), 1, 8)]
+    elif high is oo:
+        inside = [low + Rational(1, 8), low + 1, low + 8]
+    else:
+        inside = [low + (high - low) * Rational(k, 8) for k in (1, 4, 7)]
+    return _ends(interval) + inside
+
+
+def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Finding | None:
+    """A rational point of the box where `p <= 0`, or `p < 0`, if one of a few is."""
+    points: list[dict[Symbol, Expr]] = [{}]
+    for x, interval in box.items():
+        points = [{**point, x: value} for point in points for value in _samples(interval)]
+    for point in points:
+        value = p.subs(point)
+        if value.is_negative or (value.is_nonpositive and not strictly):
+            where = ", ".join(f"{x} = {v}" for x, v in point.items())
+            reason = f"at {where} the value is {value}" if where else f"the value is {value}"
+            return Finding(Outcome.REFUTED, reason, tuple(point.items()))
+    return None
+
+
+def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
+    """The verdict of Sturm's theorem; None where it does not apply, at irrational ends and coefficients."""
+    poly = Poly(p, x).sqf_part()
+    try:
+        roots = poly.count_roots(interval.start, interval.end)
+    except (CoercionFailed, DomainError):
+        return None
+    for end, is_open in ((interval.start, interval.left_open), (interval.end, interval.right_open)):
+        if is_open and end.is_finite and poly.eval(end) == 0:
+            roots -= 1
+    where = f"{x} in {interval_text(interval)}"
+    if roots == 0 and not p.subs(x, _samples(interval)[-1]).is_positive:  # one sample fixes the sign
+        return None
+    if roots == 0:
+        return Finding(Outcome.PROVED, f"Sturm: {poly.as_expr()} has no root for {where}")
+    root = next(r for r in poly.real_roots() if r in interval)
+    return Finding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}", ((x, root),))
+
+
+def _orthant(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
+    lines = any(r.start is -oo and r.end is oo for r in box.values())
+    if not lines and all(c.is_nonnegative for c in bernstein(p, box)):
+        where = ", ".join(f"{x} in {interval_text(r)}" for x, r in box.items())
+        return Finding(Outcome.PROVED, f"Bernstein: {p} > 0 for {where}")
+    return None
+
+
+def bernstein(p: Expr, box: Box) -> list[Expr]:
+    """The coefficients of the polynomial `p` on the orthant that the open `box` is mapped to.
+
+    None negative: positive in the open box. All of one sign, none vanishing: of that sign on the
+    closed box.
+
+    >>> x = Symbol("x")
+    >>> bernstein(x**2 - 3 * x + 3, {x: Interval(0, 1)})
+    [3, 3, 1]
+    """
+    terms = Poly(p, *box).as_dict()
+    for i, interval in enumerate(box.values()):
+        degree = max(powers[i] for powers in terms)
+        images = [_image(interval, k, degree) for k in range(degree + 1)]
+        mapped: dict[tuple[int, ...], Expr] = {}
+        for powers, coefficient in terms.items():
+            for k, c in enumerate(images[powers[i]]):
+                key = (*powers[:i], k, *powers[i + 1 :])
+                mapped[key] = mapped.get(key, S.Zero) + coefficient * c
+        terms = mapped
+    return [terms[powers] for powers in sorted(terms)]
+
+
+def _image(interval: Interval, power: int, degree: int) -> list[Expr]:
+    """Coefficients in `u`, constant first, of `x**power * (1 + u)**degree` with `x` mapped to the orthant."""
+    u = Dummy()
+    low, high = interval.start, interval.end
+    if low is -oo or high is oo:
+        mapped = (high - u if low is -oo else low + u) ** power
+    else:
+        mapped = (low + high * u) ** power * (1 + u) ** (degree - power)
+    return [S(c) for c in Poly(mapped, u).all_coeffs()[::-1]]
+
+
+def _size(interval: Interval) -> tuple[bool, bool, Expr]:
+    """Lines before half-lines before long intervals before short ones."""
+    infinite = interval.measure is oo
+    return interval.start is -oo and interval.end is oo, infinite, S.Zero if infinite else interval.measure
+
+
+def _middle(interval: Interval) -> Expr:
+    low, high = interval.start, interval.end
+    if low is -oo:
+        return S.Zero if high is oo else high - 1
+    return low + 1 if high is oo else (low + high) / 2
+
+
+def _halved(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+    x = max(box, key=lambda y: _size(box[y]))
+    middle = _middle(box[x])
+    low, high = box[x].start, box[x].end
+    halves = Interval(low, middle, box[x].left_open), Interval(middle, high, right_open=box[x].right_open)
+    findings = []
+    for half in halves:
+        finding = _positive(p, {**box, x: half}, depth - 1)
+        if finding is None or finding.outcome is Outcome.REFUTED:
+            return finding
+        findings.append(finding)
+    where = ", ".join(f"{y} in {interval_text(r)}" for y, r in box.items())
+    return Finding(Outcome.PROVED, f"Bernstein, by halving: {p} > 0 for {where}")
+
+
+def interval_text(interval: Interval) -> str:
+    """A real interval as mathematicians print it.
+
+    >>> interval_text(Interval(0, Rational(1, 10)))
+    '[0, 1/10]'
+    """
+    left = "(" if interval.left_open or not interval.start.is_finite else "["
+    right = ")" if interval.right_open or not interval.end.is_finite else "]"
+    return f"{left}{interval.start}, {interval.end}{right}"

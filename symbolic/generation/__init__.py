@@ -1,1 +1,0 @@
-"""Text and programs from expressions, in a closed vocabulary that every number system reads."""

@@ -1,1 +1,0 @@
-"""Proofs in exact arithmetic: signs over boxes, and identities."""

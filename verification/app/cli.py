@@ -1,0 +1,279 @@
+"""What every command says: text for people, JSON for programs, a bar for the patient.
+
+`pinball`: one command for each question.
+
+A command is imported when it is called, so `pinball --help` loads no mathematics. Whatever goes
+wrong reaches the user as one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
+"""
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from threading import Timer
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verification.arithmetic.progress import heard
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+import traceback
+from collections.abc import Sequence
+from importlib import import_module
+
+PATIENCE = 2.0  # seconds before a progress bar appears
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a command writes: `console` for people, and the JSON file that `--json` names, if any."""
+
+    path: str | None = None
+
+    @cached_property
+    def console(self) -> "Console":
+        """Standard output, or standard error when the JSON document has standard output to itself."""
+        from rich.console import Console
+
+        return Console(stderr=self.path == "-", highlight=False, markup=False, soft_wrap=True)
+
+    def write(self, document: Mapping[str, Any]) -> None:
+        """Writes the JSON document where `--json` said; nowhere when it was not given."""
+        if self.path is None:
+            return
+        text = json.dumps(document, indent=2, allow_nan=False) + "\n"
+        if self.path == "-":
+            sys.stdout.write(text)
+            return
+        try:
+            write_whole(Path(self.path), text)
+        except OSError as error:
+            with tempfile.NamedTemporaryFile("w", suffix=".json", delete=False) as rescue:
+                rescue.write(text)
+            reason = error.strerror or error
+            raise ValueError(
+                f"--json {self.path} cannot be written ({reason}); the result is in {rescue.name}"
+            ) from None
+
+    @contextmanager
+    def progress(self, about: str, total: int) -> Iterator[Callable[[str], None]]:
+        """A verb to call with a word on each step done; a bar shows on a terminal after two seconds.
+
+        What a long proof tells of itself within a step (`verification.arithmetic.progress`) moves the bar as well.
+        """
+        from rich.console import Console
+        from rich.progress import Progress
+
+        console = Console(stderr=True)
+        if not console.is_terminal:
+            yield lambda step: None
+            return
+        bar = Progress(console=console, transient=True)
+        task = bar.add_task(about, total=total)
+        timer = Timer(PATIENCE, bar.start)
+        timer.start()
+        done = 0
+
+        def step(word: str) -> None:
+            nonlocal done
+            done += 1
+            bar.update(task, completed=done, description=f"{about} {word}")
+
+        def within(what: str, share: float) -> None:
+            bar.update(task, completed=done + share, description=f"{about}: {what}, {share:.0%}")
+
+        try:
+            with heard(within):
+                yield step
+        finally:
+            timer.cancel()
+            timer.join()
+            bar.stop()
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Writes a file at once: a reader finds the old text or the new, and never half of either."""
+    if path.exists() and not path.is_file():  # a pipe or a device
+        path.write_text(text, encoding="utf-8")
+        return
+    path = path.resolve()
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _writable(context: click.Context, option: click.Parameter, value: str | None) -> Output:
+    """Refuses an unwritable file before any work is done for it."""
+    if value is None or value == "-":
+        return Output(value)
+    path = Path(value)
+    if path.is_dir():
+        raise click.BadParameter(f"{value!r} is a directory; accepted: a file, or - for standard output")
+    if not path.parent.is_dir():
+        raise click.BadParameter(f"{value!r}: there is no directory {str(path.parent)!r}; create it first")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise click.BadParameter(f"{value!r} may not be written; accepted: a file in a directory of yours")
+    return Output(value)
+
+
+json_option = click.option(
+    "--json",
+    "output",
+    metavar="FILE",
+    callback=_writable,
+    help="Write the result as JSON; - is standard output, and then nothing else is printed there.",
+)
+
+
+COMMANDS = {
+    "verify": "Is each claim of the paper true?",
+    "locate": "Where does it happen, to N certified digits?",
+    "check": "Does a certificate still hold, without the search?",
+    "orbit": "Where does this ball go?",
+    "cycles": "Which cycles are there, up to a period?",
+    "follow": "What becomes of this cycle as lambda changes?",
+    "lyapunov": "The two exponents, with error bars.",
+    "attractor": "Where do balls end, and in how many ways?",
+    "slap": "The slap map: what remains at lambda = 0.",
+    "basins": "Which attractor does each start reach?",
+    "bifurcation": "The attractors against the contraction.",
+    "sweep": "Grids of tasks, on all cores or a Dask cluster.",
+    "figure": "One of the paper's figures, or the data behind it.",
+    "explore": "A live table on a page of this machine.",
+    "bench": "Error against run time, for every arithmetic and every kernel.",
+    "work": "Error against run time for a whole question, as a diagram.",
+}
+HOMES = {  # commands that share a module
+    "attractor": ("lyapunov", "attractor_command"),
+    "work": ("bench", "work_command"),
+    "figure": ("verify", "figure_command"),
+    "cycles": ("orbit", "cycles_command"),
+    "check": ("locate", "check_command"),
+    "slap": ("orbit", "slap_command"),
+    "basins": ("sweep", "basins_command"),
+    "bifurcation": ("sweep", "bifurcation_command"),
+    "explore": ("verify", "explore_command"),
+}
+DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
+EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore"}
+EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
+LONGEST = 600  # characters of a sentence; a reader sees the end of it
+
+
+class Questions(click.Group):
+    """A group that knows the names and one-line helps of its commands without importing them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            raise click.UsageError(f"no command is called {cmd_name!r}; accepted: {', '.join(COMMANDS)}")
+        home, attribute = HOMES.get(cmd_name, (cmd_name, "command"))
+        command: click.Command = getattr(import_module(f"verification.app.commands.{home}"), attribute)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@click.group(
+    cls=Questions,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Example: pinball verify --only 'ellipse.*'",
+)
+@click.version_option(package_name="pinball-billiards")
+@click.pass_context
+def pinball(context: click.Context) -> None:
+    """Pinball billiards: what the paper says, derived, computed and judged."""
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The exit status of `pinball`: 0 done, 1 something is open or failed, 2 bad input."""
+    try:
+        status = run(sys.argv[1:] if arguments is None else arguments)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the last flush complains
+        return BROKEN_PIPE
+    except (KeyboardInterrupt, click.Abort) as stop:
+        return _told(str(stop) or "interrupted", INTERRUPTED)
+    except click.ClickException as error:
+        return _told(sentence(error), BAD_INPUT)
+    except ValueError as error:
+        return _told(str(error), BAD_INPUT)
+    except ModuleNotFoundError as error:
+        return _told(missing(error), BAD_INPUT)
+    except Exception as error:
+        return _told(f"an unexpected {type(error).__name__}: {error}; PINBALL_DEBUG=1 shows where", FAILED)
+    return status
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Runs one command line; errors are left to `main`."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        with pinball.make_context("pinball", list(arguments)) as context:
+            return int(pinball.invoke(context) or DONE)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+
+
+def missing(error: ModuleNotFoundError) -> str:
+    """Which package is not there, and the command that brings it.
+
+    >>> missing(ModuleNotFoundError(name="zarr.storage"))
+    "zarr is missing; install it with: pip install 'pinball-billiards[sweep]'"
+    """
+    package = (error.name or str(error)).partition(".")[0]
+    extra = f"[{EXTRAS[package]}]" if package in EXTRAS else ""
+    return f"{package} is missing; install it with: pip install 'pinball-billiards{extra}'"
+
+
+def sentence(error: click.ClickException) -> str:
+    """What is wrong and what would be accepted; click leaves out the second half.
+
+    >>> digits = click.Option(["--digits"], type=click.IntRange(1, 9))
+    >>> sentence(click.BadParameter("'x' is not a valid integer range.", param=digits))
+    "Invalid value for '--digits': 'x' is not a valid integer range; accepted: integers from 1 to 9"
+    """
+    message = error.format_message().strip().removesuffix(".")
+    context = getattr(error, "ctx", None)
+    if isinstance(error, click.NoSuchOption) and context is not None:
+        options = {name for parameter in context.command.get_params(context) for name in parameter.opts}
+        accepted = ", ".join(sorted(name for name in options if name.startswith("-")))
+        return f"no option is called {error.option_name}; accepted: {accepted}"
+    kind = getattr(getattr(error, "param", None), "type", None)
+    if isinstance(kind, click.IntRange):
+        return f"{message}; accepted: integers from {kind.min}" + ("" if kind.max is None else f" to {kind.max}")
+    if type(error) is click.UsageError and context is not None and context.parent is not None:
+        return f"{message}; {context.command_path} --help shows what is accepted"
+    return message
+
+
+def _told(message: str, status: int) -> int:
+    """Prints `message` as one sentence, and gives `status` back."""
+    message = " ".join(message.split())
+    if len(message) > LONGEST:
+        message = message[: LONGEST - 200] + " ... " + message[-195:]
+    if os.environ.get("PINBALL_DEBUG") == "1":
+        traceback.print_exc()
+    click.echo(f"pinball: {message}", err=True)
+    return status

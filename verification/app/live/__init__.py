@@ -1,1 +1,0 @@
-"""The live table: a page of this machine."""

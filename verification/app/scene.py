@@ -1,0 +1,304 @@
+"""A scene as the options of a command line: the table, its shape and a contraction.
+
+Numbers are exact all the way, and a decimal is the decimal it shows; none of the paper's tables imports SymPy.
+
+A scene as a map in float64, and a starting point as exact numbers.
+
+What the commands that sweep have in common: their options, what a dry run says, how results are handed over.
+"""
+
+from collections.abc import Callable
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symbolic.tables.definition import PAPER, POINTS, exact
+from symbolic.tables.scene import Scene
+
+if TYPE_CHECKING:
+    pass
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from verification.app.cli import DONE, FAILED, Output, json_option
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    from numeric.sweeps.sweep import Cost, Sweep
+
+
+def scene(
+    table: str | None,
+    polar: str | None,
+    parametric: tuple[str, str] | None,
+    K: int | None,
+    lam: str | None,
+    **shape: str | None,
+) -> Scene:
+    """The scene that the options describe; `ValueError` when they contradict each other.
+
+    >>> scene("ellipse", None, None, None, "0.5", a="sqrt(2)")
+    Scene('ellipse', a='sqrt(2)', lam='1/2')
+    """
+    named = [name for name, given in (("polar", polar), ("parametric", parametric), (table, table)) if given]
+    if len(named) != 1 or named[0] is None:
+        given = " and ".join(str(name) for name in named) or "none"
+        raise ValueError(f"one table is needed, {given} given; accepted: {', '.join(PAPER)}, --polar or --parametric")
+    name = named[0]
+    if K is not None and name != "egg":
+        raise ValueError(f"{name}: --K = {K} is only for the egg; leave it out")
+    numbers: dict[str, Any] = {
+        key: exact(f"--{key}", text) for key, text in _fitting(name, PAPER.get(name, ()), shape).items()
+    }
+    value = _contraction(lam)
+    if table:
+        return Scene(table, lam=value, K=POINTS if K is None else K, **numbers)
+    try:
+        return Scene.of({name: polar or list(parametric or ()), "lam": str(value)})
+    except ValueError as error:
+        raise ValueError(f"--{error}") from None
+
+
+def _fitting(name: str, known: tuple[str, ...], shape: dict[str, str | None]) -> dict[str, str]:
+    """The shape parameters that were given, when they are the ones the table has."""
+    given = {key: text for key, text in shape.items() if text is not None}
+    for key in known:
+        if key not in given:
+            raise ValueError(f"{name}: --{key} is missing; give it a number such as --{key} 2/25")
+    for key, text in given.items():
+        if key not in known:
+            accepted = ", ".join(f"--{k}" for k in known) or "none"
+            raise ValueError(f"{name}: --{key} = {text} is no shape parameter of this table; accepted: {accepted}")
+    return given
+
+
+def _contraction(lam: str | None) -> Any:
+    value = "missing" if lam is None else exact("--lam", lam)
+    if isinstance(value, str) or not 0 <= value <= 1:
+        raise ValueError(f"--lam = {value} is no contraction; accepted: numbers in [0, 1]")
+    return value
+
+
+Command = Callable[..., Any]
+TABLE = (
+    click.argument("table", required=False, type=click.Choice(list(PAPER))),
+    click.option("--a", metavar="NUMBER", help="Half the major axis of the ellipse, at least 1."),
+    click.option("--alpha", metavar="NUMBER", help="Shape of the egg, from 0 to 1/(1 + K^2)."),
+    click.option("--K", "K", type=click.IntRange(2), metavar="INTEGER", help="Points of the egg; the paper's has 3."),
+    click.option("--polar", metavar="FORMULA", help="Your own table: the radius, a formula in theta."),
+    click.option("--parametric", nargs=2, metavar="X Y", help="Your own table: a closed curve in theta on [-pi, pi)."),
+)
+CONTRACTION = click.option("--lam", metavar="NUMBER", help="Contraction of the angle, from 0 to 1.")
+
+
+def table_options(command: Command) -> Command:
+    """Gives `command` the arguments of a table, as a keyword `scene` whose `lam` is 0."""
+
+    @wraps(command)
+    def called(
+        table: str | None,
+        polar: str | None,
+        parametric: tuple[str, str] | None,
+        K: int | None,
+        a: str | None,
+        alpha: str | None,
+        lam: str | None = "0",
+        **others: Any,
+    ) -> Any:
+        return command(scene=scene(table, polar, parametric, K, lam, a=a, alpha=alpha), **others)
+
+    for option in reversed(TABLE):
+        called = option(called)
+    return called
+
+
+def scene_options(command: Command) -> Command:
+    """Gives `command` the arguments of a scene, as a keyword `scene`."""
+    return CONTRACTION(table_options(command))
+
+
+def start_of(text: str) -> tuple[Any, Any]:
+    """`THETA,PHI` as two exact numbers.
+
+    >>> start_of("1/3,0.25")
+    (Fraction(1, 3), Fraction(1, 4))
+    """
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise ValueError(f"--start {text!r} is no pair; give THETA,PHI such as 0.5,-pi/6")
+    theta, phi = (exact("--start", part.strip()) for part in parts)
+    return theta, phi
+
+
+MOST = 1_000_000  # values of an axis
+LARGEST = 1 << 26  # bytes that are written as JSON
+Lines = Callable[["xr.Dataset"], list[str]]
+
+
+@dataclass(frozen=True)
+class How:
+    """Where results go and who computes them."""
+
+    output: Output
+    store: Path | None
+    scheduler: str | None
+    workers: int | None
+    dry_run: bool
+
+
+OPTIONS = (
+    click.option("--store", type=click.Path(path_type=Path), metavar="DIR", help="Zarr store, made or resumed."),
+    click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler, such as tcp://127.0.0.1:8786."),
+    click.option("--workers", type=click.IntRange(1, 4096), help="Threads; all cores if left out."),
+    click.option("--dry-run", is_flag=True, help="Say what it costs, and do nothing."),
+    json_option,
+)
+
+
+lams_option = click.option(
+    "--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, both ends included."
+)
+seed_option = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+
+
+def sweep_options(command: Command) -> Command:
+    """Gives `command` the options of every sweep, as a keyword `how`."""
+
+    @wraps(command)
+    def called(
+        output: Output, store: Path | None, scheduler: str | None, workers: int | None, dry_run: bool, **others: Any
+    ) -> Any:
+        return command(how=How(output, store, scheduler, workers, dry_run), **others)
+
+    for option in reversed(OPTIONS):
+        called = option(called)
+    return called
+
+
+def span(label: str, text: str, low: Fraction = Fraction(0), high: Fraction = Fraction(1)) -> list[float]:
+    """The numbers that `LOW:HIGH:N` says, equally spaced with both ends, or one number; each the nearest to the exact.
+
+    >>> span("--lams", "0:0.3:4"), span("--lams", "1/2")
+    ([0.0, 0.1, 0.2, 0.3], [0.5])
+    """
+    parts = text.split(":")
+    if len(parts) == 1:
+        parts = [text, text, "1"]
+    if len(parts) != 3 or not (parts[2].isascii() and parts[2].isdigit() and 1 <= int(parts[2]) <= MOST):
+        raise ValueError(f"{label} {text!r} is no range; accepted: LOW:HIGH:N such as 0:1:101, or one number")
+    first, last = (Fraction(_rational(label, part)) for part in parts[:2])
+    if not low <= first <= last <= high:
+        raise ValueError(f"{label} {text!r} does not lie in order in [{low}, {high}]; accepted: numbers that do")
+    steps = int(parts[2]) - 1
+    return [float(first + (last - first) * Fraction(i, max(steps, 1))) for i in range(steps + 1)]
+
+
+def over(scene: Scene, lams: str) -> "tuple[str, NDArray[np.float64]]":
+    """The scene as a sweep labels it, and its contractions; a bad shape is refused before anything runs."""
+    import numpy as np
+
+    from numeric.sweeps.sweep import map_of, text_of
+
+    text, values = text_of(scene), np.array(span("--lams", lams))
+    map_of(text, values[0])
+    return text, values
+
+
+def _rational(label: str, text: str) -> Fraction:
+    value = exact(label, text)
+    return value if isinstance(value, Fraction) else Fraction(float(value))
+
+
+def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
+    """Does a sweep, or says what it would cost, and shows what `lines` makes of the results."""
+    from numeric.sweeps.run import UnfinishedError, run
+    from numeric.sweeps.sweep import cost
+
+    if how.dry_run:
+        expected = cost(sweep, how.workers)
+        how.output.write({"dry_run": True, "sweep": sweep.name, **expected.as_data()})
+        for line in estimated(expected):
+            how.output.console.print(line)
+        return DONE
+    with how.output.progress(sweep.name, len(sweep.indices())) as advance:
+        shown = 0
+
+        def tick(done: int, parts: int) -> None:
+            nonlocal shown
+            for i in range(shown, done):
+                advance(f"{i + 1} of {parts}")
+            shown = done
+
+        try:
+            found = run(sweep, how.store, how.scheduler, how.workers, tick)
+        except UnfinishedError as stop:
+            click.echo(f"pinball: {stop}", err=True)
+            return FAILED
+    how.output.write(document(found, how.store))
+    for line in lines(found):
+        how.output.console.print(line)
+    if how.store is not None:
+        how.output.console.print(f"all of it is in {how.store}: xarray.open_zarr({str(how.store)!r})")
+    return DONE
+
+
+def estimated(expected: "Cost") -> list[str]:
+    """A dry run, for people."""
+    return [
+        f"{expected.parts} parts, {expected.collisions:.3g} bounces",
+        f"about {_duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
+        f"{expected.workers} cores",
+        f"{_size(expected.bytes)} of results before compression",
+    ]
+
+
+def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
+    """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
+    fields: dict[str, Any] = {}
+    for name, values in found.data_vars.items():
+        fields[str(name)] = {"dims": list(values.dims), "units": values.attrs["units"]}
+        fields[str(name)]["about"] = values.attrs["long_name"]
+        if store is None and found.nbytes <= LARGEST:
+            fields[str(name)]["values"] = finite(values.values.tolist())
+    coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
+    labels = {str(key): _read(value) for key, value in found.attrs.items()}
+    whole = {**labels, "coords": coords, "fields": fields}
+    return whole if store is None else {**whole, "store": str(store)}
+
+
+def _read(value: Any) -> Any:
+    """What an attribute says; those that hold JSON are read."""
+    return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
+
+
+def finite(values: Any) -> Any:
+    """Nested lists in which null stands for what is no finite number.
+
+    >>> finite([1.0, [float("nan"), float("-inf")]])
+    [1.0, [None, None]]
+    """
+    if isinstance(values, list):
+        return [finite(value) for value in values]
+    return values if abs(values) < float("inf") else None
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def _size(count: int) -> str:
+    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.3g} {unit}"
+    return f"{count} bytes"

@@ -1,1 +1,0 @@
-"""What every command needs: the group, scenes as options, output, sweeps."""

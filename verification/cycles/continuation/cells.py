@@ -1,0 +1,239 @@
+"""Newton's method on thousands of closed chains of bounces at once, in float64.
+
+A seed is a row of bounce parameters, an orbit that almost closes. All rows that visit the same
+components are corrected together: one call of the chord kernel, one batch of small linear systems.
+
+A second count of the fixed points of `T**n`: cells of phase space, quartered until the map is affine on them.
+
+The displacement `v = (sin(theta_n - theta), phi_n - phi)` is continuous on a smooth convex table. On a cell
+where its values at the corners and the centre are affine up to a small rest, the zero of the affine map is
+in the cell or is not; where the rest is too large the cell is quartered. The index is the sign of the
+determinant of the affine part. Sampled in float64, so no proof; but it has no seeds, no chord system and no
+symmetry in common with the search.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from symbolic.tables.table import Table
+from verification.arithmetic.balls import ARRAYS
+from verification.cycles.recurrence.chords import Chords, chord_angles
+
+Array = NDArray[np.float64]
+STEPS = 14
+REACH = 0.5  # radians that a bounce may move in one step
+CLOSE = 1e-11
+
+
+class Corrector:
+    """The chord system of a table at one contraction, for many cycles at a time."""
+
+    def __init__(self, table: Table, lam: float) -> None:
+        self.table, self.lam = table, lam
+
+    def closed(self, components: tuple[int, ...], seeds: Array, known: Array | None = None) -> Array:
+        """The cycles that Newton's method reaches from the rows of `seeds`; rows that do not settle are dropped.
+
+        With `known` rows the equations are deflated: multiplied by `1 + 1/distance**2` for each of them, so that
+        those cycles are zeros no more and a seed next to one is driven on to another (Farrell, Birkisson and Funke).
+
+        >>> from symbolic.tables import ellipse
+        >>> axes = Corrector(ellipse.at(a=2), 0.5).closed((0, 0), np.array([[1.4, -1.6], [0.1, 3.0]]))
+        >>> np.round(axes, 6) + 0.0
+        array([[ 1.570796, -1.570796],
+               [ 0.      ,  3.141593]])
+        """
+        x, settled = seeds.copy(), np.zeros(len(seeds), dtype=bool)
+        with np.errstate(all="ignore"):
+            for _ in range(STEPS):
+                active = ~settled
+                if not np.any(active):
+                    break
+                step = self._correction(components, x[active])
+                if known is not None and len(known):
+                    step = step * deflation(x[active], step, known)[:, None]
+                size = np.max(np.abs(step), axis=1)
+                reach = np.minimum(1.0, REACH / np.maximum(size, 1e-300))
+                x[active] -= reach[:, None] * step
+                settled[active] = size < CLOSE
+        kept: Array = x[settled & np.all(np.isfinite(x), axis=1)]
+        return kept
+
+    def diagonals(self, components: tuple[int, ...], x: Array) -> tuple[Array, Array, Array, Array]:
+        """The rules at each bounce and their derivatives by the bounce before, the bounce, and the one after."""
+        n, rule = len(components), Chords(self.table, components).over(ARRAYS)
+        value, lower, middle, upper = (np.empty_like(x) for _ in range(4))
+        for i in range(n):
+            near = x[:, i - 1], x[:, i], x[:, (i + 1) % n]
+            value[:, i], (lower[:, i], middle[:, i], upper[:, i]) = rule(i, near, {"lam": self.lam})
+        return value, lower, middle, upper
+
+    def _correction(self, components: tuple[int, ...], x: Array) -> Array:
+        value, lower, middle, upper = self.diagonals(components, x)
+        n = len(components)
+        matrix = np.zeros((len(x), n, n))
+        for i in range(n):
+            matrix[:, i, i] += middle[:, i]
+            matrix[:, i, i - 1] += lower[:, i]
+            matrix[:, i, (i + 1) % n] += upper[:, i]
+        good = np.all(np.isfinite(matrix), axis=(1, 2)) & np.all(np.isfinite(value), axis=1)
+        matrix[~good] = np.eye(n)
+        value[~good] = np.nan
+        try:
+            step = np.linalg.solve(matrix, value[:, :, None])
+        except np.linalg.LinAlgError:
+            step = np.linalg.solve(matrix + 1e-13 * np.eye(n), value[:, :, None])
+        return np.asarray(step[:, :, 0], dtype=np.float64)
+
+    def exits(self, components: tuple[int, ...], x: Array) -> Array:
+        """Exit angles at each bounce."""
+        n, angle = len(components), chord_angles(self.table, ARRAYS)
+        ahead = [angle(components[i], components[(i + 1) % n], 0)(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
+        return np.stack(ahead, axis=1)
+
+
+def deflation(x: Array, step: Array, known: Array) -> Array:
+    """What each Newton step is multiplied by when the known zeros are divided out, on a closed boundary.
+
+    Half way to a zero that is known, Newton's own step would get there; the deflated one turns back.
+
+    >>> bool(deflation(np.array([[0.1, 0.1]]), np.array([[0.1, 0.1]]), np.zeros((1, 2)))[0] < 0)
+    True
+    """
+    slope = np.zeros(len(x))
+    for row in known:
+        gap = x - row
+        squared = np.sum(4 * np.sin(gap / 2) ** 2, axis=1)
+        slope -= np.sum(2 * np.sin(gap) * step, axis=1) / (squared * (squared + 1) + 1e-300)
+    return np.asarray(1 / (1 + slope), dtype=np.float64)
+
+
+COLUMNS, ROWS = 96, 48
+DEPTH = 16  # quarterings of a cell at most
+MOST = 100_000  # cells of one level
+POINTS = 60_000  # of the circle, at lam = 0
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Zeros:
+    """Fixed points with index 1 and -1, and the cells that stayed open: the counts are whole when none did."""
+
+    positive: int
+    negative: int
+    open: int
+
+
+def fixed_points(map: PinballMap, n: int) -> Zeros:
+    """The fixed points of `T**n` on a smooth convex table of one component, by their indices.
+
+    >>> fixed_points(PinballMap("ellipse", lam=0.5, a=1.5), 2)
+    Zeros(positive=2, negative=2, open=0)
+    """
+    lam = float(map.lam)
+    if lam == 0:
+        return _on_the_circle(map, n)
+    half = np.array([pi / COLUMNS, lam * pi / 2 / ROWS])
+    columns, rows = np.meshgrid(np.arange(COLUMNS), np.arange(ROWS), indexing="ij")
+    cells = np.stack([-pi + 0.07 + (2 * columns.ravel() + 1) * half[0], (2 * rows.ravel() + 1 - ROWS) * half[1]], -1)
+    found: list[Array] = []
+    for _ in range(DEPTH):
+        zeros, unsettled = _examined(map, cells, half, n)
+        found.append(zeros)
+        half = half / 2
+        quarters = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]]) * half
+        cells = (unsettled[:, None, :] + quarters[None]).reshape(-1, 2)
+        if not len(cells) or len(cells) > MOST:
+            break
+    index = _each_once(map, np.concatenate(found), n)
+    return Zeros(int(np.sum(index > 0)), int(np.sum(index < 0)), len(cells))
+
+
+def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np.bool_]]:
+    """`v` at phase points, and whether the return is near the start rather than opposite."""
+    theta, phi = np.mod(at[..., 0].ravel() + pi, 2 * pi) - pi, np.clip(at[..., 1].ravel(), -1.57, 1.57)
+    place, out = theta, phi
+    for _ in range(n):
+        step = map.step(place, out)
+        place, out = step.theta, step.phi
+    v = np.stack([np.sin(place - theta), out - phi], -1).reshape(at.shape)
+    return v, (np.cos(place - theta) > 0).reshape(at.shape[:-1])
+
+
+def _examined(map: PinballMap, cells: Array, half: Array, n: int) -> tuple[Array, Array]:
+    """The zeros in settled cells, and the cells that are not settled."""
+    points = np.array([[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
+    v, near = _displacement(map, cells[:, None, :] + points[None] * half, n)
+    centre, corners = v[:, 0], v[:, 1:]
+    mean = corners.mean(axis=1)
+    slope = np.stack(
+        [
+            (corners[:, [1, 3]].sum(1) - corners[:, [0, 2]].sum(1)) / 4,
+            (corners[:, 2:].sum(1) - corners[:, :2].sum(1)) / 4,
+        ],
+        -1,
+    )  # v changes by slope[:, :, k] from the centre to side k
+    twist = (corners[:, 0] + corners[:, 3] - corners[:, 1] - corners[:, 2]) / 4
+    rest = np.abs(twist) + 2 * np.abs(mean - centre)
+    reach = np.abs(slope).sum(axis=2)
+    away = np.any(np.abs(centre) > 1.2 * reach + 4 * rest + 1e-12, axis=1) & np.all(rest < 0.3 + 0 * rest, axis=1)
+    away |= ~np.any(near, axis=1)
+    det = slope[:, 0, 0] * slope[:, 1, 1] - slope[:, 0, 1] * slope[:, 1, 0]
+    with np.errstate(all="ignore"):
+        inverse = (
+            np.stack(
+                [
+                    np.stack([slope[:, 1, 1], -slope[:, 0, 1]], -1),
+                    np.stack([-slope[:, 1, 0], slope[:, 0, 0]], -1),
+                ],
+                1,
+            )
+            / det[:, None, None]
+        )
+        zero = -np.einsum("ijk,ik->ij", inverse, centre)
+        unsure = np.einsum("ijk,ik->ij", np.abs(inverse), rest)
+        outside = np.any(np.abs(zero) > 1.1 + 4 * unsure, axis=1) & np.all(unsure < 3, axis=1)
+        inside = np.all(unsure < 0.2, axis=1) & np.all(np.abs(zero) < 1.2, axis=1)
+    settled = away | outside | inside
+    hits = cells + zero * half
+    return hits[inside & ~away & near[:, 0]], cells[~settled]
+
+
+def _each_once(map: PinballMap, zeros: Array, n: int) -> Array:
+    """The indices of the zeros, each polished by Newton's method on the map itself and counted once."""
+    if not len(zeros):
+        return np.zeros(0)
+    h, at = 1e-7, zeros
+    for _ in range(5):
+        shifts = np.array([[0.0, 0.0], [h, 0.0], [0.0, h]])
+        v, _ = _displacement(map, at[:, None, :] + shifts[None], n)
+        slope = np.stack([(v[:, 1] - v[:, 0]) / h, (v[:, 2] - v[:, 0]) / h], -1)
+        step = np.linalg.solve(slope, v[:, 0][:, :, None])[:, :, 0]
+        at = at - np.clip(step, -1e-2, 1e-2)
+    v, near = _displacement(map, at, n)
+    good = (np.max(np.abs(v), axis=1) < 1e-5) & near
+    at, det = at[good], np.linalg.det(slope[good])
+    key = np.stack([np.cos(at[:, 0]), np.sin(at[:, 0]), at[:, 1]], -1)
+    kept: list[int] = []
+    for i in range(len(key)):
+        if not kept or np.min(np.max(np.abs(key[kept] - key[i]), axis=1)) > SAME:
+            kept.append(i)
+    return np.asarray(np.sign(det[kept]), dtype=np.float64)
+
+
+def _on_the_circle(map: PinballMap, n: int) -> Zeros:
+    """At `lam = 0` the exit is the normal, and sign changes along the boundary count.
+
+    The transverse multiplier is 0, so the index of a crossing is 1 where `T0**n - 1` falls.
+    """
+    theta = -pi + (np.arange(POINTS) + 0.123) * 2 * pi / POINTS
+    place = theta
+    for _ in range(n):
+        place = map.step(place, 0.0 * place).theta
+    v, real = np.sin(place - theta), np.cos(place - theta) > 0
+    crossing = (np.sign(v) != np.sign(np.roll(v, -1))) & real
+    return Zeros(int(np.sum(crossing & (v > 0))), int(np.sum(crossing & (v < 0))), 0)

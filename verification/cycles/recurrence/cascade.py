@@ -1,0 +1,258 @@
+"""Starts for Newton's method, in float64: attractors by iteration, cycles followed in the contraction.
+
+Nothing here is proved and nothing needs to be: a start only has to lie in reach of Newton's method.
+
+The period-doubling ladder of the egg: `lambda_n`, where period `2**(n-1)` becomes `2**n`.
+
+Paper: section 6.6, with `alpha = 0.08` and `lambda_3` to `lambda_6`. The second rung, where it exists,
+is the flip of the diameter; from the third on the cycles are followed from an attractor of period 4.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from sympy import Expr, N, Rational
+
+from symbolic import tables
+from symbolic.cycles.thresholds import alpha_tilde
+from symbolic.tables.table import Table
+from symbolic.tables.table import lam as lam_letter
+from verification.arithmetic.balls import FLOAT64
+from verification.arithmetic.progress import telling
+from verification.cycles.recurrence.newton import floats
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows, normal_form
+from verification.cycles.recurrence.recurrence import MIRROR, BifurcationKind
+
+FEIGENBAUM = 4.6692
+SETTLE = 3000  # bounces thrown away before an attractor is looked at
+SAME = 1e-7  # radians: an orbit that returns this close is taken for a cycle
+
+
+def attractor(table: Table, lam: float, start: tuple[float, float], longest: int = 64) -> list[float]:
+    """The cycle that a ball settles on, as bounce parameters; empty when none of `longest` bounces.
+
+    For tables of one convex component; `start` are two successive bounces.
+
+    >>> from symbolic.tables import ellipse
+    >>> [round(abs(x), 6) for x in attractor(ellipse.at(a="3/2"), 0.25, (0.4, 2.9))]
+    [1.570796, 1.570796]
+    """
+    angle = Rows(Problem(table, (0, 0), lam=Rational(0)), FLOAT64).kernel(0, 0, 1)
+    before, here = start
+    orbit: list[float] = []
+    for bounce in range(SETTLE):
+        before, here = here, math.remainder(_landing(angle, here, -lam * angle(here, before)[0]), 2 * math.pi)
+        orbit.append(here)
+        if bounce % 200 == 199:
+            last = orbit[-2 * longest :]
+            for period in range(1, longest + 1):
+                if all(_near(last[i], last[i + period]) for i in range(longest)):
+                    return last[-period:]
+    return []
+
+
+def _landing(angle: Callable[..., tuple[float, ...]], here: float, phi: float) -> float:
+    """Where a ball lands that leaves `here` at `phi`: the angle falls from pi/2 to -pi/2 on the way round."""
+    low, high = here, here + 2 * math.pi
+    x = here + math.pi - 2 * phi
+    for _ in range(60):
+        value, _, slope, *_ = angle(here, x)
+        low, high = (x, high) if value > phi else (low, x)
+        better = x - (value - phi) / slope
+        better = better if low < better < high else (low + high) / 2
+        if abs(better - x) < 4e-16 * 8:
+            return better
+        x = better
+    return x
+
+
+def _near(x: float, y: float) -> bool:
+    return abs(math.remainder(x - y, 2 * math.pi)) < SAME
+
+
+def characteristic(
+    table: Table, theta: Sequence[float], lam: float, kind: BifurcationKind, components: tuple[int, ...] = ()
+) -> float:
+    """`det(M - mu)` of a cycle's monodromy matrix `M`, up to sign; `mu` is the critical multiplier of `kind`."""
+    free = Problem(table, components or (0,) * len(theta), kind, "lam")
+    found = Linearised(Rows(free, FLOAT64), [*theta, lam], slope=False).critical
+    value, power = found.rest / found.chain.upper[-1], 0
+    for pivot, upper in zip(found.pivots, found.chain.upper, strict=False):
+        value, more = math.frexp(value * pivot / upper)  # a long product leaves the range of floats on its way
+        power += more
+    return math.ldexp(value, power)
+
+
+def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple[int, ...] = ()) -> list[float]:
+    """The cycle near `theta` at contraction `lam`, in float64; on one component when none are given."""
+    return floats(Problem(table, components or (0,) * len(theta), lam=Rational(lam)), theta)
+
+
+def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: BifurcationKind) -> list[float]:
+    """`[*theta, lam]` where the cycle has the multiplier -1 (or 1), followed from `lam` in steps of `step`."""
+    problem = Problem(table, (0,) * len(theta), kind, "lam")
+    before: list[float] = []
+    here = cycle_at(table, theta, lam)
+    value = characteristic(table, here, lam, kind)
+    for _ in range(400):
+        guess = here if not before else [2 * x - y for x, y in zip(here, before, strict=True)]
+        if not 0 <= lam + step <= 1:
+            break
+        after = cycle_at(table, guess, lam + step)
+        if max(abs(x - y) for x, y in zip(after, guess, strict=True)) > 0.1:
+            before, step = [], step / 2
+            continue
+        new = characteristic(table, after, lam + step, kind)
+        if value * new <= 0:
+            share = value / (value - new)
+            start = [x + share * (y - x) for x, y in zip(here, after, strict=True)]
+            try:
+                found = floats(problem, [*start, lam + share * step])
+            except ValueError:
+                found = []
+            if found and abs(found[-1] - lam) < 3 * abs(step):
+                return found
+            before, step = [], step / 4
+            continue
+        before, here, value, lam = here, after, new, lam + step
+    raise ValueError(
+        f"{table.name}: no {kind.name.lower()} of this cycle of period {len(theta)} was met up to lam = {lam:.6f}, "
+        f"followed in steps of {step:.3g}"
+    )
+
+
+def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tuple[list[float], float]:
+    """The cycle of twice the period that a flip bears, near `lam + distance`, and that `lam`.
+
+    The branch is `lam + c*e**2`, with `c` from the third-order terms; it may lie on either side.
+    """
+    at = Linearised(Rows(problem, FLOAT64), list(critical))
+    c, vector = float(normal_form(at, FLOAT64).branch), at.critical.right
+    amplitude = math.sqrt(abs(distance / c))
+    lam = critical[-1] + math.copysign(abs(distance), c)
+    theta = critical[:-1]
+    both = [x + s * amplitude * v for s in (1, -1) for x, v in zip(theta, vector, strict=True)]
+    found = cycle_at(problem.table, both, lam, problem.components * 2)
+    half = len(theta)
+    apart = max(abs(math.remainder(found[i] - found[i + half], 2 * math.pi)) for i in range(half))
+    if apart < amplitude / 20:
+        raise ValueError(f"{problem.table.name}: the branch of period {2 * half} was lost at lam = {lam}")
+    return found, lam
+
+
+GRID = [k / 25 for k in range(20, -1, -1)]
+TRIED = f"a ball settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
+HIGHEST = 17  # the rung whose period, 2**16, still takes minutes
+
+
+@dataclass(frozen=True)
+class Rung:
+    """`lambda_n` in float64: the problem that defines it, and a start for its solution."""
+
+    n: int
+    problem: Problem
+    start: list[float]
+
+    @property
+    def lam(self) -> float:
+        """The contraction."""
+        return self.start[-1]
+
+
+def ladder(alpha: Expr) -> Iterator[Rung]:
+    """The rungs from the third on, in float64.
+
+    >>> from sympy import Rational
+    >>> rungs = ladder(Rational(2, 25))
+    >>> [round(next(rungs).lam, 9) for _ in range(4)]
+    [0.371235503, 0.388761023, 0.392501516, 0.393302227]
+    """
+    table = tables.egg(3).at(alpha=alpha)
+    lam, theta = stable_four(table)
+    critical = next_critical(table, theta, lam, 0.005, BifurcationKind.FLIP)
+    n, gap = 3, (critical[-1] - lam) / 4
+    while True:
+        problem = Problem(table, (0,) * (len(critical) - 1), BifurcationKind.FLIP, "lam")
+        yield Rung(n, problem, critical)
+        theta, lam = doubled(problem, critical, 0.3 * gap)
+        following = next_critical(table, theta, lam, 0.15 * gap, BifurcationKind.FLIP)
+        gap = (following[-1] - critical[-1]) / FEIGENBAUM
+        n, critical = n + 1, following
+
+
+def stable_four(table: Table) -> tuple[float, list[float]]:
+    """The largest contraction of a coarse grid with an attracting cycle of period 4 near a diameter."""
+    for lam in GRID:
+        cycle = attractor(table, lam, (0.05, 3.1), 16)
+        if len(cycle) == 4:
+            return lam, cycle
+    raise ValueError(
+        f"egg: alpha = {dict(table.fixed)['alpha']} has no attracting cycle of period 4 near a diameter "
+        f"that {TRIED}; the ladder starts from one"
+    )
+
+
+def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
+    """Where the mirror-symmetric cycle of period 4 bears two that are not: a flip of half the cycle.
+
+    A symmetric cycle cannot double its period: half of it would need the multipliers `i` and `-i`,
+    whose product is 1. It breaks its symmetry first, and the ladder climbs from what it bears.
+    """
+    table = tables.egg(3).at(alpha=alpha)
+    problem = Problem(table, (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR)
+    for lam in GRID:
+        cycle = attractor(table, lam, (0.05, 3.1), 16)
+        if len(cycle) == 4 and abs(math.remainder(cycle[0] + cycle[2], 2 * math.pi)) < 1e-6:
+            for share in range(1, 12):
+                try:
+                    found = floats(problem, [*cycle[:2], lam + share / 100])
+                except ValueError:
+                    continue
+                if 0 <= found[-1] - lam < 0.15:
+                    return problem, found
+    raise ValueError(f"egg: alpha = {alpha} has no symmetric attracting cycle of period 4 that {TRIED}")
+
+
+def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
+    """What `lambda_n` solves, and where to start."""
+    if not 2 <= n <= HIGHEST:
+        raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
+    if n == 2:
+        return _second(alpha)
+    found = rung(alpha, n)
+    return found.problem, found.start
+
+
+def rung(alpha: Expr, n: int) -> Rung:
+    """The rung `lambda_n` in float64; those below it are climbed once."""
+    rungs, more = _climb(alpha)
+    tick = telling("rungs in float64")
+    while len(rungs) < n - 2:
+        try:
+            rungs.append(next(more))
+        except (ValueError, StopIteration):
+            _climb.cache_clear()
+            raise
+        tick(2.0 ** (rungs[-1].n - n - 1))  # a rung costs twice the one before
+    return rungs[n - 3]
+
+
+@cache
+def _climb(alpha: Expr) -> tuple[list[Rung], Iterator[Rung]]:
+    return [], ladder(alpha)
+
+
+def _second(alpha: Expr) -> tuple[Problem, list[float]]:
+    ends = [alpha_tilde().subs(lam_letter, k) for k in (1, 0)]
+    if not ends[0] < alpha < ends[1]:
+        raise ValueError(
+            f"locate doubling: alpha = {alpha} has no lambda_2; the diameter doubles for alpha "
+            f"between {N(ends[0], 6)} and {N(ends[1], 6)}"
+        )
+    low, high = 0.0, 1.0  # alpha-tilde falls as lam grows
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if float(alpha_tilde().subs(lam_letter, middle)) > alpha else (low, middle)
+    return Problem(tables.egg(3).at(alpha=alpha), (0, 0), BifurcationKind.FLIP, "lam"), [0.0, 3.14159265, low]

@@ -1,0 +1,176 @@
+"""Systems of a few equations, each written once, for what is no plain fold or flip.
+
+The matrix of first derivatives comes from running the same equations on jets, in any number.
+
+Cycles that bifurcate, of any recurrence and in any way, in as many free parameters as there are conditions.
+
+A fold or a flip of a long cycle is a `Problem`, solved in linear time. What is here takes every bifurcation that
+`verification.cycles.recurrence.recurrence` defines, and several at once (points of codimension two), for cycles of a
+few dozen bounces.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Expr, pi
+
+from symbolic.expressions.text import constant, load
+from symbolic.motion.chords import chord_kernel
+from symbolic.tables import cuspless, egg
+from verification.arithmetic.balls import Arithmetic
+from verification.arithmetic.series import Jet, jets
+from verification.cycles.recurrence.chain import Vector
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, Recurrence
+
+
+@dataclass(frozen=True)
+class Small:
+    """As many `equations(arithmetic, z)` as there are unknowns, at most a handful."""
+
+    label: str
+    equations: Callable[[Arithmetic, Vector], Vector]
+
+    def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
+        """`F(z)`."""
+        return self.equations(arithmetic, z)
+
+    def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
+        """`F'(z)^-1 r`."""
+        rows: list[Vector] = [[] for _ in r]
+        words = jets(arithmetic)
+        for j in range(len(z)):
+            moved = [Jet(x, 1 if i == j else 0) for i, x in enumerate(z)]
+            for row, e in zip(rows, self.equations(words, moved), strict=True):
+                row.append(e.c[1])
+        return solved([[*row, x] for row, x in zip(rows, r, strict=True)])
+
+    def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
+        """`F'(z)^-1 F(z)`, Newton's correction."""
+        return self.solved(arithmetic, z, self.value(arithmetic, z))
+
+
+def solved(rows: list[Vector]) -> Vector:
+    """The solution of a small linear system given as augmented rows, with the largest pivots.
+
+    >>> solved([[0.0, 2.0, 2.0], [1.0, 1.0, 3.0]])
+    [2.0, 1.0]
+    """
+    n = len(rows)
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(_middle(rows[i][k])))
+        rows[k], rows[best] = rows[best], rows[k]
+        for i in range(k + 1, n):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    x: Vector = [0] * n
+    for k in reversed(range(n)):
+        total = rows[k][n]
+        for j in range(k + 1, n):
+            total = total - rows[k][j] * x[j]
+        x[k] = total / rows[k][k]
+    return x
+
+
+def _middle(x: Any) -> Any:
+    return x.mid() if hasattr(x, "mid") else x
+
+
+def corner() -> Small:
+    """The period-4 orbit through both corners of the cuspless cardioid: unknowns `theta1`, `lam`.
+
+    It leaves the upper corner (`theta = 2*pi/3`), meets the arc at `theta1`, the lower corner, the arc
+    at `-theta1`, and returns. By the mirror symmetry two collision rules say it all: at the corner,
+    where the normal exists because the joins are C1, and at `theta1`. Paper: section 5.2.
+    """
+
+    def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
+        theta1, lam = z
+        angle = load(chord_kernel(cuspless, 0, 0, 0), arithmetic)
+        edge = corner_parameter(arithmetic)
+        return [
+            angle(edge, theta1)[0] + lam * angle(edge, -theta1)[0],
+            angle(theta1, -edge)[0] + lam * angle(theta1, edge)[0],
+        ]
+
+    return Small("cuspless, the orbit through both corners", equations)
+
+
+def corner_parameter(arithmetic: Arithmetic) -> Any:
+    """`2*pi/3`, the parameter of the upper corner on the arc."""
+    return load(constant(2 * pi / 3), arithmetic)()[0]
+
+
+def corner_angle(arithmetic: Arithmetic, theta1: Any) -> Any:
+    """The exit angle at the upper corner, `phi-star` of the paper at the solution of `corner`."""
+    return load(chord_kernel(cuspless, 0, 0, 0), arithmetic)(corner_parameter(arithmetic), theta1)[0]
+
+
+def focus(lam: Expr, K: int = 3) -> Small:
+    """Where the multipliers of the egg's diameter become complex: unknowns two bounces and `alpha`.
+
+    The third equation is `trace**2 = 4*determinant` of the monodromy, from the chord system.
+    """
+    table = egg(K)  # simplified at each call, which took 77 of the 78 ms of an evaluation
+
+    def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
+        first, second, alpha = z
+        contraction = load(constant(lam), arithmetic)()[0]
+        angle = load(chord_kernel(table, 0, 0, 1), arithmetic)
+        forth, back = angle(first, second, alpha), angle(second, first, alpha)
+        rules = [(1 + contraction) * f[0] for f in (forth, back)]
+        # x[i+1] = -(d/u)*x[i] - lam*x[i-1]: both neighbours are the same point, so lower = lam*upper
+        a, b = ((1 + contraction) * f[1] / f[2] for f in (forth, back))
+        trace, determinant = a * b - 2 * contraction, contraction * contraction
+        return [*rules, trace * trace - 4 * determinant]
+
+    return Small("egg, where the diameter's multipliers become complex", equations)
+
+
+def critical(
+    recurrence: Recurrence,
+    kinds: Sequence[BifurcationKind],
+    parameters: Sequence[str],
+    fixed: Mapping[str, Expr] | None = None,
+) -> Small:
+    """The cycle that bifurcates in all these `kinds`: unknowns are its bounces, then the free `parameters`.
+
+    >>> from verification.cycles.recurrence.recurrence import delayed
+    >>> from verification.cycles.recurrence.newton import floats
+    >>> torus = critical(delayed(1), [BifurcationKind.TORUS], ["r"])  # at r = 2 [MaynardSmith1968]
+    >>> [round(x, 12) for x in floats(torus, [0.4, 1.9])]
+    [0.5, 2.0]
+    """
+    n, closure = recurrence.period, recurrence.closure
+    if len(kinds) != len(parameters):
+        raise ValueError(f"{recurrence.label}: {len(kinds)} conditions for {len(parameters)} free parameters")
+
+    def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
+        rule = recurrence.over(arithmetic)
+        at = {name: load(constant(value), arithmetic)()[0] for name, value in (fixed or {}).items()}
+        at |= zip(parameters, z[n:], strict=True)
+        ring = closure.padded(z[:n], closure.angle(arithmetic))
+        found = [rule(i, ring[i : i + 3], at) for i in range(n)]
+        rows = [slopes for _, slopes in found]
+        return [*(value for value, _ in found), *(kind.bordering(rows, closure.turn) for kind in kinds)]
+
+    return Small(f"{' and '.join(kind.value for kind in kinds)} of {recurrence.label}", equations)
+
+
+def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
+    """Unknowns `theta` and `lam` at the fold of the egg's cycle that turns by `2*pi*p/q` at each bounce.
+
+    Where that turn maps the table to itself, one bounce with its neighbours a turn away is the whole system.
+
+    >>> from sympy import Rational
+    >>> import mpmath
+    >>> from verification.cycles.recurrence.newton import refined
+    >>> found = refined(polygon_fold(3, Rational(2, 25)), [-0.55, 0.378], 20)
+    >>> mpmath.nstr(found.z[1], 15)
+    '0.37812125259009'
+    """
+    if K * p % q:
+        raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
+    one = Chords(egg(K).at(alpha=alpha), (0,), Closure(1, (p, q)))
+    return critical(one, [BifurcationKind.FOLD], ["lam"])

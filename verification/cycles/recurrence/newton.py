@@ -1,0 +1,336 @@
+"""What a solution's digits are worth: its condition number, and what that means for whoever asked.
+
+The condition number is the largest row sum of the inverse of the system's matrix: no unknown moves farther when no
+equation is off by more than one. Next to a fold, where a multiplier is `1 + d`, it is of the size of `1/d`. Of a
+cycle it is estimated from a few solutions of the factored system: from below, and rarely off by more than a factor
+of 3 ([Higham2002], section 15.3). A system of a handful is inverted.
+
+Newton's method on a problem, in mpmath, with a precision that doubles at each step.
+
+A step needs no more digits than it will make right, so the last step costs as much as all others
+together. The precision lives in a context made here; the ambient `mpmath.mp` is not touched.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+from math import inf, isfinite, log10
+from typing import Any, Protocol, runtime_checkable
+
+import mpmath
+
+from verification.arithmetic.balls import FLOAT64, Arithmetic, bits_of, multiprecision
+
+Vector = list[Any]
+Solve = Callable[[Vector], Vector]
+ASCENTS = 4  # vectors tried after the first; two are enough nearly always
+ROUNDINGS = 16  # of a residual
+
+
+class Conditioning(Enum):
+    """What a solution's condition number means; the value is the advice."""
+
+    SOUND = "the condition number leaves more than half of the digits"
+    SENSITIVE = (
+        "the condition number costs half of the digits or more; "
+        "ask for more digits, or solve for the fold or the flip that is next to it"
+    )
+    REPEATED = "a shorter cycle run through several times, as far as its digits tell; ask for the shorter one"
+
+
+class Solvable(Protocol):
+    """What can solve with its matrix of first derivatives."""
+
+    def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
+        """`F'(z)^-1 r`."""
+
+
+@runtime_checkable
+class Cyclic(Protocol):
+    """A system of any length, that can tell its cycle from a shorter one."""
+
+    def inverses(self, arithmetic: Arithmetic, z: Vector) -> tuple[Solve, Solve]:
+        """`F'(z)^-1` and its transpose, from one factorisation."""
+
+    def shorter(self, z: Vector, within: float) -> int:
+        """The bounces after which the cycle repeats itself, up to `within`; 0 for never."""
+
+
+def norm_of_inverse(system: Solvable, arithmetic: Arithmetic, z: Vector) -> float:
+    """The largest row sum of `F'(z)^-1`; infinite where the matrix is singular.
+
+    >>> from sympy import Rational
+    >>> from symbolic.tables import ellipse
+    >>> from verification.arithmetic.balls import FLOAT64
+    >>> from verification.cycles.recurrence.problem import Problem
+    >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
+    >>> round(norm_of_inverse(axis, FLOAT64, [1.5707963267948966, -1.5707963267948966]), 12)
+    1.5
+    """
+    n = len(z)
+    try:
+        if isinstance(system, Cyclic):
+            found = largest_row_sum(*system.inverses(arithmetic, z), n)
+        else:
+            columns = [system.solved(arithmetic, z, unit(n, j)) for j in range(n)]
+            found = max(float(sum(abs(column[i]) for column in columns)) for i in range(n))
+    except (ZeroDivisionError, OverflowError, ValueError):
+        return inf
+    return found if isfinite(found) else inf
+
+
+def largest_row_sum(solve: Solve, transposed: Solve, n: int) -> float:
+    """Of the matrix that `solve` multiplies by, from below: Hager's ascent, then one vector that no symmetry hides.
+
+    >>> twice = lambda r: [2 * r[0], r[0] + r[1]]
+    >>> largest_row_sum(twice, lambda r: [2 * r[0] + r[1], r[1]], 2)
+    2.0
+    """
+    y = transposed([1 / n] * n)
+    best, before = total(y), -1
+    for _ in range(ASCENTS):
+        z = solve([-1.0 if x < 0 else 1.0 for x in y])
+        row = max(range(n), key=lambda i: abs(z[i]))
+        if row == before:
+            break
+        y, before = transposed(unit(n, row)), row
+        if not total(y) > best:
+            break
+        best = total(y)
+    alternating = [(-1.0) ** i * (1 + i / max(n - 1, 1)) for i in range(n)]
+    return max(best, 2 * total(transposed(alternating)) / (3 * n))
+
+
+def digits_left(condition: float, unit: float) -> int:
+    """The decimal digits after the point that an error of one `unit` in every equation leaves.
+
+    >>> digits_left(1e8, 2.0**-52), digits_left(2.9, 2.0**-52), digits_left(float("inf"), 2.0**-52)
+    (7, 15, 0)
+    """
+    return max(0, int(-log10(condition * unit))) if isfinite(condition) else 0
+
+
+def costs_half(condition: float, unit: float, digits: int) -> bool:
+    """Does a residual of some units of rounding leave less than half of the `digits`?
+
+    At a fold it does, whatever is computed there: off by `h`, of the size of the root of the residual, the condition
+    number is of the size of `1/h`.
+
+    >>> costs_half(8e6, 2.0**-52, 15), costs_half(1e7, 2.0**-52, 15), costs_half(1e7, 1e-65, 50)
+    (False, True, False)
+    """
+    return condition * ROUNDINGS * unit > 10 ** (-digits / 2)
+
+
+def unit(n: int, j: int) -> Vector:
+    """A vector of `n` numbers with a one at `j`."""
+    return [1.0 if i == j else 0.0 for i in range(n)]
+
+
+def total(x: Vector) -> float:
+    """The sum of sizes."""
+    return float(sum(abs(value) for value in x))
+
+
+GUARD = 15  # decimal digits beyond those asked for
+START = 16  # digits of the first step in mpmath
+DIGITS = 15  # of a float64, which every number of so many digits survives
+ATTEMPTS = 6  # steps with the same number of digits
+EPS = 2.0**-52
+NEAR = 1e-2  # radians: bounces farther apart are not the same, whatever the condition
+TOLD = 1e12  # the largest condition number that float64 can be trusted to tell
+
+
+class System(Protocol):
+    """As many equations as unknowns, over any kind of number."""
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+
+    def value(self, arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+        """`F(z)`."""
+
+    def solved(self, arithmetic: Arithmetic, z: list[Any], r: list[Any]) -> list[Any]:
+        """`F'(z)^-1 r`."""
+
+    def newton(self, arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+        """`F'(z)^-1 F(z)`, Newton's correction."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: the digits it was computed with, and the size of the correction it made."""
+
+    digits: int
+    correction: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Numbers that solve a problem to about `digits` digits, not proved: floats, or of an mpmath context.
+
+    What the digits are worth is computed when it is asked for.
+    """
+
+    problem: System
+    z: list[Any]
+    digits: int
+    steps: tuple[Step, ...] = field(repr=False)
+
+    @cached_property
+    def condition(self) -> float:
+        """How far an unknown moves at most when no equation is off by more than one; infinite when singular."""
+        found = norm_of_inverse(self.problem, FLOAT64, [float(x) for x in self.z])
+        if found > TOLD and not isinstance(self.z[0], float):
+            found = norm_of_inverse(self.problem, multiprecision(type(self.z[0]).context), self.z)
+        return found
+
+    @property
+    def unit(self) -> float:
+        """The unit of rounding of the last step."""
+        return EPS if isinstance(self.z[0], float) else float(type(self.z[0]).context.eps)
+
+    @property
+    def digits_sure(self) -> int:
+        """The digits after the point that the condition number leaves of every unknown, `digits` at most."""
+        return min(self.digits, digits_left(self.condition, self.unit))
+
+    @property
+    def conditioning(self) -> Conditioning:
+        """The condition number in a word, with advice as its value."""
+        if self.shorter:
+            return Conditioning.REPEATED
+        few = costs_half(self.condition, self.unit, self.digits)
+        return Conditioning.SENSITIVE if few else Conditioning.SOUND
+
+    @property
+    def shorter(self) -> int:
+        """The bounces after which the cycle repeats itself, as far as its digits tell; 0 for never."""
+        within = min(NEAR, max(1.0, self.condition) * ROUNDINGS * self.unit)
+        return self.problem.shorter(self.z, within) if isinstance(self.problem, Cyclic) else 0
+
+    @property
+    def advice(self) -> str:
+        """What to do about the conditioning, for people; nothing where it is sound."""
+        if self.conditioning is Conditioning.SOUND:
+            return ""
+        return f"{self.conditioning.value}{f' (after {self.shorter} bounces)' if self.shorter else ''}"
+
+    @property
+    def words(self) -> str:
+        """One sentence for people."""
+        said = f"condition number {self.condition:.2g}, {self.digits_sure} of {self.digits} digits sure"
+        return f"{said}: {self.advice}" if self.advice else said
+
+
+class UnsettledError(ValueError):
+    """Newton's method in float64 did not settle; `last` is where it was."""
+
+    def __init__(self, message: str, last: Solution) -> None:
+        super().__init__(message)
+        self.last = last
+
+
+def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
+    """The solution near `start` to `digits` digits.
+
+    >>> from symbolic.tables import ellipse
+    >>> from sympy import Rational
+    >>> from verification.cycles.recurrence.problem import Problem
+    >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
+    >>> found = refined(axis, [1.5, -1.6], 30)
+    >>> mpmath.nstr(found.z[0], 30)
+    '1.57079632679489661923132169164'
+    """
+    context = mpmath.MPContext()
+    context.prec = 53
+    z = [context.mpf(x) for x in floats(problem, start)]
+    arithmetic = multiprecision(context)
+    steps: list[Step] = []
+    for level in levels(digits + GUARD):
+        context.dps = level
+        for attempt in range(ATTEMPTS):
+            correction = problem.newton(arithmetic, z)
+            z = [x - d for x, d in zip(z, correction, strict=True)]
+            steps.append(Step(level, _log10(context, max(abs(d) for d in correction))))
+            right = -2 * steps[-1].correction  # convergence is quadratic
+            if right >= (digits + GUARD // 2 if level == digits + GUARD else 0.7 * level):
+                break
+            if attempt == ATTEMPTS - 1:
+                raise ValueError(
+                    f"{problem.label}: {ATTEMPTS} Newton steps with {level} digits still correct by "
+                    f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
+                )
+    return Solution(problem, z, digits, tuple(steps))
+
+
+def levels(digits: int) -> list[int]:
+    """The digits of each step, doubling (nearly) up to `digits`.
+
+    >>> levels(100)
+    [16, 28, 52, 100]
+    """
+    found = [digits]
+    while found[0] > 2 * START - 4:
+        found.insert(0, found[0] // 2 + 2)
+    return found if found[0] <= START or digits <= START else [START, *found]
+
+
+def floats(problem: System, start: Sequence[Any], steps: int = 40) -> list[float]:
+    """The solution near `start` in float64, as numbers alone.
+
+    >>> from symbolic.tables import ellipse
+    >>> from sympy import Rational
+    >>> from verification.cycles.recurrence.problem import Problem
+    >>> [round(x, 12) for x in floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6])]
+    [1.570796326795, -1.570796326795]
+    """
+    return in_floats(problem, start, steps).z
+
+
+def in_floats(problem: System, start: Sequence[Any], steps: int = 40) -> Solution:
+    """The solution near `start` in float64: steps as long as they shorten.
+
+    >>> from symbolic.tables import ellipse
+    >>> from sympy import Rational
+    >>> from verification.cycles.recurrence.problem import Problem
+    >>> in_floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6]).words
+    'condition number 1.5, 15 of 15 digits sure'
+    """
+    z = [float(x) for x in start]
+    sizes: list[float] = []
+    for _ in range(steps):
+        try:
+            correction = problem.newton(FLOAT64, z)
+        except ZeroDivisionError:
+            break
+        size = max(abs(d) for d in correction)
+        if len(sizes) > 4 and size < 1e-6 and size >= sizes[-1]:
+            return _in_floats(problem, z, sizes)
+        reach = min(1.0, 0.3 / size) if size > 0 else 1.0
+        z = [x - reach * d for x, d in zip(z, correction, strict=True)]
+        sizes.append(size)
+        if size < 1e-15:
+            break
+    last = _in_floats(problem, z, sizes)
+    if sizes and sizes[-1] < 1e-6:
+        return last
+    why = f"; at the last step: {last.words}" if last.advice else ""
+    raise UnsettledError(
+        f"{problem.label}: Newton's method in float64 did not settle from {[*start][:4]} ...{why}", last
+    )
+
+
+def _in_floats(problem: System, z: list[float], sizes: list[float]) -> Solution:
+    return Solution(problem, z, DIGITS, tuple(Step(START, log10(size) if size else -START) for size in sizes[-1:]))
+
+
+def given(problem: System, z: Sequence[Any]) -> Solution:
+    """A solution in float64 that was found elsewhere, to say what its digits are worth."""
+    return _in_floats(problem, [float(x) for x in z], [])
+
+
+def _log10(context: Any, size: Any) -> float:
+    return float(context.log10(size)) if size else -float(bits_of(context.dps))

@@ -1,1 +1,0 @@
-"""All cycles up to a period: seeds, correction in float64, catalogue and counts."""

@@ -1,1 +1,0 @@
-"""One cycle at a time, to any precision: its equations, Newton iteration, condition and normal form."""

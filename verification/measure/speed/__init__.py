@@ -1,1 +1,0 @@
-"""Speed and accuracy of the kernels beside other ways, on labelled cases."""

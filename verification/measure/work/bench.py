@@ -1,0 +1,413 @@
+"""What `pinball bench` measures: error and time of every arithmetic and every kernel, and what a kernel leaves out.
+
+The baselines of the benchmark folder: naive NumPy + lambdify, scalar numba, and the paper's own ways.
+
+They are written as one would write them first and are no part of the installed package: they need a checkout, or the
+source distribution. Elsewhere, or without numba, the benchmark goes on with its own rows only, and says so.
+
+A diagram of errors against times, in text: from float64 to a thousand digits on one page.
+"""
+
+import importlib.util
+import os
+import platform
+import time
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from math import log10
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import flint
+import mpmath
+import numpy as np
+from flint import arb
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from numeric.kernels import machine
+from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.text import kernel_text, operations
+from numeric.pinball.sampling import phase_starts
+from verification.arithmetic.balls import bits_of, working
+from verification.maps.enclosed import EnclosedMap
+from verification.maps.exact import ExactMap, errors
+from verification.measure.extremes.labelled import DIGITS, SCENES
+
+Array = NDArray[np.float64]
+LAWS = {"slap": 0, "pinball": "19/20", "elastic": 1}
+BALLS, RUNS = 4096, 5
+WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
+CHECKED = 24  # balls whose errors are measured
+FEW = 8  # in multiprecision
+MORE = 30  # digits of the truth, beyond those that are checked
+SMALLEST = Decimal("1e-300")  # of the errors written as floats
+UNIT = "2**-52, largest of position and direction"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One way to bounce one scene: its largest error over random balls, and its time for one bounce.
+
+    Errors span a thousand decades, which no float does. `lam` is not among the data: `kernel` says it where it differs.
+    """
+
+    scene: str
+    arithmetic: str
+    kernel: str
+    error: Decimal | None
+    seconds_per_bounce: float
+    runs: int
+    lam: Any = LAWS["pinball"]
+
+    def as_data(self) -> dict[str, Any]:
+        """The row as contract.md has it; an error that no float holds is a decimal string."""
+        small = self.error is not None and 0 < self.error < SMALLEST
+        error = None if self.error is None else str(self.error) if small else float(self.error)
+        names = ("scene", "arithmetic", "kernel", "seconds_per_bounce", "runs")
+        return {name: getattr(self, name) for name in names} | {"error": error, "error_unit": UNIT}
+
+
+def machine_facts() -> dict[str, str]:
+    """The machine and the versions, for a footer."""
+    import llvmlite
+    import scipy
+
+    facts = {"python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
+    facts |= {"numpy": np.__version__, "scipy": scipy.__version__, "llvmlite": llvmlite.__version__}
+    facts |= {
+        "mpmath": mpmath.__version__,
+        "mpmath's integers": mpmath.libmp.BACKEND,
+        "python-flint": flint.__version__,
+    }
+    if machine.available():
+        import llvmlite.binding as llvm
+
+        facts["processor"] = llvm.get_host_cpu_name()
+    return facts | {"processors": str(os.cpu_count())}
+
+
+def best(action: Callable[[], object], runs: int = RUNS) -> float:
+    """The shortest of some runs, in seconds: the one that was disturbed least."""
+    times = []
+    for _ in range(runs):
+        start = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
+    """LLVM kernels, with and without exponents and with two threads, and the same step on NumPy arrays."""
+    for kernels, kernel, balls, bounces in ((True, "llvm", BALLS, 1000), (False, "numpy", BALLS, 10)):
+        map = PinballMap(name, lam=LAWS["pinball"], kernels=kernels, **_shape(name))
+        own = attracted(map, balls)
+        lam = np.full(balls, float(map.lam))
+        error = worst(map, own)
+
+        def run(
+            question: KernelSpec,
+            tangent: tuple[Array, ...] = (),
+            threads: int = 1,
+            map: PinballMap = map,
+            own: list[Array] = own,
+            lam: Array = lam,
+            bounces: int = bounces,
+        ) -> float:
+            def once() -> object:
+                return map.engine.run(question, own, lam, map.shape, bounces, tangent, threads)
+
+            once()
+            return best(once, runs) / bounces / own[0].size
+
+        nought = np.zeros(balls)
+        alone = run(KernelSpec(map.law))
+        yield Row(name, "float64", kernel, error, alone, runs)
+        if kernels:
+            copies = 1 + int(WORTH_A_THREAD / (alone * balls * bounces))  # more balls, for more bounces would underflow
+            many = [np.tile(field, copies) for field in own]
+            tangent = tuple(starting(nought + 1, nought, nought + 1))
+            yield Row(
+                name, "float64", "llvm, exponents", error, run(KernelSpec(map.law, exponents=True), tangent), runs
+            )
+            both = run(KernelSpec(map.law), threads=2, own=many, lam=np.tile(lam, copies))
+            yield Row(name, "float64", "llvm, 2 threads", error, both, runs)
+            recorded = run(KernelSpec(map.law, record=True), bounces=100)
+            yield Row(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
+            yield Row(name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs)
+    for law in ("slap", "elastic"):
+        map = PinballMap(name, lam=LAWS[law], **_shape(name))
+        own, lam = attracted(map, BALLS, 1), np.full(BALLS, float(map.lam))
+        alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
+        yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
+
+
+def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
+    """Seconds for one bounce of an orbit that is told in full."""
+    component, theta = map.states.place(own)
+    phi = map.states.exit(component, theta, own, map.law)
+
+    def once() -> object:
+        return map.orbit(theta, phi, bounces, component, threads=1)
+
+    once()
+    return best(once, runs) / bounces / theta.size
+
+
+def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[Row]:
+    """mpmath and balls, rounded to their digits, against a proved enclosure with 30 digits more."""
+    map, lam = PinballMap(name, lam=LAWS["pinball"], **_shape(name)), Fraction(str(LAWS["pinball"]))
+    component, theta, phi, *_ = phase_starts(map, FEW, seed=3)
+    balls = [(int(c), float(t), float(p)) for c, t, p in zip(component, theta, phi, strict=True)]
+    for wanted in digits:
+        truth = EnclosedMap(map, lam, bits_of(wanted + MORE, 64))
+        landed = [truth.bounce(truth.ball(*ball)) for ball in balls]
+        ways = (("mpmath", ExactMap(map, wanted, lam)), ("arb", EnclosedMap(map, lam, bits_of(wanted, 64))))
+        for arithmetic, way in ways:
+            starts = [way.ball(*ball) for ball in balls]
+            found = [way.bounce(ball) for ball in starts]
+            error = max(distance(one, two, wanted) for one, two in zip(found, landed, strict=True))
+
+            def all_of_them(way: Any = way, starts: Any = starts) -> object:
+                return [way.bounce(ball) for ball in starts]
+
+            yield Row(name, arithmetic, f"{wanted} digits", error, best(all_of_them, runs) / FEW, runs)
+
+
+def distance(found: Any, truth: Any, digits: int) -> Decimal:
+    """How far parameter and exit angle, written with these digits, may be from enclosed ones, in units of 2**-52."""
+    largest = arb(0)
+    with working(bits_of(digits + 2 * MORE)):
+        for one, two in ((found.theta, truth.theta), (found.phi, truth.phi)):
+            written = one.mid().str(digits, radius=False) if isinstance(one, arb) else mpmath.nstr(one, digits)
+            largest = largest.max(arb(abs(arb(written) - two).upper()))
+        return Decimal((largest * 2**52).upper().str(3, radius=False))
+
+
+def attracted(map: PinballMap, balls: int, transient: int = 100) -> list[Array]:
+    """Fields of random balls after some bounces."""
+    starts = phase_starts(map, balls, seed=1)
+    own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
+    rows = map.engine.run(KernelSpec(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows
+    return [np.ascontiguousarray(rows[field]) for field in map.family.fields(map.law)]
+
+
+def worst(map: PinballMap, own: list[Array]) -> Decimal:
+    """The largest error of one bounce over the first balls, in units of 2**-52, against 50 digits."""
+    first = [field[:CHECKED].copy() for field in own]
+    lam = np.full(CHECKED, float(map.lam))
+    after = map.engine.run(KernelSpec(map.law, record=True), first, lam, map.shape, 1).record
+    assert after is not None
+    position, direction = errors(map, ExactMap(map, DIGITS), first, list(after[0]))
+    return Decimal(f"{max(position.max(), direction.max()):.3g}")
+
+
+def frontier(rows: list[Row]) -> set[int]:
+    """The rows that no other way to do the same beats in both error and time: the Pareto front.
+
+    >>> row = lambda error, seconds: Row("s", "a", "k", Decimal(error), seconds, 1)
+    >>> sorted(frontier([row(1, 1.0), row(2, 2.0), row(0, 3.0)]))
+    [0, 2]
+    """
+    front = set()
+    for i, row in enumerate(rows):
+        if (
+            row.error is not None
+            and row.lam == LAWS["pinball"]
+            and not any(
+                other.error is not None
+                and other.lam == row.lam
+                and other.error <= row.error
+                and other.seconds_per_bounce <= row.seconds_per_bounce
+                and (other.error, other.seconds_per_bounce) != (row.error, row.seconds_per_bounce)
+                for other in rows
+            )
+        ):
+            front.add(i)
+    return front
+
+
+def operation_table() -> str:
+    """The vector instructions of one bounce, for every scene and question, as a table in Markdown."""
+    lines = ["| scene | law | question | fma | add | mul | div | sqrt | compare | select |", "|" + "---|" * 10]
+    for name in SCENES:
+        for law, lam in LAWS.items():
+            map = PinballMap(name, lam=lam, **_shape(name))
+            for question in (KernelSpec(law), KernelSpec(law, record=True), KernelSpec(law, exponents=True)):
+                counts = operations(kernel_text(map.family, map.engine.names, question))
+                asked = question.text.partition("-")[2] or "end"
+                lines.append(f"| {name} | {law} | {asked} | " + " | ".join(map_str(counts.values())) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def map_str(numbers: Iterable[int]) -> list[str]:
+    """Numbers as text."""
+    return [str(number) for number in numbers]
+
+
+def _shape(name: str) -> dict[str, Any]:
+    return dict(SCENES[name])
+
+
+ROOT = Path(__file__).resolve().parents[3]
+FOLDER = ROOT / "benchmarks"
+MISSING = "The baselines need a checkout, or the source distribution: benchmarks/ is no part of the installed package."
+MEASURED = 24  # whose errors are measured
+LAM = 0.95
+
+
+def is_checkout() -> bool:
+    """Whether the package runs from its source tree: what lies beside an installed one is somebody else's."""
+    return (ROOT / "pyproject.toml").is_file() and FOLDER.is_dir()
+
+
+def module(name: str) -> ModuleType | None:
+    """A module of the benchmark folder, or None when it cannot be had."""
+    path = FOLDER / f"{name}.py"
+    if not is_checkout() or not path.exists():
+        return None
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(found)
+    except ImportError:
+        return None
+    return found
+
+
+def baseline_rows(name: str, runs: int) -> Iterable[Row]:
+    """The three baselines on a scene."""
+    rng = np.random.default_rng(2)
+    shape: dict[str, Any] = dict(SCENES[name])
+    map = PinballMap(name, lam=LAWS["pinball"], **shape)
+    low, high = map.states.ends[0]
+    theta, phi = rng.uniform(low * 0.99, high * 0.99, 2048), rng.uniform(-1.4, 1.4, 2048)
+    value = map.shape[0] if map.shape else 0.0
+    scalar = module("scalar_numba")
+    if scalar is not None:
+        step = getattr(scalar, name)
+
+        def compiled(bounces: int, count: int = 512) -> Any:
+            at, out = theta[:count].copy(), phi[:count].copy()
+            scalar.every(step, at, out, LAM, bounces, value)
+            return at, out
+
+        error = _error(map, theta, phi, *compiled(1, MEASURED))
+        yield Row(
+            name, "float64", "numba, one ball at a time", error, best(lambda: compiled(300), runs) / 512 / 300, runs
+        )
+    arrays = module("arrays_lambdify")
+    naive = arrays.baseline(name, shape) if arrays is not None else None
+    if naive is not None:
+        with np.errstate(all="ignore"):
+            error = _error(map, theta, phi, *naive.bounce(theta[:MEASURED], phi[:MEASURED], LAM))
+
+            def lambdified() -> None:
+                at, out = theta, phi
+                for _ in range(10):
+                    at, out = naive.bounce(at, out, LAM)
+
+            yield Row(name, "float64", "numpy + lambdify", error, best(lambdified, runs) / theta.size / 10, runs)
+    ways = module("paper_ways")
+    if ways is not None:
+        way = getattr(ways, name)
+
+        def papers() -> Any:
+            return [
+                way(0, a, b, LAM, *map.shape)
+                for a, b in zip(theta[:MEASURED].tolist(), phi[:MEASURED].tolist(), strict=True)
+            ]
+
+        _, at, out = (np.array(column, dtype=float) for column in zip(*papers(), strict=True))
+        error = _error(map, theta, phi, at, out)
+        yield Row(name, "float64", "the paper's way, in Python", error, best(papers, runs) / MEASURED, runs)
+
+
+def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:
+    """The largest error of parameter or angle over the first balls, in units of 2**-52."""
+    exact = ExactMap(map, DIGITS)
+    mp, worst = exact.context, 0.0
+    for i in range(MEASURED):
+        truth = exact.bounce(exact.ball(0, theta[i], phi[i]))
+        gap = mp.mpf(float(at[i])) - truth.theta
+        if truth.component == 0:
+            gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))
+        worst = max(worst, float(abs(gap)), float(abs(mp.mpf(float(out[i])) - truth.phi)))
+    return Decimal(f"{worst * 2.0**52:.3g}")
+
+
+WIDTH, HEIGHT = 72, 14  # characters
+UNIT_LOG10 = -52 * log10(2)  # decimal logarithm of the unit of errors
+Point = tuple[float, Decimal | None]  # seconds, and an error in units of 2**-52
+
+
+def duration(seconds: float) -> str:
+    """A time in the unit that suits it.
+
+    >>> duration(7.5e-9), duration(2e-3)
+    ('7.5 ns', '2 ms')
+    """
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.2g} ns"
+
+
+def magnitude(error: Decimal) -> float:
+    """The decimal logarithm of an error given in units of 2**-52, which may lie below every float.
+
+    >>> round(magnitude(Decimal("4.5036e-984")), 3)
+    -999.0
+    """
+    return float(error.log10()) + UNIT_LOG10 if error else -float("inf")
+
+
+def diagram(points: Sequence[Point], front: Collection[int] = ()) -> str:
+    """A letter at each time (to the right) and error (upwards), both logarithmic; capitals are on the front.
+
+    Where errors span hundreds of decades the upward scale is the logarithm of the number of digits that are right.
+
+    >>> print(diagram([(1e-9, Decimal(1)), (1e-3, Decimal("1e-90"))], front={1}).splitlines()[0].strip())
+    1e-16 |a
+    """
+    placed = {
+        i: (log10(seconds), magnitude(error))
+        for i, (seconds, error) in enumerate(points)
+        if error is not None and error.is_finite() and error > 0
+    }
+    if not placed:
+        return ""
+    left, right = min(x for x, _ in placed.values()), max(x for x, _ in placed.values())
+    top, bottom = max(y for _, y in placed.values()), min(y for _, y in placed.values())
+    wide = bottom < 3 * top < 0
+
+    def height(y: float) -> float:
+        return -log10(-y) if wide else y
+
+    span = max(height(top) - height(bottom), 1e-9)
+    canvas = [[" "] * WIDTH for _ in range(HEIGHT)]
+    for i, (x, y) in placed.items():
+        column = round((x - left) / max(right - left, 1e-9) * (WIDTH - 1))
+        line = round((height(top) - height(y)) / span * (HEIGHT - 1))
+        while canvas[line][column] != " " and column < WIDTH - 1:
+            column += 1
+        canvas[line][column] = chr(ord("A" if i in front else "a") + i)
+    texts = []
+    for line, letters in enumerate(canvas):
+        at = height(top) - span * line / (HEIGHT - 1)
+        label = (f"1e{-round(10**-at)}" if wide else _power(at)) if line % 4 == 0 or line == HEIGHT - 1 else ""
+        texts.append(f"  {label:>8} |{''.join(letters).rstrip()}")
+    first, last = duration(10**left), duration(10**right)
+    return "\n".join([*texts, f"{'':>11}+{'-' * WIDTH}", f"{'':>12}{first}{last:>{WIDTH - len(first)}} a bounce"])
+
+
+def _power(y: float) -> str:
+    """`10**y` with one digit."""
+    exponent = int(y // 1)
+    lead = round(10 ** (y - exponent))
+    return f"{1 if lead == 10 else lead}e{exponent + (lead == 10)}"

@@ -1,0 +1,230 @@
+"""The tongue of the K-pointed egg: the bifurcation curves that lead to its chaotic attractor.
+
+For odd K the vertex-to-flat diameter doubles its period on `alpha-tilde`; the symmetric cycle of period 4
+that it bears breaks its symmetry (a pitchfork, on half the cycle), and what it bears doubles again and
+again, up to an accumulation curve. Every rung is followed in the two letters from one start.
+
+Cycles that expand areas although `lam < 1`, and Neimark-Sacker bifurcations: proved, on the paper's own egg.
+
+The determinant of a cycle is not `lam**p` (`symbolic.cycles.thresholds`). Three facts, each in balls:
+
+- `contracting_up_to`: below a contraction no cycle of the egg expands, so none bifurcates that way;
+- `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1;
+- `double_one`: a cycle of period 17 with the double multiplier 1 at a `lam < 1`. The zero is regular, so
+  along `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from math import pi
+
+import numpy as np
+from flint import arb
+from sympy import Expr, Rational, atan
+
+from symbolic.cycles.polygons import largest_tilt
+from symbolic.cycles.thresholds import alpha_tilde
+from symbolic.expressions.text import kernel, load
+from symbolic.tables import egg
+from symbolic.tables.table import alpha as letter
+from symbolic.tables.table import lam
+from verification.arithmetic.balls import balls, exact_balls, working
+from verification.cycles.continuation.arc import Steps
+from verification.cycles.continuation.branch import branch
+from verification.cycles.continuation.switching import Curve, Degenerate, curve, switched
+from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.critical import Small, critical
+from verification.cycles.recurrence.newton import refined
+from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Closure
+from verification.named.feigenbaum import limit
+from verification.named.locate import certify
+from verification.proofs.periodic.interval_newton import Enclosure, contraction
+
+TWO = ("alpha", "lam")
+SHARE = 0.96  # of the shape whose diameter doubles at lam = 0: there every rung has its contraction
+Tick = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One curve of the cascade: what becomes of a cycle of `period` bounces along it."""
+
+    name: str
+    period: int
+    what: BifurcationKind
+    curve: Curve = field(repr=False)
+
+    @property
+    def special(self) -> tuple[Degenerate, ...]:
+        """Its points of codimension two."""
+        return self.curve.special
+
+    def lam(self, alpha: float) -> float | None:
+        """The contraction on the curve at a shape; None where the curve does not go."""
+        found = self.curve.crossing(alpha)
+        return float(found[0][-1]) if found else None
+
+
+def largest_shape(K: int) -> float:
+    """The largest `alpha` with a convex table, `1/(1 + K**2)`."""
+    return 1 / (1 + K * K)
+
+
+def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> Iterator[Rung]:
+    """The curves from the diameter's doubling up to the cycles of `highest` bounces; for odd K.
+
+    >>> rungs = cascade(3, 4)
+    >>> [(rung.name, [d.what.value for d in rung.special]) for rung in rungs]  # doctest: +NORMALIZE_WHITESPACE
+    [('doubling of 2', ['1:2 resonance']), ('symmetry breaking of 4', ['1:2 resonance']),
+     ('doubling of 4', ['1:2 resonance'])]
+    """
+    if K % 2 == 0:
+        raise ValueError(f"cascade: K = {K} is even, and no diameter doubles its period; accepted: odd K from 3")
+    table, top = egg(K), largest_shape(K)
+    at = {"alpha": SHARE * float(alpha_tilde(K).subs(lam, 0))}
+    box, steps = ((top / 200, top), (0.0, 1.0)), Steps(largest=0.15)
+    one = branch(Chords(table, (0, 0)), np.array([0.0, pi]), "lam", 0.0, (0.0, 1.0), at)
+    period = 2
+    while period <= highest:
+        event = next(e for e in one.events if e.what in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK))
+        period = one.system.recurrence.period
+        what = "doubling" if event.what is BifurcationKind.FLIP else "symmetry breaking"
+        name = f"{what} of {period}"
+        tick(name)
+        found = curve(event.ring, BifurcationKind.FLIP, event.x, TWO, (at["alpha"], event.value), box, steps=steps)
+        yield Rung(name, period, event.what, found)
+        if period >= highest and event.what is BifurcationKind.FLIP:
+            return
+        one = switched(one, event, (0.0, 1.0))[0]
+
+
+def fold(K: int = 3, p: int = 1, q: int = 3) -> Rung:
+    """The fold of the polygon that turns by `2*pi*p/q`, one bounce of it followed (closed form: `polygons`)."""
+    ring = polygon(K, p, q)
+    top = largest_shape(K)
+    at = {"alpha": 0.8 * top}
+    one = branch(ring, np.array([pi / K]), "lam", 1.0, (0.0, 1.0), at)
+    event = next(e for e in one.events if e.what is BifurcationKind.FOLD)
+    box = ((top / 200, top), (0.0, 1.0))
+    found = curve(ring, BifurcationKind.FOLD, event.x, TWO, (at["alpha"], event.value), box, steps=Steps(largest=0.15))
+    return Rung(f"fold of {p}/{q}", q, BifurcationKind.FOLD, found)
+
+
+def polygon(K: int, p: int, q: int) -> Chords:
+    """One bounce of the cycle that turns by `2*pi*p/q` each time."""
+
+    if K * p % q:
+        raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
+    return Chords(egg(K), (0,), Closure(1, (p, q)))
+
+
+@dataclass(frozen=True)
+class Accumulation:
+    """Where the doublings pile up, a contraction with an error for each shape."""
+
+    alpha: Array
+    lam: Array
+    error: Array
+
+
+def accumulation(rungs: list[Rung], alphas: Array) -> Accumulation:
+    """The end of the cascade at each shape that all the doublings reach.
+
+    The error is the difference to a second extrapolation, or to the same one without the last rung if that is larger.
+    """
+    doublings = [rung for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
+    found = []
+    for alpha in alphas:
+        values = [rung.lam(float(alpha)) for rung in doublings]
+        if any(value is None for value in values):
+            continue
+        decimals = [repr(value) for value in values]
+        estimate, shorter = limit(decimals), limit(decimals[:-1])
+        error = max(estimate.error, abs(estimate.value - shorter.value))
+        found.append((float(alpha), float(estimate.value), float(error)))
+    rows = np.array(found).reshape(-1, 3)
+    return Accumulation(rows[:, 0], rows[:, 1], rows[:, 2])
+
+
+BITS = 128
+HEXAGON = (0.0, 1.0472, 2.0944, 3.1416, 4.1888, 5.236)
+LONG = (  # period 17, rotation number 4/17; then alpha and lam
+    *(0.031731, 1.939716, 3.434869, 4.415375, 6.136337, 1.136034, 2.284457, 4.108431, 5.740919),
+    *(0.357381, 2.12005, 4.011587, 5.416771, 0.214657, 2.020715, 3.654544, 4.551936),
+    *(0.06873034054513638, 0.9637899748709065),
+)
+
+
+@dataclass(frozen=True)
+class Expanding:
+    """A cycle, proved to exist, and its determinant as a ball."""
+
+    certified: bool
+    determinant: arb
+
+
+def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
+    """The hexagon of the egg and its determinant.
+
+    >>> found = expanding_cycle()
+    >>> found.certified, bool(found.determinant > 1)
+    (True, True)
+    """
+    problem = Problem(egg(3).at(alpha=alpha), (0,) * 6, lam=Rational(lam))
+    proof = certify(problem, list(HEXAGON), 20)
+    with working(BITS):
+        chain = Linearised(Rows(problem, balls(BITS)), proof.enclosure.zero).plain
+        _, determinant = trace_and_determinant(chain.rows)
+    return Expanding(proof.certified, determinant)
+
+
+def resonance(period: int) -> Small:
+    """A cycle of the egg with the double multiplier 1: unknowns are its bounces, `alpha` and `lam`."""
+    both = BifurcationKind.FOLD, BifurcationKind.TORUS
+    return critical(Chords(egg(3), (0,) * period), both, ("alpha", "lam"))
+
+
+def double_one() -> Enclosure:
+    """The resonance of period 17, enclosed; the last two balls are `alpha` and `lam`."""
+    system = resonance(17)
+    solution = refined(system, list(LONG), 24)
+    with working(256):
+        radius = (arb(10) ** -22).mid()
+    return contraction(system, exact_balls(solution.z), radius, 256)
+
+
+def contracting_up_to(alpha: Expr, K: int = 3) -> float:
+    """A contraction up to which the determinant of every cycle of the egg is below 1, in steps of 1/64.
+
+    With `d` the largest tilt of the normal and `r` the ratio of the largest and the smallest radius, the sine
+    rule on the triangle of a chord and the centre gives `|eta| <= d + asin(r*sin(d + |phi|))`. If the largest
+    `|eta|` of a cycle, with `|phi| <= lam*|eta|`, could not be between the root of `x*tan(x) = 1` and `pi/2`,
+    every factor is below 1.
+
+    >>> contracting_up_to(Rational(2, 25))
+    0.328125
+    """
+    best = 0.0
+    with working(BITS):
+        tilt, ratio = load(
+            kernel("egg", [], {"tilt": atan(largest_tilt(K).subs(letter, alpha)), "ratio": (1 + alpha) / (1 - alpha)}),
+            balls(BITS),
+        )()
+        for step in range(1, 64):
+            if not _confined(tilt, ratio, arb(step) / 64):
+                return best
+            best = step / 64
+    return best
+
+
+def _confined(tilt: arb, ratio: arb, lam: arb, pieces: int = 512) -> bool:
+    """Is `d + asin(r*sin(d + lam*E)) < E` for every `E` from the root of `x*tan(x) = 1` to `pi/2`?"""
+    low, high = arb("0.8603"), arb.pi() / 2
+    for k in range(pieces):
+        E = low + (high - low) * arb(2 * k + 1, 1) / (2 * pieces)
+        steepest = ratio * (tilt + lam * E).sin()
+        if not (tilt + lam * E < arb.pi() / 2 and steepest < 1 and tilt + steepest.asin() < E):
+            return False
+    return bool(low * low.tan() < 1)

@@ -1,0 +1,281 @@
+"""A picture of branches: a bounce against the letter, solid where stable, events marked.
+
+The tongue explained in one picture: the curves of the cascade over a sample of where attractors are chaotic.
+
+A crisis as a picture: attractor and manifolds, whole and close to where they touch. Paper: section 6.7.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from verification.cycles.continuation.branch import Branch
+from verification.cycles.continuation.starts import spectrum_of
+from verification.cycles.recurrence.recurrence import BifurcationKind
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from numeric import PinballMap
+from verification.cycles.continuation.cells import Array
+from verification.named.curves import Accumulation, Rung, accumulation, cascade, fold, largest_shape
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+from typing import TYPE_CHECKING, Any
+
+from sympy import Expr
+
+from verification.arithmetic.balls import ARRAYS, FLOAT64
+from verification.proofs.manifolds.grow import branch
+from verification.proofs.manifolds.known import CONTACTS, contact, table
+from verification.proofs.manifolds.saddle import local, saddle
+from verification.proofs.manifolds.tangency import Gap
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+MARKS = {
+    BifurcationKind.FOLD: ("s", "tab:blue"),
+    BifurcationKind.PITCHFORK: ("D", "tab:purple"),
+    BifurcationKind.BRANCH_POINT: ("D", "tab:brown"),
+    BifurcationKind.FLIP: ("o", "tab:red"),
+    BifurcationKind.TORUS: ("*", "tab:green"),
+    BifurcationKind.NEUTRAL_SADDLE: ("x", "tab:gray"),
+    BifurcationKind.BORDER_COLLISION: ("v", "tab:orange"),
+}
+
+
+def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> "Figure":
+    """The parameters of `bounces` (all when None) along each branch, in a figure of its own."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    seen: set[BifurcationKind] = set()
+    for number, followed in enumerate(branches):
+        shown = range(followed.system.recurrence.period) if bounces is None else bounces
+        colour = f"C{number}" if len(branches) > 1 else "black"
+        for bounce in shown:
+            for values, angles, stable in runs(followed, bounce):
+                axes.plot(values, angles, color=colour, lw=1.4 if stable else 0.9, ls="-" if stable else "--")
+            for event in followed.events:
+                marker, paint = MARKS[event.what]
+                label = None if event.what in seen else event.what.value
+                seen.add(event.what)
+                axes.plot(
+                    event.value, _wrapped(event.point.z[bounce]), marker, color=paint, ms=5, label=label, zorder=3
+                )
+    axes.set_xlabel(
+        {"lam": r"$\lambda$", "alpha": r"$\alpha$"}.get(branches[0].system.letter, branches[0].system.letter)
+    )
+    axes.set_ylabel(r"$\theta$ of the bounces" if branches[0].system.letter in ("lam", "alpha", "a") else "$x$")
+    axes.set_title(", ".join(dict.fromkeys(b.system.label for b in branches)) + "  (dashed: unstable)", fontsize=10)
+    if seen:
+        axes.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float], bool]]:
+    """Stretches of one stability that do not jump across the end of the circle."""
+    values: list[float] = []
+    angles: list[float] = []
+    for a, b in pairwise(branch.points):
+        stable = spectrum_of(b).stable
+        ends = [(float(p.z[-1]), float(_wrapped(p.z[bounce]))) for p in (a, b)]
+        if not values:
+            values, angles = [ends[0][0]], [ends[0][1]]
+        if abs(ends[1][1] - ends[0][1]) > np.pi:
+            yield values, angles, spectrum_of(a).stable  # the end at lam = 1 is on the edge itself
+            values, angles = [], []
+            continue
+        values.append(ends[1][0])
+        angles.append(ends[1][1])
+        if spectrum_of(a).stable != stable:
+            yield values[:-1], angles[:-1], not stable
+            values, angles = [ends[0][0], ends[1][0]], [ends[0][1], ends[1][1]]
+    if values:
+        yield values, angles, spectrum_of(branch.points[-1]).stable
+
+
+def _wrapped(theta: float) -> float:
+    return float(np.mod(theta + np.pi, 2 * np.pi) - np.pi)
+
+
+POSITIVE = 0.02  # an exponent per bounce above this counts as chaotic
+POINTS = 10_000  # parts that a convex table's range of shapes is cut into, to name a shape exactly
+
+
+class Sample(NamedTuple):
+    """The share of starts with a positive exponent, rows for shapes and columns for contractions."""
+
+    alpha: Array
+    lam: Array
+    share: Array
+
+
+def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed: int = 1) -> Sample:
+    """Exponents of random starts on a grid of shapes and contractions, after as many bounces that do not count.
+
+    >>> found = sampled(3, 3, 4, 200)
+    >>> found.share.shape, float(found.share[0].max())
+    ((3, 3), 0.0)
+    """
+    rng = np.random.default_rng(seed)
+    top, lams = Fraction(1, 1 + K * K), np.linspace(0.02, 0.98, side)
+    alphas = [top * Fraction(round(POINTS * x), POINTS) for x in np.linspace(0.3, 1.0, side)]
+    shares = []
+    for alpha in alphas:
+        theta = rng.uniform(-np.pi, np.pi, (side, starts))
+        phi = np.arcsin(rng.uniform(-0.99, 0.99, (side, starts)))
+        map = PinballMap("egg", lam=np.repeat(lams[:, None], starts, 1), K=K, alpha=alpha)
+        found = map.exponents(theta, phi, bounces, transient=bounces)
+        shares.append((found.nu_plus > POSITIVE).mean(axis=1))
+    return Sample(np.array([float(a) for a in alphas]), lams, np.array(shares))
+
+
+def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) -> "Figure":
+    """Doublings, symmetry breaking, accumulation and the fold of the polygons that take over, in (lam, alpha)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.5, 5.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    top = largest_shape(K)
+    if sample is not None:
+        axes.pcolormesh(sample.lam, sample.alpha, sample.share, cmap="Reds", vmin=0, vmax=1.6, shading="nearest")
+    if K % 2:
+        rungs = list(cascade(K, highest))
+        for rung in rungs:
+            _line(axes, rung)
+        _limit(axes, accumulation(rungs, np.linspace(0.6 * top, top, 41)))
+    for (p, q), dashes in zip(turns(K), ("-.", "--", ":", "-.", "--"), strict=False):
+        plane = fold(K, p, q).curve.plane
+        axes.plot(plane[:, 1], plane[:, 0], color="tab:blue", ls=dashes, lw=1.2, label=f"fold of the polygon {p}/{q}")
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0.3 * top, top)
+    axes.set_xlabel(r"$\lambda$")
+    axes.set_ylabel(r"$\alpha$")
+    axes.set_title(f"egg with K = {K}" + ("; red: share of starts that end in chaos" if sample is not None else ""))
+    axes.legend(fontsize=8, frameon=True, loc="lower left")
+    return figure
+
+
+def turns(K: int) -> list[tuple[int, int]]:
+    """The rotation numbers `p/K` below 1/2 whose polygons fold.
+
+    >>> turns(5)
+    [(1, 5), (2, 5)]
+    """
+    return [(p, K) for p in range(1, (K + 1) // 2) if np.gcd(p, K) == 1]
+
+
+def _line(axes: object, rung: Rung) -> None:
+    plane = rung.curve.plane
+    breaking = rung.what is BifurcationKind.PITCHFORK
+    label = rung.name if rung.period <= 4 else "doublings of 8, 16, ..." if rung.period == 8 else None
+    colour = "tab:purple" if breaking else "black" if rung.period == 2 else "tab:green"
+    axes.plot(plane[:, 1], plane[:, 0], color=colour, lw=1.6 if rung.period == 2 else 1.0, label=label)  # type: ignore[attr-defined]
+
+
+def _limit(axes: object, end: Accumulation) -> None:
+    axes.plot(end.lam, end.alpha, color="tab:red", lw=1.6, label="accumulation")  # type: ignore[attr-defined]
+
+
+BALLS, BOUNCES, TRANSIENT, SEED = 300, 400, 2000, 1
+LENGTHS = dict.fromkeys(CONTACTS, (16.0, 12.0)) | {"boundary": (26.0, 9.0)}  # of each unstable and each stable branch
+ZOOM = dict.fromkeys(CONTACTS, (0.12, 0.009)) | {
+    "boundary": (0.16, 0.09)
+}  # half the width and height of the second panel
+JOINED = 0.02
+COLOURS = {"unstable": "#c1272d", "stable": "#1f4e99", "attractor": "0.55"}
+
+
+def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> "Figure":
+    """A crisis of the egg, one of `CONTACTS`, modulo its rotations, in `theta` and `phi`.
+
+    `below` moves the contraction below the tangency; `share` shortens the curves, for a quick look.
+    """
+    from matplotlib.figure import Figure
+
+    where = contact(kind, alpha)
+    map, lam = table(alpha).over(FLOAT64), where.letter - below
+    figure = Figure(figsize=(12, 5.2), layout="constrained")
+    whole, close = figure.subplots(1, 2)
+    found, arrays = saddle(where.unstable, map, lam), map.over(ARRAYS)
+    cloud = attractor(kind, alpha, lam)
+    target = _touching_point(where, map)
+    for axes, size in ((whole, 0.3), (close, 1.5)):
+        axes.plot(*cloud, ",", color=COLOURS["attractor"], zorder=1)
+        for unstable, word, length in zip((False, True), ("stable", "unstable"), LENGTHS[kind][::-1], strict=True):
+            for side in (1, -1):
+                grown = branch(local(found, unstable), side, share * length, spacing=0.01)
+                here, following = grown.here, grown.following
+                for _ in found.points:  # the curve through one bounce, and its images through the others
+                    theta, phi = arrays.plane(here, following)
+                    for sign in (1, -1):
+                        _curve(axes, sign * theta, sign * phi, COLOURS[word], 0.5 + size / 3)
+                    here, following = following, arrays.following(here, following, lam)
+        ring = found.around()
+        for sign in (1, -1):
+            theta, phi = zip(*(map.plane(a, b) for a, b in pairwise(ring[1:])), strict=True)
+            axes.plot(_modulo(sign * np.array(theta)), sign * np.array(phi), "o", ms=4, color="black", zorder=4)
+        axes.set_xlabel(r"$\theta$ modulo $2\pi/3$")
+        axes.set_ylabel(r"$\varphi$")
+    whole.set_xlim(-np.pi / 3, np.pi / 3)
+    whole.set_ylim(*((-0.75, 0.75) if kind == "boundary" else (-0.3, 0.3)))
+    width, height = ZOOM[kind]
+    close.set_xlim(target[0] - width, target[0] + width)
+    close.set_ylim(target[1] - height, target[1] + height)
+    close.plot(*target, "o", ms=9, mfc="none", mec="black", zorder=5)
+    whole.set_title(rf"{kind} crisis, $\alpha = {float(alpha):g}$, $\lambda = {lam:.9f}$")
+    close.set_title("where the manifolds touch")
+    for word, colour in COLOURS.items():
+        whole.plot([], [], color=colour, label=word if word == "attractor" else f"{word} manifold")
+    whole.plot([], [], "o", ms=4, color="black", label=found.orbit.name)
+    whole.legend(loc="upper left", fontsize=8, framealpha=0.9)
+    return figure
+
+
+def attractor(kind: str, alpha: Expr, lam: float) -> tuple[Any, Any]:
+    """A cloud of points on the chaotic attractor, just below the crisis where it still attracts."""
+    rng = np.random.default_rng(SEED)
+    map = PinballMap("egg", lam=lam - (1e-4 if kind == "boundary" else 1e-6), alpha=alpha)
+    theta, phi = rng.uniform(-0.05, 0.05, (2, BALLS))
+    ball = map.exponents(theta, phi, 200, TRANSIENT)
+    chaotic = ball.nu_plus > 0
+    orbit = map.orbit(ball.theta[chaotic], ball.phi[chaotic], BOUNCES)
+    return _modulo(orbit.theta.ravel()), orbit.phi.ravel()
+
+
+def _touching_point(where: Any, map: Any) -> tuple[float, float]:
+    """The bounce of the tangency orbit that is farthest from the saddle, in the cell of the first panel."""
+    gap = Gap(where, map, where.letter, 28, 1e-16)
+    flight = [jet.c[0] for jet in gap.orbit(gap.extremum()[0])]
+    moves = [abs(jet.c[1]) for jet in gap.orbit(gap.start)[:-1]]
+    bent = int(np.argmax(moves)) if len(where.unstable.start) != 2 else len(moves) - 1
+    theta, phi = map.plane(flight[bent], flight[bent + 1])
+    return float(_modulo(theta)), float(phi)
+
+
+def _curve(axes: Any, x: Any, y: Any, colour: str, width: float) -> None:
+    """A line that is broken where it leaves the cell, and where its points are too far apart to be joined."""
+    cell = _modulo(x)
+    broken = np.hypot(np.diff(cell), np.diff(y)) > JOINED
+    at = np.nonzero(broken)[0] + 1
+    axes.plot(np.insert(cell, at, np.nan), np.insert(y, at, np.nan), color=colour, lw=width, zorder=2)
+
+
+def _modulo(theta: Any) -> Any:
+    third = 2 * np.pi / 3
+    return np.remainder(np.asarray(theta) + third / 2, third) - third / 2

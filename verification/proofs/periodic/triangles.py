@@ -1,0 +1,283 @@
+"""The egg's triangles at the flat points: attracting for every contraction between the fold and 1.
+
+On the branch (`symbolic.cycles.polygons`) the determinant of one bounce is `f(gamma - delta)/f(gamma + delta)`
+with `f(x) = x*cos(x)`, which is below 1 while `f` grows; `1 - trace + det` has the sign of
+`-(cos(3*theta) + alpha)` and is positive up to the fold. What is left, `1 + trace + det > 0`, balls
+decide on a cover of the closed branch. Paper: section 6.4.
+
+The paper's argument against period 3 at small contractions, judged. Paper: section 6.4.
+
+It follows the positions of three bounces from every position with *any* initial angle, and says that
+the third never is the first one again up to `lambda_c`. A witness refutes it: two collision rules,
+at the second and third bounce, with the first position given and returned to. The exit angle of the
+witness is free when any angle may be taken, and at most `lam*pi/2` when it must be one that a
+collision can produce (in a convex table every such angle is produced).
+
+No cycle of period 3 in a set of contractions, by exclusion of every triangle. Paper: section 6.4.
+
+For a period-3 cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior
+angles `phi_i - eta_i`, which add up to `pi`, give (counterclockwise, the mirror image being the same)
+
+    0 <= phi_i,    sum phi_i = lam*pi/(1 + lam),    phi_i*eta_j = phi_j*eta_i.
+
+So `phi_i <= lam*pi/(1 + lam)`, and since `phi` falls as the landing point moves on, two bounces are at
+least a gap apart, which is found first. Triangles with their gaps at least that are covered by boxes;
+a box is excluded when one of the equations, by enclosure or by the mean value theorem around its
+centre, cannot hold in it, and halved otherwise.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from flint import arb
+from sympy import Expr, Integer, Rational, Symbol, atan, pi, sqrt, tan
+
+from symbolic.cycles.polygons import characteristic_on_branch, half_turn, largest_tilt
+from symbolic.expressions.text import kernel, load
+from symbolic.motion.chords import chord_kernel
+from symbolic.tables import egg
+from symbolic.tables.table import alpha as letter
+from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
+from verification.arithmetic.progress import Tick, silent
+from verification.cycles.recurrence.chain import Vector
+from verification.cycles.recurrence.critical import Small
+from verification.cycles.recurrence.newton import refined
+from verification.maps.first_hit import convex
+from verification.proofs.periodic.interval_newton import Status, contraction
+
+BITS = 80
+
+
+def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
+    """Is `1 + trace + det > 0` on the whole branch, ends included? None when the budget ends first.
+
+    >>> from sympy import Rational
+    >>> flips_nowhere(Rational(2, 25))
+    True
+    """
+    x = Symbol("x", real=True)
+    value = characteristic_on_branch(x, Integer(-1)).subs(letter, alpha)
+    with working(BITS):
+        at = load(kernel("characteristic", [x], {"value": value}), balls(BITS))
+        end = load(kernel("fold", [], {"fold": acos_of(alpha)}), balls(BITS))()[0]
+        queue, spent = [(0.5, 0.5)], 0
+        while queue:
+            middle, half = queue.pop()
+            spent += 1
+            if spent > budget:
+                return None
+            if not at(end * arb(middle, half))[0] > 0:
+                queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
+    return True
+
+
+def acos_of(alpha: Expr) -> Expr:
+    """`acos(alpha)` in the vocabulary of the kernels."""
+    return pi / 2 - atan(alpha / sqrt(1 - alpha**2))
+
+
+def contracts(alpha: Expr) -> bool:
+    """Does `x*cos(x)` grow up to the largest incidence angle of the branch? Then `det < 1` for `lam < 1`.
+
+    >>> from sympy import Rational
+    >>> contracts(Rational(2, 25))
+    True
+    """
+    largest = half_turn() + atan(largest_tilt().subs(letter, alpha))
+    with working(BITS):
+        (slope,) = load(kernel("slope", [], {"slope": 1 - largest * tan(largest)}), balls(BITS))()
+        return bool(slope > 0)
+
+
+DIGITS = 20
+SLAP = Rational(1, 5), (0.2838, 3.7697)  # at alpha = 2/25, lam = 0: first bounce, and the next two
+PRODUCED = Rational(2, 5), (4.8086, 8.9349)  # at alpha = 2/25, lam = 3/10
+
+
+@dataclass(frozen=True)
+class Witness:
+    """`angle` starts at `theta0` an orbit whose third bounce is `theta0` again; proved when `exists`.
+
+    `produced`: the angle is one that a collision can produce, `|angle| <= lam*pi/2`.
+    """
+
+    exists: bool | None
+    produced: bool | None
+    angle: arb
+
+
+def returning(alpha: Expr, lam: Expr, theta0: Rational) -> Small:
+    """Unknown second and third bounce of an orbit of the egg that starts at `theta0` and returns to it."""
+    table = egg(3).at(alpha=alpha)
+
+    def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
+        angle = load(chord_kernel(table, 0, 0, 0), arithmetic)
+        given = load(kernel("given", [], {"start": theta0, "lam": lam}), arithmetic)()
+        start, contraction = given
+        one, two = z
+        return [
+            angle(one, two)[0] + contraction * angle(one, start)[0],
+            angle(two, start)[0] + contraction * angle(two, one)[0],
+        ]
+
+    return Small(f"egg, a return to theta0 = {theta0} after three bounces", equations)
+
+
+def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float]) -> Witness:
+    """The orbit near the bounces `near`, proved.
+
+    At `lam = 0` already, with any angle; at `lam = 3/10` with an angle that a collision can produce.
+
+    >>> one = witness(Rational(2, 25), Rational(0), *SLAP)
+    >>> one.exists, one.produced
+    (True, False)
+    >>> other = witness(Rational(2, 25), Rational(3, 10), *PRODUCED)
+    >>> other.exists, other.produced
+    (True, True)
+    """
+    system = returning(alpha, lam, theta0)
+    solution = refined(system, near, DIGITS)
+    bits = bits_of(DIGITS, 64)
+    with working(bits):
+        radius = (arb(10) ** -(DIGITS + 2)).mid()
+        found = contraction(system, exact_balls(solution.z), radius, bits)
+        table = egg(3).at(alpha=alpha)
+        angle = load(chord_kernel(table, 0, 0, 0), balls(bits))
+        start, contracted = load(kernel("given", [], {"start": theta0, "lam": lam}), balls(bits))()
+        phi = angle(start + arb(0), found.zero[0])[0]
+        spare = contracted * arb.pi() / 2 - abs(phi)
+        exists = True if found.status is Status.UNIQUE else None
+        return Witness(exists, True if spare > 0 else False if spare < 0 else None, phi)
+
+
+BITS_OF_COVER = 64
+SMALLEST = 2.0**-36  # ends of boxes must stay exact in floats
+Box = tuple[tuple[float, float], ...]  # midpoint and half width of: first bounce, first gap, second gap
+
+
+@dataclass(frozen=True)
+class Exclusion:
+    """`excluded`: every box was; None when the budget ended first. `share` is the volume excluded."""
+
+    excluded: bool | None
+    boxes: int
+    share: float
+    smallest: float
+
+
+def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick: Tick = silent) -> Exclusion:
+    """Has the K-pointed egg no period-3 cycle for any `0 <= lam <= most`?
+
+    >>> from sympy import Rational
+    >>> no_triangles(Rational(2, 25), Rational(1, 4)).excluded
+    True
+    """
+    table = egg(K).at(alpha=alpha)
+    if convex(table) is not True:
+        return Exclusion(None, 0, 0.0, 0.0)
+    with working(BITS_OF_COVER):
+        arithmetic = balls(BITS_OF_COVER)
+        angle = load(chord_kernel(table, 0, 0, 1), arithmetic)
+        ratio = load(kernel("most", [], {"most": most}), arithmetic)()[0] + arb(0)
+        largest = ratio * arb.pi() / (1 + ratio)
+        gap = _gap(angle, largest)
+        turn = math.ceil(201.07 / K) / 64  # a little over pi/K, and like all ends of boxes exact in binary
+        reach = 201.25 / 64 - gap
+        start: Box = ((turn, turn), (gap + reach, reach), (gap + reach, reach))
+        return _subdivided(partial(_impossible, angle, largest, ratio, gap), start, budget, tick)
+
+
+def _gap(angle: Any, largest: arb) -> float:
+    """A gap between parameters at and below which every exit angle exceeds `largest`."""
+    gap, pieces = 1.5, 400
+    while gap > 0:
+        step = 2 * arb.pi() / pieces
+        starts = [arb(2 * k + 1, 1) * step / 2 for k in range(pieces)]
+        if all(angle(x, x + arb(gap))[0] > largest for x in starts):
+            return gap
+        gap -= 1 / 16
+    return 0.0
+
+
+def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick: Tick) -> Exclusion:
+    queue, boxes, done, smallest = [start], 0, 0.0, 1.0
+    while queue and boxes < budget:
+        box = queue.pop()
+        boxes += 1
+        share = _volume(box) / _volume(start)
+        if impossible(box):
+            done += share
+            tick(share)
+            continue
+        smallest = min(smallest, *(half for _, half in box))
+        widest = max(range(3), key=lambda i: box[i][1])
+        middle, half = box[widest]
+        if half < SMALLEST:
+            return Exclusion(None, boxes, done, smallest)
+        for side in (-half / 2, half / 2):
+            queue.append(tuple((middle + side, half / 2) if i == widest else x for i, x in enumerate(box)))
+    return Exclusion(None if queue else True, boxes, done, smallest)
+
+
+def _volume(box: Box) -> float:
+    return box[0][1] * box[1][1] * box[2][1]
+
+
+def _impossible(angle: Any, largest: arb, ratio: arb, gap: float, box: Box) -> bool:
+    """True when it is proved that no triangle of the box obeys the equations."""
+    (first, _), (one, _), (two, _) = box
+    wide = [arb(m, r) for m, r in box]
+    rest = 2 * arb.pi() - wide[1] - wide[2]
+    if rest < gap or wide[1] < wide[2] or wide[1] < rest:  # the first gap may be taken for the largest
+        return True
+    theta = [wide[0], wide[0] + wide[1], wide[0] + wide[1] + wide[2]]
+    ends = [(0, 1), (1, 2), (2, 0)]
+    forth = [angle(theta[i], theta[j]) for i, j in ends]
+    if any(f[0] < 0 or f[0] > largest for f in forth) or forth[0][0] + forth[1][0] + forth[2][0] > largest:
+        return True
+    back = [angle(theta[j], theta[i]) for i, j in ends]  # back[i] is the incidence at the end of flight i
+    phi, eta = [f[0] for f in forth], [back[2][0], back[0][0], back[1][0]]
+    if not all(x.is_finite() for x in (*phi, *eta)):
+        return False
+    if any(not (p + ratio * e * _UNIT).contains(0) for p, e in zip(phi, eta, strict=True)):
+        return True
+    dphi = [_slope(f, i, j) for f, (i, j) in zip(forth, ends, strict=True)]
+    deta = [_slope(b, j, i) for b, (i, j) in zip(back, ends, strict=True)]
+    deta = [deta[2], deta[0], deta[1]]
+    middle = [arb(first), arb(first) + one, arb(first) + one + two]
+    phi_m = [angle(middle[i], middle[j])[0] for i, j in ends]
+    eta_m = [angle(middle[i], middle[i - 1])[0] for i in range(3)]
+    offset = [x - m for x, m in zip(wide, (arb(first), arb(one), arb(two)), strict=True)]
+    total = [dphi[0][k] + dphi[1][k] + dphi[2][k] for k in range(3)]
+    if phi_m[0] + phi_m[1] + phi_m[2] + _dot(_by_gaps(total), offset) > largest:
+        return True
+    for i, j in ends:
+        value = phi_m[i] * eta_m[j] - phi_m[j] * eta_m[i]
+        slope = [
+            dphi[i][k] * eta[j] + phi[i] * deta[j][k] - dphi[j][k] * eta[i] - phi[j] * deta[i][k] for k in range(3)
+        ]
+        if not (value + _dot(_by_gaps(slope), offset)).contains(0):
+            return True
+    return False
+
+
+_UNIT = arb("0.5", "0.5")  # lam/most
+
+
+def _slope(values: Any, here: int, there: int) -> Vector:
+    found: Vector = [0, 0, 0]
+    found[here], found[there] = values[1], values[2]
+    return found
+
+
+def _by_gaps(slope: Vector) -> Vector:
+    """Derivatives by the three parameters as derivatives by the first one and the two gaps."""
+    return [slope[0] + slope[1] + slope[2], slope[1] + slope[2], slope[2]]
+
+
+def _dot(x: Vector, y: Vector) -> arb:
+    total: arb = x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+    return total

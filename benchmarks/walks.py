@@ -9,6 +9,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import click
+
 from verification.app import cli
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -27,7 +29,7 @@ def walked(command: str) -> list[str]:
     found: dict[str, None] = {}
     importing = 0
 
-    def seen(frame, event, _):  # noqa: ANN001, ANN202
+    def seen(frame, event, _):
         nonlocal importing
         if frame.f_code.co_name == "<module>":
             importing += {"call": 1, "return": -1}.get(event, 0)
@@ -47,4 +49,4 @@ def walked(command: str) -> list[str]:
 if __name__ == "__main__":
     for name, command in WALKS.items():
         files = walked(command)
-        print(f"{name}: {len(files)} files\n  " + "\n  ".join(files))
+        click.echo(f"{name}: {len(files)} files\n  " + "\n  ".join(files))

@@ -1,9 +1,7 @@
-"""What every command says: text for people, JSON for programs, a bar for the patient.
+"""`pinball`: one command for each question, and what every command says.
 
-`pinball`: one command for each question.
-
-A command is imported when it is called, so `pinball --help` loads no mathematics. Whatever goes
-wrong reaches the user as one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
+A command is imported when it is called, so `pinball --help` loads no mathematics. People read text and a bar, programs
+read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
 """
 
 import json

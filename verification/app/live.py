@@ -1,8 +1,7 @@
-"""What is picked on the live table, as a map, as a command line and as Python.
+"""The live table: a page in Panel with widgets on the left, the table and its phase space on the right.
 
-What the live table draws: the boundary, an orbit, phase space, and the cycle near a point.
-
-The page of the live table, in Panel: widgets on the left, the table and phase space on the right.
+What is picked there is a map, a command line and a few lines of Python; what is drawn is the boundary, an orbit, its
+points in phase space, and the cycle near a point.
 """
 
 import shlex

@@ -1,10 +1,8 @@
-"""A scene as the options of a command line: the table, its shape and a contraction.
+"""A scene as the options of a command line, and what the commands that sweep over scenes have in common.
 
-Numbers are exact all the way, and a decimal is the decimal it shows; none of the paper's tables imports SymPy.
-
-A scene as a map in float64, and a starting point as exact numbers.
-
-What the commands that sweep have in common: their options, what a dry run says, how results are handed over.
+Table, shape and contraction are exact all the way: a decimal is the decimal it shows. None of the paper's tables
+imports SymPy. From the options come the map in float64, a starting point as exact numbers, what a dry run says of
+a sweep, and the files in which its results are kept.
 """
 
 from collections.abc import Callable

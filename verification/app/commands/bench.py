@@ -1,7 +1,4 @@
-"""`pinball bench`: error against run time, for every arithmetic and every kernel.
-
-`pinball work`: error against run time for a whole question, as a table and a diagram.
-"""
+"""Error against run time: `pinball bench` for one bounce, `pinball work` for a whole question."""
 
 from collections.abc import Sequence
 from pathlib import Path

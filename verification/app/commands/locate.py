@@ -1,7 +1,4 @@
-"""`pinball locate`: where does it happen, to N certified digits?
-
-`pinball check`: verify a certificate without the search that found it.
-"""
+"""`pinball locate`: where does it happen, to so many certified digits? And `pinball check`, of a certificate, without a search."""
 
 import json
 import os

@@ -1,7 +1,4 @@
-"""`pinball attractor`: where balls end, how many attractors there are, and what each is like.
-
-`pinball lyapunov`: the two exponents, with error bars, for every attractor found.
-"""
+"""Where particles end: `pinball attractor` says at which attractors, `pinball lyapunov` their exponents with error bars."""
 
 from typing import TYPE_CHECKING, Any
 

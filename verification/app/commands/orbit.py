@@ -1,9 +1,4 @@
-"""`pinball orbit`: where does this ball go?
-
-`pinball slap`: the slap map and its iterates, as numbers.
-
-`pinball cycles`: which cycles are there, up to a period?
-"""
+"""Where does this particle go? `pinball orbit` follows it, `pinball slap` at contraction 0; `pinball cycles` lists what returns."""
 
 from typing import TYPE_CHECKING, Any
 

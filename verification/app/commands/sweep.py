@@ -1,8 +1,7 @@
-"""`pinball basins`: which attractor each start reaches.
+"""Grids of independent tasks, on all cores or on a Dask cluster, into a Zarr store.
 
-`pinball bifurcation`: the attractors against the contraction.
-
-`pinball sweep KIND`: grids of independent tasks, on all cores or on a Dask cluster, into a Zarr store.
+`pinball sweep KIND` takes any; `pinball basins` says which attractor each start reaches, and `pinball bifurcation`
+draws the attractors against the contraction.
 """
 
 from typing import TYPE_CHECKING

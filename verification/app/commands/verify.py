@@ -1,9 +1,4 @@
-"""`pinball figure`: one of the paper's figures, or the data behind it.
-
-`pinball explore`: a table to play with, on a local page.
-
-`pinball verify`: judge the claims of the paper, and write the report.
-"""
+"""The paper: `pinball verify` judges its claims, `pinball figure` draws its figures, `pinball explore` opens a live table."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

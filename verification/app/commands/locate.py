@@ -1,4 +1,7 @@
-"""`pinball locate`: where does it happen, to so many certified digits? And `pinball check`, of a certificate, without a search."""
+"""`pinball locate`: where does it happen, to so many certified digits?
+
+`pinball check` verifies a certificate without the search that found it.
+"""
 
 import json
 import os

@@ -1,4 +1,7 @@
-"""Where particles end: `pinball attractor` says at which attractors, `pinball lyapunov` their exponents with error bars."""
+"""Where particles end: the attractors, and their exponents with error bars.
+
+`pinball attractor` finds them and says what each is like; `pinball lyapunov` measures two exponents for each.
+"""
 
 from typing import TYPE_CHECKING, Any
 

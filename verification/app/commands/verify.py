@@ -1,4 +1,7 @@
-"""The paper: `pinball verify` judges its claims, `pinball figure` draws its figures, `pinball explore` opens a live table."""
+"""The paper, judged: `pinball verify` goes through its claims and writes the report.
+
+`pinball figure` draws its figures, and `pinball explore` opens a table to play with on a local page.
+"""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

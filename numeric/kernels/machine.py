@@ -1,9 +1,10 @@
-"""Machine code as a flat image: laid out and joined once, so that a later process maps and calls it without LLVM.
+"""From a kernel's text to machine code: compiled by llvmlite, kept on disk, called through ctypes without the GIL.
 
-An object file in the ELF format of x86-64 becomes its sections in one piece, with the places that need
-the address where the piece will lie. Anything else is no image, and LLVM loads the object file itself.
-
-From a kernel's text to machine code: compiled by llvmlite, kept on disk, called through ctypes without the GIL.
+What is kept is a flat image: the sections of the object file laid out and joined once, so that a later process maps
+and calls it without importing LLVM (a process that asks for one orbit is ready in half the time). Only an
+object file in the ELF format of x86-64 becomes one; any other, and any whose fields do not fit
+together, is kept as it is and loaded by LLVM. Nothing that is read is believed: every offset, size, index and
+alignment is checked before it is used.
 """
 
 import ctypes
@@ -11,44 +12,53 @@ import struct
 import warnings
 from collections.abc import Callable, Sequence
 from functools import cache as memoised
-from typing import Any
+from typing import Any, NamedTuple
 
 from numeric.flights.family import Family
 from numeric.kernels.spec import KernelSpec
 from numeric.lowering import cache
 
 MAGIC = b"flat"
-ALLOCATED, RELOCATIONS, SYMBOLS = 2, 4, 2
+LAID_OUT, SYMBOLS, RELOCATIONS = 1, 2, 4  # kinds of sections: SHT_PROGBITS, SHT_SYMTAB, SHT_RELA
+ALLOCATED, EXECUTABLE = 2, 4
 ADDRESS, RELATIVE = 1, (2, 4)  # R_X86_64_64; R_X86_64_PC32 and PLT32
+PAGE = 4096  # memory is mapped at multiples of it; a section cannot ask for more
+LARGEST = 1 << 24  # bytes of an image; kernels have 10 to 100 thousand
+NEAR = 64  # an address relative to the next instruction lies this much before what it means, at most
+
+
+class Section(NamedTuple):
+    """One line of the section table, all of whose bytes lie in the file."""
+
+    kind: int
+    flags: int
+    begin: int
+    size: int
+    link: int
+    target: int
+    align: int
 
 
 def image(code: bytes, entry: bytes = b"run") -> bytes | None:
-    """The image of an object file: magic, size of what precedes the code, entry, places to move, code."""
-    if code[:6] != b"\x7fELF\x02\x01" or struct.unpack_from("<HH", code, 16) != (1, 62):
+    """The image of an object file: magic, count of places to move, entry, these places, code; None if it is none."""
+    sections = _sections(code)
+    if sections is None:
         return None
-    (start,), (count,) = struct.unpack_from("<Q", code, 40), struct.unpack_from("<H", code, 60)
-    sections = [struct.unpack_from("<IIQQQQIIQQ", code, start + 64 * i) for i in range(count)]
-    laid, at = bytearray(), {}
-    for i, (_, kind, flags, _, offset, size, _, _, align, _) in enumerate(sections):
-        if kind == 1 and flags & ALLOCATED:
-            laid += bytes(-len(laid) % max(align, 1))
+    laid, at = bytearray(), dict[int, int]()
+    for i, section in enumerate(sections):
+        if section.kind == LAID_OUT and section.flags & ALLOCATED:
+            laid += bytes(-len(laid) % max(section.align, 1))
             at[i] = len(laid)
-            laid += code[offset : offset + size]
-    moved = []
-    for _, kind, _, _, offset, size, link, target, _, _ in sections:
-        if kind != RELOCATIONS or target not in at:
-            continue
-        for here, info, addend in struct.iter_unpack("<QQq", code[offset : offset + size]):
-            _, _, _, section, value, _ = struct.unpack_from("<IBBHQQ", code, sections[link][4] + 24 * (info >> 32))
-            place, kind = at[target] + here, info & 0xFFFFFFFF
-            if section not in at or kind not in (ADDRESS, *RELATIVE):
+            laid += code[section.begin : section.begin + section.size]
+            if len(laid) > LARGEST:
                 return None
-            goal = at[section] + value + addend
-            if kind == ADDRESS:
-                moved.append(place)
-                struct.pack_into("<q", laid, place, goal)
-            else:
-                struct.pack_into("<i", laid, place, goal - place)
+    moved: list[int] = []
+    for section in sections:
+        if section.kind == RELOCATIONS and section.target in at:
+            places = _joined(code, sections, section, at, laid)
+            if places is None:
+                return None
+            moved += places
     found = _entry(code, sections, entry, at)
     if found is None:
         return None
@@ -56,30 +66,91 @@ def image(code: bytes, entry: bytes = b"run") -> bytes | None:
     return head + bytes(laid)
 
 
-def _entry(code: bytes, sections: list[Any], entry: bytes, at: dict[int, int]) -> int | None:
+def _sections(code: bytes) -> list[Section] | None:
+    """The section table of a relocatable x86-64 file; None when a field points outside the file or has no meaning."""
+    if len(code) < 64 or code[:6] != b"\x7fELF\x02\x01" or struct.unpack_from("<HH", code, 16) != (1, 62):
+        return None
+    (start,), (size, count) = struct.unpack_from("<Q", code, 40), struct.unpack_from("<HH", code, 58)
+    if size != 64 or start + 64 * count > len(code):
+        return None
+    found = []
+    for i in range(count):
+        _, kind, flags, _, begin, size, link, target, align, _ = struct.unpack_from("<IIQQQQIIQQ", code, start + 64 * i)
+        if kind in (LAID_OUT, SYMBOLS, RELOCATIONS, 3):  # others are not read; 3 holds names
+            whole = {SYMBOLS: 24, RELOCATIONS: 24}.get(kind, 1)
+            if begin + size > len(code) or size % whole or align > PAGE or align & (align - 1):
+                return None
+            if kind in (SYMBOLS, RELOCATIONS) and link >= count:
+                return None
+        found.append(Section(kind, flags, begin, size, link, target, align))
+    return found
+
+
+def _joined(
+    code: bytes, sections: list[Section], table: Section, at: dict[int, int], laid: bytearray
+) -> list[int] | None:
+    """Writes addresses into `laid` as one table of relocations says; the places that move with the whole, or None."""
+    symbols, moved = sections[table.link], []
+    if symbols.kind != SYMBOLS:
+        return None
+    for here, info, addend in struct.iter_unpack("<QQq", code[table.begin : table.begin + table.size]):
+        index, kind = info >> 32, info & 0xFFFFFFFF
+        if 24 * index >= symbols.size or kind not in (ADDRESS, *RELATIVE):
+            return None
+        _, _, _, section, value, _ = struct.unpack_from("<IBBHQQ", code, symbols.begin + 24 * index)
+        width = 8 if kind == ADDRESS else 4
+        if section not in at or value > sections[section].size or here + width > sections[table.target].size:
+            return None
+        place, goal = at[table.target] + here, at[section] + value + addend
+        if not -NEAR <= goal <= len(laid):
+            return None
+        if kind == ADDRESS:
+            moved.append(place)
+            struct.pack_into("<q", laid, place, goal)
+        else:
+            struct.pack_into("<i", laid, place, goal - place)
+    return moved
+
+
+def _entry(code: bytes, sections: list[Section], entry: bytes, at: dict[int, int]) -> int | None:
     """Where the function of this name begins."""
-    for _, kind, _, _, offset, size, link, _, _, _ in sections:
-        if kind == SYMBOLS:
-            for name, _, _, section, value, _ in struct.iter_unpack("<IBBHQQ", code[offset : offset + size]):
-                text = sections[link][4] + name
-                if section in at and code[text : code.index(b"\0", text)] == entry:
-                    return int(at[section] + value)
+    for table in sections:
+        if table.kind != SYMBOLS or sections[table.link].kind != 3:
+            continue
+        names = sections[table.link]
+        text = code[names.begin : names.begin + names.size]
+        for name, _, _, index, value, _ in struct.iter_unpack("<IBBHQQ", code[table.begin : table.begin + table.size]):
+            if text[name : name + len(entry) + 1] != entry + b"\0" or index not in at:
+                continue
+            if sections[index].flags & EXECUTABLE and value < sections[index].size:
+                return at[index] + int(value)
     return None
 
 
 def entered(image: bytes) -> tuple[int, Any] | None:
-    """The address of the function in memory of its own, executable and no longer writable, and that memory's owner."""
-    import ctypes
+    """The address of the function in memory of its own, executable and no longer writable, and that memory's owner.
+
+    None where the system refuses such memory, and for bytes that are no image: every place lies within the code.
+    """
     import mmap
 
+    if len(image) < 16 or image[:4] != MAGIC:
+        return None
     count, entry = struct.unpack_from("<IQ", image, 4)
     begin = 16 + 8 * count
+    if begin > len(image) or len(image) - begin > LARGEST:
+        return None
     code = bytearray(image[begin:])
+    places = struct.unpack_from(f"<{count}Q", image, 16)
+    if entry >= len(code) or any(place + 8 > len(code) for place in places) or len(set(places)) < count:
+        return None
+    goals = [struct.unpack_from("<q", code, place)[0] for place in places]
+    if not all(-NEAR <= goal <= len(code) for goal in goals):
+        return None
     try:
         memory = mmap.mmap(-1, len(code))
         base = ctypes.addressof(ctypes.c_char.from_buffer(memory))
-        for place in struct.unpack_from(f"<{count}Q", image, 16):
-            (goal,) = struct.unpack_from("<q", code, place)
+        for place, goal in zip(places, goals, strict=True):
             struct.pack_into("<q", code, place, goal + base)
         memory[:] = bytes(code)
         protect = ctypes.CDLL(None).mprotect

@@ -1,18 +1,26 @@
-"""Files kept between runs: blueprints and object code. Never needed, never trusted, never shouted about.
+"""Files kept between runs: blueprints and machine code. Never needed, and trusted only when nobody else can write them.
 
 An entry is found by a key that contains everything it depends on. It is written to a temporary
-file and renamed, so that two processes cannot mix; it carries its own digest, so that a truncated
-file is no file. When the folder cannot be used the work is done without it, and one warning says so.
+file and renamed, so that two processes cannot mix; it carries a digest of its name and content, so that a
+truncated or renamed file is no entry. A digest keeps out accidents, not people: therefore the folder is made for
+the user alone, and a folder or an entry that belongs to somebody else, or that others can write, is not used.
+When the folder cannot be used the work is done without it, and one warning says so.
 """
 # Every warm start passes here, and pathlib alone takes 3 ms to import.
-# ruff: noqa: PTH103, PTH105, PTH108, PTH111, PTH118, PTH120, PTH123
+# ruff: noqa: PTH103, PTH105, PTH108, PTH111, PTH116, PTH118, PTH120, PTH123
 
 import hashlib
 import os
+import stat
+from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache as memoised
 
 FOLDER = "PINBALL_CACHE"  # the environment variable that moves the folder; empty switches it off
+LIMIT = 256 << 20  # bytes kept; a kernel takes 10 to 100 kB
+KINDS = ("blueprint", "kernel")
+TEMPORARY = ".new-"  # a file before it is renamed
+FOR_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _said: set[str] = set()
 
 
@@ -23,6 +31,29 @@ def folder() -> str | None:
         return chosen or None
     base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     return None if base.startswith("~") else os.path.join(base, "pinball-billiards")  # "~" where nobody is at home
+
+
+def distrust(place: str) -> str | None:
+    """Why what lies in this folder may have been written by somebody else; None when only the user can write there.
+
+    A folder that does not exist is no reason. Systems without owners of files (Windows) have nothing to look at.
+    """
+    try:
+        found = os.stat(place)
+    except OSError:
+        return None
+    return _foreign(found)
+
+
+def _foreign(found: os.stat_result) -> str | None:
+    """Who else may write what was found, in words; None for nobody."""
+    if not hasattr(os, "geteuid"):
+        return None
+    if found.st_uid != os.geteuid():
+        return f"it belongs to the user with the number {found.st_uid}"
+    if found.st_mode & FOR_OTHERS:
+        return f"others can write in it (mode {stat.S_IMODE(found.st_mode):04o}; chmod 700 mends that)"
+    return None
 
 
 @memoised
@@ -48,41 +79,117 @@ def key_of(*parts: str) -> str:
 
 def read(kind: str, *parts: str) -> bytes | None:
     """The entry kept under this key, or None."""
-    place = folder()
+    place = _trusted()
     if place is None:
         return None
+    name = f"{kind}-{key_of(*parts)}"
     try:
-        with open(os.path.join(place, f"{kind}-{key_of(*parts)}"), "rb", buffering=0) as file:
+        handle = os.open(os.path.join(place, name), os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0))
+        with open(handle, "rb", buffering=0) as file:
+            known = os.fstat(handle)
+            if not stat.S_ISREG(known.st_mode):
+                return None
+            why = _foreign(known)
+            if why is not None:
+                _say(place, f"an entry of the cache folder {place} is not used: {why}")
+                return None
             found = file.readall()
     except OSError:
         return None
     digest, content = found[:32], found[32:]
-    return content if hashlib.sha256(content).digest() == digest else None
+    return content if _digest(name, content) == digest else None
 
 
 def write(kind: str, *parts_and_content: str | bytes) -> None:
-    """Keep an entry: the texts of its key, then its bytes."""
+    """Keep an entry: the texts of its key, then its bytes. The oldest entries go when there are too many bytes."""
     *parts, content = parts_and_content
     assert isinstance(content, bytes)
-    place = folder()
+    place = _trusted()
     if place is None:
         return
     import tempfile
 
     temporary = None
+    name = f"{kind}-{key_of(*map(str, parts))}"
     try:
-        os.makedirs(place, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=place, prefix=".new-")
+        os.makedirs(place, mode=0o700, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=place, prefix=TEMPORARY)  # for the user alone
         with os.fdopen(handle, "wb") as file:
-            file.write(hashlib.sha256(content).digest() + content)
-        os.replace(temporary, os.path.join(place, f"{kind}-{key_of(*map(str, parts))}"))
+            file.write(_digest(name, content) + content)
+        os.replace(temporary, os.path.join(place, name))
+        _bound(place)
     except OSError as reason:
         if temporary is not None:
             with suppress(OSError):
                 os.unlink(temporary)
-        if place not in _said:
-            _said.add(place)
-            import warnings
+        _say(place, f"the cache folder {place} cannot be written ({reason.strerror or reason}); working without it")
 
-            why = reason.strerror or reason
-            warnings.warn(f"the cache folder {place} cannot be written ({why}); working without it", stacklevel=2)
+
+def entries() -> list[tuple[str, int, float]]:
+    """The files that this package keeps: path, bytes and time of writing, oldest first. Other files are left alone."""
+    place = folder()
+    return sorted(_entries(place), key=lambda entry: entry[2]) if place is not None else []
+
+
+def clear() -> tuple[int, int]:
+    """Remove all entries and what an interrupted run left; how many files and bytes that were."""
+    place, removed, size = folder(), 0, 0
+    why = None if place is None else distrust(place)
+    if why is not None:
+        raise ValueError(f"{FOLDER} = {place} is not cleared: {why}")
+    for path, length, _ in entries():
+        with suppress(FileNotFoundError):  # another process was faster
+            os.unlink(path)
+            removed, size = removed + 1, size + length
+    return removed, size
+
+
+def _entries(place: str) -> Iterator[tuple[str, int, float]]:
+    try:
+        found = list(os.scandir(place))
+    except OSError:
+        return
+    for file in found:
+        kind, _, key = file.name.partition("-")
+        ours = kind in KINDS and len(key) == 32 and set(key) <= set("0123456789abcdef")
+        with suppress(OSError):
+            if (ours or file.name.startswith(TEMPORARY)) and file.is_file(follow_symlinks=False):
+                known = file.stat(follow_symlinks=False)
+                yield file.path, known.st_size, known.st_mtime
+
+
+def _bound(place: str) -> None:
+    """Remove the oldest entries until three quarters of the limit are left."""
+    kept = sorted(_entries(place), key=lambda entry: entry[2])
+    size = sum(length for _, length, _ in kept)
+    if size <= LIMIT:
+        return
+    for path, length, _ in kept:
+        if size <= LIMIT * 3 // 4:
+            return
+        with suppress(OSError):
+            os.unlink(path)
+        size -= length
+
+
+def _trusted() -> str | None:
+    """The folder, unless others can write in it, which is said once."""
+    place = folder()
+    why = None if place is None else distrust(place)
+    if place is None or why is None:
+        return place
+    _say(place, f"the cache folder {place} is not used: {why}; working without it")
+    return None
+
+
+def _digest(name: str, content: bytes) -> bytes:
+    return hashlib.sha256(name.encode() + b"\0" + content).digest()
+
+
+def _say(place: str, what: str) -> None:
+    """Warn once about a folder."""
+    if place not in _said:
+        _said.add(place)
+        import warnings
+
+        warnings.warn(what, stacklevel=3)

@@ -151,10 +151,12 @@ COMMANDS = {
     "explore": "A live table on a page of this machine.",
     "bench": "Error against run time, for every arithmetic and every kernel.",
     "work": "Error against run time for a whole question, as a diagram.",
+    "cache": "Where compiled kernels are kept, and how to remove them.",
 }
 HOMES = {  # commands that share a module
     "attractor": ("lyapunov", "attractor_command"),
     "work": ("bench", "work_command"),
+    "cache": ("bench", "cache_command"),
     "figure": ("verify", "figure_command"),
     "cycles": ("orbit", "cycles_command"),
     "check": ("locate", "check_command"),

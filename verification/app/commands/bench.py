@@ -1,4 +1,5 @@
-"""Error against run time: `pinball bench` for one bounce, `pinball work` for a whole question."""
+"""The machine's side: `pinball bench` times one bounce, `pinball work` a whole question, `pinball cache` looks after
+what is kept between runs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -191,3 +192,33 @@ def _target(question: str | None, out: str | None) -> Path | None:
             f"--out = {out} cannot be written; accepted: {', '.join(ENDINGS)} files in a folder that is there"
         )
     return path
+
+
+@click.command(epilog="Example: pinball cache --clear")
+@click.option("--where", is_flag=True, help="Print the folder and nothing else.")
+@click.option("--clear", is_flag=True, help="Remove the kept tables and kernels; they are made again when needed.")
+@json_option
+def cache_command(where: bool, clear: bool, output: Output) -> int:
+    """Where tables and compiled kernels are kept between runs, and how much of it there is.
+
+    PINBALL_CACHE names another folder, and an empty PINBALL_CACHE switches the cache off. The folder is for its user
+    alone: one that belongs to somebody else, or that others can write, is not used, and the exit status is 1.
+    """
+    from numeric.lowering import cache
+
+    folder = cache.folder()
+    removed, freed = cache.clear() if clear else (0, 0)
+    kept = cache.entries()
+    size, why = sum(entry[1] for entry in kept), None if folder is None else cache.distrust(folder)
+    document = {"folder": folder, "entries": len(kept), "bytes": size, "limit": cache.LIMIT, "not_used_because": why}
+    output.write(document | {"removed": removed, "removed_bytes": freed})
+    if where:
+        output.console.print(folder or "")
+    elif folder is None:
+        output.console.print("the cache is switched off: PINBALL_CACHE is empty, or there is no home folder")
+    else:
+        if clear:
+            output.console.print(f"{removed} files removed, {freed / 1e6:.1f} MB")
+        holds = f"{len(kept)} files, {size / 1e6:.1f} of at most {cache.LIMIT / 1e6:.0f} MB"
+        output.console.print(f"{folder}: {holds}" if why is None else f"{folder} is not used: {why}")
+    return DONE if why is None else FAILED

@@ -16,10 +16,9 @@ from pathlib import Path
 
 from verification.measure.extremes.labelled import SCENES
 from verification.measure.extremes.near import Stability
-from verification.measure.work.bench import duration
 from verification.measure.work.choice import crossovers, entries
 from verification.measure.work.figure import times
-from verification.measure.work.row import Row, footer, front, short
+from verification.measure.work.row import Row, duration, footer, front, short
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"

@@ -39,8 +39,8 @@ from sympy import (
 from symbolic.expressions.signs import Box, Finding, conjunction, positive, vanishes
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.scene import parameter_box, root
 from symbolic.tables.table import Table, alpha, lam, theta
+from symbolic.tables.validity import parameter_box, root
 
 
 @dataclass(frozen=True)

@@ -40,8 +40,8 @@ from symbolic.cycles.cycle import frame
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import egg
 from symbolic.tables.geometry import curvature, speed, tangent, turning
-from symbolic.tables.scene import parameter_box
 from symbolic.tables.table import Component, alpha, lam, theta
+from symbolic.tables.validity import parameter_box
 
 
 def half_turn(p: int = 1, q: int = 3) -> Expr:

@@ -29,8 +29,8 @@ from sympy import Derivative, Expr, Function, Interval, Symbol, atan, diff, oo
 from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
 from symbolic.expressions.text import Kernel, kernel
 from symbolic.tables.geometry import in_half_tangent, turning
-from symbolic.tables.scene import parameter_box
 from symbolic.tables.table import Table, lam, theta
+from symbolic.tables.validity import parameter_box
 
 theta0 = Symbol("theta0", real=True)  # the bounce itself
 theta1 = Symbol("theta1", real=True)  # the other end of a chord

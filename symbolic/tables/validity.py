@@ -1,9 +1,8 @@
 """What must hold before a table is one: exact, closed, counterclockwise, free of self-crossings.
 
-Every check here is a proof. A boundary that is no trigonometric polynomial, or one of high degree,
-may be too hard for the last two; it is then accepted here and examined where kernels are built.
-
-Where a closed curve crosses itself: proved absent for finite Fourier sums, looked for on a polygon otherwise.
+Every check is a proof on the ranges of the shape's parameters; that a closed curve does not cross itself is proved for
+finite Fourier sums, and looked for on a polygon otherwise. A boundary that is no trigonometric polynomial, or one of
+high degree, may be too hard for the last two; it is then accepted here and examined where kernels are built.
 """
 
 from dataclasses import replace
@@ -12,6 +11,7 @@ from itertools import pairwise
 from math import atan2, fsum, tau
 
 from sympy import (
+    Abs,
     Dummy,
     Expr,
     Float,
@@ -26,20 +26,22 @@ from sympy import (
     chebyshevu,
     cos,
     expand,
+    factor_list,
     integrate,
     nan,
     oo,
     pi,
     sign,
     sin,
+    sqrt,
     tan,
     together,
     zoo,
 )
 
-from symbolic.expressions.signs import Outcome, bernstein, conjunction, positive, vanishes
+from symbolic.expressions.signs import Box, Outcome, bernstein, conjunction, positive, vanishes
 from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
-from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.table import Component, Table, lam, theta
 
 HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box
 
@@ -291,3 +293,56 @@ def _cross(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
 
 def _side(a: Corner, b: Corner, c: Corner) -> Fraction:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+UNIT = Interval(0, 1)
+
+
+def parameter_box(table: Table) -> dict[Symbol, Interval]:
+    """The closed range of every free shape parameter and of the contraction.
+
+    >>> from symbolic.tables import ellipse
+    >>> parameter_box(ellipse)
+    {a: Interval(1, oo), lam: Interval(0, 1)}
+    """
+    return {shape.symbol: shape.range for shape in table.shapes} | {lam: UNIT}
+
+
+def root(square: Expr, box: Box) -> Expr:
+    """`sqrt(square)`, with every squared factor taken out by its proved sign on the box.
+
+    >>> x = Symbol("x", real=True)
+    >>> root(x**2 - 2 * x + 1, {x: Interval(2, 3)}), root(x**3 + x, {x: Interval(2, 3)})
+    (x - 1, sqrt(x)*sqrt(x**2 + 1))
+    """
+    numerator, denominator = together(square).as_numer_denom()
+    outside, inside = S.One, S.One
+    for part, way in ((numerator, 1), (denominator, -1)):
+        constant, factors = factor_list(part)
+        inside *= constant**way
+        for factor, power in factors:
+            inside *= factor ** (way * (power % 2))
+            outside *= modulus(factor, box) ** (way * (power // 2))
+    return outside * sqrt(inside)
+
+
+def modulus(expression: Expr, box: Box) -> Expr:
+    """`|expression|`, resolved when its sign on the box is proved."""
+    if is_positive(expression, box):
+        return expression
+    return -expression if is_positive(-expression, box) else Abs(expression)
+
+
+def is_positive(expression: Expr, box: Box) -> bool:
+    """True when `expression > 0` is proved on the box, whose ends may depend on an integer `K >= 1`."""
+    reach: dict[Symbol, Interval] = {}
+    for symbol, interval in box.items():
+        if interval.end.free_symbols:
+            share = Dummy("share", nonnegative=True)
+            expression = expression.subs(symbol, share * interval.end)
+            reach |= {share: UNIT} | {K: Interval(1, oo) for K in interval.end.free_symbols}
+        else:
+            reach[symbol] = interval
+    if not expression.free_symbols <= set(reach):
+        return False
+    return bool(positive(S(expression), reach))

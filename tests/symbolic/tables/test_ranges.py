@@ -2,7 +2,7 @@
 
 from sympy import Abs, Interval, S, Symbol, sqrt
 
-from symbolic.tables.scene import is_positive, modulus, root
+from symbolic.tables.validity import is_positive, modulus, root
 
 x, y = Symbol("x", real=True), Symbol("y", real=True)
 K = Symbol("K", integer=True, positive=True)

@@ -9,7 +9,8 @@ import pytest
 from verification.app.cli import main
 from verification.measure.extremes.labelled import cases
 from verification.measure.work import bench as baselines
-from verification.measure.work.bench import HEIGHT, LAWS, WIDTH, Row, diagram, frontier, magnitude, multiprecision_rows
+from verification.measure.work.bench import LAWS, Row, frontier, multiprecision_rows
+from verification.measure.work.row import HEIGHT, WIDTH, diagram, magnitude
 
 
 @pytest.fixture(scope="module")

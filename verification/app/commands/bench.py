@@ -94,7 +94,8 @@ def command(
 def show(console: "Console", name: str, rows: "list[Row]") -> None:
     """A scene's rows, with ratios to the kernel and a mark on the Pareto front, and two diagrams."""
     from verification.measure.extremes.labelled import SCENES
-    from verification.measure.work.bench import diagram, duration, frontier
+    from verification.measure.work.bench import frontier
+    from verification.measure.work.row import diagram, duration
 
     front, reference = frontier(rows), rows[0].seconds_per_bounce
     shape = ", ".join(f"{key} = {value}" for key, value in SCENES[name].items())

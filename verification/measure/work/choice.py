@@ -32,9 +32,8 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.pinball.sampling import Growth
-from verification.measure.work.bench import duration
 from verification.measure.work.question import Question
-from verification.measure.work.row import Row, short, timed
+from verification.measure.work.row import Row, duration, short, timed
 
 MOVED = 1.5  # the factor from which on a change is told
 WORSE = 10  # times the error is told as well
@@ -126,14 +125,14 @@ QUESTIONS: Mapping[str, Callable[[], Question]] = {
     "cycle-2": _made("cycles", "period_2"),
     "cycle-3": _made("cycles", "period_3"),
     "cycle-64": _made("cycles", "period_64"),
-    "lambda-star": _made("values", "corner_orbit"),
+    "lambda-star": _made("sought", "corner_orbit"),
     "fold-3": _made("cycles", "fold"),
     "doubling": _made("cycles", "doublings"),
     "exponent-cycle": _made("exponents", "of_a_cycle"),
     "exponent-chaos": _made("exponents", "of_chaos"),
-    "arclength": _made("lengths", "lengths"),
-    "arclength-inverse": _made("lengths", "parameters"),
-    "slap-infimum": _made("values", "slap_infimum"),
+    "arclength": _made("exponents", "lengths"),
+    "arclength-inverse": _made("exponents", "parameters"),
+    "slap-infimum": _made("sought", "slap_infimum"),
 }
 
 

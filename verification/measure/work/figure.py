@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-from verification.measure.work.bench import duration
 from verification.measure.work.choice import crossovers, entries
-from verification.measure.work.row import short
+from verification.measure.work.row import duration, short
 
 HEIGHT = 4.3  # inches
 WIDE = -40.0  # the decimal logarithm of an error from which on the scale is that of digits

@@ -121,18 +121,18 @@ def exact_dot(ops: Any, z: Pair, w: Pair) -> Any:
     return exact_cross(ops, (z[0], -z[1]), (w[1], w[0]))
 
 
-def product_and_rest(ops: Any, x: Any, y: Any) -> Pair:
-    """`x*y` rounded, and what the rounding lost, exactly."""
+def product_and_error(ops: Any, x: Any, y: Any) -> Pair:
+    """`x*y` rounded, and the rounding error, exactly."""
     product = ops.product(x, y)
     return product, ops.fma(x, y, -product)
 
 
-def cross_and_rest(ops: Any, z: Pair, w: Pair) -> Pair:
-    """`cross`, and what it lost, to twice the digits."""
-    (x, x_rest), (y, y_rest) = product_and_rest(ops, z[0], w[1]), product_and_rest(ops, z[1], w[0])
+def cross_and_error(ops: Any, z: Pair, w: Pair) -> Pair:
+    """`cross` rounded, and its rounding error, to twice the digits."""
+    (x, x_error), (y, y_error) = product_and_error(ops, z[0], w[1]), product_and_error(ops, z[1], w[0])
     total = x - y
     back = total - x
-    return total, ((x - (total - back)) - (y + back)) + (x_rest - y_rest)
+    return total, ((x - (total - back)) - (y + back)) + (x_error - y_error)
 
 
 def unit(ops: Any, z: Pair) -> Pair:

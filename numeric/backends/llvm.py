@@ -16,24 +16,28 @@ from numeric.backends.functions import bracketed_zero, polynomial_zero
 Fold = float | None
 
 
-class Mask:
+class LLVMMask:
     """A vector of truth values."""
 
-    def __init__(self, trace: "Lanes", text: str) -> None:
+    def __init__(self, trace: "LLVMBackend", text: str) -> None:
         self.trace, self.text = trace, text
 
-    def __and__(self, other: "Mask") -> "Mask":
+    def __and__(self, other: "LLVMMask") -> "LLVMMask":
         return self.trace.mask("and", self.text, other.text)
 
-    def __or__(self, other: "Mask") -> "Mask":
+    def __or__(self, other: "LLVMMask") -> "LLVMMask":
         return self.trace.mask("or", self.text, other.text)
 
 
-class Lane:
+class LLVMVector:
     """A vector of doubles: a known constant, a value already written, or a product not yet needed."""
 
     def __init__(
-        self, trace: "Lanes", text: str = "", value: Fold = None, factors: tuple["Lane", "Lane"] | None = None
+        self,
+        trace: "LLVMBackend",
+        text: str = "",
+        value: Fold = None,
+        factors: tuple["LLVMVector", "LLVMVector"] | None = None,
     ):
         self.trace, self._text, self.value, self.factors = trace, text, value, factors
         self._scope = trace.scope
@@ -48,7 +52,7 @@ class Lane:
             self._text, self._scope = self.trace.line("fmul", x, y)._text, self.trace.scope
         return self._text
 
-    def __add__(self, other: "Lane") -> "Lane":
+    def __add__(self, other: "LLVMVector") -> "LLVMVector":
         if self.value is not None and other.value is not None:
             return self.trace.number(self.value + other.value)
         if self.value == 0.0:
@@ -61,7 +65,7 @@ class Lane:
             return self.trace.fma(*other.factors, self)
         return self.trace.line("fadd", self, other)
 
-    def __sub__(self, other: "Lane") -> "Lane":
+    def __sub__(self, other: "LLVMVector") -> "LLVMVector":
         if self.value == 0.0:
             return -other
         if other.value is not None or self.factors is not None:
@@ -70,47 +74,47 @@ class Lane:
             return self.trace.fma(-other.factors[0], other.factors[1], self)
         return self.trace.line("fsub", self, other)
 
-    def __mul__(self, other: "Lane") -> "Lane":
+    def __mul__(self, other: "LLVMVector") -> "LLVMVector":
         x, y = (other, self) if other.value is not None else (self, other)
         if x.value is None:
-            return Lane(self.trace, factors=(x, y))
+            return LLVMVector(self.trace, factors=(x, y))
         if y.value is not None:
             return self.trace.number(x.value * y.value)
         if x.value in (0.0, 1.0, -1.0):
             return {0.0: x, 1.0: y}.get(x.value) or -y
-        return Lane(self.trace, factors=(x, y))
+        return LLVMVector(self.trace, factors=(x, y))
 
-    def __truediv__(self, other: "Lane") -> "Lane":
+    def __truediv__(self, other: "LLVMVector") -> "LLVMVector":
         if self.value is not None and other.value is not None:
             return self.trace.number(self.value / other.value)
         return self if other.value == 1.0 else self.trace.line("fdiv", self, other)
 
-    def __neg__(self) -> "Lane":
+    def __neg__(self) -> "LLVMVector":
         if self.value is not None:
             return self.trace.number(-self.value)
         if self.factors is not None:
-            return Lane(self.trace, factors=(-self.factors[0], self.factors[1]))
+            return LLVMVector(self.trace, factors=(-self.factors[0], self.factors[1]))
         return self.trace.line("fneg", self)
 
-    def __abs__(self) -> "Lane":
+    def __abs__(self) -> "LLVMVector":
         if self.value is not None:
             return self.trace.number(abs(self.value))
         return self.trace.call("fabs", self)
 
-    def __lt__(self, other: "Lane") -> Mask:
+    def __lt__(self, other: "LLVMVector") -> LLVMMask:
         return self.trace.compare("olt", self, other)
 
-    def __le__(self, other: "Lane") -> Mask:
+    def __le__(self, other: "LLVMVector") -> LLVMMask:
         return self.trace.compare("ole", self, other)
 
     def __eq__(self, other: object) -> Any:
-        assert isinstance(other, Lane)
+        assert isinstance(other, LLVMVector)
         return self.trace.compare("oeq", self, other)
 
     __hash__ = None  # type: ignore[assignment]
 
 
-class Lanes:
+class LLVMBackend:
     """Writes LLVM instructions on vectors of `width` doubles."""
 
     zero = bracketed_zero
@@ -143,23 +147,23 @@ class Lanes:
         self.known[-1][key] = name
         return name
 
-    def line(self, word: str, *operands: Lane) -> Lane:
+    def line(self, word: str, *operands: LLVMVector) -> LLVMVector:
         """An arithmetic instruction."""
-        return Lane(self, self.emit(f"{word} {self.type} " + ", ".join(x.text for x in operands)))
+        return LLVMVector(self, self.emit(f"{word} {self.type} " + ", ".join(x.text for x in operands)))
 
-    def call(self, name: str, *operands: Lane) -> Lane:
+    def call(self, name: str, *operands: LLVMVector) -> LLVMVector:
         """An intrinsic function of vectors."""
         self.called.add(f"declare {self.type} @llvm.{name}.v{self.width}f64({', '.join([self.type] * len(operands))})")
         inside = ", ".join(f"{self.type} {x.text}" for x in operands)
-        return Lane(self, self.emit(f"call {self.type} @llvm.{name}.v{self.width}f64({inside})"))
+        return LLVMVector(self, self.emit(f"call {self.type} @llvm.{name}.v{self.width}f64({inside})"))
 
-    def compare(self, word: str, x: Lane, y: Lane) -> Mask:
+    def compare(self, word: str, x: LLVMVector, y: LLVMVector) -> LLVMMask:
         """A comparison; false where an operand is no number."""
-        return Mask(self, self.emit(f"fcmp {word} {self.type} {x.text}, {y.text}"))
+        return LLVMMask(self, self.emit(f"fcmp {word} {self.type} {x.text}, {y.text}"))
 
-    def mask(self, word: str, x: str, y: str) -> Mask:
+    def mask(self, word: str, x: str, y: str) -> LLVMMask:
         """A logical instruction."""
-        return Mask(self, self.emit(f"{word} {self.masks} {x}, {y}"))
+        return LLVMMask(self, self.emit(f"{word} {self.masks} {x}, {y}"))
 
     def literal(self, x: float) -> str:
         """A constant in every lane, exactly."""
@@ -185,123 +189,125 @@ class Lanes:
 
     # ---- arithmetic
 
-    def constant(self, p: int, q: int = 1) -> Lane:
+    def constant(self, p: int, q: int = 1) -> LLVMVector:
         """The double nearest to `p/q`."""
         return self.number(p / q)
 
-    def number(self, x: float) -> Lane:
+    def number(self, x: float) -> LLVMVector:
         """A double."""
-        return Lane(self, value=float(x))
+        return LLVMVector(self, value=float(x))
 
-    def pi(self) -> Lane:
+    def pi(self) -> LLVMVector:
         """The double nearest to pi."""
         return self.number(2 * functions.HALF_PI)
 
-    def pi_low(self) -> Lane:
+    def pi_low(self) -> LLVMVector:
         """What that double lacks."""
         return self.number(2 * functions.HALF_PI_LOW)
 
-    def sqrt(self, x: Lane) -> Lane:
+    def sqrt(self, x: LLVMVector) -> LLVMVector:
         """The square root."""
         return self.number(math.sqrt(x.value)) if x.value is not None else self.call("sqrt", x)
 
-    def fma(self, x: Lane, y: Lane, z: Lane) -> Lane:
+    def fma(self, x: LLVMVector, y: LLVMVector, z: LLVMVector) -> LLVMVector:
         """`x*y + z`, rounded once."""
         if z.value == 0.0 or 0.0 in (x.value, y.value) or {x.value, y.value} & {1.0, -1.0}:
             product = x * y
             return product + z if product.factors is None else product
         return self.call("fma", x, y, z)
 
-    def product(self, x: Lane, y: Lane) -> Lane:
+    def product(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
         """`x*y` rounded by itself, which no sum takes up."""
         return self.line("fmul", x, y)
 
-    def maximum(self, x: Lane, y: Lane) -> Lane:
+    def maximum(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
         """The larger one; `y` where `x` is no number."""
         return self.select(y < x, x, y)
 
-    def select(self, mask: Mask, x: Lane, y: Lane) -> Lane:
+    def select(self, mask: LLVMMask, x: LLVMVector, y: LLVMVector) -> LLVMVector:
         """`x` where the mask holds, else `y`."""
         if x is y:
             return x
-        return Lane(self, self.emit(f"select {self.masks} {mask.text}, {self.type} {x.text}, {self.type} {y.text}"))
+        return LLVMVector(
+            self, self.emit(f"select {self.masks} {mask.text}, {self.type} {x.text}, {self.type} {y.text}")
+        )
 
-    def negated(self, mask: Mask) -> Mask:
+    def negated(self, mask: LLVMMask) -> LLVMMask:
         """The opposite of a mask."""
         return self.mask("xor", mask.text, "splat (i1 true)")
 
-    def rounded(self, x: Lane) -> Lane:
+    def rounded(self, x: LLVMVector) -> LLVMVector:
         """The nearest integer, for `|x| < 2**51`."""
         magic = self.number(1.5 * 2.0**52)
         return (x + magic) - magic
 
-    def with_sign(self, x: Lane, y: Lane) -> Lane:
+    def with_sign(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
         """`|x|` with the sign of `y`."""
         return self.call("copysign", x, y)
 
-    def times_sign(self, x: Lane, y: Lane) -> Lane:
+    def times_sign(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
         """`x` with its sign flipped where `y` is negative."""
         sign = self._bits("and", self._integer(y), f"splat (i64 {-(2**63)})")
         return self._double(self._bits("xor", self._integer(x), sign))
 
-    def power_of_two(self, x: Lane) -> tuple[Lane, Lane]:
+    def power_of_two(self, x: LLVMVector) -> tuple[LLVMVector, LLVMVector]:
         """`(2**-e, e)` with `2**e <= x < 2**(e + 1)`, for positive normal `x`."""
         field = self._bits("and", self._integer(x), f"splat (i64 {0x7FF << 52})")
         inverse = self._double(self._bits("sub", f"splat (i64 {0x7FE << 52})", field))
         magic = self._bits("or", self._bits("lshr", field, "splat (i64 52)"), f"splat (i64 {0x433 << 52})")
         return inverse, self._double(magic) - self.number(2.0**52 + 1023)
 
-    def sin(self, x: Lane) -> Lane:
+    def sin(self, x: LLVMVector) -> LLVMVector:
         """The sine, of angles up to 2**30."""
         return self.turn(self._within_a_turn(x))[1]
 
-    def cos(self, x: Lane) -> Lane:
+    def cos(self, x: LLVMVector) -> LLVMVector:
         """The cosine, of angles up to 2**30."""
         return self.turn(self._within_a_turn(x))[0]
 
-    def _within_a_turn(self, x: Lane) -> Lane:
+    def _within_a_turn(self, x: LLVMVector) -> LLVMVector:
         """`x` less whole turns: the turn has 107 bits and each subtraction is rounded once, so nothing is lost."""
         turns = self.rounded(x * self.number(0.25 / functions.HALF_PI))
         for part in (functions.HALF_PI, functions.HALF_PI_LOW):
             x = self.fma(-turns, self.number(4 * part), x)
         return x
 
-    def settle(self, *values: Lane) -> None:
+    def settle(self, *values: LLVMVector) -> None:
         """Write these values here, where what they are made of is at hand, and not where they are needed."""
         for x in values:
             assert x.text
 
-    def angle(self, y: Lane, x: Lane) -> Lane:
+    def angle(self, y: LLVMVector, x: LLVMVector) -> LLVMVector:
         """`atan2(y, x)` for `x >= 0`."""
         return functions.angle(self, y, x)  # type: ignore[no-any-return]
 
-    def turn(self, x: Lane, quarters: int = 2) -> tuple[Lane, Lane]:
+    def turn(self, x: LLVMVector, quarters: int = 2) -> tuple[LLVMVector, LLVMVector]:
         """`(cos x, sin x)`."""
         return functions.turn(self, x, quarters)
 
-    def _integer(self, x: Lane) -> str:
+    def _integer(self, x: LLVMVector) -> str:
         return self.emit(f"bitcast {self.type} {x.text} to {self.integers}")
 
-    def _double(self, x: str) -> Lane:
-        return Lane(self, self.emit(f"bitcast {self.integers} {x} to {self.type}"))
+    def _double(self, x: str) -> LLVMVector:
+        return LLVMVector(self, self.emit(f"bitcast {self.integers} {x} to {self.type}"))
 
     def _bits(self, word: str, x: str, y: str) -> str:
         return self.emit(f"{word} {self.integers} {x}, {y}")
 
     # ---- control flow
 
-    def anywhere(self, mask: Mask) -> str:
+    def anywhere(self, mask: LLVMMask) -> str:
         """A single bit: does the mask hold in some lane?"""
         packed = self.emit(f"bitcast {self.masks} {mask.text} to i{self.width}")
         return self.emit(f"icmp ne i{self.width} {packed}, 0")
 
     def repeat(
         self,
-        condition: Callable[[list[Lane]], Mask],
-        body: Callable[[list[Lane]], list[Lane]],
-        state: list[Lane],
+        condition: Callable[[list[LLVMVector]], LLVMMask],
+        body: Callable[[list[LLVMVector]], list[LLVMVector]],
+        state: list[LLVMVector],
         limit: int,
-    ) -> list[Lane]:
+    ) -> list[LLVMVector]:
         """Apply `body` to the lanes for which `condition` holds, until it holds for none."""
         head, inside, after = (self.fresh(stem)[1:] for stem in ("head", "inside", "after"))
         starts, before = [x.text for x in state], self.block
@@ -311,7 +317,7 @@ class Lanes:
         self.label(head)
         slot = len(self.lines)
         self.open()
-        now = [Lane(self, name) for name in names]
+        now = [LLVMVector(self, name) for name in names]
         active = condition(now)
         more = self.emit(f"and i1 {self.anywhere(active)}, {self.emit(f'icmp ult i32 {index}, {limit}')}")
         self.lines.append(f"  br i1 {more}, label %{inside}, label %{after}")
@@ -325,13 +331,15 @@ class Lanes:
         self.lines[slot:slot] = [*phis, f"  {index} = phi i32 [0, %{before}], [{following}, %{self.block}]"]
         self.close()
         self.label(after)
-        return [Lane(self, name) for name in names]
+        return [LLVMVector(self, name) for name in names]
 
-    def when(self, mask: Mask, values: list[Lane], changed: Callable[[], list[Lane]]) -> list[Lane]:
+    def when(
+        self, mask: LLVMMask, values: list[LLVMVector], changed: Callable[[], list[LLVMVector]]
+    ) -> list[LLVMVector]:
         """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
         return self.branch(self.anywhere(mask), values, changed)
 
-    def branch(self, bit: str, values: list[Lane], changed: Callable[[], list[Lane]]) -> list[Lane]:
+    def branch(self, bit: str, values: list[LLVMVector], changed: Callable[[], list[LLVMVector]]) -> list[LLVMVector]:
         """`changed()` where the single bit is set, else `values`."""
         inside, after = self.fresh("inside")[1:], self.fresh("after")[1:]
         otherwise, before = [x.text for x in values], self.block
@@ -347,4 +355,4 @@ class Lanes:
         for name, x, y in zip(names, then, otherwise, strict=True):
             if x != y:
                 self.lines.append(f"  {name} = phi {self.type} [{x}, %{last}], [{y}, %{before}]")
-        return [Lane(self, name) for name in names]
+        return [LLVMVector(self, name) for name in names]

@@ -15,7 +15,7 @@ from numeric.backends import functions
 from numeric.backends.functions import bracketed_zero, polynomial_zero, value_and_slope
 
 
-class Arrays:
+class ArrayBackend:
     """Float64 arrays. Masks are boolean arrays."""
 
     splitter = 2.0**27 + 1  # halves a mantissa of 53 bits
@@ -105,7 +105,7 @@ class Arrays:
         return changed() if np.any(mask) else values
 
 
-class Scalars:
+class ScalarBackend:
     """Numbers of a multiprecision context. Masks are Python's bools."""
 
     def __init__(self, context: Any) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey
-from numeric.dynamics.phase_points import Places
+from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
 from numeric.pinball.sampling import Growth
@@ -25,7 +25,7 @@ METHOD = (
     "batch means over orbits and blocks, batches merged until their ends matter little and put right with the "
     "integrated autocorrelation time; the last level is one batch for each independent orbit"
 )
-CHECKED_BALLS, CHECKED_BOUNCES = 32, 500
+CHECKED_PARTICLES, CHECKED_BOUNCES = 32, 500
 
 
 def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
@@ -134,48 +134,48 @@ def trace(group: Group, survey: Survey) -> list[dict[str, Any]]:
 def sum_rule(map: PinballMap, survey: Survey) -> dict[str, Any]:
     """`log|det D(T^n)|` by the tangent kernel and from the angles alone, along the same orbits."""
     end = survey.count.growth
-    few = np.nonzero(end.code == 0)[0][:CHECKED_BALLS]
+    few = np.nonzero(end.code == 0)[0][:CHECKED_PARTICLES]
     if few.size == 0:
-        return {"difference": None, "bounces": 0, "balls": 0}
+        return {"difference": None, "bounces": 0, "particles": 0}
     lam = end.lam[few]
-    balls = Places(end.component[few], end.theta[few], end.phi[few])
-    return checked(map.at(lam), balls, CHECKED_BOUNCES)._asdict()
+    particles = PhasePoints(end.component[few], end.theta[few], end.phi[few])
+    return checked(map.at(lam), particles, CHECKED_BOUNCES)._asdict()
 
 
 Array = NDArray[np.float64]
 
 
 class Check(NamedTuple):
-    """The largest difference of `log|det D(T^n)|` between kernel and angles over `balls` orbits of `bounces`."""
+    """The largest difference of `log|det D(T^n)|` between kernel and angles over `particles` orbits of `bounces`."""
 
     difference: float
     bounces: int
-    balls: int
+    particles: int
 
 
-def volume(map: PinballMap, balls: Places, bounces: int) -> Array:
-    """`log|det D(T^n)|` of each orbit by the rule above, without the `n*log(lam)`; nan for a ball that stops.
+def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
+    """`log|det D(T^n)|` of each orbit by the rule above, without the `n*log(lam)`; nan for a particle that stops.
 
     >>> circle = PinballMap("circle", lam="0.5")
-    >>> balls = Places(np.array([0]), np.array([0.3]), np.array([0.4]))
-    >>> bool(abs(volume(circle, balls, 5)[0]) < 1e-15)  # eta_{k+1} = -phi_k, so the sum telescopes to 0
+    >>> particles = PhasePoints(np.array([0]), np.array([0.3]), np.array([0.4]))
+    >>> bool(abs(volume(circle, particles, 5)[0]) < 1e-15)  # eta_{k+1} = -phi_k, so the sum telescopes to 0
     True
     """
-    orbit = map.orbit(balls.theta, balls.phi, bounces, balls.component)
-    lam = np.broadcast_to(map.lam, balls.theta.shape)
+    orbit = map.orbit(particles.theta, particles.phi, bounces, particles.component)
+    lam = np.broadcast_to(map.lam, particles.theta.shape)
     inner = np.sum(np.log(np.cos(lam * orbit.eta[1:]) / np.cos(orbit.eta[1:])), axis=0)
     return np.asarray(inner + np.log(np.cos(orbit.phi[0]) / np.cos(orbit.phi[-1])))
 
 
-def checked(map: PinballMap, balls: Places, bounces: int) -> Check:
+def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> Check:
     """The rule against the kernel, on the same orbits: both come bit for bit along the same bounces.
 
     >>> from numeric.pinball.sampling import phase_starts
     >>> table = PinballMap("cuspless", lam="0.5")
-    >>> bool(checked(table, Places(*phase_starts(table, 8, seed=1)[:3]), 200).difference < 1e-11)
+    >>> bool(checked(table, PhasePoints(*phase_starts(table, 8, seed=1)[:3]), 200).difference < 1e-11)
     True
     """
-    growth = Growth(map, balls.component, balls.theta, balls.phi)
+    growth = Growth(map, particles.component, particles.theta, particles.phi)
     growth.advance(bounces)
-    difference = np.abs(volume(map, balls, bounces) - growth.volume)[growth.code == 0]
+    difference = np.abs(volume(map, particles, bounces) - growth.volume)[growth.code == 0]
     return Check(float(np.max(difference, initial=0.0)), bounces, int(difference.size))

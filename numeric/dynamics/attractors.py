@@ -1,9 +1,9 @@
 """Attractors and the symmetries of their table: images joined to families, each with its stabiliser.
 
-The attractors of a map: found from many starts, told apart, and every ball labelled with the one it reaches.
+The attractors of a map: found from many starts, told apart, and every particle labelled with the one it reaches.
 
 A cycle is polished (`numeric.dynamics.recognition`) and then recognised by nearness; what settles on no cycle
-and spreads is chaotic when no ball leaves it for a whole round of bounces, and then falls into the sets
+and spreads is chaotic when no particle leaves it for a whole round of bounces, and then falls into the sets
 that its orbits join (`numeric.dynamics.phase_points`). Whatever is still leaving at the end is unsettled.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap, Status
-from numeric.dynamics.phase_points import Array, Places, gathered, places, together
+from numeric.dynamics.phase_points import Array, PhasePoints, gathered, phase_points, together
 from numeric.dynamics.recognition import (
     UNSETTLED,
     Attractor,
@@ -36,21 +36,21 @@ if TYPE_CHECKING:
     from symbolic.tables.geometry import Symmetry
 
 
-def moved(symmetry: "Symmetry", balls: Places) -> Places:
-    """The balls' images: a reflection turns every exit angle round. Paper: section 6.4, opposite angles.
+def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
+    """The particles' images: a reflection turns every exit angle round. Paper: section 6.4, opposite angles.
 
     >>> from symbolic.tables.geometry import group
     >>> from symbolic.tables import cuspless
-    >>> from numeric.dynamics.phase_points import places
-    >>> image = moved(group(cuspless)[1], places([0, 1], [1.0, 0.25], 0.5))
+    >>> from numeric.dynamics.phase_points import phase_points
+    >>> image = moved(group(cuspless)[1], phase_points([0, 1], [1.0, 0.25], 0.5))
     >>> image.component.tolist(), image.theta.tolist(), image.phi.tolist()
     ([0, 1], [-1.0, -0.25], [-0.5, -0.5])
     """
-    shift = np.array([float(x) for x in symmetry.shift])[balls.component]
-    theta = symmetry.sign * balls.theta + shift
+    shift = np.array([float(x) for x in symmetry.shift])[particles.component]
+    theta = symmetry.sign * particles.theta + shift
     if len(symmetry.onto) == 1:
         theta = np.remainder(theta + np.pi, 2 * np.pi) - np.pi
-    return Places(np.array(symmetry.onto)[balls.component], theta, symmetry.sign * balls.phi)
+    return PhasePoints(np.array(symmetry.onto)[particles.component], theta, symmetry.sign * particles.phi)
 
 
 def with_images(map: PinballMap, attractors: Sequence[Attractor], group: "Sequence[Symmetry]") -> list[Attractor]:
@@ -134,14 +134,14 @@ def name(own: "Sequence[Symmetry]") -> str:
 
 
 __all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find", "wilson"]
-SAMPLE = 64  # balls looked at for new cycles
+SAMPLE = 64  # particles looked at for new cycles
 ROUNDS = 6
-WATCHED = 100_000  # bounces, of all balls together, in which none leaves a chaotic attractor
-MEASURED = 64  # balls whose exponents are averaged
+WATCHED = 100_000  # bounces, of all particles together, in which none leaves a chaotic attractor
+MEASURED = 64  # particles whose exponents are averaged
 
 
 class Classified(NamedTuple):
-    """The index of each ball's attractor, -1 where it did not settle, and the attractors."""
+    """The index of each particle's attractor, -1 where it did not settle, and the attractors."""
 
     label: Labels
     attractors: tuple[Attractor, ...]
@@ -156,33 +156,33 @@ def classify(
     known: Sequence[Attractor] = (),
     rounds: int = ROUNDS,
 ) -> Classified:
-    """The attractor that each ball reaches. Attractors already `known` keep their index; new ones follow.
+    """The attractor that each particle reaches. Attractors already `known` keep their index; new ones follow.
 
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
     >>> found = classify(ellipse, 0, [0.1, 1.0, 2.0], 0.2)
     >>> found.label.tolist(), [(a.kind.name, a.period) for a in found.attractors]
     ([0, 0, 0], [('CYCLE', 2)])
     """
-    return _Sorting(map, places(component, theta, phi), list(known)).sorted(transient, rounds)
+    return _Sorting(map, phase_points(component, theta, phi), list(known)).sorted(transient, rounds)
 
 
 @dataclass
 class _Sorting:
-    """Balls on their way to attractors; the ones in `going` have not been recognised yet."""
+    """Particles on their way to attractors; the ones in `going` have not been recognised yet."""
 
     map: PinballMap
-    balls: Places
+    particles: PhasePoints
     attractors: list[Attractor]
     label: Labels = field(init=False)
     going: Labels = field(init=False)
     growth: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        self.label = np.full(self.balls.size, UNSETTLED)
-        self.going = np.arange(self.balls.size)
+        self.label = np.full(self.particles.size, UNSETTLED)
+        self.going = np.arange(self.particles.size)
 
     def sorted(self, transient: int, rounds: int) -> Classified:
-        """Rounds of bounces, each twice as long, until one goes by in which no ball is recognised."""
+        """Rounds of bounces, each twice as long, until one goes by in which no particle is recognised."""
         self._advance(transient)
         if self.map.law == "elastic":
             self._conserved(transient)
@@ -203,9 +203,9 @@ class _Sorting:
 
     def _advance(self, bounces: int) -> None:
         """Moves those that are going, and keeps how fast their neighbourhoods grow; the ones that stop are labelled."""
-        here = self.balls.only(self.going)
+        here = self.particles.only(self.going)
         end = self.map.exponents(here.theta, here.phi, bounces, 0, here.component)
-        for rows, new in zip(self.balls, (end.component, end.theta, end.phi), strict=True):
+        for rows, new in zip(self.particles, (end.component, end.theta, end.phi), strict=True):
             rows[self.going] = new
         for code in np.unique(end.code[end.code > 0]):
             at = end.code == code
@@ -226,46 +226,46 @@ class _Sorting:
         return len(self.attractors) - 1
 
     def _catch(self) -> None:
-        """Labels the balls that are at a cycle, and looks for new cycles among the others."""
+        """Labels the particles that are at a cycle, and looks for new cycles among the others."""
         while self.going.size:
-            caught = at_cycles(self.map, self.balls.only(self.going), self.attractors)
+            caught = at_cycles(self.map, self.particles.only(self.going), self.attractors)
             self.label[self.going] = caught
             self._keep(caught == UNSETTLED, self.growth)
             known, calm = len(self.attractors), np.argsort(self.growth)[:SAMPLE]
-            for cycle in recognised(self.map, self.balls.only(self.going[calm]), self.growth[calm] < 0):
+            for cycle in recognised(self.map, self.particles.only(self.going[calm]), self.growth[calm] < 0):
                 self._entered(cycle)
             if len(self.attractors) == known:
                 break
 
     def _conserved(self, bounces: int) -> None:
-        """At `lam = 1` nothing attracts: a ball spreads like a power of the time, or exponentially."""
+        """At `lam = 1` nothing attracts: a particle spreads like a power of the time, or exponentially."""
         regular = self.growth < calm(bounces)
         if np.any(regular):
-            points = self.balls.only(self.going[regular])
+            points = self.particles.only(self.going[regular])
             self.label[self.going[regular]] = self._entered(Attractor(Kind.NEUTRAL, 0, points))
             self._keep(~regular, self.growth)
 
     def _spread(self, bounces: int) -> None:
-        """Shares out the balls that spread among the chaotic attractors; new ones are made for those near none."""
+        """Shares out the particles that spread among the chaotic attractors; new ones are made for those near none."""
         stay = self.going.size * bounces / 3
         self._keep(self.growth > calm(bounces), self.growth)
         while self.going.size:
-            near = at_clouds(self.map, self.balls.only(self.going), self.attractors)
+            near = at_clouds(self.map, self.particles.only(self.going), self.attractors)
             self.label[self.going] = near
             self._keep(near == UNSETTLED, self.growth)
             if self.going.size:
                 self._gather(stay)
 
     def _gather(self, stay: float) -> None:
-        """Labels a few of the balls with the set their orbits lie on, known or new."""
+        """Labels a few of the particles with the set their orbits lie on, known or new."""
         spread = [i for i, a in enumerate(self.attractors) if a.kind is Kind.CHAOTIC]
-        balls = self.balls.only(self.going)
-        found = gathered(self.map, balls, [self.attractors[i].points for i in spread])
+        particles = self.particles.only(self.going)
+        found = gathered(self.map, particles, [self.attractors[i].points for i in spread])
         for points in found.sets[len(spread) :]:
             spread.append(len(self.attractors))
             self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
         self.label[self.going[found.looked]] = np.array(spread)[found.member]
-        self._keep(~np.isin(np.arange(balls.size), found.looked), self.growth)
+        self._keep(~np.isin(np.arange(particles.size), found.looked), self.growth)
 
 
 def calm(bounces: int) -> float:
@@ -314,7 +314,7 @@ def find(
 
 
 def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
-    """The attractor with the exponents of a chaotic one, and their standard errors over as many balls."""
+    """The attractor with the exponents of a chaotic one, and their standard errors over as many particles."""
     if attractor.kind is not Kind.CHAOTIC:
         return attractor
     points = attractor.points

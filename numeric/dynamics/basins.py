@@ -20,12 +20,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import classify, wilson
-from numeric.dynamics.phase_points import Array, Places, places
+from numeric.dynamics.phase_points import Array, PhasePoints, phase_points
 from numeric.dynamics.recognition import UNSETTLED, Attractor, Labels, Share, at_clouds, at_cycles
 from numeric.pinball.sampling import boundary
 
 TRANSIENT = 1000
-PIECE = 1 << 16  # balls at a time
+PIECE = 1 << 16  # particles at a time
 
 
 class Window(NamedTuple):
@@ -45,44 +45,50 @@ def whole(map: PinballMap) -> Window:
     return Window((-half, half), (-1.0, 1.0))
 
 
-def starts_at(map: PinballMap, s: ArrayLike, sin_phi: ArrayLike) -> Places:
-    """The balls at these coordinates; beyond grazing, `|sin(phi)| > 1`, the angle is mirrored back.
+def starts_at(map: PinballMap, s: ArrayLike, sin_phi: ArrayLike) -> PhasePoints:
+    """The particles at these coordinates; beyond grazing, `|sin(phi)| > 1`, the angle is mirrored back.
 
-    >>> ball = starts_at(PinballMap("cardioid"), [2.0], [0.5])
-    >>> [round(float(x[0]), 6) for x in (ball.theta, ball.phi)]
+    >>> particle = starts_at(PinballMap("cardioid"), [2.0], [0.5])
+    >>> [round(float(x[0]), 6) for x in (particle.theta, particle.phi)]
     [1.047198, 0.523599]
     """
     along, height = np.broadcast_arrays(np.asarray(s, dtype=float), np.asarray(sin_phi, dtype=float))
     height = np.where(np.abs(height) > 1, np.sign(height) * 2 - height, height) * (1 - 1e-12)
     component, theta = boundary(map, along.ravel())
-    return places(component, theta, np.arcsin(height.ravel()))
+    return phase_points(component, theta, np.arcsin(height.ravel()))
 
 
 def labels(
-    map: PinballMap, balls: Places, attractors: Sequence[Attractor], transient: int = TRANSIENT, sure: bool = False
+    map: PinballMap,
+    particles: PhasePoints,
+    attractors: Sequence[Attractor],
+    transient: int = TRANSIENT,
+    sure: bool = False,
 ) -> Labels:
-    """The index of the attractor that each ball reaches, of those known; -1 where it reaches none of them.
+    """The index of the attractor that each particle reaches, of those known; -1 where it reaches none of them.
 
-    Quick: after `transient` bounces a ball within reach of a cycle is settled, and one on the cloud of a chaotic
-    attractor too. With `sure`, as long as any ball is still leaving the cloud for a cycle, all go on.
+    Quick: after `transient` bounces a particle within reach of a cycle is settled, and one on the cloud of a chaotic
+    attractor too. With `sure`, as long as any particle is still leaving the cloud for a cycle, all go on.
 
     >>> from numeric.dynamics.attractors import find
     >>> map = PinballMap("cuspless", lam="0.09")
     >>> found = find(map, 100, seed=1)
-    >>> label = labels(map, places([1, 0], [0.0, 0.2], [0.0, -0.03]), found)
+    >>> label = labels(map, phase_points([1, 0], [0.0, 0.2], [0.0, -0.03]), found)
     >>> [found[i].kind.name for i in label]
     ['CYCLE', 'CHAOTIC']
     """
-    found = np.full(balls.size, UNSETTLED)
-    for first in range(0, balls.size, PIECE):
-        part = balls.only(slice(first, first + PIECE))
+    found = np.full(particles.size, UNSETTLED)
+    for first in range(0, particles.size, PIECE):
+        part = particles.only(slice(first, first + PIECE))
         found[first : first + PIECE] = _settled(map, part, attractors, transient, sure)
     return found
 
 
-def _settled(map: PinballMap, balls: Places, attractors: Sequence[Attractor], transient: int, sure: bool) -> Labels:
-    end = map.exponents(balls.theta, balls.phi, transient, 0, balls.component)
-    there = Places(end.component, end.theta, end.phi)
+def _settled(
+    map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor], transient: int, sure: bool
+) -> Labels:
+    end = map.exponents(particles.theta, particles.phi, transient, 0, particles.component)
+    there = PhasePoints(end.component, end.theta, end.phi)
     found = at_cycles(map, there, attractors)
     going = np.nonzero((found == UNSETTLED) & (end.code == 0))[0]
     if not sure:

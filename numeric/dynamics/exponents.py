@@ -1,7 +1,7 @@
 """Lyapunov exponents of many orbits, counted block by block, until their error is small enough.
 
-Balls first run until they are where they end: those that a cycle attracts within its reach. Then growth is counted
-in blocks. Balls are sorted by the attractor they reach, before the count and once more after it; nothing is
+Particles first run until they are where they end: those that a cycle attracts within its reach. Then growth is counted
+in blocks. Particles are sorted by the attractor they reach, before the count and once more after it; nothing is
 averaged across attractors. A run can be interrupted: what was counted stays. The paper (appendix A.2) counts with two
 vectors, after [DellagoPoschHoover1996]; here one vector and the determinant do.
 
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Classified, classify
-from numeric.dynamics.phase_points import Array, Places, advanced
+from numeric.dynamics.phase_points import Array, PhasePoints, advanced
 from numeric.dynamics.recognition import Kind, at_cycles
 from numeric.dynamics.statistics import Estimate, estimate
 from numeric.pinball.sampling import Growth, Starts, interior_starts
@@ -30,9 +30,9 @@ Labels = NDArray[np.int64]
 MOST = 1024  # blocks kept to an orbit
 KEPT = 1 << 22  # numbers kept of each exponent
 ALIGNED = 256  # bounces after which a tangent vector has turned to the direction of growth
-PATIENCE = 8  # doublings of the wait for balls that are on their way
-SINGLE, WATCHED = 1024, 32  # bounces and balls that are watched one by one, for the naive error
-HEARD = 50_000_000  # bounces of all balls at a time
+PATIENCE = 8  # doublings of the wait for particles that are on their way
+SINGLE, WATCHED = 1024, 32  # bounces and particles that are watched one by one, for the naive error
+HEARD = 50_000_000  # bounces of all particles at a time
 CHANGED = "reached another attractor while it was counted"
 
 
@@ -58,7 +58,7 @@ class Measured(NamedTuple):
 
 
 class Count:
-    """What orbits grew by: blocks along the first axis, balls along the second, per bounce.
+    """What orbits grew by: blocks along the first axis, particles along the second, per bounce.
 
     Blocks begin with a single bounce; at `most` of them two become one. So there is an estimate at every moment, and
     a run of any length fits in memory.
@@ -82,7 +82,7 @@ class Count:
 
     @property
     def bounces(self) -> int:
-        """Counted so far, for each ball."""
+        """Counted so far, for each particle."""
         return self.length * self.blocks
 
     def until(self, bounces: int) -> Iterator[int]:
@@ -99,7 +99,7 @@ class Count:
             yield self.bounces
 
     def measured(self, members: Labels, blocks: int | None = None) -> Measured:
-        """The exponents over some of the balls, from all blocks or from the first few."""
+        """The exponents over some of the particles, from all blocks or from the first few."""
         plus = self.up[:blocks, members]
         if self.growth.lam[members[0]] == 0:
             return Measured(estimate(plus), None, None)
@@ -111,7 +111,7 @@ class Count:
 
 
 class Group(NamedTuple):
-    """Balls that share an attractor (None: they do not stay on one), and the exponents found along them."""
+    """Particles that share an attractor (None: they do not stay on one), and the exponents found along them."""
 
     kind: str
     attractor: Attractor | None
@@ -153,7 +153,7 @@ def surveyed(
     """The exponents along orbits from `starts`, by attractor. Paper: appendix; figures in sections 4.1 and 5.3.
 
     With `until` the count goes on, twice as long each time, until every error is at most that, or until `budget`
-    bounces, of all balls together, are spent. `say` hears the part of the work that is done.
+    bounces, of all particles together, are spent. `say` hears the part of the work that is done.
 
     >>> from numeric.pinball.sampling import interior_starts
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
@@ -193,7 +193,7 @@ def surveyed(
 
 
 def arrived(map: PinballMap, starts: Starts) -> Growth:
-    """Balls on their way from their starts; at `lam = 0` from their first landing, since the slap map forgets phi."""
+    """Particles on their way from their starts; at `lam = 0` from their first landing: the slap map forgets phi."""
     if map.law == "slap":
         landed = map.step(starts.theta, starts.phi, starts.component)
         return Growth(map, landed.component, landed.theta, 0.0 * landed.phi)
@@ -201,16 +201,16 @@ def arrived(map: PinballMap, starts: Starts) -> Growth:
 
 
 def skipped(growth: Growth, bounces: int) -> None:
-    """Moves balls on uncounted, a second's work at a time, so that an interruption is heard."""
+    """Moves particles on uncounted, a second's work at a time, so that an interruption is heard."""
     piece = max(1, HEARD // growth.theta.size)
     for done in range(0, bounces, piece):
         growth.skip(min(piece, bounces - done))
 
 
 def _settled(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> tuple[Labels, int]:
-    """The cycle within whose reach each ball is, else what it was classified as, and how long was waited for that.
+    """The cycle within whose reach each particle is, else what it was classified as, and how long was waited for that.
 
-    After a long chaotic transient rounding decides which of several cycles a ball reaches; where it is counts.
+    After a long chaotic transient rounding decides which of several cycles a particle reaches; where it is counts.
     """
     waited = 0
     cyclic = np.isin(classified.label, [i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE])
@@ -225,7 +225,7 @@ def _settled(map: PinballMap, growth: Growth, classified: Classified, wait: int)
 
 
 def _caught(map: PinballMap, growth: Growth, classified: Classified) -> Labels:
-    return at_cycles(map, Places(growth.component, growth.theta, growth.phi), classified.attractors)
+    return at_cycles(map, PhasePoints(growth.component, growth.theta, growth.phi), classified.attractors)
 
 
 def _sorted(label: Labels) -> list[tuple[int, Labels]]:
@@ -233,7 +233,7 @@ def _sorted(label: Labels) -> list[tuple[int, Labels]]:
 
 
 def _groups(map: PinballMap, count: Count, classified: Classified) -> tuple[Group, ...]:
-    """The balls sorted once more: one that is on a cycle now, and was not to reach it, changed on the way."""
+    """The particles sorted once more: one that is on a cycle now, and was not to reach it, changed on the way."""
     caught = _caught(map, count.growth, classified)
     cycle = np.array([a.kind is Kind.CYCLE for a in classified.attractors] + [False])
     changed = (caught != classified.label) & (cycle[caught] | cycle[classified.label]) & (count.growth.code == 0)
@@ -260,7 +260,7 @@ def _kind(index: int, attractor: Attractor | None) -> str:
 
 
 def _remembering(map: PinballMap, count: Count, members: Labels, measured: Measured) -> Measured:
-    """With the naive error, from the growth of single bounces of a few balls."""
+    """With the naive error, from the growth of single bounces of a few particles."""
     few, end = members[:WATCHED], count.growth
     watched = Growth(map.at(end.lam[few]), end.component[few], end.theta[few], end.phi[few])
     watched.advance(ALIGNED)
@@ -279,15 +279,15 @@ def _remembering(map: PinballMap, count: Count, members: Labels, measured: Measu
 SETTLING = 60  # bounces in which a vector turns to its direction
 
 
-def angles(map: PinballMap, balls: Places, bounces: int, transient: int = 1000) -> Array:
-    """The angle in `(s, phi)`, in radians from 0 to pi/2, at `bounces` points of every ball's orbit.
+def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int = 1000) -> Array:
+    """The angle in `(s, phi)`, in radians from 0 to pi/2, at `bounces` points of every particle's orbit.
 
-    >>> from numeric.dynamics.phase_points import places
-    >>> measured = angles(PinballMap("cuspless", lam="0.5"), places(0, [0.5, 0.7], 0.1), 50)
+    >>> from numeric.dynamics.phase_points import phase_points
+    >>> measured = angles(PinballMap("cuspless", lam="0.5"), phase_points(0, [0.5, 0.7], 0.1), 50)
     >>> measured.size, bool(np.min(measured) > 0.3)
     (100, True)
     """
-    begin = advanced(map, balls, transient).places
+    begin = advanced(map, particles, transient).points
     steps = bounces + 2 * SETTLING
     orbit = map.orbit(begin.theta, begin.phi, steps, begin.component)
     slopes = [map.derivative(orbit.theta[i], orbit.phi[i], orbit.component[i]) for i in range(steps)]
@@ -314,7 +314,7 @@ def _carried(slopes: list[Array], vector: Array) -> Array:
 def slopes(map: PinballMap, count: int, seed: int, bounces: int = 600) -> tuple[Array, Array, Array]:
     """Arc length, exit angle and the slope `dphi/ds` of the expanded direction, at points of random orbits."""
     starts = interior_starts(map, count, seed)
-    begin = advanced(map, Places(*starts[:3]), 1000).places
+    begin = advanced(map, PhasePoints(*starts[:3]), 1000).points
     orbit = map.orbit(begin.theta, begin.phi, bounces, begin.component)
     along = _carried(
         [map.derivative(orbit.theta[i], orbit.phi[i], orbit.component[i]) for i in range(bounces)], np.array([0.6, 0.8])

@@ -1,8 +1,8 @@
 """Points of phase space by the hundred thousand: carried along orbits, and told apart by their distance.
 
-Chaotic sets as clouds of points: which balls are on the same one.
+Chaotic sets as clouds of points: which particles are on the same one.
 
-Two balls are on the same set when their orbits meet in a cell, or through a chain of balls that do. The
+Two particles are on the same set when their orbits meet in a cell, or through a chain of particles that do. The
 cells are fine, so sets that are near are not taken for one; the orbits are long, so that those that are
 one meet.
 """
@@ -20,20 +20,20 @@ from numeric import PinballMap
 Array = NDArray[np.float64]
 
 
-class Places(NamedTuple):
-    """Components, parameters and exit angles: balls about to leave, or the points of an attractor."""
+class PhasePoints(NamedTuple):
+    """Components, parameters and exit angles: particles about to leave, or the points of an attractor."""
 
     component: NDArray[np.int64]
     theta: Array
     phi: Array
 
-    def only(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "Places":
+    def only(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "PhasePoints":
         """Some of them."""
-        return Places(self.component[which], self.theta[which], self.phi[which])
+        return PhasePoints(self.component[which], self.theta[which], self.phi[which])
 
-    def turned(self, bounces: int) -> "Places":
+    def turned(self, bounces: int) -> "PhasePoints":
         """The same cycle, begun `bounces` later."""
-        return Places(*(np.roll(row, -bounces) for row in self))  # type: ignore[arg-type]  # rows keep their kinds
+        return PhasePoints(*(np.roll(row, -bounces) for row in self))  # type: ignore[arg-type]  # rows keep their kinds
 
     @property
     def size(self) -> int:
@@ -42,87 +42,87 @@ class Places(NamedTuple):
 
 
 class Advanced(NamedTuple):
-    """Where balls came, and the code of what stopped them: 0 for nothing, see `numeric.Status`."""
+    """Where particles came, and the code of what stopped them: 0 for nothing, see `numeric.Status`."""
 
-    places: Places
+    points: PhasePoints
     code: NDArray[np.int64]
 
 
-def places(component: ArrayLike, theta: ArrayLike, phi: ArrayLike) -> Places:
+def phase_points(component: ArrayLike, theta: ArrayLike, phi: ArrayLike) -> PhasePoints:
     """Places from numbers or arrays of any shape, in one row.
 
-    >>> places(0, [0.0, 1.0], 0.0).component.tolist()
+    >>> phase_points(0, [0.0, 1.0], 0.0).component.tolist()
     [0, 0]
     """
     index, angle, exit = np.broadcast_arrays(component, theta, phi)
-    return Places(index.ravel().astype(np.int64), angle.ravel().astype(float), exit.ravel().astype(float))
+    return PhasePoints(index.ravel().astype(np.int64), angle.ravel().astype(float), exit.ravel().astype(float))
 
 
-def together(*parts: Places) -> Places:
+def together(*parts: PhasePoints) -> PhasePoints:
     """One row after the other."""
     component, theta, phi = (np.concatenate(rows) for rows in zip(*parts, strict=True))
-    return Places(component, theta, phi)
+    return PhasePoints(component, theta, phi)
 
 
-def advanced(map: PinballMap, balls: Places, bounces: int) -> Advanced:
-    """The balls `bounces` bounces later: the kernel's own time, nothing recorded."""
-    if balls.size == 0 or bounces < 1:
-        return Advanced(balls, np.zeros(balls.size, dtype=np.int64))
-    end = map.exponents(balls.theta, balls.phi, 1, bounces - 1, balls.component)
-    return Advanced(Places(end.component, end.theta, end.phi), end.code)
+def advanced(map: PinballMap, particles: PhasePoints, bounces: int) -> Advanced:
+    """The particles `bounces` bounces later: the kernel's own time, nothing recorded."""
+    if particles.size == 0 or bounces < 1:
+        return Advanced(particles, np.zeros(particles.size, dtype=np.int64))
+    end = map.exponents(particles.theta, particles.phi, 1, bounces - 1, particles.component)
+    return Advanced(PhasePoints(end.component, end.theta, end.phi), end.code)
 
 
-def embedded(map: PinballMap, balls: Places) -> Array:
+def embedded(map: PinballMap, particles: PhasePoints) -> Array:
     """Rows `x, y, sin(phi)`, in which distances are measured: no angle has an end there.
 
-    >>> embedded(PinballMap("circle"), places(0, [0.0], [0.0])).tolist()
+    >>> embedded(PinballMap("circle"), phase_points(0, [0.0], [0.0])).tolist()
     [[1.0, 0.0, 0.0]]
     """
-    x, y = map.states.point(balls.component, balls.theta)
-    return np.stack([x, y, np.sin(balls.phi)], axis=1)
+    x, y = map.states.point(particles.component, particles.theta)
+    return np.stack([x, y, np.sin(particles.phi)], axis=1)
 
 
 CELL = 1 / 512  # in x, y and sin(phi)
 WIDE = 1 << 20  # more cells than there are in a row
-BALLS = 48  # at most, whose orbits are compared
+PARTICLES = 48  # at most, whose orbits are compared
 ORBIT = 4096  # bounces of each
 KEPT = 8192  # points of a cloud
 Labels = NDArray[np.int64]
 
 
 class Gathered(NamedTuple):
-    """Which balls were looked at, the set each is on, and the sets: those given come first, and keep their points."""
+    """The particles looked at, the set each is on, and the sets: those given come first, and keep their points."""
 
     looked: Labels
     member: Labels
-    sets: list[Places]
+    sets: list[PhasePoints]
 
 
-def gathered(map: PinballMap, balls: Places, known: Sequence[Places] = ()) -> Gathered:
-    """The sets on which the orbits of a few of the balls lie, sets known before among them.
+def gathered(map: PinballMap, particles: PhasePoints, known: Sequence[PhasePoints] = ()) -> Gathered:
+    """The sets on which the orbits of a few of the particles lie, sets known before among them.
 
-    >>> found = gathered(PinballMap("cardioid", lam="0.5"), places(0, [0.5, -0.5, 1.0], 0.1))
+    >>> found = gathered(PinballMap("cardioid", lam="0.5"), phase_points(0, [0.5, -0.5, 1.0], 0.1))
     >>> found.member.tolist(), len(found.sets)
     ([0, 0, 0], 1)
     """
-    looked = np.linspace(0, balls.size - 1, min(balls.size, BALLS)).astype(int)
-    some = balls.only(looked)
+    looked = np.linspace(0, particles.size - 1, min(particles.size, PARTICLES)).astype(int)
+    some = particles.only(looked)
     orbit = map.orbit(some.theta, some.phi, ORBIT, some.component)
-    along = Places(orbit.component[1:].T, orbit.theta[1:].T, orbit.phi[1:].T)
+    along = PhasePoints(orbit.component[1:].T, orbit.theta[1:].T, orbit.phi[1:].T)
     before = [np.full(points.size, i) for i, points in enumerate(known)]
     owner = np.concatenate([*before, len(known) + np.repeat(np.arange(looked.size), ORBIT)])
-    group = joined(owner, cells(map, together(*known, places(*along))))
+    group = joined(owner, cells(map, together(*known, phase_points(*along))))
     old = {int(group[i]): i for i in reversed(range(len(known)))}
     sets, new = list(known), group[len(known) :]
     for number in dict.fromkeys(int(x) for x in new):
         if number not in old:
             old[number] = len(sets)
-            points = places(*along.only(new == number))
+            points = phase_points(*along.only(new == number))
             sets.append(points.only(np.linspace(0, points.size - 1, min(points.size, KEPT)).astype(int)))
     return Gathered(looked, np.array([old[int(x)] for x in new], dtype=np.int64), sets)
 
 
-def cells(map: PinballMap, points: Places) -> Labels:
+def cells(map: PinballMap, points: PhasePoints) -> Labels:
     """The number of the cell of each point."""
     x, y, z = np.floor(embedded(map, points).T / CELL).astype(np.int64)
     return np.asarray(np.unique((x * WIDE + y) * WIDE + z, return_inverse=True)[1], dtype=np.int64)

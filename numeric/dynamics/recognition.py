@@ -1,4 +1,4 @@
-"""What a ball ends on: an attractor, by its kind, its points and what was measured of it.
+"""What a particle ends on: an attractor, by its kind, its points and what was measured of it.
 
 A cycle in float64, polished from points near it: multiple shooting, its multipliers, its least period.
 
@@ -6,7 +6,7 @@ All bounces are unknowns at once, so errors do not multiply along the cycle, and
 to the accumulation of period doublings is told from one of 128. For digits and proofs there is the
 chord system (`verification.cycles`, `verification.proofs`).
 
-Recognising attractors: the cycle that a ball is at, the cloud it lies in, the new cycle it is on.
+Recognising attractors: the cycle that a particle is at, the cloud it lies in, the new cycle it is on.
 """
 
 from collections.abc import Sequence
@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from numeric import PinballMap, Status
-from numeric.dynamics.phase_points import Array, Places, advanced, embedded, places, together
+from numeric.dynamics.phase_points import Array, PhasePoints, advanced, embedded, phase_points, together
 
 
 class Kind(Enum):
-    """What a ball ends on."""
+    """What a particle ends on."""
 
     CYCLE = "an attracting cycle"
     CHAOTIC = "a chaotic set: an attractor when lam < 1"
@@ -47,15 +47,15 @@ class Attractor:
     """An attractor: its points (a cycle's in order, a cloud of others), and what was measured of it.
 
     `nu_plus` and `nu_minus` are per bounce, with standard errors (0 for a cycle, whose multipliers they come
-    from). `reach` is the distance in `(x, y, sin(phi))` within which balls are taken to be caught: sampled,
-    not proved. `stay` bounds the mean number of bounces before a ball leaves a chaotic attractor from below,
-    with 95 per cent confidence: none of the balls seen left. `family` numbers attractors that are symmetry
+    from). `reach` is the distance in `(x, y, sin(phi))` within which particles are taken to be caught: sampled,
+    not proved. `stay` bounds the mean number of bounces before a particle leaves a chaotic attractor from below,
+    with 95 per cent confidence: none of the particles seen left. `family` numbers attractors that are symmetry
     images of each other alike; `symmetry` is the attractor's own group, such as `D1`.
     """
 
     kind: Kind
     period: int
-    points: Places
+    points: PhasePoints
     multipliers: tuple[complex, complex] | None = None
     nu_plus: float = float("nan")
     nu_minus: float = float("nan")
@@ -89,7 +89,7 @@ SAME = 1e-7  # between points of one cycle and their images: a shorter cycle, ru
 class Cycle:
     """A cycle's bounces in order, from the one that comes first in `(component, theta)`, and both multipliers."""
 
-    points: Places
+    points: PhasePoints
     multipliers: tuple[complex, complex]
     volume: float  # the mean of log |det DT| along it
 
@@ -106,10 +106,10 @@ class Cycle:
         return plus, self.volume - plus
 
 
-def polished(map: PinballMap, near: Places) -> Cycle | None:
+def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
     """The cycle whose bounces lie near the given ones, in order; None when Newton's method does not settle there.
 
-    >>> axis = polished(PinballMap("ellipse", a=2, lam="0.5"), places(0, [1.5, -1.6], [0.01, 0.0]))
+    >>> axis = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points(0, [1.5, -1.6], [0.01, 0.0]))
     >>> axis.period, axis.points.theta.round(12).tolist()
     (2, [-1.570796326795, 1.570796326795])
     """
@@ -140,7 +140,7 @@ def polished(map: PinballMap, near: Places) -> Cycle | None:
     return None
 
 
-def shortest(map: PinballMap, cycle: Places) -> Cycle:
+def shortest(map: PinballMap, cycle: PhasePoints) -> Cycle:
     """The cycle run through once, from its first point, with its multipliers."""
     n = cycle.size
     for period in (d for d in range(1, n + 1) if n % d == 0):
@@ -157,7 +157,7 @@ def shortest(map: PinballMap, cycle: Places) -> Cycle:
     return Cycle(once, eigenvalues(slopes), volume)
 
 
-def multipliers(map: PinballMap, cycle: Places) -> tuple[complex, complex]:
+def multipliers(map: PinballMap, cycle: PhasePoints) -> tuple[complex, complex]:
     """The eigenvalues of the derivative along a cycle, the larger one first. Paper: section 2.1."""
     return eigenvalues(map.derivative(cycle.theta, cycle.phi, cycle.component))
 
@@ -177,8 +177,8 @@ def eigenvalues(slopes: Array) -> tuple[complex, complex]:
     return first, second
 
 
-def by_parameter(map: PinballMap, here: Places, after: Places) -> Array:
-    """The derivative of the map in `(theta, phi)`, a matrix for each ball; `after` is where they land."""
+def by_parameter(map: PinballMap, here: PhasePoints, after: PhasePoints) -> Array:
+    """The derivative of the map in `(theta, phi)`, a matrix for each particle; `after` is where they land."""
     slope = map.derivative(here.theta, here.phi, here.component)
     slope[:, :, 0] *= map.states.speed(here.component, here.theta)[:, None]
     slope[:, 0, :] /= map.states.speed(after.component, after.theta)[:, None]
@@ -192,19 +192,19 @@ def gap(map: PinballMap, left: Array, right: Array) -> Array:
     return np.asarray(np.remainder(left - right + np.pi, 2 * np.pi) - np.pi)
 
 
-def _moved(map: PinballMap, here: Places, step: NDArray[Any]) -> Places | None:
+def _moved(map: PinballMap, here: PhasePoints, step: NDArray[Any]) -> PhasePoints | None:
     theta, phi = here.theta - step[:, 0], here.phi - step[:, 1]
     ends = np.array(map.states.ends)[here.component]
     if len(map.states.ends) > 1 and np.any((theta <= ends[:, 0]) | (theta >= ends[:, 1])):
         return None
     if np.any(np.abs(phi) >= np.pi / 2):
         return None
-    return places(here.component, theta - 2 * np.pi * np.rint(theta / (2 * np.pi)), phi)
+    return phase_points(here.component, theta - 2 * np.pi * np.rint(theta / (2 * np.pi)), phi)
 
 
 UNSETTLED = -1
 LONGEST = 256  # period that is looked for
-RETURN, LOOSE = 1e-9, 1e-2  # of a ball to where it was: it is on a cycle; it may be near one
+RETURN, LOOSE = 1e-9, 1e-2  # of a particle to where it was: it is on a cycle; it may be near one
 REACHES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # radii tried for a cycle's neighbourhood
 SAME_POINT = 1e-6  # between cycles
 UNIT = 1e-7  # how near 1 a multiplier is that counts as 1
@@ -222,51 +222,51 @@ def same(map: PinballMap, old: Attractor, new: Attractor) -> bool:
     return bool(np.min(np.linalg.norm(embedded(map, old.points) - first, axis=1)) < SAME_POINT)
 
 
-def at_cycles(map: PinballMap, balls: Places, attractors: Sequence[Attractor]) -> Labels:
-    """The cycle within whose reach each ball is, or the neutral family to which it belongs; -1 for none."""
-    found = np.full(balls.size, UNSETTLED)
+def at_cycles(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor]) -> Labels:
+    """The cycle within whose reach each particle is, or the neutral family to which it belongs; -1 for none."""
+    found = np.full(particles.size, UNSETTLED)
     cycles = [i for i, a in enumerate(attractors) if a.kind is Kind.CYCLE]
     if cycles:
         owner = np.repeat(cycles, [attractors[i].period for i in cycles])
         tree = cKDTree(embedded(map, together(*(attractors[i].points for i in cycles))))
         reach = np.array([attractors[i].reach for i in owner])
-        distance, nearest = tree.query(embedded(map, balls), distance_upper_bound=2 * REACHES[0])
+        distance, nearest = tree.query(embedded(map, particles), distance_upper_bound=2 * REACHES[0])
         near = distance < np.append(reach, 0.0)[nearest]
         found[near] = owner[nearest[near]]
     for index, attractor in enumerate(attractors):
         left = np.nonzero(found == UNSETTLED)[0]
         if attractor.kind is Kind.NEUTRAL and attractor.period and left.size:
-            here = balls.only(left)
-            there = advanced(map, here, attractor.period).places
+            here = particles.only(left)
+            there = advanced(map, here, attractor.period).points
             back = np.linalg.norm(embedded(map, there) - embedded(map, here), axis=1) < RETURN
             found[left[back]] = index
     return found
 
 
-def at_clouds(map: PinballMap, balls: Places, attractors: Sequence[Attractor]) -> Labels:
-    """The chaotic attractor nearest to each ball; -1 when it is not near any."""
+def at_clouds(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor]) -> Labels:
+    """The chaotic attractor nearest to each particle; -1 when it is not near any."""
     chaotic = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
     if not chaotic:
-        return np.full(balls.size, UNSETTLED)
+        return np.full(particles.size, UNSETTLED)
     owner = np.repeat(chaotic, [attractors[i].points.size for i in chaotic])
     tree = cKDTree(embedded(map, together(*(attractors[i].points for i in chaotic))))
-    distance, nearest = tree.query(embedded(map, balls))
+    distance, nearest = tree.query(embedded(map, particles))
     return np.where(distance < NEAR, owner[nearest], UNSETTLED)
 
 
-def recognised(map: PinballMap, balls: Places, calm: NDArray[np.bool_]) -> list[Attractor]:
-    """The cycles on which some of the balls are, or near which one of the `calm` ones is: they still draw nearer."""
-    if balls.size == 0:
+def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_]) -> list[Attractor]:
+    """The cycles on which some particles are, or near which one of the `calm` ones is: they still draw nearer."""
+    if particles.size == 0:
         return []
-    orbit = map.orbit(balls.theta, balls.phi, LONGEST, balls.component)
+    orbit = map.orbit(particles.theta, particles.phi, LONGEST, particles.component)
     track = np.stack([orbit.x, orbit.y, np.sin(orbit.phi)], axis=-1)
     gaps = np.linalg.norm(track[1:] - track[:1], axis=-1)
     found: list[Attractor] = []
-    for i in range(balls.size):
+    for i in range(particles.size):
         period = _period(gaps[:, i], LOOSE if calm[i] else RETURN)
         if period == 0 or any(_at(map, attractor, track[0, i]) for attractor in found):
             continue
-        points = Places(orbit.component[:period, i], orbit.theta[:period, i], orbit.phi[:period, i])
+        points = PhasePoints(orbit.component[:period, i], orbit.theta[:period, i], orbit.phi[:period, i])
         attractor = _attractor(map, points, float(gaps[period - 1, i]))
         if attractor is not None:
             found.append(attractor)
@@ -274,7 +274,7 @@ def recognised(map: PinballMap, balls: Places, calm: NDArray[np.bool_]) -> list[
 
 
 def _period(gaps: Array, loose: float) -> int:
-    """The bounces after which a ball is back, or else comes nearest within `loose`; 0 for never."""
+    """The bounces after which a particle is back, or else comes nearest within `loose`; 0 for never."""
     back = np.nonzero(gaps < RETURN)[0]
     if back.size:
         return int(back[0]) + 1
@@ -286,7 +286,7 @@ def _at(map: PinballMap, attractor: Attractor, point: Array) -> bool:
     return bool(np.min(np.linalg.norm(embedded(map, attractor.points) - point, axis=1)) < attractor.reach)
 
 
-def _attractor(map: PinballMap, points: Places, miss: float) -> Attractor | None:
+def _attractor(map: PinballMap, points: PhasePoints, miss: float) -> Attractor | None:
     """The attracting or neutral cycle that runs near the points, which return with a gap of `miss`."""
     if miss < RETURN and abs(abs(multipliers(map, points)[0]) - 1) < UNIT:
         return Attractor(Kind.NEUTRAL, points.size, points, multipliers(map, points), 0.0)
@@ -298,10 +298,10 @@ def _attractor(map: PinballMap, points: Places, miss: float) -> Attractor | None
 
 
 def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
-    """The largest radius tried such that balls that far from the cycle all come ten times nearer: sampled.
+    """The largest radius tried such that particles that far from the cycle all come ten times nearer: sampled.
 
-    >>> from numeric.dynamics.phase_points import places
-    >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), places(0, [1.5, -1.6], 0.0))
+    >>> from numeric.dynamics.phase_points import phase_points
+    >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points(0, [1.5, -1.6], 0.0))
     >>> reach(PinballMap("ellipse", a=2, lam="0.5"), cycle)
     0.01
     """
@@ -317,8 +317,8 @@ def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
         if len(map.states.ends) > 1:
             theta = np.clip(theta, ends[:, 0], ends[:, 1])
         phi = np.clip(many.phi + radius * np.sin(angle), -1.57, 1.57)
-        end = advanced(map, Places(many.component, theta, phi), turns * cycle.period)
-        distance = tree.query(embedded(map, end.places))[0]
+        end = advanced(map, PhasePoints(many.component, theta, phi), turns * cycle.period)
+        distance = tree.query(embedded(map, end.points))[0]
         if np.max(distance) < radius / 10 and not np.any(end.code):
             return radius
     return REACHES[-1]

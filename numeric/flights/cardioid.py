@@ -1,9 +1,9 @@
 """The cardioid: one cubic for the far end of a flight, its interval known from one sign.
 
 State: `sigma = exp(i*theta/2)` and `exp(i*phi)`; the tangent is `i*sigma**3`, so no frame needs a
-root. With `k = sin(theta0/2 - phi)` the ball passes the cusp at the distance `2*cos(theta0/2)**2*|k|`.
+root. With `k = sin(theta0/2 - phi)` the particle passes the cusp at the distance `2*cos(theta0/2)**2*|k|`.
 Seen from the cusp its polar angle falls (`k > 0`) or grows towards the direction `psi` of `v`, and it
-stays inside until it lands; the line behind the ball fills the angles beyond `psi - pi`. So of the
+stays inside until it lands; the line behind the particle fills the angles beyond `psi - pi`. So of the
 zeros in `S = cos(theta0/2)*tan(theta1/2)` exactly one lies between `theta0` and `psi`: between two
 more the arc would have to bulge inwards. Paper: section 4; [BackerDullin1997].
 """
@@ -32,7 +32,7 @@ class Cardioid(Family):
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.blueprint.same_as == "cardioid"
+        return boundary.ir.same_as == "cardioid"
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
         radius = 2 * np.cos(theta / 2) ** 2  # relative accuracy near the cusp
@@ -84,7 +84,7 @@ class Cardioid(Family):
     ) -> tuple[Any, Callable[[], Any], Callable[[Any], Any]]:
         """A start for the zero below `Q`, a bound below it, and a test of being above that bound.
 
-        The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless the ball would have to cross the negative
+        The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless the particle would have to cross the negative
         axis to get there. In `z = Q - S > 0` the cubic is `2*c - D*z + 4*k*Q*z**2 - k*z**3`, `D` its slope at `Q`
         and `c = cos(phi)`: where `D > 0` the zero lies near `z = c`, as for a circle, otherwise `z**2` is about
         `-D/k`, and for `z >= 8` with `z**2 >= 4*(c + |D|)/k` the cubic is negative.

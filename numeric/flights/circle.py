@@ -16,7 +16,7 @@ class Circle(Family):
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.blueprint.same_as == "circle"
+        return boundary.ir.same_as == "circle"
 
     def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
         return [theta]
@@ -44,8 +44,8 @@ class Circle(Family):
         (theta,), (phi,) = position, exit
         turned = theta - (phi + phi) if law != SLAP else theta
         half_turn = ops.with_sign(ops.pi(), turned)
-        rest = ops.with_sign(ops.pi_low(), turned)
-        return Landing([(turned - half_turn) - rest], phi, ops.number(1.0))
+        low = ops.with_sign(ops.pi_low(), turned)
+        return Landing([(turned - half_turn) - low], phi, ops.number(1.0))
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
         return [lam * landing.across]

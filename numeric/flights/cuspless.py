@@ -39,7 +39,7 @@ class Cuspless(Cardioid):
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.blueprint.same_as == "cuspless"
+        return boundary.ir.same_as == "cuspless"
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
         wall, arc = component == 1, super().frame(component, theta)
@@ -81,24 +81,27 @@ class Cuspless(Cardioid):
         onwards, across = ahead < nought, behind < nought
         to_wall = ops.negated(onwards | across | from_wall)
         # from the wall, at height y after a mirroring that lets it fly upwards: a quartic in tan(theta1/2), or, where
-        # the flight skims the wall, or the arc next to the join, in sqrt(3) - tan(theta1/2), so that nothing cancels
+        # the flight is near-grazing at the wall, or at the arc next to the join, in sqrt(3) - tan(theta1/2), so that
+        # nothing cancels
         y, up, four = -ops.times_sign(p, s), abs(s), ops.number(4.0)
         L, below = ops.fma(c, y, ops.number(QUARTER) * up), ops.number(QUARTER) * root3 - y
-        skims = (c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
+        near_grazing = (c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
         plain = [-two * up - L, four * c, two * (up - L), nought, -L]
         turned = [ops.number(16.0) * c * below, four * c * (four * root3 * y - one)]
         turned += [-ops.number(3.0) * up - ops.number(20.0) * c * y, four * root3 * L, -L]
-        quartic = [ops.select(skims, -a, b) for a, b in zip(turned, plain, strict=True)]
+        quartic = [ops.select(near_grazing, -a, b) for a, b in zip(turned, plain, strict=True)]
         # one polynomial for both, negative at low and positive at high
         cubic = [ops.select(across, -b, b) for b in cubic] + [nought]
         poly = [ops.select(from_wall, a, b) for a, b in zip(quartic, cubic, strict=True)]
-        low = ops.select(from_wall, ops.select(skims, nought, -root3), ops.select(across, Q, -reach))
-        high = ops.select(from_wall, ops.select(skims, two * root3, root3), ops.select(across, reach, Q))
+        low = ops.select(from_wall, ops.select(near_grazing, nought, -root3), ops.select(across, Q, -reach))
+        high = ops.select(from_wall, ops.select(near_grazing, two * root3, root3), ops.select(across, reach, Q))
         start = ops.select(from_wall, nought, ops.select(across, reach, Q - c))
         base = ops.select(from_wall, one, p)
-        scale = ops.select(from_wall, ops.select(skims, ops.number(TINY), one), p)
+        scale = ops.select(from_wall, ops.select(near_grazing, ops.number(TINY), one), p)
         S = ops.polynomial_zero(poly, start, low, high, scale, self.steps, ops.negated(to_wall))
-        tangent = ops.select(from_wall, -ops.times_sign(ops.select(skims, root3 - S, S), s), ops.times_sign(S, k))
+        tangent = ops.select(
+            from_wall, -ops.times_sign(ops.select(near_grazing, root3 - S, S), s), ops.times_sign(S, k)
+        )
         back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
         landing = plane.normalised(ops, (base, tangent))
         # on the wall the angular momentum about the origin tells the height: no term is larger than the result needs
@@ -141,19 +144,19 @@ class Cuspless(Cardioid):
 def sharp_back(ops: Any, sigma: Pair, exit: Pair) -> Any:
     """The real part of `sigma**3*conj(exit)` to the last bits however small it is."""
     (p, q), (c, s) = sigma, exit
-    a, a_rest = plane.cross_and_rest(ops, sigma, (q, p))
-    pq, pq_rest = plane.product_and_rest(ops, p, q)
-    b, b_rest = pq + pq, pq_rest + pq_rest
-    w, w_rest = plane.cross_and_rest(ops, (p, -q), (s, c))
-    k, k_rest = plane.cross_and_rest(ops, (q, p), (s, c))
-    real, rest = plane.cross_and_rest(ops, (a, b), (k, w))
-    return real + (rest + (a * w_rest + w * a_rest) - (b * k_rest + k * b_rest))
+    a, a_error = plane.cross_and_error(ops, sigma, (q, p))
+    pq, pq_error = plane.product_and_error(ops, p, q)
+    b, b_error = pq + pq, pq_error + pq_error
+    w, w_error = plane.cross_and_error(ops, (p, -q), (s, c))
+    k, k_error = plane.cross_and_error(ops, (q, p), (s, c))
+    real, error = plane.cross_and_error(ops, (a, b), (k, w))
+    return real + (error + (a * w_error + w * a_error) - (b * k_error + k * b_error))
 
 
 def above_the_wall(ops: Any, sigma: Pair) -> Pair:
     """The root of an arc point's distance from the wall, and its height, of `sigma` made a unit number."""
     p, q = sigma
-    (pp, low), (qq, lower) = plane.product_and_rest(ops, p, p), plane.product_and_rest(ops, q, q)
+    (pp, low), (qq, lower) = plane.product_and_error(ops, p, p), plane.product_and_error(ops, q, q)
     steep, one, two = pp < qq, ops.number(1.0), ops.number(2.0)
     most, least = ops.select(steep, qq, pp), ops.select(steep, pp, qq)
     excess = (least - (one - most)) + (low + lower)  # of p*p + q*q over one: both differences are exact

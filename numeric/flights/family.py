@@ -28,12 +28,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
-from numeric.backends.scalars import Arrays
-from numeric.lowering.program import Blueprint
+from numeric.backends.scalars import ArrayBackend
+from numeric.lowering.program import TableIR
 
 
 class Status(Enum):
-    """The outcome of a trajectory. All but `REGULAR` stop the ball, which keeps its last good state.
+    """The outcome of a trajectory. All but `REGULAR` stop the particle, which keeps its last good state.
 
     `code` is the number that kernels use.
 
@@ -80,9 +80,9 @@ class Frame(NamedTuple):
 class Boundary:
     """The components of a table at one shape. What a flight is chosen by, and what every flight may fall back on."""
 
-    def __init__(self, blueprint: Blueprint, shape: list[float]) -> None:
-        self.blueprint, self.shape, self.ops = blueprint, shape, Arrays()
-        self.ends = [tuple(float(x) for x in part.ends(self.ops, *shape)) for part in blueprint.parts]
+    def __init__(self, ir: TableIR, shape: list[float]) -> None:
+        self.ir, self.shape, self.ops = ir, shape, ArrayBackend()
+        self.ends = [tuple(float(x) for x in part.ends(self.ops, *shape)) for part in ir.parts]
 
     @property
     def closed(self) -> bool:
@@ -99,7 +99,7 @@ class Boundary:
     def curve(self, component: NDArray[np.int64], theta: Array) -> Array:
         """Rows `x, y`, first and second derivatives with respect to `theta`."""
         rows = np.empty((6, *theta.shape))
-        for index, part in enumerate(self.blueprint.parts):
+        for index, part in enumerate(self.ir.parts):
             here: Any = component == index
             if not np.any(here):
                 continue
@@ -143,7 +143,7 @@ class Landing:
     """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
 
     `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an
-    outcome that stops the ball (0 none, else `Status`), or is None where a family has none.
+    outcome that stops the particle (0 none, else `Status`), or is None where a family has none.
     """
 
     def __init__(
@@ -160,7 +160,7 @@ class Family:
     path = ""  # how flights are computed, in words
     cusped: ClassVar[bool] = False  # a boundary point without a normal, at cos(theta/2) = 0
     pairs: ClassVar[tuple[int, ...]] = ()  # where the pairs of fields begin that have length one
-    stops = True  # some landings are outcomes that stop the ball
+    stops = True  # some landings are outcomes that stop the particle
     renormalise_every = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     position: tuple[str, ...] = ()
@@ -238,7 +238,7 @@ class Family:
     # ---- a bounce
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
-        """The landing of the ball that leaves `position` along `exit`."""
+        """The landing of the particle that leaves `position` along `exit`."""
         raise NotImplementedError
 
     def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
@@ -246,7 +246,7 @@ class Family:
         raise NotImplementedError
 
     def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
-        """The exit fields of a ball that leaves along the normal."""
+        """The exit fields of a particle that leaves along the normal."""
         raise NotImplementedError
 
     def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
@@ -266,7 +266,7 @@ class Family:
         raise NotImplementedError
 
     def fields(self, law: str) -> tuple[str, ...]:
-        """The names of a ball's state."""
+        """The names of a particle's state."""
         return self.position if law == SLAP else self.position + self.direction
 
     def bounce(self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any]) -> tuple[list[Any], Any]:
@@ -277,7 +277,7 @@ class Family:
         return landing.position + leaving, landing.code
 
     def rate(self, ops: Any, shape: list[Any], law: str, state: list[Any]) -> Any:
-        """`N0` of a ball that is about to leave."""
+        """`N0` of a particle that is about to leave."""
         return self.departure(ops, shape, *self._split(ops, shape, law, state, whole=True))
 
     def bounce_with_tangent(

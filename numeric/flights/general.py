@@ -33,7 +33,7 @@ class General(Family):
 
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)
-        self.parts = boundary.blueprint.parts
+        self.parts = boundary.ir.parts
         self.closed = len(self.parts) == 1
         self.ends = boundary.ends
         self.closing = boundary.ends[0]
@@ -114,7 +114,7 @@ class General(Family):
             return plane.cross(v, (dx, dy)), plane.cross(v, (ax, ay))
 
         def each(x: Any) -> Any:
-            return x + theta * nought  # one for each ball
+            return x + theta * nought  # one for each particle
 
         at_low, at_high = each(slope(a)[0]), each(slope(b)[0])
         turns = at_low * at_high < nought
@@ -170,7 +170,7 @@ def pieces(boundary: Boundary) -> list[tuple[int, float, float]]:
     found: list[tuple[int, float, float]] = []
     for index, (low, high) in enumerate(boundary.ends):
         if max(abs(low), abs(high)) > LONG:
-            name, part = boundary.blueprint.table, boundary.blueprint.parts[index].name
+            name, part = boundary.ir.table, boundary.ir.parts[index].name
             runs = f"the parameter of {part} runs to {max(abs(low), abs(high)):.6g}"
             raise ValueError(f"{name}: {runs}, where its rounding shows; start it within {LONG:.6g}")
         theta = np.linspace(low, high, GRID + 1)

@@ -1,7 +1,7 @@
 """Tables whose boundary is a finite Fourier sum: the ellipse in closed form, any convex one by its chord polynomial.
 
-State: the unit numbers `u = exp(i*theta)` and `v`, the ball's direction. The programs that a flight
-needs come from `symbolic.motion.flight` through the blueprint.
+State: the unit numbers `u = exp(i*theta)` and `v`, the particle's direction. The programs that a flight
+needs come from `symbolic.motion.flight` through the table IR.
 """
 
 from typing import Any
@@ -22,10 +22,9 @@ class Harmonic(Family):
 
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)
-        blueprint = boundary.blueprint
-        self.point = blueprint.program("point")
-        self.velocity = blueprint.program("velocity")
-        self.acceleration = blueprint.program("acceleration")
+        self.point = boundary.ir.program("point")
+        self.velocity = boundary.ir.program("velocity")
+        self.acceleration = boundary.ir.program("acceleration")
 
     def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
         return [ops.cos(theta), ops.sin(theta)]
@@ -34,7 +33,7 @@ class Harmonic(Family):
         return ops.number(0.0), ops.atan2(position[1], position[0])
 
     def landed(self, ops: Any, shape: list[Any], law: str, u: Pair, v: Pair) -> Landing:
-        """The landing at `u` of a ball that flies along `v`."""
+        """The landing at `u` of a particle that flies along `v`."""
         dx, dy = self.velocity(ops, *u, *shape)
         across = plane.exact_dot(ops, (dx, dy), v)
         along = -plane.exact_cross(ops, (dx, dy), v)
@@ -78,11 +77,11 @@ class Ellipse(Harmonic):
 
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)
-        self.support = boundary.blueprint.program("support")
+        self.support = boundary.ir.program("support")
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.blueprint.has("support")
+        return boundary.ir.has("support")
 
     def elliptic(self) -> float | None:
         ops, shape = self.boundary.ops, self.boundary.shape
@@ -131,11 +130,11 @@ class Fourier(Harmonic):
 
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)
-        self.chord = boundary.blueprint.program("chord")
+        self.chord = boundary.ir.program("chord")
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.blueprint.has("chord") and boundary.convex
+        return boundary.ir.has("chord") and boundary.convex
 
     def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
         v = exit[0], exit[1]

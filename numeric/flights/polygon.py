@@ -25,7 +25,7 @@ class Polygon(Family):
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
         """Straight is a side whose second derivative is the constant 0, as it was derived."""
-        curves = [part.curve for part in boundary.blueprint.parts]
+        curves = [part.curve for part in boundary.ir.parts]
         return all(curve.constant(output) == 0 for curve in curves for output in (4, 5))
 
     def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
@@ -36,7 +36,7 @@ class Polygon(Family):
 
     def sides(self, ops: Any, shape: list[Any]) -> list[list[Any]]:
         """`A`, `B` and both ends of every side, six numbers each."""
-        parts = self.boundary.blueprint.parts
+        parts = self.boundary.ir.parts
         return [[*part.curve(ops, ops.number(0.0), *shape)[:4], *part.ends(ops, *shape)] for part in parts]
 
     def side(self, ops: Any, shape: list[Any], component: Any) -> list[Any]:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family
 from numeric.kernels import machine
 from numeric.kernels.spec import KernelSpec, fields, rescaled
@@ -22,14 +22,14 @@ WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs m
 
 
 class Result(NamedTuple):
-    """Rows of the final state by name, and the recorded rows: bounce, field, ball."""
+    """Rows of the final state by name, and the recorded rows: bounce, field, particle."""
 
     rows: dict[str, Array]
     record: Array | None
 
 
 class Engine(NamedTuple):
-    """The runner of one family on one blueprint; `kernels` is False where NumPy was asked for."""
+    """The runner of one family on one table IR; `kernels` is False where NumPy was asked for."""
 
     family: Family
     identity: str
@@ -44,7 +44,7 @@ class Engine(NamedTuple):
 
     def run(
         self,
-        question: KernelSpec,
+        spec: KernelSpec,
         own: Sequence[Array],
         lam: Array,
         shape: Sequence[float],
@@ -52,8 +52,8 @@ class Engine(NamedTuple):
         tangent: Sequence[Array] = (),
         threads: int | None = None,
     ) -> Result:
-        """Bounce every ball `bounces` times. `own` and `tangent` are the starting rows."""
-        names = fields(self.family, question)
+        """Bounce every particle `bounces` times. `own` and `tangent` are the starting rows."""
+        names = fields(self.family, spec)
         count = own[0].size
         width = -(-count // self.width) * self.width
         start: list[Any] = [*own, *([0.0, 0.0] if self.family.stops else []), *tangent]
@@ -63,13 +63,13 @@ class Engine(NamedTuple):
             row[count:] = values[-1] if isinstance(values, np.ndarray) else values
         contraction = np.empty(width)
         contraction[:count], contraction[count:] = lam, lam[-1]
-        record = np.empty((bounces, len(own), count)) if question.record else None
-        most = min(bounces, max(1, PART // (len(own) * width))) if question.record else bounces
-        page = np.empty((most, len(own), width)) if question.record else None
+        record = np.empty((bounces, len(own), count)) if spec.record else None
+        most = min(bounces, max(1, PART // (len(own) * width))) if spec.record else bounces
+        page = np.empty((most, len(own), width)) if spec.record else None
         for done in range(0, bounces, most):
             part = min(most, bounces - done)
             told = page[:part] if page is not None else None
-            self._advance(question, state, contraction, shape, part, told, threads)
+            self._advance(spec, state, contraction, shape, part, told, threads)
             if record is not None and told is not None:
                 record[done : done + part] = told[:, :, :count]
         rows = {name: row[:count] for name, row in zip(names, state, strict=True)}
@@ -77,7 +77,7 @@ class Engine(NamedTuple):
 
     def _advance(
         self,
-        question: KernelSpec,
+        spec: KernelSpec,
         state: Array,
         contraction: Array,
         shape: Sequence[float],
@@ -88,9 +88,9 @@ class Engine(NamedTuple):
         """Bounce all columns of `state` in place."""
         function = None
         if self.kernels:
-            function = machine.compiled(self.family, self.identity, self.names, question, self.width)
+            function = machine.compiled(self.family, self.identity, self.names, spec, self.width)
         if function is None:
-            _run_arrays(self.family, question, state, contraction, list(shape), bounces, page)
+            _run_arrays(self.family, spec, state, contraction, list(shape), bounces, page)
             return
         width = state.shape[1]
         parameters = np.array([*shape, 0.0])
@@ -118,7 +118,7 @@ def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]
 
 def _run_arrays(
     family: Family,
-    question: KernelSpec,
+    spec: KernelSpec,
     state: Array,
     lam: Array,
     shape: list[float],
@@ -126,20 +126,20 @@ def _run_arrays(
     record: Array | None,
 ) -> None:
     """The kernel's loop on NumPy arrays: the same step, the same rows."""
-    ops = Arrays()
-    own = len(family.fields(question.law))
+    ops = ArrayBackend()
+    own = len(family.fields(spec.law))
     extra = own + (2 if family.stops else 0)
     with np.errstate(all="ignore"):
-        kept = family.kept(ops, shape, list(state[: len(family.position)])) if question.exponents else []
+        kept = family.kept(ops, shape, list(state[: len(family.position)])) if spec.exponents else []
         for bounce in range(bounces):
-            ball = [row.copy() for row in state[:own]]
-            if question.exponents:
+            particle = [row.copy() for row in state[:own]]
+            if spec.exponents:
                 vector = [row.copy() for row in state[extra:]]
-                new, code, more, kept = family.bounce_with_tangent(ops, question.law, shape, lam, ball, vector, kept)
+                new, code, more, kept = family.bounce_with_tangent(ops, spec.law, shape, lam, particle, vector, kept)
                 if bounce % family.renormalise_every == family.renormalise_every - 1 or bounce == bounces - 1:
                     more = rescaled(ops, more)
             else:
-                new, code = family.bounce(ops, question.law, shape, lam, ball)
+                new, code = family.bounce(ops, spec.law, shape, lam, particle)
                 more = []
             going = np.ones(state.shape[1], dtype=bool)
             if family.stops and code is not None:

@@ -208,12 +208,12 @@ def available() -> bool:
     return _llvm() is not None
 
 
-def compiled(family: Family, identity: str, shape: Sequence[str], question: KernelSpec, width: int) -> Run | None:
+def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSpec, width: int) -> Run | None:
     """The kernel as a function, from memory, from disk, or newly made; None when only NumPy is left.
 
-    `identity` names the blueprint: everything the family's steps depend on besides this package's text.
+    `identity` names the table IR: everything the family's steps depend on besides this package's text.
     """
-    key = (identity, family.name, question.text, str(width), ",".join(shape))
+    key = (identity, family.name, spec.text, str(width), ",".join(shape))
     if key not in _loaded:
         version, processor = _version(), _processor()
         if version is None or processor is None:
@@ -226,7 +226,7 @@ def compiled(family: Family, identity: str, shape: Sequence[str], question: Kern
                 return None
             from numeric.kernels.text import kernel_text
 
-            made = object_code(kernel_text(family, shape, question, width))
+            made = object_code(kernel_text(family, shape, spec, width))
             code = image(made) or made
             found = _entered(code)
             if found is None:  # a system that lets nobody but LLVM make memory executable

@@ -21,10 +21,10 @@ class KernelSpec(NamedTuple):
         return "-".join([self.law, *(["record"] if self.record else []), *(["exponents"] if self.exponents else [])])
 
 
-def fields(family: Family, question: KernelSpec) -> tuple[str, ...]:
+def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:
     """The rows of `state`."""
-    extra = TANGENT if question.exponents else ()
-    return (*family.fields(question.law), *(("code", "lost") if family.stops else ()), *extra)
+    extra = TANGENT if spec.exponents else ()
+    return (*family.fields(spec.law), *(("code", "lost") if family.stops else ()), *extra)
 
 
 def starting(q: Any, omega: Any, n0: Any) -> list[Any]:

@@ -3,15 +3,15 @@
     void run(double state[], const double lam[], const double shape[], double record[],
              int64 width, int64 first, int64 last, int64 bounces)
 
-`state` holds one row of `width` doubles for each field: the ball's own, then `code` and `lost` when the
+`state` holds one row of `width` doubles for each field: the particle's own, then `code` and `lost` when the
 family has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
-worked on. `record`, when orbits are asked for, receives the ball's own rows after every bounce.
+worked on. `record`, when orbits are asked for, receives the particle's own rows after every bounce.
 """
 
 import re
 from collections.abc import Sequence
 
-from numeric.backends.llvm import Lane, Lanes
+from numeric.backends.llvm import LLVMBackend, LLVMVector
 from numeric.flights.family import ELASTIC, SLAP, Family
 from numeric.kernels.spec import TANGENT, KernelSpec, fields, rescaled
 
@@ -23,11 +23,11 @@ HEAD = (
 TAIL = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
 
 
-def kernel_text(family: Family, shape: Sequence[str], question: KernelSpec, width: int = 0) -> str:
+def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: int = 0) -> str:
     """The module in LLVM's language."""
-    ops = Lanes(width or family.width)
-    names = fields(family, question)
-    own = len(family.fields(question.law))
+    ops = LLVMBackend(width or family.width)
+    names = fields(family, spec)
+    own = len(family.fields(spec.law))
     ops.label("entry")
     parameters = [_broadcast(ops, i, name) for i, name in enumerate(shape)]
     ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
@@ -36,35 +36,35 @@ def kernel_text(family: Family, shape: Sequence[str], question: KernelSpec, widt
     ops.open()
     addresses = [_address(ops, "state", ops.emit(f"mul i64 %width, {i}")) for i in range(len(names))]
     loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
-    lam = _contraction(ops, question.law)
-    ball = [Lane(ops, name) for name in loaded[:own]]
-    place = ball[: len(family.position)]
-    carried = [x.text for x in family.kept(ops, parameters, place)] if question.exponents else []
+    lam = _contraction(ops, spec.law)
+    particle = [LLVMVector(ops, name) for name in loaded[:own]]
+    place = particle[: len(family.position)]
+    carried = [x.text for x in family.kept(ops, parameters, place)] if spec.exponents else []
     before = ops.block
     outer = [ops.fresh() for _ in [*names, *carried]]
     ops.lines += ["  %some = icmp sgt i64 %bounces, 0", "  br i1 %some, label %stretch, label %done"]
     ops.label("stretch")
     far = len(ops.lines)
     ops.open()
-    stretch = f"add i64 %begun, {family.renormalise_every}" if question.exponents else "add i64 %bounces, 0"
+    stretch = f"add i64 %begun, {family.renormalise_every}" if spec.exponents else "add i64 %bounces, 0"
     ops.lines += [f"  %full = {stretch}", "  %short = icmp slt i64 %full, %bounces"]
     ops.lines += ["  %until = select i1 %short, i64 %full, i64 %bounces", "  br label %bounce"]
     ops.label("bounce")
     slot = len(ops.lines)
     ops.open()
     state = [ops.fresh() for _ in [*names, *carried]]
-    new = _bounced(ops, family, question, parameters, lam, [Lane(ops, name) for name in state])
+    new = _bounced(ops, family, spec, parameters, lam, [LLVMVector(ops, name) for name in state])
     texts = [x.text for x in new]
-    if question.record:
+    if spec.record:
         _record(ops, texts[:own])
     ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %until"]
     ops.lines.append("  br i1 %more, label %bounce, label %measured")
     ops.lines[slot:slot] = _joined(ops, "i", state, ("stretch", "%begun", outer), (ops.block, "%following", texts))
     ops.close()
     ops.label("measured")
-    if question.exponents:
+    if spec.exponents:
         at = own + (2 if family.stops else 0)
-        rows = [Lane(ops, name) for name in texts[at : at + len(TANGENT)]]
+        rows = [LLVMVector(ops, name) for name in texts[at : at + len(TANGENT)]]
         texts[at : at + len(TANGENT)] = [x.text for x in rescaled(ops, rows)]
     ops.lines += ["  %again = icmp slt i64 %following, %bounces", "  br i1 %again, label %stretch, label %done"]
     last = ops.block
@@ -78,12 +78,12 @@ def kernel_text(family: Family, shape: Sequence[str], question: KernelSpec, widt
     for name, address in zip(finals, addresses, strict=True):
         ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
     ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
-    title = f"; {family.name}, {question.text}: written by numeric.kernels.text from numeric.flights"
+    title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     return "\n".join([title, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
 
 
 def _joined(
-    ops: Lanes, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
+    ops: LLVMBackend, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
 ) -> list[str]:
     """The head of a loop: what its index and its rows are on entry from a block, and after a pass from another."""
     (before, zero, begins), (last, following, ends) = first, again
@@ -93,22 +93,22 @@ def _joined(
     return phis
 
 
-def _broadcast(ops: Lanes, i: int, name: str) -> Lane:
+def _broadcast(ops: LLVMBackend, i: int, name: str) -> LLVMVector:
     """A shape parameter in every lane."""
     address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
     scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
     one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
     everywhere = f"<{ops.width} x i32> zeroinitializer"
-    return Lane(ops, ops.emit(f"shufflevector {ops.type} {one}, {ops.type} poison, {everywhere}"))
+    return LLVMVector(ops, ops.emit(f"shufflevector {ops.type} {one}, {ops.type} poison, {everywhere}"))
 
 
-def _address(ops: Lanes, base: str, row: str) -> str:
+def _address(ops: LLVMBackend, base: str, row: str) -> str:
     """Where this column's block of a row begins; `row` counts doubles."""
     return ops.emit(f"getelementptr double, ptr %{base}, i64 {ops.emit(f'add i64 {row}, %at')}")
 
 
-def _record(ops: Lanes, texts: list[str]) -> None:
-    """Store the ball's own rows of bounce `%i`."""
+def _record(ops: LLVMBackend, texts: list[str]) -> None:
+    """Store the particle's own rows of bounce `%i`."""
     page = ops.emit(f"mul i64 %i, {len(texts)}")
     for i, text in enumerate(texts):
         row = ops.emit(f"mul i64 {ops.emit(f'add i64 {page}, {i}')}, %width")
@@ -155,33 +155,38 @@ def operations(text: str) -> dict[str, int]:
     return counts
 
 
-def _contraction(ops: Lanes, law: str) -> Lane:
+def _contraction(ops: LLVMBackend, law: str) -> LLVMVector:
     if law in (SLAP, ELASTIC):
         return ops.number(0.0 if law == SLAP else 1.0)
     address = ops.emit("getelementptr double, ptr %lam, i64 %at")
-    return Lane(ops, ops.emit(f"load {ops.type}, ptr {address}, align 8"))
+    return LLVMVector(ops, ops.emit(f"load {ops.type}, ptr {address}, align 8"))
 
 
 def _bounced(
-    ops: Lanes, family: Family, question: KernelSpec, shape: list[Lane], lam: Lane, state: list[Lane]
-) -> list[Lane]:
+    ops: LLVMBackend,
+    family: Family,
+    spec: KernelSpec,
+    shape: list[LLVMVector],
+    lam: LLVMVector,
+    state: list[LLVMVector],
+) -> list[LLVMVector]:
     """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost."""
-    count = len(family.fields(question.law))
+    count = len(family.fields(spec.law))
     own, rest = state[:count], state[count:]
     outcome, rest = (rest[:2], rest[2:]) if family.stops else ([], rest)
-    if question.exponents:
+    if spec.exponents:
         vector, kept = rest[: len(TANGENT)], rest[len(TANGENT) :]
-        ball, code, rows, kept = family.bounce_with_tangent(ops, question.law, shape, lam, own, vector, kept)
+        particle, code, rows, kept = family.bounce_with_tangent(ops, spec.law, shape, lam, own, vector, kept)
         rest_new = rows + kept
     else:
-        ball, code = family.bounce(ops, question.law, shape, lam, own)
+        particle, code = family.bounce(ops, spec.law, shape, lam, own)
         rest_new = []
-    new = [*ball, *rest_new]
+    new = [*particle, *rest_new]
     if code is None or not family.stops:
-        return [*ball, *outcome, *rest_new]
+        return [*particle, *outcome, *rest_new]
     stopped = ops.number(0.5) < code
 
-    def frozen() -> list[Lane]:
+    def frozen() -> list[LLVMVector]:
         kept = [ops.select(stopped, x, y) for x, y in zip([*own, *rest], new, strict=True)]
         first = ops.select(stopped, code, outcome[0])
         return [first, outcome[1] + ops.select(stopped, ops.number(1.0), ops.number(0.0)), *kept]

@@ -1,6 +1,6 @@
-"""The one door from the symbolic storey: an exact table comes in, a blueprint goes out.
+"""Lowering: an exact table of the symbolic storey comes in, a table IR goes out.
 
-This is the only module of `numeric` that imports SymPy; it is imported when a blueprint is not on
+This is the only module of `numeric` that imports SymPy; it is imported when a table IR is not on
 disk, and never while a map runs.
 """
 
@@ -11,7 +11,7 @@ from typing import Any
 from sympy import Expr, Float, Pow, Symbol, cos, pi, sin
 from sympy import sympify as exact
 
-from numeric.lowering.program import Blueprint, Builder, Node, Part, Program, ShapeRange
+from numeric.lowering.program import Builder, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.motion import flight
 from symbolic.tables.geometry import Symmetry, group, velocity
@@ -19,13 +19,13 @@ from symbolic.tables.table import Component, Table, theta
 from symbolic.tables.validity import closed_and_finite
 
 
-def named(name: str, K: int = 3) -> Blueprint:
-    """The blueprint of one of the paper's tables."""
-    return drawn(tables.named(name, K))
+def named(name: str, K: int = 3) -> TableIR:
+    """The table IR of one of the paper's tables."""
+    return lower(tables.named(name, K))
 
 
-def drawn(table: Table) -> Blueprint:
-    """The blueprint of a table; shape parameters that have no value yet stay open.
+def lower(table: Table) -> TableIR:
+    """The table IR of a table; shape parameters that have no value yet stay open.
 
     A table may have been written down without a check, so that it is closed is seen to here.
     """
@@ -36,7 +36,7 @@ def drawn(table: Table) -> Blueprint:
     same = _same_as(table)
     programs = {} if same else _fourier(table, symbols)
     index, start = table.origin
-    return Blueprint(
+    return TableIR(
         table.name,
         same,
         tuple(

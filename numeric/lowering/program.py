@@ -6,7 +6,7 @@ hashed, and written to a file from which it is read back without importing SymPy
 
 What the kernels need to know of a table: programs and a few facts, as plain data.
 
-A blueprint is made once from the exact table, through `numeric.lowering.lower`, the only place where SymPy
+A table IR is made once from the exact table, through `numeric.lowering.lower`, the only place where SymPy
 is imported. Those of the paper's tables are kept on disk, so that a warm run never imports it.
 """
 
@@ -207,7 +207,7 @@ class Part(NamedTuple):
     curve: Program
 
 
-class Blueprint(NamedTuple):
+class TableIR(NamedTuple):
     """A table as the kernels see it.
 
     `same_as` names the paper's table with the same boundary, among those with a flight of their own; `programs` are
@@ -230,7 +230,7 @@ class Blueprint(NamedTuple):
         return any(name == known for known, _ in self.programs)
 
     def as_text(self) -> str:
-        """The blueprint as JSON; equal blueprints have equal text."""
+        """The table IR as JSON; equal table IRs have equal text."""
         data = {
             "table": self.table,
             "same_as": self.same_as,
@@ -242,11 +242,11 @@ class Blueprint(NamedTuple):
         return json.dumps(data, separators=(",", ":"))
 
     @staticmethod
-    def from_text(text: str) -> "Blueprint":
+    def from_text(text: str) -> "TableIR":
         """The inverse of `as_text`."""
         data = json.loads(text)
         read = Program.from_data
-        return Blueprint(
+        return TableIR(
             data["table"],
             data["same_as"],
             tuple(ShapeRange(*entry) for entry in data["shape"]),
@@ -256,27 +256,27 @@ class Blueprint(NamedTuple):
         )
 
 
-def blueprint(table: Any, K: int = 3) -> Blueprint:
-    """The blueprint of an exact table, or of one of the paper's tables by name.
+def table_ir(table: Any, K: int = 3) -> TableIR:
+    """The table IR of an exact table, or of one of the paper's tables by name.
 
-    >>> blueprint("circle").same_as
+    >>> table_ir("circle").same_as
     'circle'
     """
     if not isinstance(table, str):
-        from numeric.lowering.lower import drawn
+        from numeric.lowering.lower import lower
 
-        return drawn(table)
+        return lower(table)
     if table not in PAPER:
         raise ValueError(f"no table is called {table!r}; the paper's are {', '.join(PAPER)}")
     name = f"{table}{K}" if table == "egg" else table
-    kept = cache.read("blueprint", name, cache.sources("symbolic", "numeric"))
+    kept = cache.read("table_ir", name, cache.sources("symbolic", "numeric"))
     if kept is not None:
         try:
-            return Blueprint.from_text(kept.decode())
+            return TableIR.from_text(kept.decode())
         except (ValueError, KeyError, TypeError, IndexError):
             pass  # a damaged file is as good as none: it is written again
     from numeric.lowering.lower import named
 
     found = named(table, K)
-    cache.write("blueprint", name, cache.sources("symbolic", "numeric"), found.as_text().encode())
+    cache.write("table_ir", name, cache.sources("symbolic", "numeric"), found.as_text().encode())
     return found

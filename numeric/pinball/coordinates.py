@@ -1,4 +1,4 @@
-"""A ball's state in people's coordinates: boundary parameter, angle, arc length, Cartesian point; and back.
+"""A particle's state in people's coordinates: boundary parameter, angle, arc length, Cartesian point; and back.
 
 `States` translate between the fields a kernel bounces and `(component, theta, phi)`. They run on
 NumPy arrays, once per question and not once per bounce; of a recorded orbit, a tile at a time.
@@ -71,14 +71,14 @@ class States:
     def enter(
         self, component: NDArray[np.int64], theta: Array, phi: Array, law: str, frame: Frame | None = None
     ) -> list[Array]:
-        """The kernel's fields of a ball at `theta` that leaves at the exit angle `phi`; its frame, if it is known."""
+        """The kernel's fields of a particle that leaves `theta` at the exit angle `phi`; its frame, if it is known."""
         fields = self.family.enter(self.ops, component.astype(float), theta)
         if law != SLAP:
             fields = fields + self.family.aim(self.ops, frame or self.frame(component, theta), phi)
         return [np.array(field, dtype=float) for field in fields]
 
     def departure(self, own: list[Array], law: str) -> Array:
-        """`N0 = speed*cos(phi)` of balls that are about to leave, from their fields."""
+        """`N0 = speed*cos(phi)` of particles that are about to leave, from their fields."""
         with np.errstate(all="ignore"):
             return np.asarray(self.family.rate(self.ops, self.shape, law, own) + np.zeros(own[0].size))
 
@@ -120,21 +120,21 @@ class States:
         across = min(lam.size, TILE)
         down = TILE // across
         for left in range(0, lam.size, across):
-            ball = slice(left, left + across)
-            frame = Frame(*(side[ball] for side in begun))
-            flight = self.leaving(frame, phi[ball], [field[ball] for field in own], law)
+            particle = slice(left, left + across)
+            frame = Frame(*(side[particle] for side in begun))
+            flight = self.leaving(frame, phi[particle], [field[particle] for field in own], law)
             for top in range(0, len(record), down):
-                fields = list(record[top : top + down, :, ball].swapaxes(0, 1))
+                fields = list(record[top : top + down, :, particle].swapaxes(0, 1))
                 component, at = self.place(fields)
                 frame = self.frame(component, at)
                 exit = self.exit(component, at, fields, law, frame)
-                exit = exit * (lam[ball] != 0)  # the normal, whatever atan2 rounds to
+                exit = exit * (lam[particle] != 0)  # the normal, whatever atan2 rounds to
                 leaving = self.leaving(frame, exit, fields, law)
                 vx, vy = (np.concatenate([v[None], later[:-1]]) for v, later in zip(flight, leaving, strict=True))
                 flight = leaving[0][-1], leaving[1][-1]
                 found = component, at, exit, frame.angle(self.ops, -vx, -vy), frame.x, frame.y
                 for rows, part in zip(told, found, strict=True):
-                    rows[top + 1 : top + 1 + down, ball] = part
+                    rows[top + 1 : top + 1 + down, particle] = part
         return told
 
 
@@ -257,7 +257,7 @@ class ArcLength:
     def __init__(self, states: States) -> None:
         self.states = states
         self.lengths = [self._length(index) for index in range(len(states.ends))]
-        index, program = states.boundary.blueprint.origin
+        index, program = states.boundary.ir.origin
         offsets = {}
         zero, (first, last) = float(program(states.ops, *states.shape)[0]), states.ends[index]
         reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 where nothing else is said
@@ -303,7 +303,7 @@ class ArcLength:
         slack = 1e-14 * (top - bottom)
         if np.any((s < bottom - slack) | (s > top + slack)):
             bad = s[(s < bottom - slack) | (s > top + slack)].flat[0] + self.offsets[index]
-            name = self.states.boundary.blueprint.parts[index].name
+            name = self.states.boundary.ir.parts[index].name
             first, last = bottom + self.offsets[index], top + self.offsets[index]
             raise ValueError(f"s = {bad} is not on the {name}; there s lies in [{first:.17g}, {last:.17g}]")
         inverse = self.states.family.parameter(index, s)

@@ -13,7 +13,7 @@ from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
 from numeric.kernels.spec import KernelSpec, starting
 from numeric.lowering.cache import key_of
-from numeric.lowering.program import Blueprint, blueprint
+from numeric.lowering.program import TableIR, table_ir
 from numeric.pinball.coordinates import States
 from numeric.pinball.sampling import Growth
 from numeric.pinball.states import Exponents, Orbit, Slap, angles, components, contraction, counted, real, shape_value
@@ -30,7 +30,7 @@ class PinballMap:
 
     `table` is a scene, which says everything, or an exact table, or the name of one of the paper's; then shape
     parameters are keywords, exact or decimal, and a decimal means the decimal it shows. `lam` is one number or one
-    for each ball, and comes before a scene's own. With `kernels=False` the same steps run on NumPy arrays.
+    for each particle, and comes before a scene's own. With `kernels=False` the same steps run on NumPy arrays.
 
     >>> ellipse = PinballMap("ellipse", lam=1, a=2)
     >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
@@ -41,22 +41,22 @@ class PinballMap:
     def __init__(self, table: Any, lam: Any = None, K: int = 3, kernels: bool = True, **shape: Any) -> None:
         if isinstance(table, Scene):
             table, lam, K, shape = _unpacked(table, lam, shape)
-        self.blueprint: Blueprint = blueprint(table, K)
+        self.ir: TableIR = table_ir(table, K)
         self.lam = contraction(1 if lam is None else lam)
         self._given = table, K
         self.exact_shape = self._shape(shape)
         self.shape = [float(value) for value in self.exact_shape]
-        names = [entry.name for entry in self.blueprint.shape]
-        self.family = family_of(Boundary(self.blueprint, self.shape))
+        names = [entry.name for entry in self.ir.shape]
+        self.family = family_of(Boundary(self.ir, self.shape))
         self.states = States(self.family)
-        self.engine = Engine(self.family, key_of(self.blueprint.as_text(), self.family.identity), names, kernels)
+        self.engine = Engine(self.family, key_of(self.ir.as_text(), self.family.identity), names, kernels)
 
     @cached_property
     def table(self) -> Any:
         """The exact table, with the numbers of its shape."""
         from numeric.lowering.lower import exact_table
 
-        names = [entry.name for entry in self.blueprint.shape]
+        names = [entry.name for entry in self.ir.shape]
         return exact_table(*self._given, dict(zip(names, self.exact_shape, strict=True)))
 
     @property
@@ -102,7 +102,7 @@ class PinballMap:
         return Orbit(*(a.reshape(shape) for a in (*told, code)))
 
     def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
-        """`d(s1, phi1)/d(s0, phi0)`, a matrix for each ball. Paper: eq. (derivative_of_map).
+        """`d(s1, phi1)/d(s0, phi0)`, a matrix for each particle. Paper: eq. (derivative_of_map).
 
         The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is.
         """
@@ -113,8 +113,8 @@ class PinballMap:
         n0, lam = states.departure(own, law), self._lams(theta)
         rate, curvature = states.bending(where.ravel(), theta.ravel())
         q, omega = np.append(n0 / rate, np.zeros(count)), np.append(curvature, np.ones(count))  # of ds, then of dphi
-        balls, tangent = [np.tile(field, 2) for field in own], starting(q, omega, np.tile(n0, 2))
-        found = self.engine.run(KernelSpec(law, exponents=True), balls, np.tile(lam, 2), self.shape, 1, tangent)
+        particles, tangent = [np.tile(field, 2) for field in own], starting(q, omega, np.tile(n0, 2))
+        found = self.engine.run(KernelSpec(law, exponents=True), particles, np.tile(lam, 2), self.shape, 1, tangent)
         rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
         rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
         moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
@@ -130,7 +130,7 @@ class PinballMap:
         component: ArrayLike = 0,
         threads: int | None = None,
     ) -> Exponents:
-        """Both Lyapunov exponents of every ball over `bounces` bounces, after `transient` that do not count.
+        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` that do not count.
 
         `nu_plus` is the growth of one vector, which starts in a fixed generic direction; `nu_minus` comes from
         the determinant. At `lam = 0` the map is one-dimensional and `nu_minus` is minus infinity.
@@ -185,8 +185,8 @@ class PinballMap:
         return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
 
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
-        name = self.blueprint.table
-        ranges = {entry.name: entry for entry in self.blueprint.shape}
+        name = self.ir.table
+        ranges = {entry.name: entry for entry in self.ir.shape}
         for key in given:
             if key not in ranges:
                 accepted = ", ".join(ranges) or "none"
@@ -202,10 +202,10 @@ class PinballMap:
 
     def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:
         theta, phi = angles("theta", theta), angles("phi", phi)
-        where = components(component, [part.name for part in self.blueprint.parts])
+        where = components(component, [part.name for part in self.ir.parts])
         theta, phi, where = np.broadcast_arrays(theta, phi, where)
         if theta.size == 0:
-            raise ValueError("theta and phi are empty; give at least one ball")
+            raise ValueError("theta and phi are empty; give at least one particle")
         steep = np.abs(phi) >= np.pi / 2
         if np.any(steep):
             raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
@@ -214,7 +214,8 @@ class PinballMap:
             raise ValueError(f"theta = {theta[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
         if self.lam.size > 1 and self.lam.shape != theta.shape:
             raise ValueError(
-                f"lam has shape {self.lam.shape} and the balls {theta.shape}; give one lam for each ball, or one"
+                f"lam has shape {self.lam.shape} and the particles {theta.shape}; "
+                "give one lam for each particle, or one"
             )
         for index, (low, high) in enumerate(self.states.ends):
             off = (where == index) & ~((low <= theta) & (theta <= high))
@@ -222,7 +223,7 @@ class PinballMap:
                 if self.states.boundary.closed:
                     theta = np.where(off, np.remainder(theta - low, 2 * np.pi) + low, theta)
                 else:
-                    name = self.blueprint.parts[index].name
+                    name = self.ir.parts[index].name
                     lies = f"there theta lies in [{low:.17g}, {high:.17g}]"
                     raise ValueError(f"theta = {theta[off].flat[0]} is not on the {name}; {lies}")
         return where, np.array(theta), np.array(phi)

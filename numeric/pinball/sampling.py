@@ -10,7 +10,7 @@ All draws come from one seeded generator in one order: they depend neither on th
 
 How a tangent vector and an area grow along orbits, over as many bounces as wanted, and then over more.
 
-A `Growth` is a set of balls on their way, each with one tangent vector. Sums of logarithms are kept from the start,
+A `Growth` is a set of particles on their way, each with one tangent vector. Sums of logarithms are kept from the start,
 so differences between two moments are the growth between them, and nothing is lost by looking often.
 """
 
@@ -42,7 +42,7 @@ RULER = 512  # boundary points between which the diameter is measured
 
 
 class Starts(NamedTuple):
-    """Balls about to leave the boundary; `x, y` is the interior point they came from, or else their own place."""
+    """Particles about to leave the boundary; `x, y` is the interior point they came from, or else their own place."""
 
     component: NDArray[np.int64]
     theta: Array
@@ -52,7 +52,7 @@ class Starts(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Cell centres: `s` along the columns, `sin_phi` along the rows, and the balls there, row after row."""
+    """Cell centres: `s` along the columns, `sin_phi` along the rows, and the particles there, row after row."""
 
     s: Array
     sin_phi: Array
@@ -60,7 +60,7 @@ class Grid(NamedTuple):
 
 
 def phase_starts(map: "PinballMap", count: int, seed: int) -> Starts:
-    """Random balls, uniform in arc length and `sin(phi)`: the elastic map's own measure.
+    """Random particles, uniform in arc length and `sin(phi)`: the elastic map's own measure.
 
     >>> from numeric import PinballMap
     >>> starts = phase_starts(PinballMap("circle", lam=1), 3, seed=0)
@@ -71,10 +71,10 @@ def phase_starts(map: "PinballMap", count: int, seed: int) -> Starts:
 
 
 def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
-    """Random balls after their first collision: points uniform in the table, directions uniform.
+    """Random particles after their first collision: points uniform in the table, directions uniform.
 
     Paper: appendix. That collision is elastic whatever `lam` is, so that every exit angle occurs, also at
-    `lam = 0`. The first balls of a longer list are those of a shorter one.
+    `lam = 0`. The first particles of a longer list are those of a shorter one.
 
     >>> from numeric import PinballMap
     >>> starts = interior_starts(PinballMap("circle", lam=0), 1000, seed=0)
@@ -95,12 +95,12 @@ def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
         batches.append(Starts(*(field[kept][:missing] for field in batch)))
         missing -= batches[-1].theta.size
         if not np.any(kept):
-            raise ValueError(f"{map.blueprint.table}: no chord lands on its boundary; the table must be closed")
+            raise ValueError(f"{map.ir.table}: no chord lands on its boundary; the table must be closed")
     return Starts(*(np.concatenate(fields) for fields in zip(*batches, strict=True)))
 
 
 def phase_grid(map: "PinballMap", columns: int, rows: int) -> Grid:
-    """A ball at the centre of each cell of phase space, in `s` from `-L/2` to `L/2` and `sin(phi)` from -1 to 1.
+    """A particle at the centre of each cell of phase space, in `s` from `-L/2` to `L/2` and `sin(phi)` from -1 to 1.
 
     `L` is the perimeter; `s` is the paper's arc length. The first row is the lowest.
 
@@ -164,10 +164,10 @@ GENERIC = 0.8, 0.6  # a first tangent vector (ds, dphi), of length 1
 
 
 class Growth:
-    """Balls with a tangent vector each, in the coordinates `(s, phi)`; `advance` moves all of them.
+    """Particles with a tangent vector each, in the coordinates `(s, phi)`; `advance` moves all of them.
 
     `stretch` is the logarithm of the vector's length, `volume` that of `|det|` without the factors `lam`, both since
-    the start; `bounces` is what each ball made before it stopped, if it did.
+    the start; `bounces` is what each particle made before it stopped, if it did.
 
     >>> import numpy as np
     >>> from numeric import PinballMap
@@ -198,13 +198,13 @@ class Growth:
         self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
 
     def skip(self, bounces: int, threads: int | None = None) -> None:
-        """Moves the balls alone, and starts the sums where they arrive; these bounces do not count."""
+        """Moves the particles alone, and starts the sums where they arrive; these bounces do not count."""
         if bounces:
             self._run(KernelSpec(self.law), bounces, (), threads)
             self.began()
 
     def advance(self, bounces: int, threads: int | None = None) -> None:
-        """Moves balls and vectors on."""
+        """Moves particles and vectors on."""
         if not bounces:
             return
         going = self.code == 0
@@ -222,9 +222,9 @@ class Growth:
         made = bounces - (rows["lost"].astype(np.int64) if "lost" in rows else 0)
         self.bounces = self.bounces + np.where(going, made, 0)
 
-    def _run(self, question: KernelSpec, bounces: int, tangent: Any, threads: int | None) -> dict[str, Array]:
+    def _run(self, spec: KernelSpec, bounces: int, tangent: Any, threads: int | None) -> dict[str, Array]:
         map = self.map
-        rows = map.engine.run(question, self.own, self.lam, map.shape, bounces, tangent, threads).rows
+        rows = map.engine.run(spec, self.own, self.lam, map.shape, bounces, tangent, threads).rows
         self.own = [rows[name] for name in map.family.fields(self.law)]
         self.component, self.theta = map.states.place(self.own)
         self.phi = map.states.exit(self.component, self.theta, self.own, self.law)

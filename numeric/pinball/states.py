@@ -56,7 +56,7 @@ def components(given: Any, names: Sequence[str]) -> NDArray[np.int64]:
 
 
 def contraction(given: Any) -> Array:
-    """The contraction `lam`, one number or one for each ball.
+    """The contraction `lam`, one number or one for each particle.
 
     >>> float(contraction("1/4"))
     0.25
@@ -68,7 +68,7 @@ def contraction(given: Any) -> Array:
             raise ValueError(f"lam = {given!r} is no number such as 9/10 or 0.9") from None
     array = real("lam", given)
     if array.size == 0:
-        raise ValueError("lam is empty; give one number in [0, 1], or one for each ball")
+        raise ValueError("lam is empty; give one number in [0, 1], or one for each particle")
     wrong = (array < 0) | (array > 1)
     if np.any(wrong):
         raise ValueError(f"lam = {array[wrong].flat[0]} is no contraction; lam must lie in [0, 1]")
@@ -118,9 +118,9 @@ MEANINGS = {
 
 
 class Orbit(NamedTuple):
-    """Bounces along the first axis, balls along the others; `eta[0]` is nan, since nothing landed there.
+    """Bounces along the first axis, particles along the others; `eta[0]` is nan, since nothing landed there.
 
-    A ball that stopped repeats its last good state; `status` says from which bounce on, and why.
+    A particle that stopped repeats its last good state; `status` says from which bounce on, and why.
     """
 
     component: NDArray[np.int64]
@@ -137,18 +137,18 @@ class Orbit(NamedTuple):
         return STATUSES[self.code]
 
     def to_xarray(self) -> Any:
-        """The fields with their units, as an xarray Dataset over `bounce` and `ball`.
+        """The fields with their units, as an xarray Dataset over `bounce` and `particle`.
 
         >>> from numeric import PinballMap
         >>> orbit = PinballMap("circle", lam=0.5).orbit([0.0, 1.0], 0.3, 4).to_xarray()
         >>> dict(orbit.sizes), orbit.phi.attrs["units"]
-        ({'bounce': 5, 'ball': 2}, 'rad')
+        ({'bounce': 5, 'particle': 2}, 'rad')
         """
-        return labelled(self, ("bounce", "ball"))
+        return labelled(self, ("bounce", "particle"))
 
 
 class Exponents(NamedTuple):
-    """Finite-time Lyapunov exponents per bounce, in the coordinates `(s, phi)`, and how far each ball came."""
+    """Finite-time Lyapunov exponents per bounce, in the coordinates `(s, phi)`, and how far each particle came."""
 
     nu_plus: Array
     nu_minus: Array
@@ -160,12 +160,12 @@ class Exponents(NamedTuple):
 
     @property
     def status(self) -> Any:
-        """The outcome of each ball: a `Status`, or an array of them."""
+        """The outcome of each particle: a `Status`, or an array of them."""
         return STATUSES[self.code]
 
     def to_xarray(self) -> Any:
-        """The fields with their units, as an xarray Dataset over `ball`."""
-        return labelled(self, ("ball",))
+        """The fields with their units, as an xarray Dataset over `particle`."""
+        return labelled(self, ("particle",))
 
 
 class Slap(NamedTuple):
@@ -182,7 +182,7 @@ class Slap(NamedTuple):
 
 
 def labelled(fields: Any, axes: tuple[str, ...]) -> Any:
-    """Named arrays as an xarray Dataset, balls in a row; an array with fewer axes than the others has the last one."""
+    """Named arrays as an xarray Dataset, particles in a row; an array with fewer axes than the others has the last."""
     try:
         import xarray
     except ImportError:

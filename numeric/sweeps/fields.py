@@ -1,9 +1,9 @@
 """Basins of attraction on a grid of phase space. Paper: appendix, figures of basins.
 
-The attractors are found once, from random starts; then each cell's centre is a ball, and its label is the number of
+The attractors are found once, from random starts; then each cell's centre is a particle, and its label is the number of
 the attractor that it reaches.
 
-Bifurcation diagrams: where random balls are after a long time, against the contraction. Paper: section 6.6.
+Bifurcation diagrams: where random particles are after a long time, against the contraction. Paper: section 6.6.
 
 Lyapunov exponents against the contraction, by attractor. Paper: sections 4.1 and 5.3, figures of exponents.
 
@@ -12,8 +12,9 @@ numbered from the one with the most orbits on; the same number at two contractio
 
 Where in its parameter space the egg is chaotic. Paper: section 6.5, figure of parameter space.
 
-From each pair `(alpha, lam)` random balls are started as in the paper's appendix, and those are counted whose exponent
-is positive beyond its error (`numeric.sweeps.sweep`). The curve on top of the figure is the doubling of period 2.
+From each pair `(alpha, lam)` random particles are started as in the paper's appendix, and those are counted whose
+exponent is positive beyond its error (`numeric.sweeps.sweep`). The curve on top of the figure is the
+doubling of period 2.
 """
 
 import json
@@ -32,7 +33,7 @@ from numeric.dynamics.statistics import Estimate
 from numeric.sweeps.sweep import BLOCKS, Array, Axis, Field, Part, Sweep, map_of, measured, spread, text_of
 from symbolic.tables.scene import Scene
 
-BALLS = 1 << 15  # of a task, about; a fraction of a second for a thousand bounces
+PARTICLES = 1 << 15  # of a task, about; a fraction of a second for a thousand bounces
 FIELDS = (Field("label", ("sin_phi", "s"), "int16", "1", "number of the attractor, -1 for none of those found"),)
 
 
@@ -48,8 +49,8 @@ class Cells:
     def __call__(self, part: Part) -> dict[str, Array]:
         columns, rows = part.values["s"], part.values["sin_phi"]
         map = map_of(self.scene, self.lam)
-        balls = starts_at(map, np.tile(columns, rows.size), np.repeat(rows, columns.size))
-        return {"label": labels(map, balls, self.attractors, self.transient).reshape(rows.size, columns.size)}
+        particles = starts_at(map, np.tile(columns, rows.size), np.repeat(rows, columns.size))
+        return {"label": labels(map, particles, self.attractors, self.transient).reshape(rows.size, columns.size)}
 
 
 def basins(
@@ -83,7 +84,11 @@ def basins(
         about=f"Basins of attraction at lam = {lam:g}",
         axes=(
             Axis(
-                "sin_phi", _centres(where.sin_phi, rows), "1", "sine of the first exit angle", max(1, BALLS // columns)
+                "sin_phi",
+                _centres(where.sin_phi, rows),
+                "1",
+                "sine of the first exit angle",
+                max(1, PARTICLES // columns),
             ),
             Axis("s", _centres(where.s, columns), "length", "arc length of the start, as in the paper"),
         ),
@@ -122,7 +127,7 @@ def _centres(ends: tuple[float, float], count: int) -> Array:
     return ends[0] + (np.arange(count) + 0.5) * ((ends[1] - ends[0]) / count)
 
 
-PARTICLES = 2000  # of a task, about; a fraction of a second for some thousand bounces
+DIAGRAM_PARTICLES = 2000  # of a task, about; a fraction of a second for some thousand bounces
 POINT, ORBIT = ("lam", "orbit", "bounce"), ("lam", "orbit")
 DIAGRAM_FIELDS = (
     Field("s", POINT, "float64", "length", "arc length of each bounce, as in the paper"),
@@ -168,22 +173,22 @@ def bifurcation(
     transient: int = 4000,
     seed: int = 1,
 ) -> Sweep:
-    """The sweep over `lams`: for each the last `points` bounces of `orbits` random balls. `s` is nan where one stopped.
+    """The sweep over `lams`: for each the last `points` bounces of `orbits` particles. `s` is nan where one stopped.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
     >>> sweep = bifurcation(text_of(Scene("ellipse", a=2)), np.array([0.5]), orbits=3, points=4)
     >>> found = sweep.task(sweep.part((0, 0, 0)))
-    >>> np.unique(found["theta"].round(6)).tolist()  # every ball ends on the minor axis
+    >>> np.unique(found["theta"].round(6)).tolist()  # every particle ends on the minor axis
     [-1.570796, 1.570796]
     """
     diagram = Diagram(scene, orbits, points, bounces // BLOCKS * BLOCKS, transient)
     return Sweep(
         name="bifurcation",
-        about=f"Attractors against the contraction, from {orbits} random balls each",
+        about=f"Attractors against the contraction, from {orbits} random particles each",
         axes=(
-            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PARTICLES // orbits)),
-            Axis("orbit", np.arange(orbits), "1", "number of the ball"),
+            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, DIAGRAM_PARTICLES // orbits)),
+            Axis("orbit", np.arange(orbits), "1", "number of the particle"),
             Axis("bounce", np.arange(points), "1", "number of the bounce, after the transient"),
         ),
         fields=DIAGRAM_FIELDS,
@@ -196,7 +201,7 @@ def bifurcation(
     )
 
 
-KINDS = (*Kind, None)  # the number of each kind in the results; None for balls that settle on no attractor
+KINDS = (*Kind, None)  # the number of each kind in the results; None for particles that settle on no attractor
 ON = ("lam", "group")
 MEANINGS = ", ".join(f"{i} {kind.name.lower() if kind else 'unsettled'}" for i, kind in enumerate(KINDS))
 EXPONENT_FIELDS = (
@@ -286,7 +291,7 @@ def exponents(
     )
 
 
-PARTICLES_EACH = 20_000  # of a task, at most; what a core does in a second or less
+PAIR_PARTICLES = 20_000  # of a task, at most; what a core does in a second or less
 
 SPACE_FIELDS = (
     Field("chaotic", ("alpha", "lam"), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
@@ -358,7 +363,7 @@ def parameter_space(
         about=f"Chaos or none in the {K}-pointed egg, from {starts} random orbits for each pair",
         axes=(
             Axis("alpha", np.asarray(alphas, dtype=np.float64), "1", "shape of the egg", 1),
-            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PARTICLES_EACH // starts)),
+            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PAIR_PARTICLES // starts)),
         ),
         fields=SPACE_FIELDS,
         task=pairs,

@@ -2,7 +2,7 @@
 
 What a sweep will cost, before anything runs: bounces, seconds at the speed measured here, bytes.
 
-A scene as a line of text, which labels results and travels to other machines; its map, and random balls in it.
+A scene as a line of text, which labels results and travels to other machines; its map, and random particles in it.
 
 The sign of a finite-time Lyapunov exponent, when its error decides it.
 
@@ -181,7 +181,7 @@ def missing_value(dtype: str) -> Any:
     return np.nan if np.dtype(dtype).kind == "f" else -1
 
 
-BALLS, BOUNCES, RUNS = 1024, 400, 3
+PARTICLES, BOUNCES, RUNS = 1024, 400, 3
 
 
 class Cost(NamedTuple):
@@ -217,13 +217,13 @@ def cores() -> int:
 def speed(map: Any) -> float:
     """Nanoseconds for a bounce with exponents, on one core: the fastest of a few runs."""
     low, high = map.states.ends[0]
-    theta = low + (high - low) * (np.arange(BALLS) + 0.5) / BALLS
+    theta = low + (high - low) * (np.arange(PARTICLES) + 0.5) / PARTICLES
     best = np.inf
     for _ in range(RUNS):
         begun = time.perf_counter()
         map.exponents(theta, 0.0 * theta, BOUNCES, threads=1)
         best = min(best, time.perf_counter() - begun)
-    return float(best / BALLS / BOUNCES * 1e9)
+    return float(best / PARTICLES / BOUNCES * 1e9)
 
 
 KEPT = 16  # maps
@@ -239,7 +239,7 @@ def text_of(scene: Scene) -> str:
 
 
 def map_of(text: str, lam: Any) -> PinballMap:
-    """The map of a scene written by `text_of`, with a contraction, or one for each ball.
+    """The map of a scene written by `text_of`, with a contraction, or one for each particle.
 
     >>> map_of(text_of(Scene("ellipse", a=2)), 0.5).law
     'pinball'
@@ -248,7 +248,7 @@ def map_of(text: str, lam: Any) -> PinballMap:
 
 
 def spread(text: str, lams: Array, each: int, seed: int) -> tuple[PinballMap, Starts]:
-    """Balls of one scene at several contractions: `each` random starts for each `lam`, one `lam` after the other.
+    """Particles of one scene at several contractions: `each` random starts for each `lam`, one `lam` after the other.
 
     >>> map, starts = spread(text_of(Scene("circle")), np.array([0.0, 0.5]), 3, seed=1)
     >>> map.lam.tolist(), starts.theta.size
@@ -303,7 +303,7 @@ def floor_of(bounces: int) -> float:
 
 
 def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, threads: int | None = None) -> Measured:
-    """The exponents of balls over `bounces` bounces in `BLOCKS` blocks, after `transient` that do not count.
+    """The exponents of particles over `bounces` bounces in `BLOCKS` blocks, after `transient` that do not count.
 
     >>> circle = PinballMap("circle", lam=1)
     >>> from numeric.pinball.sampling import phase_starts

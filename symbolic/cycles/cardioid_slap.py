@@ -14,7 +14,7 @@ q = Symbol("q", real=True)  # the landing point
 y = Symbol("y", real=True)  # q of the launching point, where both are needed
 UPPER = Interval.open(-1, Rational(1, 3))  # landing points of the upper half
 
-COS2 = (1 - q**2) / (1 + 7 * q**2)  # cos(Theta/2)**2 where the ball lands
+COS2 = (1 - q**2) / (1 + 7 * q**2)  # cos(Theta/2)**2 where the particle lands
 LAUNCH_COS2 = (1 - 3 * q) ** 2 * (1 - q) / ((1 + 7 * q**2) * (3 - q))  # cos(theta/2)**2 where it left
 LAUNCH_Q2 = (1 + q) ** 3 / (5 - 25 * q + 63 * q**2 - 35 * q**3)  # the launching point's own q, squared
 
@@ -255,7 +255,7 @@ def _norm(even: Poly, odd: Poly) -> Poly:
 
 b = Symbol("b", real=True)  # half the landing angle, negative on the lower half
 RATE = (1 + q) * (5 - 7 * q) / (2 * (3 - q))  # one over the slope
-LAUNCH_TAN2 = 2 * (1 + q) ** 3 / ((1 - 3 * q) ** 2 * (1 - q))  # tan(theta/2)**2 where the ball left
+LAUNCH_TAN2 = 2 * (1 + q) ** 3 / ((1 - 3 * q) ** 2 * (1 - q))  # tan(theta/2)**2 where the particle left
 SPEED2 = (1 + 7 * q**2) ** 2 * (1 - q**2) / 8  # (dq/db)**2
 CUSP = Rational(-69, 100)  # landings below it are near the cusp
 SHRINKS = Rational(835, 1000)
@@ -359,7 +359,7 @@ def branch(above: bool) -> Kernel:
     tangent = 32 * cos(b) ** 3 / (r**3 * (1 - landing) ** 2 * (1 - 3 * landing))  # 1 + q is 8*cos(b)**2/(r**2*(1 - q))
     rate = 4 * cos(b) ** 2 * (5 - 7 * landing) / (r**2 * (1 - landing) * (3 - landing))
     values = {"launch": pi / 2 - atan(1 / tangent) if above else atan(tangent), "rate": rate}
-    return kernel("branch", [b], values, about="Where a ball that lands at half angle b left, and db0/db.")
+    return kernel("branch", [b], values, about="Where a particle that lands at half angle b left, and db0/db.")
 
 
 def near_launch() -> Expr:

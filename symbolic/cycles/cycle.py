@@ -57,7 +57,7 @@ class Frame:
 class Cycle:
     """A periodic orbit by its bounces, each a component's index and a boundary parameter.
 
-    `box` holds the ranges of further letters that `table` and the bounces may depend on.
+    `box` holds the ranges of further parameters that `table` and the bounces may depend on.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Cycle:
 
     @cached_property
     def ranges(self) -> Box:
-        """The ranges of all letters of the cycle."""
+        """The ranges of all parameters of the cycle."""
         return parameter_box(self.table) | dict(self.box)
 
     @cached_property

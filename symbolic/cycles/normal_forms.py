@@ -151,12 +151,12 @@ def egg_diameter() -> tuple[Expr, Expr, Expr]:
 
 def _number(expression: Expr, a: Any) -> Any:
     """A polynomial of degree 1 in alpha, as an element of the field."""
-    letter = Symbol("alpha")
-    return a * int(expression.coeff(letter, 1)) + int(expression.coeff(letter, 0))
+    parameter = Symbol("alpha")
+    return a * int(expression.coeff(parameter, 1)) + int(expression.coeff(parameter, 0))
 
 
 a, b = symbols("a b", real=True)  # jets of the wall
-height, exit_angle = symbols("height exit_angle", real=True)  # where the ball leaves the wall
+height, exit_angle = symbols("height exit_angle", real=True)  # where the particle leaves the wall
 RING = QQ[a, b, lam, height, exit_angle]
 LENGTH = Rational(9, 4)
 Odd = tuple[Expr, Expr]
@@ -196,7 +196,7 @@ def slope(jets: tuple[Expr, Expr], y: Odd) -> Odd:
 
 
 def fly(y: Odd, phi: Odd, leaves: tuple[Expr, Expr], lands: tuple[Expr, Expr]) -> tuple[Odd, Odd]:
-    """From one wall to the opposite one: where the ball lands, and its incidence angle, with the sign of the exit's."""
+    """From one wall to the opposite one: where a particle lands, and its incidence angle with the exit's sign."""
     direction = total(phi, jet_times(RING(-1), arctangent(slope(leaves, y))))
     steep = arctangent(direction, -1)
     far = y[0] + RING.from_sympy(LENGTH) * steep[0]
@@ -220,9 +220,9 @@ def return_map() -> tuple[Matrix, Matrix]:
     across, eta = fly(*start, wall, arc)
     back, last = fly(across, jet_times(contraction, eta), arc, wall)
     ends = back, jet_times(contraction, last)
-    letters = height, exit_angle
-    linear = [Poly(RING.to_sympy(end[0]), *letters) for end in ends]
-    rows = Matrix(2, 2, lambda i, j: linear[i].coeff_monomial(letters[j]))
+    unknowns = height, exit_angle
+    linear = [Poly(RING.to_sympy(end[0]), *unknowns) for end in ends]
+    rows = Matrix(2, 2, lambda i, j: linear[i].coeff_monomial(unknowns[j]))
     return rows, Matrix([RING.to_sympy(end[1]) for end in ends])
 
 

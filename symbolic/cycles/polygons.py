@@ -93,7 +93,7 @@ def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
     """The bounce, a polar angle, of the polygon that is at the flat point `pi/K` at `lam = 1`; for `lam >= lambda_c`.
 
     `rho'/rho = T` is `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. The polygon turns
-    counterclockwise as `lam` falls, and so does the ball; its mirror image turns and runs clockwise.
+    counterclockwise as `lam` falls, and so does the particle; its mirror image turns and runs clockwise.
 
     >>> near_flat().subs(lam, 1)
     pi/3

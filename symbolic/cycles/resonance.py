@@ -16,7 +16,7 @@ from sympy.polys.fields import field
 from symbolic.cycles.normal_forms import CUBIC, QUARTIC, Map, Series, bounce, chord, composed, plus, put
 from symbolic.tables.table import alpha
 
-LETTER = Symbol("alpha")
+SHAPE = Symbol("alpha")
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def flat_triangle() -> tuple[Expr, Expr, Expr]:
     """
     numbers, a = field("alpha", QQ)
     found = resonances(numbers, a)
-    exact = [value.as_expr().subs(LETTER, alpha).factor() for value in (found.trace, found.twist, found.drift)]
+    exact = [value.as_expr().subs(SHAPE, alpha).factor() for value in (found.trace, found.twist, found.drift)]
     return exact[0], exact[1], exact[2]
 
 

@@ -7,7 +7,7 @@ curvature `1/(f + t1)`, and leaves with
     y1 = 1 + lam - lam*d1/(f + t1),    d1 = cos(eta1)/|K1|,
 
 where `f = -D0/y` and `t1 = t` for a chord from arc to arc, and `f = (cos(phi)/(lam*cos(eta)))*(t - D0/y)` when the
-ball has bounced off the wall in between (chord `t` to the wall, landing at `eta`, leaving at `phi`, chord `t1` on).
+particle has bounced off the wall in between (chord `t` to the wall, landing at `eta`, leaving at `phi`, chord `t1` on).
 
 *Chords of the arc.* `t - D0 >= gain*d1`, with a gain above 1 (`defocusing`), and `2*t >= 3*D0`, since
 
@@ -18,9 +18,9 @@ the wall,
 
     (t - D)*cos(eta) = (2*c - 1)**2*(4*c**2 + 4*c + 3)/12 + (2*c/3)*(1 - cos(tau + 2*eta)) >= 0:
 
-the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The ball's angle at the arc is
-`tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so `tau < (1 + lam)*pi/2`
-and `t - D >= clearance(lam) > 0` for `lam < 1`.
+the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The angle of a particle at the
+arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so
+`tau < (1 + lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
 
 *So* `1 < y1 < 1 + lam`, strictly and uniformly: in the projective (Hilbert) metric of the cone the image has a
 diameter of at most `diameters(lam)`, hence every return to the arc, at most two bounces, contracts by
@@ -36,7 +36,7 @@ kernel, and `F` is not in it because `t > D0`.
 
     1 + ((cos(phi)/cos(eta))**2*Q0 + Q1 - (1 - lam)*X1)/(cos(phi)*d1),    Q = (t - D)*cos(eta) at either end,
 
-with `X1 = t1*cos(phi)` how far from the wall the ball lands. `Q1 >= 11/27*X1`, since the first term of `Q` is
+with `X1 = t1*cos(phi)` how far from the wall the particle lands. `Q1 >= 11/27*X1`, since the first term of `Q` is
 `X/3 + 2*X/(3*(2*c + 1)**2)` and `c <= 1`; and `t1 >= d1`. So it grows at least by `lam + 11/27`: for `lam > 16/27`
 every orbit of the cuspless cardioid stretches at a rate of at least `least_rate()` for each bounce, and no cycle
 attracts.

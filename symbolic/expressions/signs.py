@@ -125,7 +125,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """An outcome with its reason in one sentence; a refutation holds its witness in `at`, a value for each letter."""
+    """An outcome with its reason in one sentence; a refutation holds its witness in `at`, values of the parameters."""
 
     outcome: Outcome
     reason: str
@@ -200,7 +200,7 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
 
 
 def placed(finding: Finding, box: Box) -> Finding:
-    """A refutation whose witness has a value for every letter of the box: where a letter plays no part, any value.
+    """A refutation whose witness has a value for every parameter of the box, any value for one that plays no part.
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> positive(x, {x: Interval(-1, 1), y: Interval(3, 4)}).at

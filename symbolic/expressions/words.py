@@ -7,7 +7,7 @@ FUNCTIONS = {sin: "sin", cos: "cos", atan: "atan", exp: "exp", log: "log", sqrt:
 
 
 def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
-    """`ValueError` when `expression` holds a float, an unknown letter, or a word outside the vocabulary.
+    """`ValueError` when `expression` holds a float, an unknown parameter, or a word outside the vocabulary.
 
     >>> checked("x", S(2) / 5, set())
     >>> checked("x", Float("0.4"), set())

@@ -150,8 +150,8 @@ class _Stage:
     def point(self, end: str, index: int, parameter: Symbol) -> list[Expr]:
         """The coordinates of one end."""
         made = []
-        for letter, expression in zip("xy", self.table.components[index].point, strict=True):
-            f = Function(letter + end, real=True)(parameter, *self.shapes)
+        for axis, expression in zip("xy", self.table.components[index].point, strict=True):
+            f = Function(axis + end, real=True)(parameter, *self.shapes)
             self.meaning[f] = expression.subs(theta, parameter)
             made.append(f)
         return made
@@ -159,8 +159,8 @@ class _Stage:
     def chord(self, start: Sequence[Expr], end: Sequence[Expr]) -> list[Expr]:
         """The coordinates of the chord from `start` to `end`."""
         made = []
-        for letter, p, q in zip("xy", start, end, strict=True):
-            f = Function("d" + letter, real=True)(theta0, theta1, *self.shapes)
+        for axis, p, q in zip("xy", start, end, strict=True):
+            f = Function("d" + axis, real=True)(theta0, theta1, *self.shapes)
             self.meaning[f] = q - p
             made.append(f)
         return made

@@ -1,6 +1,6 @@
 """The collision map, and its derivative by implicit differentiation. Paper: section 2.1.
 
-A ball leaves `q0 = (X0, Y0)(s0)` with exit angle `phi0`, counted from the inward normal towards
+A particle leaves `q0 = (X0, Y0)(s0)` with exit angle `phi0`, counted from the inward normal towards
 the tangent; with `psi` the direction of the tangent its own direction is `psi0 + pi/2 - phi0`. It
 lands at `q1 = (X1, Y1)(s1)`, where the flight equation says that `q1 - q0` is parallel to that
 direction, with incidence angle `eta1 = psi1 - direction - pi/2`. The law is `phi1 = -eta1 + f(eta1)`.

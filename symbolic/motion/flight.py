@@ -1,7 +1,7 @@
 """The flight equation with its known root divided out, exactly.
 
 Let the boundary be `z(theta) = sum_k C_k cos(k*theta) + S_k sin(k*theta)` with vectors `C_k`, `S_k`,
-and let a ball fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two
+and let a particle fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two
 parameters, `B = m - theta0` and `E = -i*v`, which is `exp(i*m)` for a chord of the circle,
 
     Im(conj(v)*(z1 - z0)) = 2*sin(B) * sum_k U_{k-1}(cos B) * Im(conj(M_k) * exp(i*k*m)),
@@ -171,7 +171,7 @@ def _product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
 
 
 def flight(s: Expr = s, phi: Expr = phi) -> tuple[Expr, Expr]:
-    """`(s1, phi1)`: the ball advances by `pi - 2*phi` and keeps `lam` of its angle.
+    """`(s1, phi1)`: the particle advances by `pi - 2*phi` and keeps `lam` of its angle.
 
     >>> flight()
     (-2*phi + s + pi, lam*phi)

@@ -12,7 +12,7 @@ import pytest
 os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
-from numeric.backends.scalars import Arrays, Scalars
+from numeric.backends.scalars import ArrayBackend, ScalarBackend
 from numeric.kernels.spec import KernelSpec
 from numeric.kernels.text import kernel_text, operations
 
@@ -26,7 +26,7 @@ SHAPES = {
 
 
 def starts(map, count, seed, steepest=1.0):
-    """Random balls: component, theta and phi; `sin(phi)` is uniform below `sin` of the steepest angle."""
+    """Random particles: component, theta and phi; `sin(phi)` is uniform below `sin` of the steepest angle."""
     rng = np.random.default_rng(seed)
     component = rng.integers(0, len(map.states.ends), count)
     ends = np.array(map.states.ends)[component]
@@ -74,7 +74,7 @@ def inside(name, x, y, shape):
 
 
 class Bounced:
-    """One bounce of many balls, and what the definition of the map says of it, table by table in plain words."""
+    """One bounce of many particles, and what the definition of the map says of it, table by table in plain words."""
 
     def __init__(self, map, where, theta, phi):
         name, law = map.family.name if map.family.name != "fourier" else "egg", map.law
@@ -115,7 +115,7 @@ def rounding(map, where, theta, phi):
     errors = []
     for i in range(theta.size):
         state = [context.mpf(float(field[i])) for field in own]
-        exact, code = map.family.bounce(Scalars(context), map.law, shape, lam, state)
+        exact, code = map.family.bounce(ScalarBackend(context), map.law, shape, lam, state)
         assert (code or 0) == (result.rows["code"][i] if "code" in result.rows else 0)
         errors.append([float(abs(a - b) / 2.0**-52) for a, b in zip(found[:, i].tolist(), exact, strict=True)])
     at = len(map.family.position)
@@ -128,7 +128,7 @@ def rounding_():
     return rounding
 
 
-class Watching(Arrays):
+class Watching(ArrayBackend):
     """Arrays that keep the masks of the branches that are rarely taken."""
 
     def __init__(self):
@@ -157,7 +157,7 @@ def as_on_the_page():
 
 @pytest.fixture
 def unsettled():
-    """The share of random balls whose flight needs the bracket, after the steps that every flight takes."""
+    """The share of random particles whose flight needs the bracket, after the steps that every flight takes."""
 
     def share(map, slap=False, branch=0, count=20_000):
         component, theta, phi = starts(map, count, seed=1)
@@ -178,7 +178,7 @@ def bounced():
 
 @pytest.fixture(params=list(SHAPES))
 def table(request):
-    """Each table of the paper: its name, its shape, a map at some `lam`, and random balls."""
+    """Each table of the paper: its name, its shape, a map at some `lam`, and random particles."""
     name, shape = request.param, SHAPES[request.param]
     return SimpleNamespace(
         name=name,

@@ -16,7 +16,7 @@ from bokeh.models import ColumnDataSource, PointDrawTool
 from bokeh.plotting import figure
 
 from numeric import Orbit, PinballMap
-from numeric.dynamics.phase_points import places
+from numeric.dynamics.phase_points import phase_points
 from numeric.dynamics.recognition import Cycle, polished, shortest
 from numeric.pinball.sampling import boundary, interior_starts
 from symbolic.tables.definition import PAPER
@@ -91,7 +91,7 @@ class Choice:
         return "\n".join([*head, "", *body])
 
     def _names(self) -> list[str]:
-        return [part.name for part in self.map().blueprint.parts]
+        return [part.name for part in self.map().ir.parts]
 
 
 LONGEST = 64  # period of a cycle that is looked for
@@ -170,7 +170,7 @@ def cycle_near(map: PinballMap, ball: Ball) -> Cycle | None:
         return None
     away = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) + np.abs(orbit.phi[1:] - orbit.phi[0])
     for period in np.argsort(away)[:8] + 1:
-        near = places(orbit.component[:period], orbit.theta[:period], orbit.phi[:period])
+        near = phase_points(orbit.component[:period], orbit.theta[:period], orbit.phi[:period])
         found = polished(map, near)
         if found is not None:
             return shortest(map, found.points)
@@ -267,7 +267,7 @@ class LiveTable:
         wanted = replace(self.choice, formula=self.formula.value, shape=self.shape.value, lam=f"{self.lam.value:.6g}")
         try:
             self.map = wanted.map()
-            parts = len(self.map.blueprint.parts)
+            parts = len(self.map.ir.parts)
             self.choice = wanted if wanted.component < parts else replace(wanted, component=0)
             self.redraw()
         except ValueError as error:

@@ -20,7 +20,7 @@ from typing import Any
 from flint import acb, arb, fmpq
 
 from numeric import PinballMap, Status
-from numeric.backends.scalars import Scalars
+from numeric.backends.scalars import ScalarBackend
 from verification.arithmetic.balls import as_ball, bits_of, enclose, working
 from verification.maps.exact import Ball, ExactMap
 from verification.maps.first_hit import BITS, Boundary, Frame, free
@@ -37,7 +37,7 @@ class Refusal(Enum):
     UNPROVED = "no proof that the flight meets nothing before it lands"
 
 
-class Balls(Scalars):
+class Balls(ScalarBackend):
     """What a program needs of ball arithmetic: constants, roots, sine and cosine."""
 
     def __init__(self) -> None:
@@ -80,8 +80,8 @@ class EnclosedMap:
         with working(bits):
             self.lam = number(lam, bits)
             self.shape = [number(value, bits) for value in map.exact_shape]
-            self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in map.blueprint.parts]
-        self.parts = [part.curve for part in map.blueprint.parts]
+            self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in map.ir.parts]
+        self.parts = [part.curve for part in map.ir.parts]
         self.boundary = Boundary([self._placed(i) for i in range(len(self.parts))], self.ends)
 
     def ball(self, component: int, theta: Any, phi: Any) -> Ball:
@@ -195,7 +195,7 @@ def in_multiprecision(
     mp = exact.context
     turns = _turns(map, start)
     ball = exact.ball(start[0], exact.exactly(start[1]) - 2 * turns * mp.pi, exact.exactly(start[2]))
-    names = [part.name for part in map.blueprint.parts]
+    names = [part.name for part in map.ir.parts]
     entries: list[dict[str, Any]] = []
     for i in range(bounces + 1):
         if i:
@@ -226,7 +226,7 @@ def _attempt(
     map: PinballMap, lam: Any, start: Start, bounces: int, digits: int, bits: int, step: Step
 ) -> list[dict[str, Any]] | None:
     enclosed = EnclosedMap(map, lam, bits)
-    names = [part.name for part in map.blueprint.parts]
+    names = [part.name for part in map.ir.parts]
     entries: list[dict[str, Any]] = []
     with working(bits):
         theta = number(start[1], bits) - 2 * _turns(map, start) * arb.pi()
@@ -304,11 +304,11 @@ def _length(exact: ExactMap, map: PinballMap, component: int, theta: Any) -> Any
     closed = _closed_length(map, exact.ops, exact.shape, component, theta)
     if closed is not None:
         return closed
-    if map.blueprint.table == "ellipse" and exact.shape:
+    if map.ir.table == "ellipse" and exact.shape:
         return mp.ellipe(theta, 1 - exact.shape[0] ** 2)
-    if len(map.blueprint.parts) > 1:
+    if len(map.ir.parts) > 1:
         return None
-    curve = map.blueprint.parts[component].curve
+    curve = map.ir.parts[component].curve
 
     def speed(at: Any) -> Any:
         _, _, dx, dy, _, _ = curve(exact.ops, at, *exact.shape)
@@ -320,8 +320,8 @@ def _length(exact: ExactMap, map: PinballMap, component: int, theta: Any) -> Any
 
 def _closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: int, theta: Any) -> Any:
     """Arc length from the table's origin in elementary functions, component by component; None where there is none."""
-    parts, length = map.blueprint.parts, map.family.arclength
-    index, start = map.blueprint.origin
+    parts, length = map.ir.parts, map.family.arclength
+    index, start = map.ir.origin
     first = length(ops, index, start(ops, *shape)[0])
     if first is None:
         return None
@@ -334,7 +334,7 @@ def _closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: i
         if at == component:
             return reached + length(ops, at, theta)
         reached = reached + length(ops, at, high)
-    raise ValueError(f"{map.blueprint.table} has no component {component}")
+    raise ValueError(f"{map.ir.table} has no component {component}")
 
 
 def _entry(name: str, texts: list[str | None]) -> dict[str, Any]:

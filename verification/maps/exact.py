@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap, Status
-from numeric.backends.scalars import Scalars
+from numeric.backends.scalars import ScalarBackend
 from numeric.flights.family import NEAR, Frame, law_of
 from numeric.flights.general import General
 
@@ -53,12 +53,12 @@ class ExactMap:
         self.context = mpmath.MPContext()
         self.context.dps = digits + GUARD
         self.digits = digits
-        self.ops = Scalars(self.context)
+        self.ops = ScalarBackend(self.context)
         self.general = General(map.states.boundary)
         self.lam = self.exactly(map.lam.flat[0] if lam is None else lam)  # a float is the double it is
         self.law = law_of(float(map.lam.flat[0]), float(map.lam.flat[0]))
         self.shape = [self.exactly(value) for value in map.exact_shape]
-        parts = map.blueprint.parts
+        parts = map.ir.parts
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in parts]
         self.general.ends = self.ends
         self.cusped = map.family.cusped

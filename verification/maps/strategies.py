@@ -36,9 +36,9 @@ class Ball:
 
     def __repr__(self) -> str:
         shape = ", ".join(
-            f"{entry.name}={value}" for entry, value in zip(self.map.blueprint.shape, self.map.exact_shape, strict=True)
+            f"{entry.name}={value}" for entry, value in zip(self.map.ir.shape, self.map.exact_shape, strict=True)
         )
-        table = f"{self.map.blueprint.table}({shape})"
+        table = f"{self.map.ir.table}({shape})"
         return f"Ball({table}, lam={self.lam!r}, component={self.component}, theta={self.theta!r}, phi={self.phi!r})"
 
 

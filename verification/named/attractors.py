@@ -21,7 +21,7 @@ from sympy import Expr
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, Share, classify, find, moved, name, wilson
-from numeric.dynamics.phase_points import Places
+from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import polished, shortest
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import Symmetry, group
@@ -52,13 +52,13 @@ class Certificate:
         return all(value is True for value in self.checks.values())
 
 
-def certificate(table: Table, lam: Expr, near: Places, digits: int = DIGITS) -> Certificate:
+def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS) -> Certificate:
     """What balls prove about the cycle whose bounces lie near the given ones.
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
-    >>> from numeric.dynamics.phase_points import places
-    >>> axis = certificate(ellipse.at(a=2), Rational(1, 2), places(0, [1.5, -1.6], 0.0))
+    >>> from numeric.dynamics.phase_points import phase_points
+    >>> axis = certificate(ellipse.at(a=2), Rational(1, 2), phase_points(0, [1.5, -1.6], 0.0))
     >>> axis.proved, axis.trace.str(10, radius=False), axis.determinant.str(10, radius=False)
     (True, '-0.4375000000', '0.2500000000')
     """
@@ -95,15 +95,15 @@ def exponents(trace: arb, determinant: arb, period: int) -> tuple[arb, arb]:
     return plus, size.log() / period - plus
 
 
-def certified_exponents(table: Table, lam: Expr, near: Places, digits: int = DIGITS) -> dict[str, Any] | None:
+def certified_exponents(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS) -> dict[str, Any] | None:
     """The exponents of the cycle near some points as decimals with a radius, and the checklist; None if not proved.
 
     At `lam = 0` the lower one is minus infinity, and null.
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
-    >>> from numeric.dynamics.phase_points import places
-    >>> axis = certified_exponents(ellipse.at(a=2), Rational(1, 2), places(0, [1.5, -1.6], 0.0), 15)
+    >>> from numeric.dynamics.phase_points import phase_points
+    >>> axis = certified_exponents(ellipse.at(a=2), Rational(1, 2), phase_points(0, [1.5, -1.6], 0.0), 15)
     >>> axis["nu_plus"][:16], axis["nu_minus"][:16]  # log(1/2)/2, a complex pair
     ('-0.3465735902799', '-0.3465735902799')
     """
@@ -215,7 +215,12 @@ def branches(map: PinballMap, table: Table, rows: Sequence[Row], longest: int = 
 
 
 def _followed(
-    map: PinballMap, table: Table, symmetries: Sequence[Symmetry], known: Sequence[Branch], lam: float, near: Places
+    map: PinballMap,
+    table: Table,
+    symmetries: Sequence[Symmetry],
+    known: Sequence[Branch],
+    lam: float,
+    near: PhasePoints,
 ) -> Branch | None:
     """The branch through a cycle, unless it is known."""
     there = map.at(lam)
@@ -227,7 +232,7 @@ def _followed(
     return Branch(cycle.period, name(kept), len(symmetries) // len(kept), low, high)
 
 
-def _on(map: PinballMap, branch: Branch, points: Places, symmetries: Sequence[Symmetry]) -> bool:
+def _on(map: PinballMap, branch: Branch, points: PhasePoints, symmetries: Sequence[Symmetry]) -> bool:
     """Is the branch's cycle at this contraction the given one, or an image of it?"""
     lam = float(map.lam.flat[0])
     if branch.period != points.size or not branch.low.lam <= lam <= branch.high.lam:
@@ -236,7 +241,7 @@ def _on(map: PinballMap, branch: Branch, points: Places, symmetries: Sequence[Sy
     return here is not None and any(alike(map, here.points, moved(s, points)) < 1e-6 for s in symmetries)
 
 
-def _successors(map: PinballMap, branch: Branch, longest: int) -> list[tuple[float, Places]]:
+def _successors(map: PinballMap, branch: Branch, longest: int) -> list[tuple[float, PhasePoints]]:
     """Cycles of at most twice the period that attract just past an end at which the branch hands over."""
     found = []
     for end, way in ((branch.low, -1), (branch.high, 1)):

@@ -21,7 +21,7 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import moved
-from numeric.dynamics.phase_points import Places, embedded, places
+from numeric.dynamics.phase_points import PhasePoints, embedded, phase_points
 from numeric.dynamics.recognition import Cycle, polished
 from numeric.pinball.sampling import interior_starts
 from symbolic.tables import egg
@@ -59,7 +59,7 @@ class End:
     value: str
     proved: bool
     cycle: Cycle
-    path: tuple[tuple[float, Places], ...] = ()
+    path: tuple[tuple[float, PhasePoints], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,18 +72,18 @@ class Branch:
     low: End
     high: End
 
-    def nearest(self, lam: float) -> Places:
+    def nearest(self, lam: float) -> PhasePoints:
         """The cycle on the way whose contraction is nearest."""
         return min((*self.low.path, *self.high.path), key=lambda place: abs(place[0] - lam))[1]
 
 
-def alike(map: PinballMap, left: Places, right: Places) -> float:
+def alike(map: PinballMap, left: PhasePoints, right: PhasePoints) -> float:
     """How far the farthest point of the first lies from the second, in `(x, y, sin(phi))`."""
     a, b = embedded(map, left), embedded(map, right)
     return float(np.max(np.min(np.linalg.norm(a[:, None] - b, axis=2), axis=1)))
 
 
-def own(map: PinballMap, cycle: Places, group: Sequence[Symmetry], within: float = 1e-6) -> list[Symmetry]:
+def own(map: PinballMap, cycle: PhasePoints, group: Sequence[Symmetry], within: float = 1e-6) -> list[Symmetry]:
     """The symmetries that keep a cycle."""
     return [symmetry for symmetry in group if alike(map, moved(symmetry, cycle), cycle) < within]
 
@@ -96,7 +96,7 @@ def ends(
     >>> from symbolic.tables.geometry import group
     >>> from symbolic.tables import cuspless
     >>> map = PinballMap("cuspless", lam=0.05)
-    >>> axis = polished(map, places([0, 1], [0.0, 0.0], 0.0))
+    >>> axis = polished(map, phase_points([0, 1], [0.0, 0.0], 0.0))
     >>> low, high = ends(map, cuspless, group(cuspless), axis, 0.05)
     >>> low.event.name, high.event.name, high.value, high.proved
     ('EDGE', 'FLIP', '0.09340033543136', True)
@@ -132,13 +132,13 @@ def _end(
     return replace(_named(map, table, group, here, lam, digits), path=tuple(path))
 
 
-def _ahead(here: Places, before: Places, share: float) -> Places:
+def _ahead(here: PhasePoints, before: PhasePoints, share: float) -> PhasePoints:
     """The bounces extrapolated."""
     theta = here.theta + share * (np.remainder(here.theta - before.theta + np.pi, 2 * np.pi) - np.pi)
-    return places(here.component, theta, np.clip(here.phi + share * (here.phi - before.phi), -1.57, 1.57))
+    return phase_points(here.component, theta, np.clip(here.phi + share * (here.phi - before.phi), -1.57, 1.57))
 
 
-def _in_step(map: PinballMap, new: Places, old: Places) -> Places:
+def _in_step(map: PinballMap, new: PhasePoints, old: PhasePoints) -> PhasePoints:
     """The same cycle begun where the old one is."""
     first = embedded(map, old.only(slice(0, 1)))
     nearest = int(np.argmin(np.linalg.norm(embedded(map, new) - first, axis=1)))
@@ -185,7 +185,7 @@ def _broken(map: PinballMap, table: Table, group: Sequence[Symmetry], cycle: Cyc
     return Event.FOLD
 
 
-def _mirrored(map: PinballMap, group: Sequence[Symmetry], points: Places) -> Places | None:
+def _mirrored(map: PinballMap, group: Sequence[Symmetry], points: PhasePoints) -> PhasePoints | None:
     """The first half of an image of the cycle that `theta -> -theta` nearly takes to its second half."""
     n = points.size
     mirror = next((s for s in group if s.sign < 0 and s.angle == 0), None)
@@ -203,7 +203,7 @@ def _solved(
     table: Table,
     event: Event,
     kind: BifurcationKind,
-    use: Places,
+    use: PhasePoints,
     closure: Closure,
     lam: float,
     digits: int,

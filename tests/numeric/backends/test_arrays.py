@@ -6,9 +6,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 
-OPS = Arrays()
+OPS = ArrayBackend()
 PI_TAIL = 1.2246467991473532e-16  # pi less its double
 
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from numeric.backends.functions import angle, exact_cross, halley, polynomial_zero, turn, unit, value_and_slope
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()
 MP.dps = 50
-OPS = Arrays()
+OPS = ArrayBackend()
 
 
 def test_sine_and_cosine_err_by_less_than_a_unit():

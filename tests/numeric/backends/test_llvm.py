@@ -6,8 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from numeric.backends.llvm import Lane, Lanes
-from numeric.backends.scalars import Arrays
+from numeric.backends.llvm import LLVMBackend, LLVMVector
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family, Landing
 from numeric.kernels.engine import Engine
 from numeric.kernels.spec import KernelSpec
@@ -179,8 +179,8 @@ def test_a_branch_is_taken_where_its_mask_holds_anywhere(kernels):
 
 def traced():
     """Lanes and two values that are not known."""
-    ops = Lanes(8)
-    return ops, Lane(ops, "%x"), Lane(ops, "%y")
+    ops = LLVMBackend(8)
+    return ops, LLVMVector(ops, "%x"), LLVMVector(ops, "%y")
 
 
 def test_numbers_are_computed_while_tracing():
@@ -231,7 +231,7 @@ def test_a_number_is_written_with_all_its_bits():
 
     assert ops.number(-1.5).text == "splat (double 0xBFF8000000000000)"
     assert ops.number(0.1).text == "splat (double 0x3FB999999999999A)"
-    assert (ops.pi().value, Arrays().pi()) == (math.pi, math.pi)
+    assert (ops.pi().value, ArrayBackend().pi()) == (math.pi, math.pi)
 
 
 @pytest.mark.parametrize("kernels", [True, False])
@@ -268,11 +268,11 @@ def test_blocks_are_named_as_the_count_of_operations_reads_them():
 
     assert [label.rstrip("0123456789") for label in labels] == ["head", "inside", "after", "inside", "after"]
     assert len(set(labels)) == 5
-    assert (Lanes().width, ops.constant(7).value) == (32, 7.0)
+    assert (LLVMBackend().width, ops.constant(7).value) == (32, 7.0)
 
 
 def test_what_is_written_when_a_scope_is_closed_belongs_to_the_one_around_it():
-    ops, seen = Lanes(8), []
+    ops, seen = LLVMBackend(8), []
     for _ in range(3):
         ops.open()
         seen.append(ops.scope)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from numeric.backends import functions as plane
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 
 EPS = 2.0**-52
-OPS = Arrays()
+OPS = ArrayBackend()
 Z, W = (Fraction(2), Fraction(3)), (Fraction(5), Fraction(-7))
 
 
@@ -45,7 +45,7 @@ def test_a_scalar_product_that_almost_vanishes_keeps_its_digits():
 
 def test_a_product_and_its_rest_lose_nothing():
     x, y = pairs()
-    product, rest = plane.product_and_rest(OPS, x[0], y[1])
+    product, rest = plane.product_and_error(OPS, x[0], y[1])
     for p, r, a, b in zip(*(row.tolist() for row in (product, rest, x[0], y[1])), strict=True):
         assert p == a * b
         assert Fraction(p) + Fraction(r) == Fraction(a) * Fraction(b)
@@ -55,7 +55,7 @@ def test_a_product_and_its_rest_lose_nothing():
 def test_a_cross_product_and_its_rest_have_twice_the_digits(order):
     z, w = pairs(seed=5)[::order]
     w = np.where(np.arange(w.shape[1]) % 2 == 0, w, w[::-1])  # half of them as large as their terms
-    found, rest = plane.cross_and_rest(OPS, tuple(z), tuple(w))
+    found, rest = plane.cross_and_error(OPS, tuple(z), tuple(w))
     terms = np.abs(z[0] * w[1]) + np.abs(z[1] * w[0])
     for f, r, t, size in zip(found.tolist(), rest.tolist(), exactly(z, w), terms.tolist(), strict=True):
         assert abs(Fraction(f) - t) <= EPS * size

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from numeric.backends.functions import TOLERANCE, bracketed_zero, halley, polynomial_zero, value_and_slope
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 
 EPS = 2.0**-52
-OPS = Arrays()
+OPS = ArrayBackend()
 
 
 def counting(function):

@@ -4,11 +4,11 @@ import mpmath
 import pytest
 
 from numeric.backends.functions import value_and_slope
-from numeric.backends.scalars import Scalars
+from numeric.backends.scalars import ScalarBackend
 
 MP = mpmath.MPContext()
 MP.dps = 50
-OPS = Scalars(MP)
+OPS = ScalarBackend(MP)
 
 
 def test_words_are_the_contexts_own():

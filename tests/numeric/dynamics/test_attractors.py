@@ -9,7 +9,7 @@ from sympy import Rational
 
 from numeric import PinballMap, Status
 from numeric.dynamics.attractors import UNSETTLED, Kind, classify, find, moved, wilson
-from numeric.dynamics.phase_points import Places, advanced, embedded, places
+from numeric.dynamics.phase_points import PhasePoints, advanced, embedded, phase_points
 from numeric.dynamics.recognition import polished
 from numeric.pinball.sampling import interior_starts
 from symbolic.tables import cardioid, cuspless, egg, ellipse
@@ -107,7 +107,7 @@ def test_a_ball_that_stops_reaches_no_attractor():
 
 
 def _onto_the_join(join):
-    """A ball at theta = 0 aimed at the upper join, where `theta = 2 pi/3`."""
+    """A particle at theta = 0 aimed at the upper join, where `theta = 2 pi/3`."""
     x, y = np.cos(join) * (1 + np.cos(join)), np.sin(join) * (1 + np.cos(join))
     return [0.0], [-float(np.arctan2(y, 2 - x))]
 
@@ -119,18 +119,18 @@ def _onto_the_join(join):
 )
 def test_symmetries_take_orbits_to_orbits(table, lam, shape):
     map = PinballMap(table.name, lam=lam, **shape)
-    balls = Places(*interior_starts(map, 200, 5)[:3])
+    particles = PhasePoints(*interior_starts(map, 200, 5)[:3])
 
     for symmetry in group(table):
-        left = moved(symmetry, advanced(map, balls, 1).places)
-        right = advanced(map, moved(symmetry, balls), 1).places
+        left = moved(symmetry, advanced(map, particles, 1).points)
+        right = advanced(map, moved(symmetry, particles), 1).points
         assert np.max(np.abs(embedded(map, left) - embedded(map, right))) < 1e-12
 
 
 def test_polishing_finds_the_least_period():
     map = an_egg("0.2")
     cycle = next(a for a in find(map, 50, 1) if a.period == 4).points
-    twice = places(*(np.tile(row, 2) for row in cycle))
+    twice = phase_points(*(np.tile(row, 2) for row in cycle))
 
     assert polished(map, twice).period == 4
 
@@ -144,7 +144,7 @@ def test_a_certificate_proves_the_cycles_that_sampling_found():
 
 
 def test_a_certificate_does_not_prove_a_saddle_attracting():
-    axis = certificate(ellipse.at(a=2), Rational(1, 2), places(0, [0.0, 3.14], 0.0))
+    axis = certificate(ellipse.at(a=2), Rational(1, 2), phase_points(0, [0.0, 3.14], 0.0))
 
     assert axis.checks["exists"] is True
     assert axis.checks["attracting"] is None

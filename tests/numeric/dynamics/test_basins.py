@@ -21,10 +21,10 @@ def settled(lam):
 
 def test_a_ball_has_the_label_of_the_cycle_it_ends_on():
     map, found = settled("0.7")
-    balls = starts_at(map, *random_points(whole(map), 400, np.random.default_rng(RNG)))
+    particles = starts_at(map, *random_points(whole(map), 400, np.random.default_rng(RNG)))
 
-    label = labels(map, balls, found)
-    end = embedded(map, advanced(map, balls, 5000).places)
+    label = labels(map, particles, found)
+    end = embedded(map, advanced(map, particles, 5000).points)
     for index, attractor in enumerate(found):
         points = embedded(map, attractor.points)
         gaps = np.linalg.norm(end[label == index][:, None] - points, axis=2).min(axis=1)
@@ -33,26 +33,26 @@ def test_a_ball_has_the_label_of_the_cycle_it_ends_on():
 
 def test_the_quick_labels_are_the_sure_ones():
     map, found = settled("0.66")
-    balls = starts_at(map, *random_points(whole(map), 5000, np.random.default_rng(RNG)))
+    particles = starts_at(map, *random_points(whole(map), 5000, np.random.default_rng(RNG)))
 
-    assert labels(map, balls, found).tolist() == labels(map, balls, found, sure=True).tolist()
+    assert labels(map, particles, found).tolist() == labels(map, particles, found, sure=True).tolist()
 
 
 def test_labels_do_not_depend_on_how_starts_are_cut_into_pieces():
     map, found = settled("0.66")
-    balls = starts_at(map, *grid(whole(map), 40, 20))
+    particles = starts_at(map, *grid(whole(map), 40, 20))
 
-    parts = [labels(map, balls.only(slice(i, i + 130)), found) for i in range(0, 800, 130)]
-    assert np.concatenate(parts).tolist() == labels(map, balls, found).tolist()
+    parts = [labels(map, particles.only(slice(i, i + 130)), found) for i in range(0, 800, 130)]
+    assert np.concatenate(parts).tolist() == labels(map, particles, found).tolist()
 
 
 def test_a_mirror_exchanges_the_basins_of_the_two_ways_round():
     map, found = settled("0.66")
     cycles = [i for i, a in enumerate(found) if a.kind is Kind.CYCLE]
     mirror = next(s for s in group(egg(3).at(alpha="0.08")) if s.sign < 0)
-    balls = starts_at(map, *random_points(whole(map), 2000, np.random.default_rng(RNG)))
+    particles = starts_at(map, *random_points(whole(map), 2000, np.random.default_rng(RNG)))
 
-    label, image = labels(map, balls, found), labels(map, moved(mirror, balls), found)
+    label, image = labels(map, particles, found), labels(map, moved(mirror, particles), found)
     exchanged = {cycles[0]: cycles[1], cycles[1]: cycles[0]}
     expected = np.array([exchanged.get(int(i), int(i)) for i in label])
     assert np.mean(expected == image) > 0.998  # only at a boundary does rounding decide
@@ -61,17 +61,17 @@ def test_a_mirror_exchanges_the_basins_of_the_two_ways_round():
 def test_starts_lie_where_they_are_wanted():
     map = PinballMap("cuspless", lam="0.09")
     s, height = random_points(whole(map), 500, np.random.default_rng(RNG))
-    balls = starts_at(map, s, height)
+    particles = starts_at(map, s, height)
 
-    there = map.arclength.s(balls.theta, balls.component)
+    there = map.arclength.s(particles.theta, particles.component)
     assert np.max(np.abs(np.sin((there - s) * np.pi / map.arclength.perimeter))) < 1e-9  # whole turns apart
-    assert np.max(np.abs(np.sin(balls.phi) - height)) < 1e-9
+    assert np.max(np.abs(np.sin(particles.phi) - height)) < 1e-9
 
 
 def test_a_start_beyond_grazing_is_mirrored_back():
-    balls = starts_at(PinballMap("circle"), [0.0, 0.0], [1.1, -1.25])
+    particles = starts_at(PinballMap("circle"), [0.0, 0.0], [1.1, -1.25])
 
-    assert np.sin(balls.phi).round(9).tolist() == [0.9, -0.75]
+    assert np.sin(particles.phi).round(9).tolist() == [0.9, -0.75]
 
 
 @pytest.mark.parametrize("true", [0.05, 0.5, 1.0])

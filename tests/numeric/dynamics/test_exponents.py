@@ -8,7 +8,7 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.dynamics.account import account, checked, volume
 from numeric.dynamics.exponents import CHANGED, Count, surveyed
-from numeric.dynamics.phase_points import Places, places
+from numeric.dynamics.phase_points import PhasePoints, phase_points
 from numeric.dynamics.recognition import Kind
 from numeric.dynamics.statistics import autocorrelation_time, estimate
 from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_starts
@@ -88,9 +88,9 @@ def test_the_slap_exponent_of_the_cardioid_is_the_mean_over_ulams_invariant_dens
 def test_kernel_and_angles_agree_on_the_determinant_along_an_orbit(name, lam):
     map = PinballMap(name, lam=lam, **SCENES[name])
     start = phase_starts(map, 16, seed=9)
-    check = checked(map, Places(start.component, start.theta, start.phi), 300)
+    check = checked(map, PhasePoints(start.component, start.theta, start.phi), 300)
 
-    assert check.balls == 16
+    assert check.particles == 16
     assert check.difference < 300 * 16 * 2.0**-52 * 40  # one rounding a bounce, magnified by grazing angles
 
 
@@ -133,8 +133,8 @@ def test_two_attractors_are_never_averaged():
     assert {np.sign(group["nu_plus"]) for group in document["groups"]} == {1, -1}
 
 
-def test_balls_that_leave_for_a_cycle_while_counted_are_set_apart():
-    """Just above the boundary crisis chaos is a long transient, which some balls end while they are counted."""
+def test_particles_that_leave_for_a_cycle_while_counted_are_set_apart():
+    """Just above the boundary crisis chaos is a long transient, which some particles end while they are counted."""
     map = PinballMap("egg", lam="0.663", alpha="0.08")
     found = surveyed(map, interior_starts(map, 60, seed=1), 6000, 100)
     described = {group["kind"]: group for group in account(map, found)["groups"]}
@@ -145,7 +145,7 @@ def test_balls_that_leave_for_a_cycle_while_counted_are_set_apart():
     assert all(abs(group.measured.upper.mean - group.attractor.nu_plus) < 1e-3 for group in cycles)
 
 
-def test_balls_that_all_stop_are_an_answer():
+def test_particles_that_all_stop_are_an_answer():
     map = PinballMap("cardioid", lam="0.5")
     starts = Starts(np.zeros(4, dtype=int), np.zeros(4), np.zeros(4), np.full(4, 2.0), np.zeros(4))  # into the cusp
     document = account(map, surveyed(map, starts, 100, 100))
@@ -216,7 +216,7 @@ def test_multipliers_on_either_side_of_the_discriminant_give_exponents():
 
 def test_certified_exponents_of_the_eggs_triangles_are_their_closed_form():
     found = certified_exponents(
-        tables.egg(3).at(alpha="0.08"), Rational(9, 20), places(0, [-2.8335, -0.739, 1.355], 0.0)
+        tables.egg(3).at(alpha="0.08"), Rational(9, 20), phase_points(0, [-2.8335, -0.739, 1.355], 0.0)
     )
     eta = np.pi / (3 * 1.45)
 
@@ -226,7 +226,7 @@ def test_certified_exponents_of_the_eggs_triangles_are_their_closed_form():
 
 
 def test_a_ball_that_stops_has_no_sum():
-    stopped = volume(PinballMap("cardioid", lam="0.5"), places(0, [0.0], [0.0]), 5)
+    stopped = volume(PinballMap("cardioid", lam="0.5"), phase_points(0, [0.0], [0.0]), 5)
 
     assert not np.isfinite(stopped[0])
 

@@ -1,4 +1,4 @@
-"""Where a cycle is about to lose its stability balls spiral slowly: they are unsettled, and none is called chaotic."""
+"""Where a cycle is about to lose its stability particles spiral slowly: they are unsettled, none is called chaotic."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from numeric import PinballMap
 from numeric.dynamics.attractors import UNSETTLED, Kind, classify
 from symbolic.cycles.thresholds import lambda_c
 
-BALLS = 32
+PARTICLES = 32
 CLOSE = 0.03, 0.003  # in theta and phi of the horizontal orbit of the cuspless cardioid
 
 
@@ -15,9 +15,9 @@ CLOSE = 0.03, 0.003  # in theta and phi of the horizontal orbit of the cuspless 
 def test_no_ball_on_its_way_to_a_weakly_attracting_cycle_is_called_chaotic(below):
     """Paper, section 5.1: the cycle attracts below `lambda_c`; here its multiplier is within 2e-4 of -1."""
     rng = np.random.default_rng(0)
-    theta, phi = rng.uniform(-0.02, 0.02, BALLS), rng.uniform(-0.002, 0.002, BALLS)
+    theta, phi = rng.uniform(-0.02, 0.02, PARTICLES), rng.uniform(-0.002, 0.002, PARTICLES)
     map = PinballMap("cuspless", lam=float(lambda_c()) - below)
-    found = classify(map, np.zeros(BALLS, dtype=np.int64), theta, phi)
+    found = classify(map, np.zeros(PARTICLES, dtype=np.int64), theta, phi)
     end = map.exponents(theta, phi, 200_000, 0, 0)
     there = (np.abs(end.theta) < CLOSE[0]) & (np.abs(end.phi) < CLOSE[1])
     chaotic = [i for i, one in enumerate(found.attractors) if one.kind is Kind.CHAOTIC]

@@ -72,7 +72,7 @@ def test_flights_aimed_at_the_cusp(miss):
     assert max(direction) <= 8
 
 
-SKIMMING = [  # theta and phi: the worst of a million random balls, of those aimed at a join, and beyond the other join
+NEAR_GRAZING = [  # theta and phi: the worst of a million random particles, of those aimed at a join, and past the other join
     (-1.95277363, -1.37612652), (-0.670208058, -0.25451718), (1.25956245, 0.694918384), (-1.9531, -1.3763),
     (1.6162036187902906, 1.0014056098562036), (-1.6335621826646394, -1.0183761112721677), (2.0943, 1.5705),
     (1.9172456314571602, 1.3024506414317365), (-1.6527902530959695, -1.0372593151405034), (2.01866398, 1.45999368),
@@ -83,7 +83,7 @@ SKIMMING = [  # theta and phi: the worst of a million random balls, of those aim
 @pytest.mark.parametrize("kernels", [True, False])
 def test_flights_along_the_wall_of_the_cuspless_table(lam, kernels):
     map = PinballMap("cuspless", lam=lam, kernels=kernels)
-    theta, phi = np.array(SKIMMING).T
+    theta, phi = np.array(NEAR_GRAZING).T
     position, direction = measured(map, np.zeros(theta.size, dtype=int), theta, phi)
 
     assert max(position) <= 4
@@ -127,7 +127,7 @@ def test_the_step_itself_is_the_exact_map(table):
 
 
 def in_digits(map, mp, ball):
-    """A ball as the fields of its family's state."""
+    """A particle as the fields of its family's state."""
     if map.family.name == "circle":
         return [ball.theta, ball.phi]
     place = [mp.cos(ball.theta), mp.sin(ball.theta)]

@@ -5,7 +5,7 @@ import pytest
 
 from numeric import PinballMap, Status
 from numeric.backends.functions import value_and_slope
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.cardioid import Cardioid
 
 ARC = np.zeros(24, dtype=np.int64)
@@ -65,7 +65,7 @@ def test_flights_near_the_cusp_are_straight_and_inside(lam, bounced):
 
 
 def test_a_landing_within_rounding_of_the_cusp_is_the_cusp():
-    """A ball that passes it by `k` lands where `cos(theta/2)` is about the cube root of `k`."""
+    """A particle that passes it by `k` lands where `cos(theta/2)` is about the cube root of `k`."""
     map = cardioid(0.9)
     miss = np.array([0.0, 1e-50, 1e-42, -1e-42, -1e-50, 1e-6])
     step = map.step(np.zeros(6), miss)
@@ -75,21 +75,21 @@ def test_a_landing_within_rounding_of_the_cusp_is_the_cusp():
 
 
 def test_few_flights_need_the_bracket(unsettled):
-    """Of 40,000 random balls 1.2 % do, of those that leave along the normal 3.5 %; another start makes it more."""
+    """Of 40,000 random particles 1.2 % do, of those that leave along the normal 3.5 %; another start makes it more."""
     assert unsettled(cardioid(0.5)) <= 0.014
     assert unsettled(cardioid(0.5), slap=True) <= 0.038
 
 
 def cubics(count=4000):
-    """Random balls and the cubic of each, with its interval, as `fly` asks for them."""
+    """Random particles and the cubic of each, with its interval, as `fly` asks for them."""
     rng = np.random.default_rng(8)
     theta, phi = rng.uniform(-3.1, 3.1, count), rng.uniform(-1.55, 1.55, count)
     family, sigma = Cardioid(), (np.cos(theta / 2), np.sin(theta / 2))
     leaving = np.cos(phi), np.sin(phi)
-    cubic, Q, k, back = family.cubic(Arrays(), sigma, leaving)
+    cubic, Q, k, back = family.cubic(ArrayBackend(), sigma, leaving)
     mirrored = np.sign(k)
     ahead = 1 - back[0], -sigma[0] * back[1] * mirrored
-    start, low, accepts = family.interval(Arrays(), cubic, Q, leaving[0], ahead)
+    start, low, accepts = family.interval(ArrayBackend(), cubic, Q, leaving[0], ahead)
     psi = np.remainder(1.5 * theta + np.pi - phi + np.pi, 2 * np.pi) - np.pi  # the direction of flight
     return cubic, Q, start, low(), accepts, sigma[0], psi * mirrored, theta * mirrored, leaving[0]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap, Status
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.cuspless import Cuspless
 
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)
@@ -79,18 +79,18 @@ def test_a_landing_within_rounding_of_a_join_is_one_and_no_other_is(at, sign):
 
 
 def test_few_flights_need_the_bracket(unsettled):
-    """Of 40,000 random balls 3.9 % do, of those that leave along the normal none."""
+    """Of 40,000 random particles 3.9 % do, of those that leave along the normal none."""
     assert unsettled(cuspless(0.5)) <= 0.043
     assert unsettled(cuspless(0.5), slap=True) <= 0.002
 
 
 def test_few_flights_are_sharpened(unsettled):
-    """Of 40,000 random balls 0.17 %."""
+    """Of 40,000 random particles 0.17 %."""
     assert 0.001 <= unsettled(cuspless(0.5), branch=1) <= 0.0025
     assert unsettled(cuspless(0.5), slap=True, branch=1) == 0
 
 
-def test_tangent_balls_stop_where_they_are():
+def test_tangent_particles_stop_where_they_are():
     steep = np.nextafter(np.pi / 2, 0)
     step = cuspless(0.9).step([0.3, 0.3, 0.1], [steep, -steep, 0.3], [0, 0, 1])
 
@@ -101,7 +101,7 @@ def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
     as_on_the_page("cuspless")
 
 
-SKIMMING = np.array([  # theta and phi of the worst of a million random balls, as in test_accuracy
+NEAR_GRAZING = np.array([  # theta and phi of the worst of a million random particles, as in test_accuracy
     (-1.95277363, -1.37612652), (-0.670208058, -0.25451718), (1.25956245, 0.694918384), (2.0943, 1.5705),
     (1.6162036187902906, 1.0014056098562036), (-1.6335621826646394, -1.0183761112721677), (2.01866398, 1.45999368),
     (-1.9531, -1.3763), (1.9172456314571602, 1.3024506414317365), (-1.6527902530959695, -1.0372593151405034),
@@ -109,7 +109,7 @@ SKIMMING = np.array([  # theta and phi of the worst of a million random balls, a
 
 
 def test_flights_along_the_wall_keep_their_digits(rounding):
-    theta, phi = SKIMMING
+    theta, phi = NEAR_GRAZING
     place, direction = rounding(cuspless(0.95), np.zeros(theta.size, dtype=int), theta, phi)
 
     assert place <= 4
@@ -138,7 +138,7 @@ def test_joins_are_joins_from_either_side(sign):
     zero = 0 * at
     with np.errstate(all="ignore"):
         landing = Cuspless().fly(
-            Arrays(), [], "pinball", [zero, np.cos(at / 2), np.sin(at / 2)], [np.cos(phi), np.sin(phi)]
+            ArrayBackend(), [], "pinball", [zero, np.cos(at / 2), np.sin(at / 2)], [np.cos(phi), np.sin(phi)]
         )
     wall, p, q = landing.position
     off = np.where(wall == 1, np.abs(np.abs(p) - TOP), np.abs(np.abs(q) - np.sqrt(3.0) * p))

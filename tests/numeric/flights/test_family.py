@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.cardioid import Cardioid
 from numeric.flights.family import NEAR, Family, Landing, grazing, law_of
 
@@ -13,7 +13,7 @@ LAWS = [0, 0.3, 1]
 
 @pytest.fixture(params=LAWS, ids=["slap", "pinball", "elastic"])
 def flights(request, table, bounced):
-    """A map on arrays, random balls, and their bounces."""
+    """A map on arrays, random particles, and their bounces."""
     map = table.map(request.param, kernels=False)
     where, theta, phi = table.starts(map, 400, seed=3, steepest=0.98)
     phi = phi if request.param else 0 * phi
@@ -60,7 +60,7 @@ def test_a_landing_is_a_tangency_below_four_eps_of_cosine():
     across = np.array([1.0, -1.0, 1.0, 1.0, 3.0, 1.0, 0.0])
     along = np.array([4 * EPS, 4 * EPS * (1 + EPS), 4 * EPS * (1 + EPS), -1.0, 12 * EPS, np.nan, 1e-300])
 
-    assert grazing(Arrays(), across, along).tolist() == [True, False, False, True, True, True, False]
+    assert grazing(ArrayBackend(), across, along).tolist() == [True, False, False, True, True, True, False]
 
 
 def test_a_family_of_its_own_has_outcomes_and_registers_to_fill():
@@ -91,7 +91,7 @@ def test_a_landing_nearer_than_four_eps_to_the_cusp_is_the_cusp():
     miss = np.geomspace(1e-49, 1e-42, 200)
     one, nought = np.ones(200), np.zeros(200)
     with np.errstate(all="ignore"):
-        landing = Cardioid().fly(Arrays(), [], "pinball", [one, nought], [np.cos(miss), miss])
+        landing = Cardioid().fly(ArrayBackend(), [], "pinball", [one, nought], [np.cos(miss), miss])
     p = landing.position[0]
 
     assert np.array_equal(landing.code == 2, p <= 4 * EPS)

@@ -31,7 +31,7 @@ STADIUM = tables.piecewise(
 def generally(map):
     """The same map, made to go the general way."""
     family = General(map.states.boundary)
-    other = PinballMap(map.blueprint.table, lam=map.lam, **dict(zip(map.engine.names, map.exact_shape, strict=True)))
+    other = PinballMap(map.ir.table, lam=map.lam, **dict(zip(map.engine.names, map.exact_shape, strict=True)))
     other.family = other.states.family = family
     other.engine = type(other.engine)(family, other.engine.identity + family.identity, other.engine.names)
     return other
@@ -173,8 +173,8 @@ INSIDE = {
 }
 
 
-def balls(map, count, seed=6, steepest=1.4):
-    """Random balls on all components."""
+def particles(map, count, seed=6, steepest=1.4):
+    """Random particles on all components."""
     rng = np.random.default_rng(seed)
     where = rng.integers(0, len(map.states.ends), count)
     ends = np.array(map.states.ends)[where]
@@ -185,7 +185,7 @@ def balls(map, count, seed=6, steepest=1.4):
 @pytest.mark.parametrize("table", [WAVY, WAISTED, ROOTED, STADIUM], ids=lambda table: table.name)
 def test_flights_are_straight_inside_and_reflected_by_the_law(table):
     map = PinballMap(table, lam=0.6, kernels=False)
-    where, at, phi = balls(map, 150)
+    where, at, phi = particles(map, 150)
     step, (x, y) = map.step(at, phi, where), map.states.point(where, at)
     vx, vy = map.states.direction(where, at, phi)
     dx, dy = step.x - x, step.y - y
@@ -205,7 +205,7 @@ def test_flights_are_straight_inside_and_reflected_by_the_law(table):
 @pytest.mark.parametrize("table", [WAVY, STADIUM], ids=lambda table: table.name)
 def test_the_derivative_is_the_papers_matrix_on_any_table(table, lam):
     map = PinballMap(table, lam=lam, kernels=False)
-    where, at, phi = balls(map, 40, steepest=1.0)
+    where, at, phi = particles(map, 40, steepest=1.0)
     phi = phi * (lam > 0)
     step, (x, y) = map.at(lam=1).step(at, phi, where), map.states.point(where, at)
     k0, k1 = map.states.curvature(where, at), map.states.curvature(step.component, step.theta)
@@ -277,7 +277,7 @@ def test_on_any_table_a_landing_within_rounding_of_a_join_is_one(where):
 
 def test_slap_maps_of_any_table_leave_along_the_unit_normal():
     map = PinballMap(WAVY, lam=0, kernels=False)
-    _, at, _ = balls(map, 30)
+    _, at, _ = particles(map, 30)
     own = map.states.enter(np.zeros(30, dtype=int), at, 0 * at, "slap")
     nx, ny = map.family.slapped(map.states.ops, map.shape, own)
     tx, ty = map.states.tangent(np.zeros(30, dtype=int), at)

@@ -115,7 +115,7 @@ def test_the_derivative_is_the_papers_matrix(harmonic, lam):
 
 @pytest.mark.parametrize(("alpha", "share"), [("0.02", 0.02), ("0.08", 0.105), ("0.1", 0.125)])
 def test_few_flights_need_the_bracket(alpha, share, unsettled):
-    """Of 40,000 random balls 9.3 % do at 8/100 and 11.3 % at 1/10, of those that leave along the normal none."""
+    """Of 40,000 random particles 9.3 % do at 8/100 and 11.3 % at 1/10, of those that leave along the normal none."""
     map = PinballMap("egg", lam=0.5, alpha=alpha, kernels=False)
 
     assert unsettled(map) <= share

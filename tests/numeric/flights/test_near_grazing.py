@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.cuspless import above_the_wall, sharp_back, sharpened
 
 EPS = 2.0**-52
-OPS = Arrays()
+OPS = ArrayBackend()
 MP = mpmath.MPContext()
 MP.dps = 60
-SKIMMING = np.array([  # theta and phi, as in test_accuracy
+NEAR_GRAZING = np.array([  # theta and phi, as in test_accuracy
     (-1.95277363, -1.37612652), (-0.670208058, -0.25451718), (1.25956245, 0.694918384), (-1.9531, -1.3763),
     (1.6162036187902906, 1.0014056098562036), (-1.6335621826646394, -1.0183761112721677), (2.0943, 1.5705),
     (1.9172456314571602, 1.3024506414317365), (-1.6527902530959695, -1.0372593151405034), (2.01866398, 1.45999368),
@@ -81,7 +81,7 @@ def test_a_step_of_newton_ends_on_the_line_of_flight():
 @pytest.mark.parametrize("turn", [1, -1])
 def test_flights_along_the_wall(lam, turn, rounding):
     map = PinballMap("cuspless", lam=lam, kernels=False)
-    theta, phi = SKIMMING * turn
+    theta, phi = NEAR_GRAZING * turn
     place, direction = rounding(map, np.zeros(theta.size, dtype=int), theta, phi)
 
     assert place <= 4

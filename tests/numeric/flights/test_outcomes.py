@@ -1,4 +1,4 @@
-"""Landings that are no mistake but end an orbit have a name, and the ball stays where it was last good."""
+"""Landings that are no mistake but end an orbit have a name, and the particle stays where it was last good."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The loop around a step, on a step so simple that every number is known: a ball that drifts, and slows."""
+"""The loop around a step, on a step so simple that every number is known: a particle that drifts, and slows."""
 
 from fractions import Fraction
 from itertools import pairwise
@@ -11,7 +11,7 @@ from numeric.kernels import engine as engines
 from numeric.kernels.engine import Engine, _pieces
 from numeric.kernels.spec import TANGENT, KernelSpec, starting
 
-END = 4.0  # a ball beyond it is stopped with code 1
+END = 4.0  # a particle beyond it is stopped with code 1
 
 
 class Drift(Family):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.circle import Circle
 from numeric.flights.harmonic import Harmonic
 from numeric.kernels.spec import FAR, TANGENT, KernelSpec, fields, rescaled, starting
@@ -39,7 +39,7 @@ def meaning(rows):
 )
 def test_bringing_mantissas_back_changes_no_value(given):
     rows = rows_with(**given)
-    new = rescaled(Arrays(), rows)
+    new = rescaled(ArrayBackend(), rows)
 
     assert np.allclose(meaning(new), meaning(rows), rtol=0, atol=1e-12)
     size = np.maximum(abs(new[0]), abs(new[1]))
@@ -49,7 +49,7 @@ def test_bringing_mantissas_back_changes_no_value(given):
 
 def test_only_lanes_that_are_far_away_are_brought_back():
     rows = rows_with(up=1.5 * SIZES)
-    new = rescaled(Arrays(), rows)
+    new = rescaled(ArrayBackend(), rows)
     far = (rows[3] < 1 / FAR) | (rows[3] > FAR)
 
     assert far.tolist() == [True, True, False, False, False, False, False, True, True]
@@ -61,7 +61,7 @@ def test_at_the_bounds_nothing_happens():
     bounds = np.array([FAR, 1 / FAR, FAR, 1 / FAR] + [1.0] * 5)
     for name in ("up", "down", "shift"):
         rows = rows_with(**{name: bounds}, omega=0.0 * bounds)
-        assert all(np.array_equal(one, two) for one, two in zip(rescaled(Arrays(), rows), rows, strict=True))
+        assert all(np.array_equal(one, two) for one, two in zip(rescaled(ArrayBackend(), rows), rows, strict=True))
 
 
 def test_a_vector_starts_with_no_growth_counted():

@@ -109,7 +109,7 @@ def test_the_oldest_entries_go_when_there_is_too_much(place, monkeypatch):
 def test_clearing_takes_what_is_ours_and_nothing_else(place):
     assert (cache.clear(), cache.entries()) == ((0, 0), [])
     cache.write("kernel", "a", b"content")
-    cache.write("blueprint", "a", b"")
+    cache.write("table_ir", "a", b"")
     (place / ".new-left").write_bytes(b"xyz")
     (place / "kernel-notes").write_text("the user's own")
 

@@ -1,4 +1,4 @@
-"""Programs that come through the door are the expressions they were made of, and as few lines as they need."""
+"""Lowered programs are the expressions they were made of, and as few lines as they need."""
 
 from itertools import chain
 
@@ -6,9 +6,9 @@ import mpmath
 import pytest
 from sympy import Float, Rational, Symbol, cos, exp, pi, sin, sqrt, sympify, tan
 
-from numeric.backends.scalars import Scalars
-from numeric.lowering.lower import converted, drawn, named, seen_ahead
-from numeric.lowering.program import Builder, blueprint
+from numeric.backends.scalars import ScalarBackend
+from numeric.lowering.lower import converted, lower, named, seen_ahead
+from numeric.lowering.program import Builder, table_ir
 from symbolic import tables
 from symbolic.motion.flight import ONE, chord_polynomial
 from symbolic.tables.geometry import velocity
@@ -16,7 +16,7 @@ from symbolic.tables.table import Component, Table, theta
 
 MP = mpmath.MPContext()
 MP.dps = 40
-OPS = Scalars(MP)
+OPS = ScalarBackend(MP)
 B = Symbol("b", real=True)
 AT, SHAPE = Rational(7, 5), Rational(3, 11)
 
@@ -141,7 +141,7 @@ def test_a_part_is_the_curve_of_its_component_with_two_derivatives(name):
 
 @pytest.mark.parametrize(("name", "K"), [("ellipse", 3), ("egg", 2), ("egg", 3), ("egg", 5)])
 def test_programs_in_unit_numbers_are_the_curve(name, K):
-    made = blueprint(name, K)
+    made = table_ir(name, K)
     shape = [MP.mpf(1) / 30 if name == "egg" else MP.mpf(7) / 5]
     at = MP.mpf(3) / 7
     whole = made.parts[0].curve(OPS, at, *shape)
@@ -175,7 +175,7 @@ FAMILIES = {
 @pytest.mark.parametrize("name", FAMILIES)
 def test_a_table_is_known_as_the_papers_or_has_the_programs_of_its_fourier_sum(name):
     family, table = FAMILIES[name]
-    made = drawn(table)
+    made = lower(table)
     words = {"ellipse": ["point", "velocity", "acceleration", "support"]}
     words["fourier"] = [*words["ellipse"][:3], "chord"]
 

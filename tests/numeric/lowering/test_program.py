@@ -5,12 +5,12 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from numeric.backends.scalars import Scalars
+from numeric.backends.scalars import ScalarBackend
 from numeric.lowering.program import Builder, Program
 
 MP = mpmath.MPContext()
 MP.dps = 40
-OPS = Scalars(MP)
+OPS = ScalarBackend(MP)
 X, Y = Fraction(7, 3), Fraction(-5, 2)
 
 

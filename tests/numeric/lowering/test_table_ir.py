@@ -1,20 +1,20 @@
-"""Blueprints: shapes are held to their ranges, and a table comes back from its text as it was."""
+"""Table IRs: shapes are held to their ranges, and a table comes back from its text as it was."""
 
 from fractions import Fraction
 
 import pytest
 
-from numeric.lowering import program as blueprints
-from numeric.lowering.lower import drawn
-from numeric.lowering.program import Blueprint, ShapeRange, blueprint
+from numeric.lowering import program
+from numeric.lowering.lower import lower
+from numeric.lowering.program import ShapeRange, TableIR, table_ir
 from symbolic import tables
 
 
 @pytest.mark.parametrize("name", ["circle", "ellipse", "cardioid", "cuspless", "egg"])
 def test_a_blueprint_comes_back_from_its_text(name):
-    made = blueprint(name)
+    made = table_ir(name)
 
-    assert Blueprint.from_text(made.as_text()) == made
+    assert TableIR.from_text(made.as_text()) == made
     assert made.table == name
 
 
@@ -54,12 +54,12 @@ def test_open_ends_are_shown_as_such():
 
 def test_eggs_are_kept_apart_by_their_number_of_points(tmp_path, monkeypatch):
     monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
-    two, three = blueprint("egg", 2), blueprint("egg")
+    two, three = table_ir("egg", 2), table_ir("egg")
 
-    assert three == drawn(tables.named("egg", 3))
-    assert two == drawn(tables.named("egg", 2)) != three
+    assert three == lower(tables.named("egg", 3))
+    assert two == lower(tables.named("egg", 2)) != three
     assert len(list(tmp_path.iterdir())) == 2
-    assert (blueprint("egg", 2), blueprint("egg", 3)) == (two, three)
+    assert (table_ir("egg", 2), table_ir("egg", 3)) == (two, three)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_eggs_are_kept_apart_by_their_number_of_points(tmp_path, monkeypatch):
 )
 def test_a_file_that_is_no_blueprint_is_written_again(text, tmp_path, monkeypatch):
     monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
-    monkeypatch.setattr(blueprints.cache, "read", lambda *_: text.encode())
+    monkeypatch.setattr(program.cache, "read", lambda *_: text.encode())
 
-    assert blueprint("circle") == drawn(tables.circle)
+    assert table_ir("circle") == lower(tables.circle)
     assert len(list(tmp_path.iterdir())) == 1

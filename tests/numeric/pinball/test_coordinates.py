@@ -133,7 +133,7 @@ def test_directions_and_exit_angles_are_each_others_inverse(table):
     phi = np.linspace(-1.5, 1.5, theta.size)
     vx, vy = states.direction(component, theta, phi)
 
-    assert np.allclose(vx * tx + vy * ty, np.sin(phi), rtol=0, atol=1e-12)  # the tangent, to the right of a ball
+    assert np.allclose(vx * tx + vy * ty, np.sin(phi), rtol=0, atol=1e-12)  # the tangent, to the right of a particle
     assert np.allclose(tx * vy - ty * vx, np.cos(phi), rtol=0, atol=1e-12)
     assert np.allclose(states.angle_to_normal(component, theta, vx, vy), phi, rtol=0, atol=8 * EPS)
 

@@ -1,4 +1,4 @@
-"""Sums of growth: in one go or in parts, from a start or after a transient, and where a ball stops."""
+"""Sums of growth: in one go or in parts, from a start or after a transient, and where a particle stops."""
 
 import numpy as np
 import pytest

@@ -74,7 +74,7 @@ def test_places_and_counts_that_are_none():
         map.step(0.0, 0.0, "roof")
     with pytest.raises(ValueError, match="bounces = 0 is not possible; give a whole number of at least 1"):
         map.orbit(0.0, 0.0, 0)
-    with pytest.raises(ValueError, match="give one lam for each ball, or one"):
+    with pytest.raises(ValueError, match="give one lam for each particle, or one"):
         PinballMap("circle", lam=[0.5, 0.6]).step(np.zeros(3), 0.1)
 
 

@@ -49,7 +49,7 @@ def test_answers_have_the_shape_of_the_starts():
 
 
 @pytest.mark.parametrize("lam", LAWS)
-def test_derivatives_of_many_balls_are_those_of_each(table, lam):
+def test_derivatives_of_many_particles_are_those_of_each(table, lam):
     map = table.map(lam, kernels=False)
     where, at, phi = (x.reshape(2, 2) for x in table.starts(map, 4, seed=6, steepest=0.9))
     together = map.derivative(at, phi, where)
@@ -184,8 +184,8 @@ def test_the_cusp_is_a_point(gap, refused):
     assert PinballMap("circle", kernels=False).step(np.pi, 0.1).code == 0
 
 
-def test_balls_and_contractions_must_fit():
-    with pytest.raises(ValueError, match=r"lam has shape \(2,\) and the balls \(2, 2\)"):
+def test_particles_and_contractions_must_fit():
+    with pytest.raises(ValueError, match=r"lam has shape \(2,\) and the particles \(2, 2\)"):
         PinballMap("circle", lam=[0.5, 0.6], kernels=False).step(np.zeros((2, 2)))
     assert PinballMap("circle", lam=[0.5], kernels=False).step(np.zeros((2, 2)), 0.4).phi.tolist() == [[0.2, 0.2]] * 2
 
@@ -281,7 +281,7 @@ def test_of_several_mistakes_the_first_is_named():
         cardioid.step([0.0, -np.pi, np.pi], 0.0)
     with pytest.raises(ValueError, match=r"theta = 2\.5 is not on the arc"):
         cuspless.step([0.0, 2.5, 2.6], 0.0)
-    with pytest.raises(ValueError, match="theta and phi are empty; give at least one ball"):
+    with pytest.raises(ValueError, match="theta and phi are empty; give at least one particle"):
         cardioid.step([], [])
 
 

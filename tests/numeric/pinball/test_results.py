@@ -10,12 +10,12 @@ from numeric import PinballMap, Status
 EGG = PinballMap("egg", lam="0.4", alpha="0.08")
 
 
-@pytest.mark.parametrize("theta", [0.3, [0.3], [0.1, 0.2, 0.3]], ids=["a ball", "a list of one", "three"])
+@pytest.mark.parametrize("theta", [0.3, [0.3], [0.1, 0.2, 0.3]], ids=["a particle", "a list of one", "three"])
 def test_an_orbit_is_labelled_by_bounce_and_ball(theta):
     orbit = EGG.orbit(theta, 0.1, 6)
     found = orbit.to_xarray()
 
-    assert found.sizes == {"bounce": 7, "ball": np.size(theta)}
+    assert found.sizes == {"bounce": 7, "particle": np.size(theta)}
     assert np.array_equal(found.x.values.ravel(), orbit.x.ravel())
     assert found.phi.attrs == {"long_name": "exit angle", "units": "rad"}
 
@@ -24,11 +24,11 @@ def test_exponents_are_labelled_by_ball():
     exponents = EGG.exponents([0.1, 0.2], 0.1, 50)
     found = exponents.to_xarray()
 
-    assert found.sizes == {"ball": 2}
+    assert found.sizes == {"particle": 2}
     assert np.array_equal(found.nu_plus.values, exponents.nu_plus)
 
 
-def test_the_outcomes_of_balls_stand_beside_their_exponents():
+def test_the_outcomes_of_particles_stand_beside_their_exponents():
     assert list(EGG.exponents([0.1, 0.2], 0.1, 50).status) == [Status.REGULAR] * 2
 
 
@@ -39,13 +39,13 @@ def test_the_slope_of_a_slap_map_has_a_value_for_each_start():
     assert found.slope.dims == ("start",)
 
 
-def test_balls_in_rows_and_columns_are_put_in_a_row():
+def test_particles_in_rows_and_columns_are_put_in_a_row():
     theta = np.linspace(-1, 1, 6).reshape(2, 3)
     orbit, exponents, slap = EGG.orbit(theta, 0.1, 4), EGG.exponents(theta, 0.1, 5), EGG.slap(theta, 2)
 
-    assert orbit.to_xarray().sizes == {"bounce": 5, "ball": 6}
+    assert orbit.to_xarray().sizes == {"bounce": 5, "particle": 6}
     assert np.array_equal(orbit.to_xarray().theta.values, orbit.theta.reshape(5, 6))
-    assert exponents.to_xarray().sizes == {"ball": 6}
+    assert exponents.to_xarray().sizes == {"particle": 6}
     assert slap.to_xarray().sizes == {"iterate": 3, "start": 6}
     assert np.array_equal(slap.to_xarray().slope.values, slap.slope.ravel())
 

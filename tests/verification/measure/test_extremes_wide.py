@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from numeric.backends.scalars import Arrays
+from numeric.backends.scalars import ArrayBackend
 from numeric.flights.cardioid import Cardioid
 from numeric.flights.cuspless import Cuspless
 from numeric.flights.general import General
@@ -96,7 +96,7 @@ def test_each_of_the_53_bit_words_alone_makes_the_80_bit_step_unstable(words, mo
         pass
 
     for word in words:
-        setattr(Older, word, getattr(Arrays, word))
+        setattr(Older, word, getattr(ArrayBackend, word))
     name = "alpha = 1/10, where the curvature is 0 at three points" if "turn" in words else "start 1e-2 ... 1e-14"
     case = next(case for case in CASES if case.name.startswith(name))
     truth = Truth(case)

@@ -140,12 +140,12 @@ def test_an_expanding_cycle_that_is_not_proved_refutes_nothing(monkeypatch):
 def test_the_certified_cycle_has_the_determinant_that_its_angles_give():
     """A second method: the sum rule on float64 angles."""
     from numeric import PinballMap
-    from numeric.dynamics.phase_points import places
+    from numeric.dynamics.phase_points import phase_points
     from numeric.dynamics.recognition import polished
 
     map = PinballMap("cardioid", lam="0.9")
     phi = [-0.484, 0.051, -1.126, -1.151, -1.098, -1.034, -0.962, -0.877, -0.759]
-    cycle = polished(map, places(0, on_contraction.NINE, phi))
+    cycle = polished(map, phase_points(0, on_contraction.NINE, phi))
     eta = np.abs(cycle.points.phi) / 0.9
     _, determinant = on_contraction.expanding_cycle()
 

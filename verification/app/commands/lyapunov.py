@@ -75,7 +75,7 @@ def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, 
 
     spread = attractor.kind.name == "CHAOTIC"
     x, y = map.states.point(attractor.points.component, attractor.points.theta)
-    names = [part.name for part in map.blueprint.parts]
+    names = [part.name for part in map.ir.parts]
     rows = zip(*attractor.points, x, y, strict=True)
     share = attractor.share
     assert share is not None

@@ -67,7 +67,7 @@ def command(
     from numeric import PinballMap
 
     map = PinballMap(scene)
-    names = [part.name for part in map.blueprint.parts]
+    names = [part.name for part in map.ir.parts]
     if component is not None and component not in names:
         raise ValueError(f"--component = {component} is not on this table; accepted: {', '.join(names)}")
     index = names.index(component) if component else 0
@@ -114,7 +114,7 @@ def wanted(digits: int | None, tolerance: str | None) -> int | None:
 def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> list[dict[str, Any]]:
     """The orbit from the kernels, as far as it goes."""
     orbit = map.orbit(theta, phi, bounces, index)
-    names = [part.name for part in map.blueprint.parts]
+    names = [part.name for part in map.ir.parts]
     s = map.arclength.s(orbit.theta, orbit.component)
     statuses = [status.name.lower() for status in orbit.status]
     end = next((i for i, status in enumerate(statuses) if status != "regular"), len(statuses) - 1)
@@ -161,7 +161,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
     from numeric import PinballMap
 
     map = PinballMap(scene, lam=0)
-    names = [part.name for part in map.blueprint.parts]
+    names = [part.name for part in map.ir.parts]
     component = np.repeat(np.arange(len(names)), points)
     ends = np.array(map.states.ends)
     share = (np.tile(np.arange(points), len(names)) + 0.5) / points

@@ -253,7 +253,7 @@ class Truth:
         theta = one.theta - other.theta
         if one.component != other.component:
             theta = mp.hypot(one.x - other.x, one.y - other.y)
-        if len(self.map.blueprint.parts) == 1:
+        if len(self.map.ir.parts) == 1:
             theta -= 2 * mp.pi * mp.nint(theta / (2 * mp.pi))
         if self.map.law == "slap":
             return [theta]

@@ -27,7 +27,7 @@ from sympy import N, Rational
 
 from numeric import PinballMap
 from numeric.backends import functions as roots
-from numeric.backends.scalars import Arrays, Scalars
+from numeric.backends.scalars import ArrayBackend, ScalarBackend
 from numeric.flights.family import Family, Status
 from numeric.flights.harmonic import Ellipse
 from numeric.kernels.spec import KernelSpec
@@ -46,7 +46,7 @@ SHARPER = 8  # Newton steps at most, from 53 bits on
 Slope = Callable[[Any], tuple[Any, Any]]
 
 
-class Wide(Arrays):
+class Wide(ArrayBackend):
     """80-bit arrays. Masks are boolean arrays."""
 
     splitter = 2.0**32 + 1  # halves a mantissa of 64 bits
@@ -168,7 +168,7 @@ class Kernel:
         mpf = context.mpf
         own, shape = [mpf(float(x)) for x in state], [mpf(x) for x in map.shape]
         try:
-            fields, code = map.family.bounce(Scalars(context), map.law, shape, mpf(lam), own)
+            fields, code = map.family.bounce(ScalarBackend(context), map.law, shape, mpf(lam), own)
         except ZeroDivisionError:
             return own, "division by zero"
         return fields, _status(code)
@@ -328,12 +328,12 @@ def _entries(arithmetic: Arithmetic) -> Any:
 
 def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
     """The paper's matrix of every bounce of a recorded orbit, whose doubles are taken exactly."""
-    from numeric.backends.scalars import Scalars
+    from numeric.backends.scalars import ScalarBackend
 
-    ops, of, contraction = Scalars(context), _entries(multiprecision(context)), context.mpf(float(map.lam))
+    ops, of, contraction = ScalarBackend(context), _entries(multiprecision(context)), context.mpf(float(map.lam))
     shape, before = [context.mpf(value) for value in map.shape], None
     for theta, phi, eta in zip(orbit.theta, orbit.phi, orbit.eta, strict=True):
-        x, y, bend = _placed(map.blueprint.parts[0].curve(ops, context.mpf(float(theta)), *shape), context.sqrt)
+        x, y, bend = _placed(map.ir.parts[0].curve(ops, context.mpf(float(theta)), *shape), context.sqrt)
         if before is not None:
             u, v, bent, left = before
             yield of(bent, bend, context.hypot(x - u, y - v), left, context.cos(context.mpf(float(eta))), contraction)
@@ -342,11 +342,11 @@ def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
 
 def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = None) -> Any:
     """The same in float64, from an orbit whose numbers are off by so much at random."""
-    from numeric.backends.scalars import Arrays
+    from numeric.backends.scalars import ArrayBackend
 
     theta, phi, eta = (field + (strength * rng.choice([-1, 1], field.shape) if rng is not None else 0)
                        for field in (orbit.theta, orbit.phi, orbit.eta))  # fmt: skip
-    x, y, bend = _placed(map.blueprint.parts[0].curve(Arrays(), theta, *map.shape), np.sqrt)
+    x, y, bend = _placed(map.ir.parts[0].curve(ArrayBackend(), theta, *map.shape), np.sqrt)
     length = np.hypot(np.diff(x), np.diff(y))
     rows = _entries(ARRAYS)(bend[:-1], bend[1:], length, np.cos(phi[:-1]), np.cos(eta[1:]), float(map.lam))
     return np.array(rows).T.reshape(-1, 2, 2)

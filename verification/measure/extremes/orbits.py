@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.dynamics.phase_points import places
+from numeric.dynamics.phase_points import phase_points
 from numeric.kernels.spec import KernelSpec
 from symbolic.tables import egg
 from verification.cycles.recurrence.newton import floats, given
@@ -145,7 +145,7 @@ def attracted(asked: Long) -> list[Finding]:
     problem = Problem(table, (0, 0, 0), lam=lam)
     corner = [-0.65 + 2 * np.pi * k / 3 for k in range(3)]
     triangle = floats(problem, corner)
-    proof = certificate(table, lam, places(0, triangle, 0.0))
+    proof = certificate(table, lam, phase_points(0, triangle, 0.0))
     if not proof.proved:
         raise ValueError(f"{asked.name}: the triangle is not proved to attract: {dict(proof.checks)}")
     (ux, uy, *_), said = advanced(map, entered(map, *starts(asked.balls)), asked.bounces)

@@ -131,7 +131,7 @@ def sharply() -> arb:
 
 def numpy_map(map: PinballMap) -> PinballMap:
     """The same map on NumPy arrays."""
-    return PinballMap(map.blueprint.table, lam=float(map.lam), kernels=False)
+    return PinballMap(map.ir.table, lam=float(map.lam), kernels=False)
 
 
 def run(map: PinballMap, orbits: int, bounces: int) -> Estimate:
@@ -156,7 +156,7 @@ def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
 
 def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
     """Balls on the attractor: component, parameter, exit angle."""
-    return _arrived(map.blueprint.table, float(map.lam), orbits)
+    return _arrived(map.ir.table, float(map.lam), orbits)
 
 
 def textbook(map: PinballMap, ball: tuple[float, float]) -> list[Method]:

@@ -189,8 +189,8 @@ def bracketing(map: PinballMap) -> Method:
 
 def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]], bound: float) -> list[Method]:
     """The compiled kernel and the same step on NumPy arrays, for a few balls to thousands at a time."""
-    shape: dict[str, Any] = dict(zip((entry.name for entry in map.blueprint.shape), map.exact_shape, strict=True))
-    plain = PinballMap(map.blueprint.table, lam=LAM, kernels=False, **shape)
+    shape: dict[str, Any] = dict(zip((entry.name for entry in map.ir.shape), map.exact_shape, strict=True))
+    plain = PinballMap(map.ir.table, lam=LAM, kernels=False, **shape)
     promise = Decimal(f"{bound:.3g}")
 
     def ran(own: PinballMap, count: int) -> list[float]:
@@ -235,7 +235,7 @@ def textbook_steps(map: PinballMap) -> list[Method]:
     book, ways = module("textbook"), module("paper_ways")
     if book is None or ways is None:
         return []
-    lam, shape, name = float(LAM), map.shape, map.blueprint.table
+    lam, shape, name = float(LAM), map.shape, map.ir.table
 
     def followed(way: Callable[..., Any], *more: Any) -> list[float]:
         landed = [way(0, at, phi, lam, *shape, *more)[1:] for at, phi in BALLS]

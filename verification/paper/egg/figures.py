@@ -8,7 +8,7 @@ from sympy import Interval, Rational, Symbol, cos, diff
 from numeric import PinballMap
 from numeric.dynamics.attractors import find, wilson
 from numeric.dynamics.basins import labels
-from numeric.dynamics.phase_points import Places
+from numeric.dynamics.phase_points import PhasePoints
 from numeric.pinball.sampling import interior_starts, phase_starts
 from symbolic import tables
 from symbolic.cycles.polygons import required_tilt
@@ -101,7 +101,7 @@ def basins_above_below(claim: Claim) -> Judgement:
     map, count = PinballMap("egg", lam="0.66", alpha=str(SHAPE)), 10 * STARTS
     attractors = find(map, 100, SEED)
     starts = phase_starts(map, count, SEED)
-    label = labels(map, Places(starts.component, starts.theta, starts.phi), attractors)
+    label = labels(map, PhasePoints(starts.component, starts.theta, starts.phi), attractors)
     wrong = total = 0
     for i, attractor in enumerate(attractors):
         if attractor.period == 3:

@@ -5,7 +5,7 @@ from math import tau
 
 from sympy import Expr, Rational
 
-from numeric.dynamics.phase_points import places
+from numeric.dynamics.phase_points import phase_points
 from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, is_double_normal
 from symbolic.cycles.polygons import near_flat, saddle_node
 from symbolic.expressions.signs import Finding
@@ -43,7 +43,7 @@ def slap_no_period3(claim: Claim) -> Judgement:
 def triangle_at(contraction: Rational) -> Finding:
     """A cycle of period 3 at `alpha = 0.08`, by interval Newton."""
     bounce = float(near_flat().subs({alpha: SHAPE, lam: contraction}))
-    near = places(0, [bounce + k * tau / 3 for k in range(3)], 0.0)
+    near = phase_points(0, [bounce + k * tau / 3 for k in range(3)], 0.0)
     proof = certificate(egg(3).at(alpha=SHAPE), contraction, near)
     return answer(proof.proved, f"an attracting cycle of period 3 is proved at lam = {contraction}")
 

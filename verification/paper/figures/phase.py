@@ -103,9 +103,9 @@ def outline(map: PinballMap) -> Curve:
 
 def facts(map: PinballMap, **more: Fact) -> dict[str, Fact]:
     """Table, shape and contraction of a panel, and whatever else its data were computed from."""
-    shape = {entry.name: float(value) for entry, value in zip(map.blueprint.shape, map.shape, strict=True)}
+    shape = {entry.name: float(value) for entry, value in zip(map.ir.shape, map.shape, strict=True)}
     lam: dict[str, Fact] = {"lam": float(map.lam)} if map.lam.size == 1 else {}
-    return {"table": map.blueprint.table, **shape, **lam, **more}
+    return {"table": map.ir.table, **shape, **lam, **more}
 
 
 FINEST = 1e-9  # of the abscissa: a jump that survives is no slope

@@ -6,7 +6,7 @@ import numpy as np
 from flint import arb
 from sympy import Rational, log, pi, sin
 
-from numeric.dynamics.phase_points import places
+from numeric.dynamics.phase_points import phase_points
 from symbolic import tables
 from symbolic.expressions.signs import Finding
 from symbolic.motion.collision import area_factor, image_share, log_cosine_mean, telescoped
@@ -48,7 +48,7 @@ def at_least_log() -> Finding:
 @cache
 def expanding_cycle() -> tuple[bool, arb]:
     """A certified cycle of period 9 at `lam = 9/10`: proved or not, and its determinant."""
-    proof = certificate(tables.cardioid, Rational(9, 10), places(0, NINE, 0.0), 20)
+    proof = certificate(tables.cardioid, Rational(9, 10), phase_points(0, NINE, 0.0), 20)
     wanted = ("exists", "unique", "admissible", "minimal_period")
     return all(proof.checks[name] is True for name in wanted), proof.determinant
 

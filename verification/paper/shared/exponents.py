@@ -13,7 +13,7 @@ from flint import arb
 from sympy import Expr, Rational, S, log, pi, sqrt
 
 from numeric import PinballMap
-from numeric.dynamics.phase_points import places
+from numeric.dynamics.phase_points import phase_points
 from numeric.pinball.sampling import interior_starts
 from symbolic import tables
 from symbolic.cycles.cycle import contracting_norm, major_axis
@@ -124,7 +124,7 @@ def period3(claim: Claim) -> Judgement:
     value = triangle_rate().subs(lam, here)
     born = enclose(saddle_node().subs(alpha, SHAPE)).real
     table = tables.egg(3).at(alpha=SHAPE)
-    proof = certificate(table, here, places(0, [-1.4541, 0.6403, 2.7347], 0.0), 20)
+    proof = certificate(table, here, phase_points(0, [-1.4541, 0.6403, 2.7347], 0.0), 20)
     with working(BITS):
         same = agree(exponents(proof.trace, proof.determinant, 3)[0], enclose(value, {}, BITS).real)
     finding = rounded(str(claim.printed), value)
@@ -153,7 +153,7 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
     for k in range(1, steps + 1):
         theta = cycle_at(table, theta, contraction + (target - contraction) * k / steps)
     exact = Rational(Fraction(target).limit_denominator(10**7))
-    proof = certificate(table, exact, places(0, theta, 0.0), 20)
+    proof = certificate(table, exact, phase_points(0, theta, 0.0), 20)
     with working(BITS):
         return proved(proof), exact, exponents(proof.trace, proof.determinant, len(theta))[0]
 
@@ -201,7 +201,7 @@ def weak_dissipation_attracts(claim: Claim) -> Judgement:
     """An elliptic hexagon of the egg that becomes a repeller: its bounces are too oblique."""
     table = tables.egg(3).at(alpha=Rational(1, 20))
     six = [-3.0849, -2.0728, -0.9905, 0.0216, 1.1038, 2.1160]
-    damped, elastic = (certificate(table, x, places(0, six, 0.0), 20) for x in (Rational(99, 100), S.One))
+    damped, elastic = (certificate(table, x, phase_points(0, six, 0.0), 20) for x in (Rational(99, 100), S.One))
     with working(BITS):
         turning = bool(elastic.trace**2 < 4), bool(damped.trace**2 < 4 * damped.determinant)
         repels = bool(damped.determinant > 1)

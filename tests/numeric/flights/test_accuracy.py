@@ -72,7 +72,7 @@ def test_flights_aimed_at_the_cusp(miss):
     assert max(direction) <= 8
 
 
-NEAR_GRAZING = [  # theta and phi: the worst of a million random particles, of those aimed at a join, and past the other join
+NEAR_GRAZING = [  # theta and phi: the worst of a million random particles, of those aimed at a join, and past the other
     (-1.95277363, -1.37612652), (-0.670208058, -0.25451718), (1.25956245, 0.694918384), (-1.9531, -1.3763),
     (1.6162036187902906, 1.0014056098562036), (-1.6335621826646394, -1.0183761112721677), (2.0943, 1.5705),
     (1.9172456314571602, 1.3024506414317365), (-1.6527902530959695, -1.0372593151405034), (2.01866398, 1.45999368),

@@ -77,7 +77,7 @@ assert abs(closed - S(found.value)) < S(10) ** -39
 
 
 def share_on_triangles(contraction):
-    """The share of random balls that end on a cycle of period 3."""
+    """The share of random particles that end on a cycle of period 3."""
     egg = PinballMap("egg", lam=contraction, alpha="0.08")
     starts = phase_starts(egg, 200, seed=1)
     settled = egg.orbit(starts.theta, starts.phi, 3000, starts.component)

@@ -77,7 +77,7 @@ def test_a_formula_that_is_none_is_answered_with_a_sentence(table):
     table.get_by_text("accepted:").wait_for()
 
 
-def test_the_cycle_near_the_ball_is_found_with_its_multipliers(table):
+def test_the_cycle_near_the_particle_is_found_with_its_multipliers(table):
     table.get_by_role("button", name="Find the cycle").click()
 
     table.get_by_text("A cycle of period").wait_for()

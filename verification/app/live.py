@@ -32,7 +32,7 @@ DEFAULTS = {"a": "1.5", "alpha": "0.08"}
 
 @dataclass(frozen=True)
 class Choice:
-    """A table by name or formula, its shape and contraction as text, and where the ball starts."""
+    """A table by name or formula, its shape and contraction as text, and where the particle starts."""
 
     table: str = "egg"
     formula: str = "1 + cos(5*theta)/40"
@@ -59,7 +59,7 @@ class Choice:
         return PinballMap(self.scene())
 
     def command(self, bounces: int = 100) -> str:
-        """The command line for this ball.
+        """The command line for this particle.
 
         >>> Choice("ellipse", shape="1.5", lam="0.9", theta=0.5, phi=-0.25).command(10)
         'pinball orbit ellipse --a 1.5 --lam 0.9 --start=0.5,-0.25 --bounces 10'
@@ -99,7 +99,7 @@ STEEPEST = 0.999 * np.pi / 2
 
 
 @dataclass(frozen=True)
-class Ball:
+class Particle:
     """A place on the boundary and an exit angle."""
 
     component: int
@@ -107,11 +107,11 @@ class Ball:
     phi: float
 
 
-def ball_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> Ball:
-    """The ball on the boundary point nearest to `(x, y)` that flies towards a point.
+def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> Particle:
+    """The particle on the boundary point nearest to `(x, y)` that flies towards a point.
 
-    >>> ball = ball_at(PinballMap("circle", lam=1), 0.0, 2.0, (0.0, 0.0))
-    >>> round(ball.theta, 6), round(ball.phi, 6) + 0.0
+    >>> particle = particle_at(PinballMap("circle", lam=1), 0.0, 2.0, (0.0, 0.0))
+    >>> round(particle.theta, 6), round(particle.phi, 6) + 0.0
     (1.570796, 0.0)
     """
     s, span = 0.0, map.arclength.perimeter
@@ -124,14 +124,14 @@ def ball_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -
     tx, ty = (float(value[0]) for value in map.states.tangent(where, theta))
     vx, vy = towards[0] - px, towards[1] - py
     phi = float(np.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
-    return Ball(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
+    return Particle(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
 
 
-def tip(map: PinballMap, ball: Ball, length: float) -> tuple[float, float]:
-    """The point at `length` from the ball in its direction of flight."""
-    where, theta = np.array([ball.component]), np.array([ball.theta])
+def tip(map: PinballMap, particle: Particle, length: float) -> tuple[float, float]:
+    """The point at `length` from the particle in its direction of flight."""
+    where, theta = np.array([particle.component]), np.array([particle.theta])
     x, y = map.states.point(where, theta)
-    vx, vy = map.states.direction(where, theta, np.array([ball.phi]))
+    vx, vy = map.states.direction(where, theta, np.array([particle.phi]))
     return float(x[0] + length * vx[0]), float(y[0] + length * vy[0])
 
 
@@ -141,16 +141,16 @@ def phase(map: PinballMap, orbit: Orbit) -> Curve:
     return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
 
 
-def ball_in_phase(map: PinballMap, s: float, sin_phi: float) -> Ball:
-    """The ball at a point of phase space."""
+def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> Particle:
+    """The particle at a point of phase space."""
     component, theta = boundary(map, np.array([s]))
     phi = float(np.arcsin(np.clip(sin_phi, -0.999, 0.999)))
-    return Ball(int(component[0]), float(theta[0]), phi)
+    return Particle(int(component[0]), float(theta[0]), phi)
 
 
-def filling(map: PinballMap, balls: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
-    """Phase space in portions, for ever: random balls, each portion a few bounces further."""
-    starts = interior_starts(map, balls, seed)
+def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
+    """Phase space in portions, for ever: random particles, each portion a few bounces further."""
+    starts = interior_starts(map, particles, seed)
     component, theta, phi = starts.component, starts.theta, starts.phi
     while True:
         orbit = map.orbit(theta, phi, bounces, component)
@@ -158,14 +158,14 @@ def filling(map: PinballMap, balls: int = 100, bounces: int = 9, seed: int = 1) 
         component, theta, phi = orbit.component[-1], orbit.theta[-1], orbit.phi[-1]
 
 
-def cycle_near(map: PinballMap, ball: Ball) -> Cycle | None:
-    """The cycle that Newton's method finds from the nearest return of the ball; None when it finds none.
+def cycle_near(map: PinballMap, particle: Particle) -> Cycle | None:
+    """The cycle that Newton's method finds from the nearest return of the particle; None when it finds none.
 
-    >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), Ball(0, 1.5, 0.01))
+    >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), Particle(0, 1.5, 0.01))
     >>> axis.period
     2
     """
-    orbit = map.orbit(ball.theta, ball.phi, LONGEST, ball.component)
+    orbit = map.orbit(particle.theta, particle.phi, LONGEST, particle.component)
     if orbit.code[-1]:
         return None
     away = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) + np.abs(orbit.phi[1:] - orbit.phi[0])
@@ -177,7 +177,7 @@ def cycle_near(map: PinballMap, ball: Ball) -> Cycle | None:
     return None
 
 
-INK, BALL, CYCLE = "#30343a", "#c2410c", "#1d4ed8"
+INK, PARTICLE, CYCLE = "#30343a", "#c2410c", "#1d4ed8"
 PORTIONS = 25  # of phase space before it rests: what a browser draws without effort
 EVERY = 200  # milliseconds between two of them
 
@@ -202,7 +202,7 @@ class LiveTable:
         self.shape = pn.widgets.TextInput(name="alpha, shape of the egg", value=self.choice.shape)
         self.lam = pn.widgets.FloatSlider(name="Contraction lambda", start=0, end=1, step=0.001, value=0.45)
         self.bounces = pn.widgets.IntSlider(name="Bounces drawn", start=1, end=500, value=60)
-        self.find = pn.widgets.Button(name="Find the cycle near the ball", button_type="primary")
+        self.find = pn.widgets.Button(name="Find the cycle near the particle", button_type="primary")
         self.said = pn.pane.Markdown("", min_height=90)
         self.command = pn.widgets.TextAreaInput(name="As a command", height=80, auto_grow=True)
         self.python = pn.widgets.TextAreaInput(name="As Python", height=110, auto_grow=True)
@@ -219,12 +219,12 @@ class LiveTable:
         self.wall, self.path, self.dots, self.cloud, self.here, self.ring, self.loop = (
             ColumnDataSource({"x": [], "y": []}) for _ in range(7)
         )
-        self.room = figure(title="The table: drag the ball or its arrow", match_aspect=True, height=440, width=520)
+        self.room = figure(title="The table: drag the particle or its arrow", match_aspect=True, height=440, width=520)
         self.room.line("x", "y", source=self.wall, color=INK, line_width=2)
         self.room.line("x", "y", source=self.path, color=INK, alpha=0.35)
         self.room.line("x", "y", source=self.loop, color=CYCLE, line_width=2)
-        self.room.line("x", "y", source=self.dots, color=BALL, line_width=2)
-        handles = self.room.scatter("x", "y", source=self.dots, size=13, color=BALL)
+        self.room.line("x", "y", source=self.dots, color=PARTICLE, line_width=2)
+        handles = self.room.scatter("x", "y", source=self.dots, size=13, color=PARTICLE)
         drag = PointDrawTool(renderers=[handles], add=False)
         self.room.add_tools(drag)
         self.room.toolbar.active_tap = drag
@@ -232,7 +232,7 @@ class LiveTable:
         self.space = figure(title="Phase space: click to start there", height=440, width=520)
         self.space.xaxis.axis_label, self.space.yaxis.axis_label = "s", "sin(phi)"
         self.space.scatter("x", "y", source=self.cloud, size=1.5, color=INK, alpha=0.5)
-        self.space.scatter("x", "y", source=self.here, size=11, color=BALL)
+        self.space.scatter("x", "y", source=self.here, size=11, color=PARTICLE)
         self.space.scatter("x", "y", source=self.ring, size=11, color=CYCLE, marker="x", line_width=2)
         self.space.on_event(Tap, self._tapped)
 
@@ -290,16 +290,16 @@ class LiveTable:
             self.rebuild()
 
     def redraw(self) -> None:
-        """The orbit, the ball and the texts; the cycle that was found is forgotten."""
+        """The orbit, the particle and the texts; the cycle that was found is forgotten."""
         orbit = self.map.orbit(self.choice.theta, self.choice.phi, self.bounces.value, self.choice.component)
         made = orbit.code == 0
         self.path.data = {"x": orbit.x[made], "y": orbit.y[made]}
-        x1, y1 = tip(self.map, self._ball(), 0.4)
+        x1, y1 = tip(self.map, self._particle(), 0.4)
         self.dots.data = {"x": [float(orbit.x[0]), x1], "y": [float(orbit.y[0]), y1]}
         s, sine = phase(self.map, orbit)
         self.here.data = {"x": s[:1], "y": sine[:1]}
         self.ring.data = self.loop.data = {"x": [], "y": []}
-        stopped = "" if np.all(made) else f"The ball stops: {orbit.status[-1].value}."
+        stopped = "" if np.all(made) else f"The particle stops: {orbit.status[-1].value}."
         self.said.object = stopped
         self.command.value = self.choice.command(self.bounces.value)
         self.python.value = self.choice.python(self.bounces.value)
@@ -312,8 +312,8 @@ class LiveTable:
             self.cloud.stream({"x": s, "y": sine})
 
     def find_cycle(self) -> None:
-        """The cycle near the ball, with its multipliers."""
-        cycle = cycle_near(self.map, self._ball())
+        """The cycle near the particle, with its multipliers."""
+        cycle = cycle_near(self.map, self._particle())
         if cycle is None:
             self.said.object = "No cycle was found from here; start nearer to one, or let the orbit settle first."
             return
@@ -328,10 +328,10 @@ class LiveTable:
 
     # ---- what the visitor does
 
-    def start(self, ball: Ball) -> None:
-        """Starts the orbit anew from `ball`."""
+    def start(self, particle: Particle) -> None:
+        """Starts the orbit anew from `particle`."""
         before = self.choice
-        self.choice = replace(before, component=ball.component, theta=ball.theta, phi=ball.phi)
+        self.choice = replace(before, component=particle.component, theta=particle.theta, phi=particle.phi)
         try:
             self.redraw()
         except ValueError as error:
@@ -339,20 +339,20 @@ class LiveTable:
             self.redraw()
             self.said.object = str(error)
 
-    def _ball(self) -> Ball:
-        return Ball(self.choice.component, self.choice.theta, self.choice.phi)
+    def _particle(self) -> Particle:
+        return Particle(self.choice.component, self.choice.theta, self.choice.phi)
 
     def _dragged(self, _: str, old: Any, new: Any) -> None:
         x, y = list(new["x"]), list(new["y"])
         here = self.map.states.point(np.array([self.choice.component]), np.array([self.choice.theta]))
-        expected = (float(here[0][0]), *tip(self.map, self._ball(), 0.4)[:1])
+        expected = (float(here[0][0]), *tip(self.map, self._particle(), 0.4)[:1])
         if len(x) != 2 or (abs(x[0] - expected[0]) < 1e-12 and abs(x[1] - expected[1]) < 1e-12):
             return  # our own drawing, or a handle that was taken away
-        self.start(ball_at(self.map, x[0], y[0], (x[1], y[1])))
+        self.start(particle_at(self.map, x[0], y[0], (x[1], y[1])))
 
     def _tapped(self, event: Any) -> None:
         if abs(event.y) < 1:
-            self.start(ball_in_phase(self.map, float(event.x), float(event.y)))
+            self.start(particle_in_phase(self.map, float(event.x), float(event.y)))
 
 
 def in_turn(change: Callable[[], None]) -> None:

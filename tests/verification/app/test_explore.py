@@ -37,7 +37,7 @@ def test_the_python_on_the_page_gives_the_orbit_that_is_drawn(table, live, tmp_p
     assert np.array_equal(runpy.run_path(str(script))["orbit"].x, live.path.data["x"])
 
 
-def test_the_dragged_ball_starts_where_the_boundary_is_nearest(live):
+def test_the_dragged_particle_starts_where_the_boundary_is_nearest(live):
     live.table.value = "circle"
     live.dots.data = {"x": [0.0, 0.0], "y": [1.3, 0.0]}
 
@@ -46,7 +46,7 @@ def test_the_dragged_ball_starts_where_the_boundary_is_nearest(live):
     assert f"--start={live.choice.theta!r}," in live.command.value
 
 
-def test_the_dragged_arrow_turns_the_ball(live):
+def test_the_dragged_arrow_turns_the_particle(live):
     live.table.value = "circle"
     before = dict(live.dots.data)
     live.dots.data = {"x": [before["x"][0], 0.0], "y": [before["y"][0], 0.0]}
@@ -83,9 +83,9 @@ def test_what_is_typed_is_never_executed(live):
     assert re.search("accepted", live.said.object)
 
 
-def test_the_cycle_near_the_ball_is_the_ellipse_axis(live):
+def test_the_cycle_near_the_particle_is_the_ellipse_axis(live):
     live.table.value = "ellipse"
-    live.start(type(live._ball())(0, 1.5, 0.02))
+    live.start(type(live._particle())(0, 1.5, 0.02))
     live.find_cycle()
 
     assert "A cycle of period 2, attracting" in live.said.object

@@ -161,7 +161,9 @@ LONG = 10_000  # bounces of a transient, unless it is given
     "--start-law", type=click.Choice(list(LAWS)), default="interior", show_default=True, help="Of the starts."
 )
 @click.option("--until-error", type=float, help="Go on, twice as long each time, until every error is at most this.")
-@click.option("--budget", type=click.IntRange(1), default=SIZE, show_default=True, help="Bounces of all balls, then.")
+@click.option(
+    "--budget", type=click.IntRange(1), default=SIZE, show_default=True, help="Bounces of all particles, then."
+)
 @click.option("--certified", is_flag=True, help="Also the proved ones: of cycles; of the cardioid's chaos at --lam 0.")
 @json_option
 def command(

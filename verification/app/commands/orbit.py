@@ -57,7 +57,7 @@ def command(
     tolerance: str | None,
     output: Output,
 ) -> int:
-    """Where does this ball go? Exit status 1 when it stops at a join, a cusp or a tangency.
+    """Where does this particle go? Exit status 1 when it stops at a join, a cusp or a tangency.
 
     In arb the last digit shown is off by one at most, and every landing is proved to be the first hit; an orbit
     that goes on where that cannot be proved ends as `unproved`. The other outcomes are found, and not proved.

@@ -116,7 +116,9 @@ MANY = 64  # distinct points; more are not counted
 )
 @table_options
 @lams_option
-@click.option("--orbits", type=click.IntRange(1, 100_000), default=20, show_default=True, help="Random balls for each.")
+@click.option(
+    "--orbits", type=click.IntRange(1, 100_000), default=20, show_default=True, help="Random particles for each."
+)
 @click.option("--points", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Bounces kept of each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=4000, show_default=True, help="Bounces before.")
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="For the exponents.")
@@ -125,7 +127,7 @@ MANY = 64  # distinct points; more are not counted
 def bifurcation_command(
     scene: Scene, lams: str, orbits: int, points: int, transient: int, bounces: int, seed: int, how: How
 ) -> int:
-    """Where random balls are after a long time, for each contraction; starts as in the paper's appendix."""
+    """Where random particles are after a long time, for each contraction; starts as in the paper's appendix."""
     from numeric.sweeps.fields import bifurcation
 
     text, values = over(scene, lams)
@@ -184,7 +186,9 @@ def command() -> None:
 )
 @lams_option
 @click.option("--K", "K", type=click.IntRange(2, 100), default=3, show_default=True, help="Points of the egg.")
-@click.option("--starts", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Random balls a pair.")
+@click.option(
+    "--starts", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Random particles a pair."
+)
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
@@ -219,7 +223,9 @@ def picture(found: "xr.Dataset") -> list[str]:
 )
 @table_options
 @lams_option
-@click.option("--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random balls for each.")
+@click.option(
+    "--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random particles for each."
+)
 @click.option("--groups", type=click.IntRange(1, 64), default=6, show_default=True, help="Attractors kept for each.")
 @click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")

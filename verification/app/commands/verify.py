@@ -122,7 +122,7 @@ LOOPBACK = "127.0.0.1"
 @click.option("--open/--no-open", "show", default=True, show_default=True, help="Open a browser.")
 @json_option
 def explore_command(port: int, show: bool, output: Output) -> int:
-    """A live table on a page of this machine: drag the ball, move the contraction, find cycles.
+    """A live table on a page of this machine: drag the particle, move the contraction, find cycles.
 
     The page is served on 127.0.0.1 only, until Ctrl-C. It needs pip install 'pinball-billiards[explore]'.
     """

@@ -3,9 +3,9 @@
     from hypothesis import given
     from verification.maps import strategies
 
-    @given(strategies.balls(tables=my_table))
-    def test_my_law(ball):
-        assert abs(ball.map.step(ball.theta, ball.phi, ball.component).phi) <= ball.lam * 1.5708
+    @given(strategies.particles(tables=my_table))
+    def test_my_law(particle):
+        assert abs(particle.map.step(particle.theta, particle.phi, particle.component).phi) <= particle.lam * 1.5708
 
 Every strategy gives exact shapes and doubles in the interior of phase space, and shrinks towards the
 circle, the middle of a component and the normal exit.
@@ -25,7 +25,7 @@ SMOOTH = ("circle", "ellipse", "egg")
 
 
 @dataclass(frozen=True)
-class Ball:
+class Particle:
     """A phase point of a map. `theta` belongs to the component of that index."""
 
     map: PinballMap
@@ -39,7 +39,7 @@ class Ball:
             f"{entry.name}={value}" for entry, value in zip(self.map.ir.shape, self.map.exact_shape, strict=True)
         )
         table = f"{self.map.ir.table}({shape})"
-        return f"Ball({table}, lam={self.lam!r}, component={self.component}, theta={self.theta!r}, phi={self.phi!r})"
+        return f"Particle({table}, lam={self.lam!r}, component={self.component}, theta={self.theta!r}, phi={self.phi!r})"
 
 
 def contractions(least: float = 0.0, most: float = 1.0) -> st.SearchStrategy[float]:
@@ -70,19 +70,19 @@ def maps(draw: st.DrawFn, tables: Any = None, lams: st.SearchStrategy[float] | N
 
 
 @st.composite
-def balls(
+def particles(
     draw: st.DrawFn,
     tables: Any = None,
     lams: st.SearchStrategy[float] | None = None,
     steepest: float = STEEPEST,
-) -> Ball:
+) -> Particle:
     """Phase points in the interior of phase space, at any place but the ends of components."""
     map = draw(maps(tables, lams))
     component = draw(st.integers(0, len(map.states.ends) - 1))
     low, high = map.states.ends[component]
     share = draw(st.floats(0.001, 0.999))
     theta = low + (high - low) * share
-    return Ball(map, float(map.lam), component, theta, draw(st.floats(-steepest, steepest)))
+    return Particle(map, float(map.lam), component, theta, draw(st.floats(-steepest, steepest)))
 
 
 @lru_cache(maxsize=64)

@@ -95,7 +95,7 @@ def test_a_scaled_and_rotated_ellipse_needs_no_root_finding():
 
 
 @settings(max_examples=30)
-@given(strategies.balls(tables=[MILD, "ellipse", "egg"], lams=strategies.contractions(0.1, 1.0), steepest=1.4))
+@given(strategies.particles(tables=[MILD, "ellipse", "egg"], lams=strategies.contractions(0.1, 1.0), steepest=1.4))
 def test_an_angle_never_grows_at_a_reflection(ball):
     step = ball.map.step(ball.theta, ball.phi, ball.component)
 

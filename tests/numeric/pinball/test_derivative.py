@@ -32,7 +32,7 @@ def by_formula(map, where, theta, phi, step):
 
 
 @settings(max_examples=60)
-@given(strategies.balls())
+@given(strategies.particles())
 def test_the_numeric_derivative_is_the_symbolic_one(ball):
     map, where, theta, phi = ball.map, np.array(ball.component), np.array(ball.theta), np.array(ball.phi)
     step = map.step(theta, phi, where)

@@ -2,7 +2,7 @@
 
 python benchmarks/parameter_space.py [--quick]
 
-The search takes random particles at closely spaced contractions, along the doubling of period 2 and beyond, ten times as
+The search takes particles at closely spaced contractions, along the doubling of period 2 and beyond, ten times as
 closely where the strips of chaos are narrow, and also close to lam = 1, where transients are long. What it finds is
 then followed for many bounces, and counts when every orbit that was chaotic still is. A sample proves nothing; the
 error bars are those of the mean over orbits.
@@ -31,7 +31,7 @@ def search(shape, lams, starts, bounces, transient):
 
 
 def follow(shape, lam, transient):
-    """The share of random particles that are chaotic, how many of those still are after a long run, and their exponent."""
+    """The share of chaotic particles, how many of those still are after a long run, and their exponent."""
     map = map_of(egg(3, shape), lam)
     first = measured(map, interior_starts(map, BALLS, SEED), 4000, transient)
     on = np.nonzero(first.chaotic)[0]

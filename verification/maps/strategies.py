@@ -39,7 +39,9 @@ class Particle:
             f"{entry.name}={value}" for entry, value in zip(self.map.ir.shape, self.map.exact_shape, strict=True)
         )
         table = f"{self.map.ir.table}({shape})"
-        return f"Particle({table}, lam={self.lam!r}, component={self.component}, theta={self.theta!r}, phi={self.phi!r})"
+        return (
+            f"Particle({table}, lam={self.lam!r}, component={self.component}, theta={self.theta!r}, phi={self.phi!r})"
+        )
 
 
 def contractions(least: float = 0.0, most: float = 1.0) -> st.SearchStrategy[float]:

@@ -29,9 +29,11 @@ WORDS = re.compile(  # Author and Author (1998), over the end of a line too
 BRACKETED = re.compile(rf"\(({YEAR})[a-z]?\)")
 JOURNALS = re.compile(r"Phys\. Rev|Rev\. Mod|Math\. Phys|J\. Stat|Physica D|SIAM J|Trans\. A|\bdoi:|arXiv:")
 NEEDED = {
-    "article": {"author", "title", "journal", "volume", "pages", "year"},
-    "book": {"author", "title", "publisher", "year"},
+    "article": {"author", "title", "journal", "volume", "pages", "year", "checked"},
+    "book": {"author", "title", "publisher", "year", "checked"},
+    "misc": {"author", "title", "year", "checked"},  # what no public page confirmed is left out
 }
+LEFT_OUT = {"volume", "pages", "publisher", "doi"}
 
 
 def named(path):
@@ -113,6 +115,15 @@ def test_every_entry_is_complete_and_named_after_its_authors(key):
 
     assert NEEDED[kind] <= set(fields)
     assert key == "".join(surnames(key)).replace(" ", "") + fields["year"]
+
+
+@pytest.mark.parametrize("key", ENTRIES)
+def test_an_entry_without_details_says_which_no_page_confirmed(key):
+    kind, fields = ENTRIES[key]
+    missing = re.findall(r"no (volume|pages|publisher)\b", fields["checked"])
+
+    assert (kind == "misc") == bool(missing)
+    assert kind != "misc" or not LEFT_OUT & set(fields)
 
 
 def test_every_entry_is_cited():

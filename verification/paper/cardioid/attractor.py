@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import log, sin
+from sympy import Rational, log, simplify, sin
 
 from numeric import PinballMap
 from numeric.pinball.sampling import Growth, interior_starts
@@ -20,7 +20,7 @@ from symbolic.cycles.defocusing import expands, least_exponent
 from symbolic.expressions.signs import Finding
 from symbolic.motion.collision import log_cosine_mean
 from symbolic.tables import cardioid
-from symbolic.tables.geometry import arc_length
+from symbolic.tables.geometry import arc_length, curvature, velocity
 from symbolic.tables.table import theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, equal, judges, zero
@@ -251,6 +251,8 @@ def chaotic(claim: Claim) -> Judgement:
 @judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
 def near_cusp(claim: Claim) -> Judgement:
     """A curve that no point leaves into the cusp would grow beyond the length of the boundary."""
+    boundary = cardioid.components[0]
+    turned = curvature(boundary) ** 2 * velocity(boundary).dot(velocity(boundary))
     return Judgement(
         by(
             "a curve along the cone is monotone in s, so it measures at most 3*pi in |K|*ds; it grows by g at each "
@@ -258,6 +260,7 @@ def near_cusp(claim: Claim) -> Judgement:
             "near it. So the starts that come as near to the cusp as wanted, as late as wanted, are open and dense "
             "(lam < 1) among those that miss it, and no compact set off the cusp attracts an open set",
             stretching(),
+            zero("|K|*ds = (3/2)*d theta, 3*pi in all", simplify(turned) - Rational(9, 4)),
         ),
         "for a dense set of starts (a countable intersection of open dense ones) the orbit comes arbitrarily near the "
         "cusp again and again, so no compact set off the cusp holds the attractor; that almost every start does is not "

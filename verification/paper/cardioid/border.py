@@ -7,6 +7,7 @@ orbit in it has an exponent above a positive bound, so that no cycle in it is st
 from functools import cache
 
 import numpy as np
+from sympy import Rational
 
 from numeric import PinballMap
 from symbolic.cycles.thresholds import lambda_c
@@ -99,7 +100,11 @@ def fourth_collision_above(claim: Claim) -> Judgement:
     """At a contraction well above, every small angle lands beyond the upper join again."""
     far = fourth_on_wall(0.05, 0.9, 0.9, or_lower=True)
     return Judgement(
-        counterexample("lam = 0.9", answer(far.on_wall, "s_4 > s* for every |phi| <= 0.05")),
+        counterexample(
+            "lam = 0.9",
+            answer(far.on_wall, "s_4 > s* for every |phi| <= 0.05"),
+            at={letter: Rational(9, 10)},
+        ),
         f"s_4 < s* at the kink of s_4 for lambda* < lam <= {PROVED_TO}, not near phi = 0 for every lam > lambda*",
         by(
             "s_4 at its kink is s* at lambda* and falls from there on",

@@ -1,11 +1,13 @@
 """Claims on where the map is defined, and whether that is compact. Paper: sections 2 and 5."""
 
-from sympy import pi
+from sympy import S, pi
 
 from symbolic.tables import cardioid
+from symbolic.tables.geometry import velocity
+from symbolic.tables.table import lam, theta
 from verification.paper.cardioid.cuspless import convex, joined_smoothly
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, judges, zero
+from verification.paper.claims.judges import by, counterexample, greater, judges, zero
 
 
 @judges("map.noncompact_domain")
@@ -16,8 +18,10 @@ def noncompact(claim: Claim) -> Judgement:
     return Judgement(
         by(
             "in the cardioid the point s = 0, phi = 0 is removed, since its trajectory along y = 0 lands on the cusp; "
-            "points as near to it as wanted are not, so the domain is not closed",
-            zero("", start[1], cusp[0], cusp[1]),
+            "from the same place no other direction leads there, so points as near to it as wanted are not removed, "
+            "and the domain is not closed",
+            zero("the cusp is at the pole, on the normal of s = 0", start[1], velocity(arc).subs(theta, 0)[0], *cusp),
+            greater(start[0], S.Zero),
         ),
         "not compact where a trajectory can reach a corner",
     )
@@ -31,6 +35,7 @@ def cuspless_noncompact(claim: Claim) -> Judgement:
             "the normal is unique at every point, joins included, so by the definition of section 2 no point is "
             "removed: phase space, the boundary times [-pi/2, pi/2], is compact",
             joined_smoothly(),
+            at={lam: S.Half},
         ),
         "after one bounce every ball is in the compact set |phi| <= lam*pi/2, where the map is defined and continuous "
         "for lam < 1; what is not compact is the set where it has a derivative",

@@ -7,7 +7,7 @@ The egg's map with a Newton-Raphson iteration that stops early: how far values i
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Matrix, Rational
+from sympy import Matrix, Rational, S
 
 from numeric import PinballMap
 from numeric.pinball.sampling import phase_starts
@@ -71,6 +71,7 @@ def by_exponents(claim: Claim) -> Judgement:
             "whose powers grow like n, which no C*nu^n bounds: exponents of both signs are no dominated splitting",
             elastic_growth(),
             sheared,
+            at={lam: S.One},
         ),
         "the splitting is dominated for 0 <= lam < 1 by a cone field, which exponents do not show",
         cones(),

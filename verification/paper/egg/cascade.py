@@ -185,6 +185,7 @@ def negative_exponents(claim: Claim) -> Judgement:
             "still attracts, since the flip is supercritical",
             certified("doubling", alpha=SHAPE, n=Integer(3)),
             answer(flips, "supercritical"),
+            at={alpha: SHAPE},
         ),
         "negative on every attracting cycle with both multipliers inside the unit circle; 0 at the bifurcations",
         by(

@@ -1,8 +1,6 @@
 """Claims on the cycles of the egg with elastic collisions: which are elliptic, and why period 3. Paper: section 6.1."""
 
-from math import gcd
-
-from sympy import Interval, Poly, Rational, Symbol, cancel, cos, cyclotomic_poly, pi
+from sympy import Expr, Interval, Rational, Symbol, cancel, cos, divisors, pi, simplify
 
 from symbolic.cycles.cycle import c, egg_diameter, egg_parallel, parallel_shape
 from symbolic.cycles.polygons import elastic_trace
@@ -18,7 +16,6 @@ from verification.paper.shared.samples import sampled
 
 PANELS = ("0.02", "0.05", "0.08")
 ELLIPTIC = Rational(11, 200)  # below alpha-tilde(1) = 0.05538..., where the diameters become hyperbolic
-LONGEST = 12  # period up to which the sums over equidistant points are computed one by one
 
 
 def elliptic(shape: str) -> Finding:
@@ -55,30 +52,32 @@ def alternating(claim: Claim) -> Judgement:
 @judges("egg.period3_bias")
 def bias(claim: Claim) -> Judgement:
     """To first order in alpha the length of a polygon depends on its place for three bounces alone."""
-    delta, c0, c1, x = (Symbol(name, real=True) for name in ("delta", "c0", "c1", "x"))
+    delta, c0, c1, z, n = (Symbol(name, real=True) for name in ("delta", "c0", "c1", "z", "n"))
     square = (1 + alpha * c0) ** 2 + (1 + alpha * c1) ** 2 - 2 * (1 + alpha * c0) * (1 + alpha * c1) * cos(delta)
     slope = square.diff(alpha).subs(alpha, 0) - (c0 + c1) * square.subs(alpha, 0)
-    pairs = [(p, q) for q in range(2, LONGEST + 1) for p in range(1, q) if gcd(p, q) == 1]
-    moved = {
-        q
-        for p, q in pairs
-        if not Poly(sum(x ** (3 * p * k % q) for k in range(q)), x).rem(Poly(cyclotomic_poly(q, x), x)).is_zero
-    }
+    total = (1 - z**n) / (1 - z)  # of 1 + z + ... + z**(n - 1)
     trace, _, _ = flat_triangle()
     P = stability_number(egg_diameter())
     return Judgement(
         by(
             "for small alpha the length of a chord of the circle grows by half of its length times cos(3*theta) at "
-            "either end, and over a polygon p/q the sum of exp(3*i*theta_k) is geometric, 0 unless q divides 3*p: at "
-            "first order in alpha the circles of period 3 break up into elliptic and hyperbolic points and no others",
+            "either end; over a polygon p/q the sum of exp(3*i*theta_k) is that of the powers of z = exp(6*pi*i*p/q), "
+            "with z^q = 1: 0 unless z = 1, so unless q divides 3*p, and q and p have no common factor: at first order "
+            "in alpha the circles of period 3 break up into elliptic and hyperbolic points and no others",
             zero("", slope.expand()),
-            shown(f"of the sums with q from 2 to {LONGEST} only those with q = 3 are not 0", moved == {3}),
+            zero("the sum of n powers of z != 1, by induction on n", total.subs(n, 0), powers(total, z, n)),
+            shown("of the numbers above 1 only 3 divides 3", divisors(3)[1:] == [3]),
             greater((2 - trace).diff(alpha).subs(alpha, 0), Rational(0)),
             zero("", (1 - P).diff(alpha).subs(alpha, 0)),
         ),
         "the triangles leave trace 2 at first order in alpha, 2 - trace of one flight = 36*alpha/(1 - alpha), the "
         "diameters at second order, 1 - P = (18*alpha/(1 - alpha^2))^2",
     )
+
+
+def powers(total: Expr, z: Symbol, n: Symbol) -> Expr:
+    """How far a formula for `1 + z + ... + z**(n-1)` is off gaining `z**n` from `n` to `n + 1`."""
+    return simplify(total.subs(n, n + 1) - total - z**n)
 
 
 @judges("egg.period3_islands")

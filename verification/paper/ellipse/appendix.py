@@ -18,13 +18,15 @@ from sympy import (
     together,
 )
 
+from symbolic.cycles.cycle import contracting_norm
 from symbolic.expressions.signs import positive
 from symbolic.motion.collision import determinant, exit_angle, growth_defects
-from symbolic.motion.flight import iterate
+from symbolic.motion.flight import flight, iterate, limit_position
 from symbolic.tables import ellipse
 from symbolic.tables.table import a, eta, lam, phi, s
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, greater, judges, zero
+from verification.paper.ellipse.circle import settles
 
 omega = Symbol("omega", real=True)  # direction of the flight
 C = Symbol("C", real=True)  # cos(omega)
@@ -98,6 +100,7 @@ def incoming(claim: Claim) -> Judgement:
             "with the inward normal that eq. v' = n*cos(phi) + ... needs, v.n = -cos(eta), so acos(v.n) = pi - eta",
             zero("", v.dot(n) + cos(eta)),
             greater(pi - 1, S.One),
+            at={eta: S.One},
         ),
         "eta = acos(-v.n) with the inward normal n",
         by("-v.n = cos(eta)", zero("", -v.dot(n) - cos(eta))),
@@ -150,7 +153,9 @@ def trigonometry(claim: Claim) -> Judgement:
     order = Symbol("n", real=True)
     next_one = cos((order + 1) * eta) - 2 * cos(eta) * cos(order * eta) + cos((order - 1) * eta)
     return Judgement(
-        counterexample("at lam = 1/2, cos(phi) = sqrt((1 + cos(eta))/2)", zero("", half.subs(eta, 2 * eta))),
+        counterexample(
+            "at lam = 1/2, cos(phi) = sqrt((1 + cos(eta))/2)", zero("", half.subs(eta, 2 * eta)), at={lam: S.Half}
+        ),
         "for rational lam = p/q, cos(phi) is algebraic: T_q(cos(phi)) = T_p(cos(eta)) with Chebyshev polynomials",
         by(
             "T_q(cos(p*x)) = cos(p*q*x) = T_p(cos(q*x)), since cos(n*x) obeys the recurrence of T_n(cos(x)) in n",
@@ -206,15 +211,24 @@ def elastic_start(claim: Claim) -> Judgement:
 
 @judges("appendix.periodic_sign")
 def periodic_sign(claim: Claim) -> Judgement:
-    """The elastic circle: both exponents 0 and no periodic orbit at an irrational angle."""
+    """The circle: below `lam = 1` the limits, diameters, attract no neighbourhood; at `lam = 1` there is no limit."""
+    matrix = Matrix(flight(s, phi)).jacobian([s, phi])
+    along = matrix * Matrix([1, 0]) - Matrix([1, 0])
     position, angle = (expression.subs(lam, 1) for expression in iterate(3))
     return Judgement(
         counterexample(
-            "in the elastic circle DT^n = ((1, -2n), (0, 1)) has exponents 0, and s advances by pi - "
-            "2*phi, not commensurable in general",
+            "in the circle at lam = 1/2, as at every lam < 1, each orbit has the exponents 0 and log(lam), and its "
+            "limit, a diameter, is no attractor: orbits that start beside it tend to other diameters. In the elastic "
+            "circle both exponents are 0, and s advances by pi - 2*phi, not commensurable with 2*pi in general",
+            zero("DT keeps (1, 0) and has the determinant lam", *along, matrix.det() - lam),
+            zero("the limit moves with s", limit_position().diff(s) - 1),
+            settles(),
             zero("", position - s - 3 * pi + 6 * phi, angle - phi),
+            at={lam: S.Half},
         ),
-        "a negative maximal exponent; 0 also occurs on orbits that are not periodic",
-        erratum="A vanishing exponent does not make the orbit periodic (elastic circle); the "
-        "criterion needs 'negative'.",
+        "an orbit that converges to an attracting cycle has a negative maximal exponent; 0 occurs without one, and "
+        "that a negative one leads to a cycle is not judged here",
+        by("near an attracting cycle every vector shrinks exponentially", contracting_norm()),
+        "A vanishing exponent does not lead to a periodic attractor: in the circle every orbit has it, and no diameter "
+        "attracts its neighbours; the criterion needs 'negative'.",
     )

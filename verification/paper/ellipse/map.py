@@ -1,6 +1,6 @@
 """Claims on the pinball billiard map in general. Paper: abstract and sections 1, 2."""
 
-from sympy import Expr, Function, Integer, Interval, Matrix, Rational, S, acos, cancel, cos, oo, sqrt
+from sympy import Expr, Function, Integer, Interval, Matrix, Rational, S, acos, cancel, cos, oo, pi, sqrt
 
 from symbolic import tables
 from symbolic.cycles.polygons import COSINE, in_cosine
@@ -143,6 +143,7 @@ def turnings() -> list[Finding]:
         positive(turning(tables.circle.components[0]), {}),
         positive(turning(tables.ellipse.components[0]), {a: Interval(1, oo)}),
         nonnegative(turning(tables.cardioid.components[0]).subs(cos(theta), COSINE), {COSINE: Interval(-1, 1)}),
+        zero("the cuspless arc is the cardioid's", *(p - q for p, q in zip(*ARCS, strict=True))),
         zero("the wall is straight", turning(tables.cuspless.component("wall"))),
         nonnegative(egg, cosine),
     ]
@@ -161,7 +162,11 @@ def zero_curvature(claim: Claim) -> Judgement:
     end = {COSINE: -1, alpha: Rational(1, 10)}
     inside = {alpha: Interval.Ropen(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
     return Judgement(
-        counterexample("the egg with alpha = 1/10 at theta = pi/3", zero("kappa = 0 there", flat.subs(end))),
+        counterexample(
+            "the egg with alpha = 1/10 at theta = pi/3",
+            zero("kappa = 0 there", flat.subs(end)),
+            at={alpha: Rational(1, 10), theta: pi / 3},
+        ),
         "every component is strictly focusing or flat when the egg has alpha < 1/10",
         by("the egg turns strictly for alpha < 1/10", positive(flat, inside)),
         "The range alpha in [0, 1/10] must end before 1/10: there the egg's curvature vanishes at three points.",

@@ -253,6 +253,7 @@ def splitting_hyperbolic(claim: Claim) -> Judgement:
             zero("", trace**2 - 4 * det),
             greater(S.One, det),
             greater(at_threshold[0, 1] ** 2, S.Zero),
+            at={a: S(3), lam: lambda_minus().subs(a, 3)},
         ),
         "finitely many hyperbolic cycles with real multipliers of different modulus have dominated splitting",
         by(

@@ -63,6 +63,7 @@ def contraction_implies(claim: Claim) -> Judgement:
             "at lam = 9/10 a certified cycle of period 9 expands areas: |det D(T^9)| = "
             f"{determinant.str(8, radius=False)}, nu_+ + nu_- = +{rate.str(6, radius=False)}",
             answer(proved and determinant > 1, "proved in balls: it exists, is admissible and of least period"),
+            at={lam: Rational(9, 10)},
         ),
         "log(lam) <= nu_+ + nu_- on every orbit, and nu_+ + nu_- <= 0 for almost every start; a bounce contracts "
         f"ds d(sin phi) by {area_factor()}, which exceeds 1 at grazing landings however small lam > 0 is",

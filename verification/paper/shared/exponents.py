@@ -213,6 +213,7 @@ def weak_dissipation_attracts(claim: Claim) -> Judgement:
             answer(proved(damped) and proved(elastic), "both cycles are proved"),
             answer(all(turning), "complex multipliers at both"),
             answer(repels, "det > 1 at lam = 99/100"),
+            at={alpha: Rational(1, 20), lam: Rational(99, 100)},
         ),
         "an elliptic cycle becomes attracting for lam below 1 when the mean of eta*tan(eta) over it is below 1, and "
         "repelling when it is above",
@@ -241,6 +242,7 @@ def chaotic_sign(claim: Claim) -> Judgement:
             "in the ellipse a = 2 at lam = 1/2, which has no chaotic attractor, the orbit along the major axis has "
             f"nu_+ = log({largest})/2 > 0",
             greater(largest, S.One),
+            at=here,
         ),
         "a positive maximal exponent excludes convergence to an attracting cycle, and no more",
         by(

@@ -97,6 +97,8 @@ def test_a_second_attractor_leaves_the_only_one_open(monkeypatch):
     whole = replace(alone, share=replace(alone.share, count=on_attractors.STARTS))
     monkeypatch.setattr(on_attractors, "found", lambda *_: (whole,))
     assert on_attractors.only_chaos(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.SUPPORTED
+    monkeypatch.setattr(on_attractors, "splits", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+    assert on_attractors.only_chaos(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.OPEN
 
 
 def test_grazing_is_left_behind_and_not_approached():

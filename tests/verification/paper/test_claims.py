@@ -132,6 +132,15 @@ def test_whatever_is_corrected_or_refuted_says_which_symbol_is_wrong():
     assert not any(result.erratum for result in results().values() if result.verdict is Verdict.CONFIRMED)
 
 
+WITHOUT_LETTERS = {"appendix.cuspless_plane", "appendix.exponents_sum"}  # nothing in them has a letter to be given
+
+
+def test_whatever_is_corrected_or_refuted_says_where_it_fails():
+    wrong = [c.id for c in claims("identity", "relation", "property") if results()[c.id].erratum]
+
+    assert {name for name in wrong if not results()[name].witness} == WITHOUT_LETTERS
+
+
 def stray(claim: Claim, result: Result) -> list[str]:
     """The letters of a claim at whose printed range a refutation names no witness, or one outside."""
     given = {x: parse(result.witness[x.name], {}) for x in claim.box if x.name in result.witness}

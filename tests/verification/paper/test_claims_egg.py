@@ -14,9 +14,8 @@ from verification.paper.egg import basins as on_basins
 from verification.paper.egg import elastic as on_elastic
 from verification.paper.egg import period2 as on_egg_period2
 from verification.paper.egg import period3 as on_egg_period3
-from verification.paper.egg import sets as on_sets
 from verification.paper.egg import stability as judged
-from verification.paper.ellipse import circle as on_circle
+from verification.paper.ellipse import ellipse as on_circle
 from verification.paper.report.verdicts import catalogue
 from verification.paper.shared import attractors as on_attractors
 from verification.paper.shared import located as on_located
@@ -115,9 +114,9 @@ def test_a_wrong_closed_form_of_the_circles_orbit_fails_its_induction(monkeypatc
 
 @pytest.mark.parametrize(("count", "wanted"), [(4, Verdict.CONFIRMED), (5, Verdict.OPEN)])
 def test_no_period_4_needs_as_many_stretches_as_the_two_orbits_of_period_2_have_ends(monkeypatch, count, wanted):
-    monkeypatch.setattr(on_sets, "points_of_period_4", lambda: PeriodicPoints([(0, 0.0, 1.0)] * count, 9))
+    monkeypatch.setattr(on_basins, "points_of_period_4", lambda: PeriodicPoints([(0, 0.0, 1.0)] * count, 9))
 
-    assert on_sets.slap_no_period4(CLAIMS["cuspless.slap_no_period4"]).verdict is wanted
+    assert on_basins.slap_no_period4(CLAIMS["cuspless.slap_no_period4"]).verdict is wanted
 
 
 def test_six_critical_points_need_the_proof_that_the_slope_vanishes_once(monkeypatch):

@@ -7,8 +7,8 @@ import pytest
 
 from symbolic.cycles.polygons import required_tilt
 from verification.paper.claims.claim import Verdict
-from verification.paper.egg import figures as on_figures
-from verification.paper.egg.figures import side_cascade
+from verification.paper.egg import egg as on_figures
+from verification.paper.egg.egg import side_cascade
 from verification.paper.report.verdicts import verify
 
 

@@ -7,7 +7,7 @@ from verification.arithmetic.progress import heard
 from verification.paper.cardioid import border as on_border
 from verification.paper.cardioid.border import born
 from verification.paper.claims.claim import Verdict
-from verification.paper.egg.sets import without_triangles
+from verification.paper.egg.basins import without_triangles
 from verification.paper.report.verdicts import verify
 from verification.proofs.corner.half_return import Birth
 

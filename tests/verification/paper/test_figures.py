@@ -14,8 +14,7 @@ from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import stability_number, trace_of
 from symbolic.tables.table import a, lam
 from verification.app.cli import main
-from verification.paper.figures import basins, cardioid, circle_ellipse, cuspless, egg, egg_dynamics
-from verification.paper.figures import circle_ellipse as evolutes
+from verification.paper.figures import basins, cardioid, circle_ellipse, egg
 from verification.paper.figures.catalogue import pictures
 from verification.plots.sheet import Curve
 
@@ -82,7 +81,7 @@ def test_the_second_slap_iterate_of_the_cardioid_meets_the_diagonal_at_the_verti
 
 
 def test_the_slap_iterates_of_the_cuspless_table_meet_the_diagonal_at_its_two_orbits_of_period_2_alone():
-    (panel,) = cuspless.slap()
+    (panel,) = cardioid.cuspless_slap()
     vertical = 2 - 9 * JOIN  # s = 2 of the cardioid, counted from the wall's centre
 
     for power in ("T_0^2", "T_0^4"):
@@ -111,7 +110,7 @@ def test_no_slap_iterate_of_the_egg_has_period_3_and_the_fourth_has_more_points_
 
 
 def test_the_fourth_collision_touches_the_join_at_lambda_star_stays_off_below_and_passes_above():
-    (panel,) = cuspless.corner(4.0)
+    (panel,) = cardioid.corner(4.0)
     lowest = {name: float(curve.y.min()) for name, curve in panel.curves.items()}
 
     assert lowest["0.05"] > -JOIN + 0.02
@@ -152,7 +151,7 @@ def test_the_projected_graph_keeps_off_the_diagonal_at_02_and_meets_it_at_03():
 
 
 def test_the_evolute_is_touched_by_the_flights_of_the_slap_map():
-    for panel in evolutes.evolutes(4.0)[:3]:
+    for panel in circle_ellipse.evolutes(4.0)[:3]:
         x, y = (z.reshape(-1, 3)[:, :2] for z in panel.curves["flights"])
         along = np.stack([x[:, 1] - x[:, 0], y[:, 1] - y[:, 0]])
         along = along / np.hypot(*along)
@@ -173,7 +172,7 @@ def test_exponents_have_opposite_signs_and_their_sum_vanishes_at_lambda_one():
 
 
 def test_below_lambda_star_nothing_is_chaotic_and_above_lambda_c_everything_is():
-    (panel,) = cuspless.exponents(0.5)
+    (panel,) = cardioid.cuspless_exponents(0.5)
     lams, share = panel.curves["chaotic_share"]
 
     assert np.all(share[lams < 0.0712] == 0)
@@ -182,7 +181,7 @@ def test_below_lambda_star_nothing_is_chaotic_and_above_lambda_c_everything_is()
 
 
 def test_the_bifurcation_diagram_has_the_periods_of_the_certified_ladder():
-    (panel,) = egg_dynamics.bifurcation(0.1)
+    (panel,) = egg.bifurcation(0.1)
     each = -1, panel.facts["orbits"], panel.facts["points"]
     theta, lams = (values.reshape(each) for values in panel.curves["attractors"])
     periods = [[np.unique(ball.round(5)).size for ball in balls] for balls in theta]
@@ -206,7 +205,7 @@ def test_reflection_swaps_the_basins_of_the_two_triangles():
 
 
 def test_three_localised_attractors_become_one():
-    before, after = egg_dynamics.configurations(TINY)[2:]
+    before, after = egg.configurations(TINY)[2:]
 
     assert sum(name.startswith("chaotic") for name in before.curves) == 3
     assert sum(name.startswith("chaotic") for name in after.curves) == 1

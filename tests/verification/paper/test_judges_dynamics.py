@@ -11,13 +11,12 @@ from sympy import Rational
 from symbolic.cycles.defocusing import away, least_stretch
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
-from verification.paper.cardioid import attractor as on_cardioid_attractor
 from verification.paper.cardioid import attractor as on_defocusing
 from verification.paper.claims.claim import Verdict
 from verification.paper.report.verdicts import catalogue
 from verification.paper.shared import attractors as on_attractors
-from verification.paper.shared import contraction as on_contraction
 from verification.paper.shared import exponents as on_exponents
+from verification.paper.shared import located as on_contraction
 from verification.paper.shared.samples import Spectrum, spectrum, uneven, visited
 from verification.proofs.slap_map.chaotic_exponent import slap_exponent
 
@@ -52,7 +51,7 @@ ON_THE_CONE = {
     "cardioid.lyapunov_signs": (on_defocusing.signs, Verdict.CONFIRMED),
     "cardioid.exponents_bounded_away": (on_defocusing.bounded_away, Verdict.SUPPORTED),
     "cardioid.nonuniformly_hyperbolic": (on_defocusing.nonuniformly_hyperbolic, Verdict.SUPPORTED),
-    "cardioid.chaotic_attractor": (on_defocusing.chaotic, Verdict.SUPPORTED),
+    "cardioid.chaotic_attractor": (on_defocusing.chaotic_attractor, Verdict.SUPPORTED),
     "cardioid.attractor_near_cusp": (on_defocusing.near_cusp, Verdict.CONFIRMED),
 }
 
@@ -93,15 +92,14 @@ def test_every_orbit_of_the_cardioid_stretches_as_much_as_is_proved_and_keeps_of
 
 
 def test_a_natural_measure_that_is_not_proved_leaves_its_claims_open(monkeypatch):
-    monkeypatch.setattr(on_cardioid_attractor, "slap_proof", quick_proof)
-    assert verdict(on_cardioid_attractor.slap_ergodic, "cardioid.slap_ergodic") is Verdict.CONFIRMED
+    monkeypatch.setattr(on_defocusing, "slap_proof", quick_proof)
+    assert verdict(on_defocusing.slap_ergodic, "cardioid.slap_ergodic") is Verdict.CONFIRMED
 
     unproved = replace(quick_proof(), checks={**quick_proof().checks, "symmetric": None})
-    monkeypatch.setattr(on_cardioid_attractor, "slap_proof", lambda: unproved)
     monkeypatch.setattr(on_defocusing, "slap_proof", lambda: unproved)
-    assert verdict(on_cardioid_attractor.slap_ergodic, "cardioid.slap_ergodic") is Verdict.OPEN
-    assert verdict(on_cardioid_attractor.transitive, "cardioid.transitive") is Verdict.OPEN
-    assert verdict(on_defocusing.chaotic, "cardioid.chaotic_attractor") is Verdict.OPEN
+    assert verdict(on_defocusing.slap_ergodic, "cardioid.slap_ergodic") is Verdict.OPEN
+    assert verdict(on_defocusing.transitive, "cardioid.transitive") is Verdict.OPEN
+    assert verdict(on_defocusing.chaotic_attractor, "cardioid.chaotic_attractor") is Verdict.OPEN
 
 
 def test_ellipses_whose_limit_set_is_not_proved_do_not_support_that_the_egg_is_alone(monkeypatch):
@@ -109,6 +107,16 @@ def test_ellipses_whose_limit_set_is_not_proved_do_not_support_that_the_egg_is_a
     monkeypatch.setattr(on_attractors, "two_cycles", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
 
     assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.OPEN
+
+
+@pytest.mark.parametrize("step", ["two_cycles", "settles", "expands", "splits"])
+def test_that_there_is_no_rotation_rests_on_each_proof(step, monkeypatch):
+    monkeypatch.setattr(on_attractors, "found", lambda *_, **__: ())
+    monkeypatch.setattr(on_attractors, "unsettled", lambda _: 0)
+    assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.SUPPORTED
+    monkeypatch.setattr(on_attractors, step, lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+
+    assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.OPEN
 
 
 def test_the_exponent_of_a_cycle_that_is_not_proved_neither_confirms_nor_refutes(monkeypatch):

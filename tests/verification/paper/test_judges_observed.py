@@ -5,8 +5,8 @@ import pytest
 from sympy import S
 
 from symbolic.expressions.signs import Finding, Outcome
-from verification.paper.cardioid import domains as on_domains
-from verification.paper.cardioid import observed as on_observed
+from verification.paper.cardioid import attractor as on_observed
+from verification.paper.cardioid import cuspless as on_domains
 from verification.paper.claims.claim import Verdict
 from verification.paper.ellipse import stability as on_ellipse_stability
 from verification.paper.report.verdicts import catalogue
@@ -65,7 +65,7 @@ def test_the_number_of_attractors_hangs_on_the_certificate(monkeypatch):
     class Failed:
         certified = False
 
-    monkeypatch.setattr(on_observed, "slap_exponent", Failed)
+    monkeypatch.setattr(on_observed, "slap_proof", Failed)
     assert verdict(on_observed.finitely_many, "cardioid.finitely_many_attractors") is Verdict.OPEN
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from verification.app.cli import write_whole
 from verification.app.commands.verify import write_report
-from verification.paper.report.markdown import markdown
+from verification.paper.report.page import markdown
 from verification.paper.report.report import VERDICTS, document, section_order, summary
 
 VERSIONS = {"python": "3.11.0", "sympy": "1.13", "machine": "abacus"}

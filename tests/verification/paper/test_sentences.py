@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.paper.claims.claim import Claim
-from verification.paper.claims.sentences import Sentence, caption, defects, differences, digest, inventory, split
+from verification.paper.claims.claim import Claim, Sentence, caption, defects, differences, digest, inventory, split
 from verification.paper.report.verdicts import catalogue
 
 PAPER = os.environ.get("PINBALL_PAPER")

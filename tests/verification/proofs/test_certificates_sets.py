@@ -18,7 +18,7 @@ from verification.cycles.recurrence.critical import polygon_fold
 from verification.cycles.recurrence.newton import refined
 from verification.named.feigenbaum import DELTA, aitken, limit, ratio, wynn
 from verification.named.locate import closed_form
-from verification.paper.egg.sets import points_of_period_4, without_triangles
+from verification.paper.egg.basins import points_of_period_4, without_triangles
 from verification.proofs.corner.half_return import birth
 from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
 from verification.proofs.periodic.interval_newton import Status, contraction

@@ -218,8 +218,7 @@ def drawn(sections: Collection[str], output: Output) -> "list[Picture]":
 
 def write_report(directory: Path, results: Sequence["Result"], pictures: "Sequence[Picture]" = ()) -> None:
     """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once."""
-    from verification.paper.report.markdown import markdown
-    from verification.paper.report.page import page
+    from verification.paper.report.page import markdown, page
     from verification.paper.report.report import tables
 
     versions = report.made_with()

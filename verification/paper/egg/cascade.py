@@ -19,7 +19,7 @@ from verification.paper.cardioid.splitting import bounced, ends_of_period
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, shown
 from verification.paper.egg.egg import SHAPES
-from verification.paper.egg.parameter_space import chaos_at
+from verification.paper.egg.stability import chaos_at
 from verification.paper.shared.attractors import STARTS, egg, proved_at, unsettled
 from verification.paper.shared.located import certified, located
 from verification.paper.shared.samples import sampled

@@ -1,5 +1,10 @@
-"""Claims on the crises of the egg's chaotic attractor: tangencies of manifolds, with balls beside them. Paper: 6.7."""
+"""Claims on the egg's crises, and on how its attractor and the basins of period 3 grow. Paper: section 6.7.
 
+A crisis is a tangency of manifolds, with balls that leave beside it. All else is sampled, except that the period-3
+orbits attract, which is proved.
+"""
+
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
@@ -9,16 +14,18 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
+from numeric.pinball.sampling import interior_starts
 from verification.arithmetic.balls import FLOAT64
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import judges
+from verification.paper.shared.attractors import SHAPE, cycles, egg, proved_at, unsettled
 from verification.paper.shared.samples import sampled
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
 from verification.proofs.manifolds.saddle import local, saddle
 
-SHAPE = Rational(2, 25)
+EXACT_SHAPE = Rational(2, 25)
 SEED = 1
 BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions at which the attractor's distance to the boundary is taken
 
@@ -26,13 +33,13 @@ BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions at which the attractor's dista
 @cache
 def located(kind: str) -> Crisis:
     """A crisis to ten digits, by both methods."""
-    return crisis(kind, SHAPE, 10)
+    return crisis(kind, EXACT_SHAPE, 10)
 
 
 @cache
 def seen(kind: str) -> crises.Crisis:
     """The same by balls that leave, to five digits in a second or two."""
-    return crises.crisis(kind, str(SHAPE), tolerance=2e-5, budget=10**7)
+    return crises.crisis(kind, str(EXACT_SHAPE), tolerance=2e-5, budget=10**7)
 
 
 @judges("egg.merging_crisis", "egg.boundary_crisis", "egg.crisis_below")
@@ -70,7 +77,7 @@ def touch(claim: Claim) -> Judgement:
 
 def boundary(lam: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The part of the triangle's stable manifold along which the attractor lies."""
-    found = saddle(CONTACTS["boundary"].unstable, table(SHAPE).over(FLOAT64), lam)
+    found = saddle(CONTACTS["boundary"].unstable, table(EXACT_SHAPE).over(FLOAT64), lam)
     curve = branch(local(found, unstable=False), -1, 1.2, spacing=0.002)
     return curve.x, curve.y
 
@@ -79,7 +86,7 @@ def distance(lam: float) -> float:
     """The least distance in `(theta, phi)`, modulo symmetry, between the attractor and that curve."""
     x, y = boundary(lam)
     rng = np.random.default_rng(SEED)
-    map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
+    map = PinballMap("egg", lam=lam, alpha=str(EXACT_SHAPE))
     start = rng.uniform(-0.05, 0.05, (2, 200))
     ball = map.exponents(start[0], start[1], 100, 2000)
     orbit = map.orbit(ball.theta[ball.nu_plus > 0], ball.phi[ball.nu_plus > 0], 400)
@@ -95,10 +102,135 @@ def distance(lam: float) -> float:
 def sides(lam: float, offset: float = 1e-5) -> tuple[float, float]:
     """Shares of points just outside and just inside the curve that end on period 3."""
     x, y = boundary(lam)
-    map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
+    map = PinballMap("egg", lam=lam, alpha=str(EXACT_SHAPE))
     shares = []
     for side in (1, -1):
         theta = np.remainder(x[::20] + np.pi, 2 * np.pi) - np.pi
         end = map.exponents(theta, y[::20] + side * offset, 200, 500)
         shares.append(float(np.mean(end.nu_plus < -0.1)))
     return shares[0], shares[1]
+
+
+THREE = ("0.43", "0.436", "0.443")  # three attractors, no windows
+ONE = ("0.445", "0.48", "0.52", "0.56", "0.6", "0.63", "0.655")  # one attractor, no windows
+CELLS = 300  # along each side of phase space, in (theta, sin(phi))
+STARTS, MANY = 200, 4000
+LEFT = "0.7"
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The largest `|sin(phi)|` on the chaotic attractors, and the share of cells of phase space that they meet."""
+
+    height: float
+    share: float
+
+
+@cache
+def extent(lam: str) -> Extent:
+    """The extent of all chaotic attractors together, by 200 orbits of 2000 bounces and their images."""
+    map = PinballMap("egg", lam=lam, alpha=SHAPE)
+    start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, STARTS))
+    settled = map.exponents(start[0], start[1], 500, 2000)
+    on = settled.nu_plus > 0
+    orbit = map.orbit(settled.theta[on], settled.phi[on], 2000)
+    third, height = 2 * np.pi / 3, np.sin(orbit.phi).ravel()
+    theta = np.concatenate([sign * (orbit.theta.ravel() + k * third) for sign in (1, -1) for k in range(3)])
+    heights = np.concatenate([sign * height for sign in (1, -1) for _ in range(3)])
+    column = (np.remainder(theta, 2 * np.pi) / (2 * np.pi) * CELLS).astype(int) % CELLS
+    row = np.minimum(((heights + 1) / 2 * CELLS).astype(int), CELLS - 1)
+    met = np.unique(row * CELLS + column).size
+    return Extent(float(np.max(np.abs(height))), met / CELLS**2)
+
+
+@cache
+def period_3(lam: str) -> float:
+    """The share of 4000 random starts that the two period-3 orbits attract."""
+    map = PinballMap("egg", lam=lam, alpha=SHAPE)
+    start = interior_starts(map, MANY, SEED)
+    end = map.exponents(start.theta, start.phi, 200, 1000, start.component)
+    return float(np.mean((end.nu_plus < -0.02) & (np.abs(end.phi) > 0.15)))
+
+
+def grows(lams: tuple[str, ...]) -> bool:
+    """Do height and share of the attractor both grow from each contraction to the next?"""
+    found = [extent(lam) for lam in lams]
+    return all(a.height < b.height and a.share < b.share for a, b in pairwise(found))
+
+
+def listed(lams: tuple[str, ...]) -> str:
+    """The extents in words."""
+    return "; ".join(f"{extent(x).height:.3f}, {extent(x).share:.2%} at {x}" for x in lams)
+
+
+@judges("egg.attractor_expands")
+def attractor_expands(claim: Claim) -> Judgement:
+    """Above the joining of the mirror images the three attractors and then the one grow with the contraction."""
+    return sampled(
+        "it grows in angle and in area visited at the contractions tried; inside windows it is a cycle",
+        f"largest |sin(phi)| and the share of {CELLS}^2 cells that are met, by 200 orbits of 2000 bounces: "
+        f"{listed(THREE + ONE)}",
+        grows(THREE + ONE),
+    )
+
+
+@judges("egg.single_expands")
+def single_expands(claim: Claim) -> Judgement:
+    """The single attractor between the two crises."""
+    return sampled(
+        "it grows from the merging crisis to the boundary crisis, at the contractions tried",
+        f"largest |sin(phi)| and the share of cells that are met: {listed(ONE)}",
+        grows(ONE),
+    )
+
+
+@judges("egg.both_grow")
+def both_grow(claim: Claim) -> Judgement:
+    """The attractor's extent beside the share of starts that period 3 attracts."""
+    shares = [period_3(lam) for lam in ONE]
+    error = 3 * np.sqrt(0.25 / MANY)
+    rises = shares[-1] - shares[0] > error and all(b > a - error for a, b in pairwise(shares))
+    told = ", ".join(f"{share:.1%} at {lam}" for share, lam in zip(shares, ONE, strict=True))
+    return sampled(
+        "both do, and the basin of the chaotic attractor shrinks",
+        f"of {MANY} random starts period 3 attracts {told} (+- {error / 3:.1%}); the attractor meets {listed(ONE)}",
+        grows(ONE) and bool(rises),
+    )
+
+
+@judges("egg.transient")
+def transient(claim: Claim) -> Judgement:
+    """Just beyond the crisis orbits stay for long where the attractor was, and leave at a constant rate."""
+    beyond, before = "0.67", "0.66"
+    map = PinballMap("egg", lam=beyond, alpha=SHAPE)
+    start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, STARTS))
+    early, later, last = (map.exponents(start[0], start[1], 300, after) for after in (200, 1000, 3000))
+    counts = [int(np.sum(end.nu_plus > 0)) for end in (early, later, last)]
+    still = later.nu_plus > 0  # these stay for the 200 bounces that are looked at
+    orbit = map.orbit(early.theta[still], early.phi[still], 200)
+    heights = float(np.quantile(np.abs(np.sin(orbit.phi)), 0.95))
+    known = PinballMap("egg", lam=before, alpha=SHAPE)
+    settled = known.exponents(start[0], start[1], 500, 500)
+    old = float(np.quantile(np.abs(np.sin(known.orbit(settled.theta, settled.phi, 200).phi)), 0.95))
+    return sampled(
+        "a transient at angles up to a quarter larger than on the attractor at 0.66, which orbits leave one by one",
+        f"of {STARTS} orbits at lam = {beyond} the growth over 300 bounces is positive for {counts[0]}, {counts[1]} "
+        f"and {counts[2]} after 200, 1000 and 3000; 95% of the angles of those that stay have |sin(phi)| < "
+        f"{heights:.3f}, on the attractor at {before} {old:.3f}",
+        counts[0] > counts[1] > counts[2] and abs(heights - old) < 0.3 * old,
+    )
+
+
+@judges("egg.just_two", "egg.region_taken_over")
+def just_two(claim: Claim) -> Judgement:
+    """Both orbits are proved to attract; every random start reaches one of them."""
+    found = egg(LEFT)
+    threes = cycles(found, 3)
+    alone = len(found) == len(threes) == 2 and unsettled(found) == 0
+    counts = [a.share.count for a in threes if a.share]
+    return sampled(
+        "two orbits of period 3 attract, proved; nothing else was reached",
+        f"at lam = {LEFT} {' and '.join(map(str, counts))} of {STARTS} random starts reach the two orbits, which are "
+        f"proved to attract; a share below {3 / STARTS:.1%} of others is not excluded",
+        alone and bool(proved_at(LEFT, 3)),
+    )

@@ -1,12 +1,24 @@
-"""Claims that a cycle is attracting or unstable over a range of contractions. Paper: sections 6.2 to 6.5."""
+"""Claims on what is stable over a range of contractions, and on where the egg is chaotic. Paper: sections 6.2 to 6.6.
 
+Stability is proved. A sample proves no chaos: an exponent counts as positive beyond its standard error, and what it
+contradicts stays open.
+"""
+
+from collections import Counter
 from functools import cache
 
 import mpmath
+import numpy as np
 from flint import arb
 from sympy import Rational, S
 
+from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
+from numeric.pinball.sampling import interior_starts
+from numeric.sweeps.fields import egg as shaped
+from numeric.sweeps.fields import parameter_space
+from numeric.sweeps.run import run
+from numeric.sweeps.sweep import Measured, map_of, measured
 from symbolic.cycles.cycle import egg_diameter, trace_and_determinant
 from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Finding
@@ -16,10 +28,12 @@ from verification.arithmetic.progress import telling
 from verification.cycles.recurrence import cascade as ladder
 from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled
 from verification.named.attractors import certificate
+from verification.named.branches import cascade
 from verification.named.feigenbaum import accumulation
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, zero
 from verification.paper.egg.period3 import side_of_fold
+from verification.paper.shared.samples import sampled
 from verification.proofs.periodic.over_interval import Stability, doubling_curve, everywhere, stability
 from verification.proofs.periodic.triangles import contracts, flips_nowhere
 
@@ -131,7 +145,7 @@ def figure_attractors(claim: Claim) -> Judgement:
 
 
 @judges("egg.cascade")
-def cascade(claim: Claim) -> Judgement:
+def cascade_limit(claim: Claim) -> Judgement:
     """Certified doublings, and their limit by two extrapolations, whose difference is the error."""
     found = accumulation(SHAPE, 8)
     limit = f"{mpmath.nstr(found.limit.value, 10)} +- {float(found.limit.error):.0e}"
@@ -143,3 +157,139 @@ def cascade(claim: Claim) -> Judgement:
         if found.supercritical
         else "",
     )
+
+
+SEED = 1
+RETURN = 1e-6  # of an orbit to where it was
+NEAR = 0.01  # between a printed end of an interval and a sampled one
+LONGEST = 256  # period that is looked for
+BELOW = (("0.056", "0.745"), ("0.05", "0.868"))  # shapes below 0.06, and contractions where chaos was found
+NEAR_ZERO = ("0.01", "0.02")
+CUT = np.round(np.arange(0.38, 0.6801, 0.0025), 6)  # through the tongue at alpha = 0.08
+CASCADES = (("0.08", "0.3716", 12, 2e-4, "0.374"), ("0.056", "0.741", 8, 3e-4, "0.745"))  # and where chaos is beyond
+
+
+@judges("egg.no_chaos_below")
+def no_chaos_below(claim: Claim) -> Judgement:
+    """Shapes below the printed limit where a fine search has found chaos; where there is none, a coarse search."""
+    limit = float(str(claim.printed))
+    known = [chaos_at(*pair) for pair in BELOW if float(pair[0]) < limit]
+    found = ", ".join(
+        f"{share:.1%} of 600 random balls at alpha = {a}, lam = {lam} end with nu_+ = {nu:.4f} +- {error:.0e}"
+        for a, lam, share, nu, error in known
+        if share > 0
+    )
+    if not found:
+        shapes, lams = np.linspace(0.2, 0.9, 4) * limit, np.linspace(0, 0.95, 20)
+        chaotic = run(parameter_space(shapes, lams, 20, seed=SEED), workers=1).chaotic.values
+        said = f"{np.sum(chaotic)} of {20 * chaotic.size} random balls are chaotic, on a coarse grid below {limit}"
+        return sampled("none on a coarse grid", said, not np.any(chaotic))
+    said = (
+        f"chaotic attractors are found below {limit}: {found} (100000 bounces each after 10000; "
+        "benchmarks/parameter_space.py follows them for 10^8). That speaks against the claim; a sample proves nothing"
+    )
+    return sampled(
+        "narrow strips of chaos reach down to alpha = 0.04 at least (benchmarks/parameter_space.py)", said, False
+    )
+
+
+@cache
+def chaos_at(shape: str, lam: str) -> tuple[str, str, float, float, float]:
+    """The share of random balls that are chaotic, with the mean of their exponents and its standard error."""
+    map = PinballMap("egg", lam=lam, alpha=shape)
+    first = measured(map, interior_starts(map, 600, SEED), 4000, 10_000)
+    on = np.nonzero(first.chaotic)[0]
+    if on.size < 2:
+        return shape, lam, 0.0, float("nan"), float("nan")
+    last = measured(map, first.ended(on), 100_000, 0)
+    nu = last.nu_plus[last.chaotic]
+    return shape, lam, nu.size / 600, float(np.mean(nu)), float(np.std(nu) / np.sqrt(nu.size))
+
+
+@cache
+def cut() -> tuple[np.ndarray, np.ndarray]:
+    """The contractions of the cut at `alpha = 0.08`, and how many of 40 balls are chaotic at each."""
+    found = run(parameter_space(np.array([0.08]), CUT, starts=40, bounces=2000, transient=4000, seed=SEED), workers=1)
+    return CUT, found.chaotic.values[0]
+
+
+@judges("egg.chaotic_interval")
+def chaotic_interval(claim: Claim) -> Judgement:
+    """The first and the last contraction at which most balls, or some, are chaotic."""
+    lams, chaotic = cut()
+    first, last = lams[chaotic >= 20][0], lams[chaotic >= 4][-1]
+    low, high = (float(end) for end in str(claim.printed).strip("[]").split(","))
+    agrees = [abs(found - end) <= NEAR for found, end in ((first, low), (last, high))]
+    ends = [
+        f"{name} {'agrees' if same else 'does not agree'}"
+        for name, same in zip(("lower", "upper"), agrees, strict=True)
+    ]
+    said = (
+        f"with 40 balls at each of {lams.size} contractions, most are chaotic first at {first:.4f}, and some up to "
+        f"{last:.4f}; the cascade ends at 0.3935 (egg.cascade) and the attractor at 0.6621 (egg.boundary_crisis). "
+        f"The {ends[0]} and the {ends[1]} with the printed end to {NEAR}"
+    )
+    return sampled("about [0.394, 0.662], with windows", said, all(agrees))
+
+
+@judges("egg.chaos_beyond_cascade")
+def chaos_beyond_cascade(claim: Claim) -> Judgement:
+    """Between the cascade and the boundary crisis, every contraction without chaos is a window with cycles."""
+    lams, chaotic = cut()
+    inside = (lams > 0.3936) & (lams < 0.662)
+    periods = {float(lam): set(periods_at("0.08", str(lam), 40)) for lam in lams[inside & (chaotic == 0)]}
+    listed = "; ".join(f"{lam}: {', '.join(str(p or '> 256') for p in sorted(p))}" for lam, p in periods.items())
+    share = float(np.mean(chaotic[inside] > 0))
+    said = (
+        f"some of 40 balls are chaotic at {share:.0%} of the {np.sum(inside)} contractions tried between 0.3936 and "
+        f"0.662, and at the others cycles attract the balls, of periods {listed}. Beyond the crisis at 0.662 there is "
+        "no chaotic attractor, as section 6.7 says"
+    )
+    windows = all(found - {0, 3} for found in periods.values())
+    return sampled("for lambda_oo < lam < 0.662, except in windows", said, windows and share > 0.9)
+
+
+@judges("egg.periodic_only_near_zero")
+def periodic_only_near_zero(claim: Claim) -> Judgement:
+    """Every random ball at two small shapes returns to where it was."""
+    lams = ("0.2", "0.4", "0.6", "0.8", "0.9")
+    found = {(a, lam): periods_at(a, lam, 60) for a in NEAR_ZERO for lam in lams}
+    seen = sorted({period for periods in found.values() for period in periods})
+    return sampled(
+        f"cycles of period {', '.join(map(str, seen))} at alpha = {' and '.join(NEAR_ZERO)}",
+        f"60 random balls each at alpha = {', '.join(NEAR_ZERO)} and lam = {', '.join(lams)} end on cycles, of period "
+        f"{', '.join(str(p or '> 256') for p in seen)}; at lam closer to 1, and at smaller alpha, transients outlast "
+        "any sample",
+        0 not in seen,
+    )
+
+
+@judges("egg.isolated_regions")
+def isolated_regions(claim: Claim) -> Judgement:
+    """The first doublings on the way to two of the regions, proved, and chaos just beyond where they accumulate."""
+    said, good = [], True
+    for shape, contraction, period, step, beyond in CASCADES:
+        found = cascade(Rational(shape), Rational(contraction), period, step)
+        _, _, share, nu, error = chaos_at(shape, beyond)
+        good = good and found.proved and share > 0 and found.limit < float(beyond)
+        flips = ", ".join(f"{p} at {at:.6f}" for p, at in zip(found.periods, found.lams, strict=True))
+        said.append(
+            f"at alpha = {shape} doublings of period {flips}, certified and supercritical, the distances in the ratio "
+            f"{found.ratios[0]:.3f}; they would accumulate at {found.limit:.6f}, and at {beyond} {share:.1%} of 600 "
+            f"balls have nu_+ = {nu:.4f} +- {error:.0e}"
+        )
+    return sampled(
+        "the regions tried are strips at the ends of cascades from period 12 and from period 8", "; ".join(said), good
+    )
+
+
+def periods_at(shape: str, lam: str, balls: int) -> Counter[int]:
+    """How many random balls end on a cycle of each period; 0 stands for none up to `LONGEST`."""
+    map = map_of(shaped(3, float(shape)), float(lam))
+    settled: Measured = measured(map, interior_starts(map, balls, SEED), 20_000, 20_000)
+    end = settled.end
+    orbit = map.orbit(end.theta, end.phi, LONGEST, end.component)
+    gap = np.hypot(orbit.x - orbit.x[0], orbit.y - orbit.y[0]) + np.abs(orbit.phi - orbit.phi[0])
+    back = gap[1:] < RETURN
+    period = np.where(back.any(axis=0), back.argmax(axis=0) + 1, 0)
+    return Counter(period.tolist())

@@ -8,7 +8,7 @@ from numeric import PinballMap
 from numeric.dynamics.attractors import classify
 from numeric.dynamics.recognition import Kind
 from numeric.pinball.sampling import phase_grid
-from verification.paper.figures.cuspless import cycle_points, orbit_on
+from verification.paper.figures.cardioid import cycle_points, orbit_on
 from verification.paper.figures.phase import by_angle, by_arc_length, facts
 from verification.plots.sheet import CROSS, DARK, Array, Panel, Panels, Raster, cloud, scaled, sheet
 

@@ -1,25 +1,52 @@
-"""The figures on the cardioid. Paper: section 4.
+"""The figures on the cardioid and the cuspless cardioid. Paper: sections 4 and 5, appendix A.2.
 
-Lyapunov exponents against the contraction, as the paper plots them. Paper: sections 4.1 and 5.3, appendix.
+Lyapunov exponents against the contraction, as the paper plots them; attractors as a figure shows them: cycles as closed
+polygons or a few marks, chaotic sets as one long orbit.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from numeric import PinballMap
-from verification.paper.figures.phase import SEED, TRANSIENT, by_arc_length, facts, flights, outline, settled
-from verification.paper.figures.phase import slap_by_arc_length as slap_graph
-from verification.plots.sheet import BLACK, DARK, FAINT, OUTLINE, Panel, Panels, cloud, graphs, scaled, sheet
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 from numpy.typing import NDArray
 
+from numeric import Orbit, PinballMap
+from numeric.dynamics.attractors import find
+from numeric.dynamics.recognition import Attractor, Kind
 from numeric.pinball.sampling import interior_starts
 from numeric.sweeps.sweep import floor_of
-from verification.plots.sheet import Array, Curve
+from verification.paper.figures.phase import (
+    SEED,
+    TRANSIENT,
+    arc_length,
+    by_arc_length,
+    facts,
+    flights,
+    outline,
+    settled,
+)
+from verification.paper.figures.phase import slap_by_arc_length as slap_graph
+from verification.plots.sheet import (
+    BLACK,
+    DARK,
+    FAINT,
+    LIGHT,
+    MIDDLE,
+    OUTLINE,
+    Array,
+    Curve,
+    Panel,
+    Panels,
+    cloud,
+    graphs,
+    legend,
+    scaled,
+    sheet,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 BALLS = 40
 
@@ -124,3 +151,177 @@ def _mean(values: Array, chosen: NDArray[np.bool_]) -> Array:
     count = chosen.sum(axis=1)
     total = np.where(chosen, values, 0.0).sum(axis=1)
     return np.asarray(np.divide(total, count, out=np.full(count.shape, np.nan), where=count > 0))
+
+
+JOIN = 3**0.5 / 4  # the arc length of the lower join; the upper one is at -JOIN
+CUSPLESS_BALLS = 60  # orbits that show an attractor
+LAMBDA_C = (27 - 8 * 11**0.5) / 5
+STAR = "0.0712172"  # lambda*, as certified
+RANGES = (("0.1", "0.2", "0.3"), ("0.4", "0.5", "0.6"), ("0.7", "0.8", "0.9"))
+
+
+def configurations(fine: float = 1.0) -> Panels:
+    """The attractors in configuration space at four contractions."""
+    panels = []
+    for lam in ("0.02", "0.072", "0.2", "0.5"):
+        map, bounces = PinballMap("cuspless", lam=lam), scaled(300, min(fine, 1.0), 8)
+        named = found(map)
+        curves = {name: flights(orbit_on(map, attractor, bounces)) for name, attractor in named.items()}
+        known = facts(map, seed=SEED, bounces=bounces, **shares(named))
+        panels.append(Panel(rf"$\lambda = {lam}$", "x", "y", {"boundary": outline(map), **curves}, facts=known))
+    return tuple(panels)
+
+
+def draw_configurations(panels: Panels) -> "Figure":
+    """Periodic attractors as thick lines, chaotic ones as thin."""
+    figure, axes = sheet(panels, columns=4, height=2.1)
+    for ax, panel in zip(axes, panels, strict=True):
+        ax.plot(*panel.curves["boundary"], **OUTLINE)
+        if "chaotic" in panel.curves:
+            ax.plot(*panel.curves["chaotic"], color=DARK, lw=0.25)
+        if "period 2" in panel.curves:
+            ax.plot(*panel.curves["period 2"], color=BLACK, lw=1.6)
+    return figure
+
+
+def phase_space(fine: float = 1.0) -> Panels:
+    """The chaotic attractor at nine contractions, three to a panel."""
+    panels = []
+    for lams in RANGES:
+        curves, bounces = {}, scaled(200, fine, 20)
+        for lam in lams:
+            map = PinballMap("cuspless", lam=lam)
+            curves[lam] = by_arc_length(map, settled(map, CUSPLESS_BALLS, bounces).orbit)
+        known = facts(
+            PinballMap("cuspless", lam=[float(lam) for lam in lams]), seed=SEED, balls=CUSPLESS_BALLS, bounces=bounces
+        )
+        panels.append(Panel(rf"$\lambda \in [{lams[0]}, {lams[-1]}]$", "s", "sin_phi", curves, facts=known))
+    return tuple(panels)
+
+
+def draw_phase_space(panels: Panels) -> "Figure":
+    """The least contraction darkest and on top."""
+    figure, axes = sheet(panels, columns=3, height=2.6)
+    for ax, panel in zip(axes, panels, strict=True):
+        for place in (-JOIN, 0.0, JOIN):
+            ax.axvline(place, **FAINT)
+        for (lam, curve), color in reversed(list(zip(panel.curves.items(), (BLACK, MIDDLE, LIGHT), strict=True))):
+            cloud(ax, curve, color, label=rf"${lam}$")
+        whole(ax)
+        steepest = max(float(np.max(np.abs(curve.y))) for curve in panel.curves.values())
+        ax.set_ylim(-np.ceil(4 * steepest) / 4, np.ceil(4 * steepest) / 4)
+        legend(ax)
+    return figure
+
+
+def corner(fine: float = 1.0) -> Panels:
+    """Arc length of the fourth collision from the upper join, against the first angle, at three contractions."""
+    phi = np.linspace(-0.25, 0.25, scaled(500, fine, 20))
+    curves = {}
+    for lam in ("0.05", STAR, "0.09"):
+        map = PinballMap("cuspless", lam=lam)
+        orbit = map.orbit(np.full(phi.shape, 2 * np.pi / 3), phi, 4)
+        curves[lam] = Curve(phi, arc_length(map, orbit.component, orbit.theta)[4])
+    known = facts(PinballMap("cuspless", lam=[float(lam) for lam in curves]), lambda_star=STAR)
+    return (Panel("from the upper join, $s_0 = -\\sqrt{3}/4$", "phi", "s_4", curves, facts=known),)
+
+
+def draw_corner(panels: Panels) -> "Figure":
+    """Three graphs, between dotted lines at the joins and the centre of the wall."""
+    figure, (ax,) = sheet(panels, columns=1, height=3.2)
+    for place in (-JOIN, 0.0, JOIN):
+        ax.axhline(place, **(FAINT | {"color": "0.3"}))
+    looks: tuple[dict[str, Any], ...] = (
+        {"color": MIDDLE, "ls": "--"},
+        {"color": BLACK, "lw": 1.5},
+        {"color": DARK, "ls": (0, (5, 1, 1, 1))},
+    )
+    for (lam, curve), look in zip(panels[0].curves.items(), looks, strict=True):
+        star = " = \\lambda^*" if lam == STAR else ""
+        ax.plot(*curve, label=rf"$\lambda = {lam}{star}$", **look)
+    ax.legend()
+    return figure
+
+
+def cuspless_exponents(fine: float = 1.0) -> Panels:
+    """Both exponents against `lam`, averaged over 100 orbits, and apart for those on cycles and on chaotic sets."""
+    count = min(fine, 2.0)
+    stretches = ((0.005, 0.055, 10), (0.06, 0.1, 30), (0.11, 1, 30))  # of lam, and how many in a draft
+    lams = np.concatenate([np.linspace(low, high, scaled(many, count, 3)) for low, high, many in stretches])
+    return (averaged("cuspless", lams, scaled(1000, fine, 50)),)
+
+
+def draw_cuspless_exponents(panels: Panels) -> "Figure":
+    """The paper's averages as circles, lines for `nu_plus` on each kind of attractor; where both coexist, enlarged."""
+    figure, (ax,) = sheet(panels, columns=1, height=3.2)
+    (panel,) = panels
+    inset = ax.inset_axes((0.42, 0.08, 0.55, 0.46))
+    for here in (ax, inset):
+        for place in (float(STAR), LAMBDA_C):
+            here.axvline(place, **FAINT)
+        here.axhline(0, **FAINT)
+        here.plot(*panel.curves["nu_plus_chaotic"], color=MIDDLE, lw=1.2, label=r"$\nu_+$, chaotic orbits only")
+        here.plot(*panel.curves["nu_plus_periodic"], color="0.5", ls="--", label=r"$\nu_+$, periodic orbits only")
+        here.plot(*panel.curves["nu_plus"], ls="", marker="o", ms=2.6, color=BLACK, label=r"$\nu_+$, all orbits")
+    ax.plot(*panel.curves["nu_minus"], ls="", marker="o", ms=2.6, mfc="white", color=DARK, label=r"$\nu_-$, all orbits")
+    inset.set_xlim(0.055, 0.11)
+    inset.set_ylim(-0.08, 0.32)
+    ax.set_xlim(0, 1.01)
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2)
+    return figure
+
+
+def cuspless_slap(fine: float = 1.0) -> Panels:
+    """The slap map, its second and its fourth iterate."""
+    map = PinballMap("cuspless", lam=0)
+    named = ((1, "T_0"), (2, "T_0^2"), (4, "T_0^4"))
+    curves = {name: slap_graph(map, n, scaled(400, fine, 20)) for n, name in named}
+    return (Panel("cuspless cardioid", "s", "s_image", curves, facts=facts(map)),)
+
+
+def draw_cuspless_slap(panels: Panels) -> "Figure":
+    """The three graphs with the diagonal."""
+    figure, (ax,) = sheet(panels, columns=1, height=4.2)
+    graphs(ax, panels[0])
+    return figure
+
+
+def whole(ax: "Axes") -> None:
+    """All of the boundary along the abscissa: s from -C to C."""
+    ax.set_xlim(-9 * JOIN, 9 * JOIN)
+
+
+STARTS = 200  # random starts among which attractors are looked for
+
+
+def found(map: PinballMap, starts: int = STARTS) -> dict[str, Attractor]:
+    """The attractors by name: `period 3`, `period 3, second`, `chaotic` and so on, the most visited first.
+
+    >>> list(found(PinballMap("egg", lam="0.7", alpha="0.08"), 50))
+    ['period 3', 'period 3 (2)']
+    """
+    named: dict[str, Attractor] = {}
+    for attractor in find(map, starts, SEED):
+        if attractor.kind in (Kind.CYCLE, Kind.CHAOTIC):
+            base = f"period {attractor.period}" if attractor.kind is Kind.CYCLE else "chaotic"
+            count = sum(name.startswith(base) and name[len(base) :][:1] in ("", " ") for name in named)
+            named[base + (f" ({count + 1})" if count else "")] = attractor
+    return named
+
+
+def orbit_on(map: PinballMap, attractor: Attractor, bounces: int) -> Orbit:
+    """An orbit on the attractor, as one column; of a cycle, once round and closed."""
+    first, turns = attractor.points, attractor.period or bounces
+    return map.orbit(first.theta[:1], first.phi[:1], turns, first.component[:1])
+
+
+def cycle_points(map: PinballMap, attractor: Attractor) -> tuple[Curve, Curve]:
+    """A cycle's bounces in `(theta, sin(phi))`, and its closed polygon in the plane."""
+    where, theta, phi = attractor.points
+    x, y = map.states.point(where, theta)
+    return Curve(np.arctan2(y, x), np.sin(phi)), Curve(np.append(x, x[0]), np.append(y, y[0]))
+
+
+def shares(named: dict[str, Attractor]) -> dict[str, float]:
+    """The share of the starts that each attractor draws."""
+    return {f"share of {name}": a.share.count / a.share.of for name, a in named.items() if a.share is not None}

@@ -97,7 +97,7 @@ def two_types(claim: Claim) -> Judgement:
 def no_rotation(claim: Claim) -> Judgement:
     """Excluded by proof where every orbit tends to a cycle or stretches; elsewhere each start of a sample ends so."""
     excluded = by("the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits())
-    scenes = [("cuspless", x, {}) for x in ("0.09", "0.5")]
+    scenes: list[tuple[str, str, dict[str, Any]]] = [("cuspless", x, {}) for x in ("0.09", "0.5")]
     scenes += [("egg", x, {"alpha": SHAPE}) for x in ("0.2", "0.43", "0.45", "0.7", "0.83")]
     left = [unsettled(found(name, x, **shape)) for name, x, shape in scenes]
     other = [a for name, x, shape in scenes for a in found(name, x, **shape) if a.kind in (Kind.NEUTRAL, Kind.STOPPED)]

@@ -1,9 +1,9 @@
-(** Numbers of the paper, enclosed by the tactic [interval]; existence by the intermediate value theorem. *)
+(** Numbers of the paper, enclosed by the tactic [interval]; existence by the interval Newton theorem. *)
 
-From Coq Require Import Reals Ranalysis5 Lra Psatz.
 From Coquelicot Require Import Coquelicot.
+From Coq Require Import Reals ZArith List Lra Lia Psatz.
 From Interval Require Import Tactic.
-From Pinball Require Import Bounce Cardioid Generated Algebra.
+From Pinball Require Import Newton Jets Checked Boxes Bounce Cardioid Generated Algebra.
 Open Scope R_scope.
 
 Theorem lambda_c_enclosed : 0.093400335431360241 < lambda_c < 0.093400335431360242.
@@ -94,31 +94,102 @@ Proof.
   unfold angle. destruct (mirror h0 h1) as [-> ->]. rewrite <- atan_opp. f_equal. unfold Rdiv. ring.
 Qed.
 
-(** Zero where the law holds at [h] with the contraction that it needs at the corner. *)
-Definition law_defect (h : R) : R :=
-  angle h (- corner) * angle corner (- h) - angle corner h * angle h corner.
+(** Its equations: the law at [h] and the law at the lower corner. The other two bounces are their mirror images. *)
+Definition corner_laws (h lam : R) : Prop :=
+  angle h (- corner) = - lam * angle h corner /\ angle corner h = lam * angle (- corner) h.
 
 Definition low : R := 0.12726343566033917125.
 Definition high : R := 0.12726343566033917126.
 
-Ltac unfolded := unfold law_defect, angle, tangential, normal, X, Y, corner in *.
+Ltac unfolded := unfold angle, tangential, normal, X, Y, corner in *.
 
 Lemma normals_positive h :
   low <= h <= high ->
-  0 < normal corner h /\ 0 < normal h corner /\ 0 < normal h (- corner) /\ 0 < normal (- corner) h
-  /\ 0 < normal corner (- h).
+  0 < normal corner h /\ 0 < normal h corner /\ 0 < normal h (- corner) /\ 0 < normal (- corner) h.
+Proof. intros range. unfold low, high in range. unfolded. repeat split; interval. Qed.
+
+(** ** The equations as formulas, in [h] and [lam] *)
+
+Definition twice_ (b : formula) : formula := Mul (Int 2) b.
+Definition X_ (b : formula) : formula := Mul (Add (Int 1) (Cos (twice_ b))) (Cos (twice_ b)).
+Definition Y_ (b : formula) : formula := Mul (Add (Int 1) (Cos (twice_ b))) (Sin (twice_ b)).
+Definition thrice_ (b : formula) : formula := Mul (Int 3) b.
+Definition opposite_ (b : formula) : formula := Mul (Int (-1)) b.
+Definition tangential_ (b c : formula) : formula :=
+  Add (Mul (opposite_ (Sin (thrice_ b))) (Sub (X_ c) (X_ b))) (Mul (Cos (thrice_ b)) (Sub (Y_ c) (Y_ b))).
+Definition normal_ (b c : formula) : formula :=
+  Sub (Mul (opposite_ (Cos (thrice_ b))) (Sub (X_ c) (X_ b))) (Mul (Sin (thrice_ b)) (Sub (Y_ c) (Y_ b))).
+Definition angle_ (b c : formula) : formula := Atan (Div (tangential_ b c) (normal_ b c)).
+Definition corner_ : formula := Div Pi (Int 3).
+Definition corner_system : list formula :=
+  Add (angle_ (Var 0) (opposite_ corner_)) (Mul (Var 1) (angle_ (Var 0) corner_))
+  :: Sub (angle_ corner_ (Var 0)) (Mul (Var 1) (angle_ (opposite_ corner_) (Var 0))) :: nil.
+
+Lemma value_angle x b c : value x (angle_ b c) = angle (value x b) (value x c).
 Proof.
-  intros range. unfold low, high in range. unfolded. repeat split; interval.
+  unfold angle_, tangential_, normal_, opposite_, thrice_, X_, Y_, twice_, angle, tangential, normal, X, Y. cbn [value].
+  rewrite !(Rmult_comm (-1)). f_equal. f_equal; ring.
 Qed.
 
-Lemma law_defect_continuous h : low <= h <= high -> continuity_pt law_defect h.
+Lemma corner_system_zero x :
+  (forall i, (i < 2)%nat -> value x (nth i corner_system (Int 1)) = 0) <-> corner_laws (x 0%nat) (x 1%nat).
 Proof.
-  intros range. destruct (normals_positive h range) as [n1 [n2 [n3 [_ n5]]]].
-  apply continuity_pt_filterlim. apply (@ex_derive_continuous R_AbsRing R_NormedModule).
-  unfolded. auto_derive. repeat split; try (apply Rgt_not_eq; assumption).
+  assert (first : value x (nth 0 corner_system (Int 1)) = angle (x 0%nat) (- corner) + x 1%nat * angle (x 0%nat) corner).
+  { cbn [nth corner_system value]. rewrite !value_angle. unfold corner_, opposite_, corner. cbn [value].
+    replace (-1 * (PI / 3)) with (- (PI / 3)) by ring. reflexivity. }
+  assert (second : value x (nth 1 corner_system (Int 1)) = angle corner (x 0%nat) - x 1%nat * angle (- corner) (x 0%nat)).
+  { cbn [nth corner_system value]. rewrite !value_angle. unfold corner_, opposite_, corner. cbn [value].
+    replace (-1 * (PI / 3)) with (- (PI / 3)) by ring. reflexivity. }
+  unfold corner_laws. split.
+  - intros zero. assert (z0 := zero 0%nat ltac:(lia)). assert (z1 := zero 1%nat ltac:(lia)). rewrite first in z0.
+    rewrite second in z1. split; lra.
+  - intros [law1 law2] i below. destruct i as [| [| i]]; [rewrite first; lra | rewrite second; lra | lia].
 Qed.
 
-(** [lambda-star] and [phi-star]: there is a contraction at which the orbit through both corners exists. *)
+Ltac decimals := change corner_den with 1000000000000000000000000000000%Z; cbn [nth corner_centre corner_radius]; lra.
+
+Definition bits : I.F.precision := I.F.PtoP 130.
+
+(** The laws have exactly one solution in a box of radius 1e-21. *)
+Theorem corner_laws_have_one_solution :
+  exists h lam,
+    Rabs (h - 0.127263435660339171258667522981) <= / 10 ^ 21 /\ Rabs (lam - 0.071217245248915980411597382909) <= / 10 ^ 21
+    /\ corner_laws h lam
+    /\ forall h' lam',
+      Rabs (h' - 0.127263435660339171258667522981) <= / 10 ^ 21 -> Rabs (lam' - 0.071217245248915980411597382909) <= / 10 ^ 21 ->
+      corner_laws h' lam' -> h' = h /\ lam' = lam.
+Proof.
+  assert (boxes : forall x, in_box (middle corner_den corner_centre) (reach 2 corner_den corner_radius) x <->
+    Rabs (x 0%nat - 0.127263435660339171258667522981) <= / 10 ^ 21 /\ Rabs (x 1%nat - 0.071217245248915980411597382909) <= / 10 ^ 21
+    /\ forall j, (2 <= j)%nat -> x j = 0).
+  { intros x.
+    assert (m0 : middle corner_den corner_centre 0 = 0.127263435660339171258667522981) by (unfold middle, entry; decimals).
+    assert (m1 : middle corner_den corner_centre 1 = 0.071217245248915980411597382909) by (unfold middle, entry; decimals).
+    assert (r0 : reach 2 corner_den corner_radius 0 = / 10 ^ 21) by (unfold reach, entry; cbn [Nat.ltb Nat.leb]; decimals).
+    assert (r1 : reach 2 corner_den corner_radius 1 = / 10 ^ 21) by (unfold reach, entry; cbn [Nat.ltb Nat.leb]; decimals).
+    assert (rest : forall j, (2 <= j)%nat -> middle corner_den corner_centre j = 0 /\ reach 2 corner_den corner_radius j = 0).
+    { intros [| [| j]] above; try lia. split; [| reflexivity]. unfold middle, entry. simpl. destruct j; simpl; lra. }
+    split.
+    - intros inside. assert (i0 := inside 0%nat). assert (i1 := inside 1%nat). rewrite m0, r0 in i0. rewrite m1, r1 in i1.
+      split; [exact i0 | split; [exact i1 |]]. intros j above. specialize (inside j). destruct (rest j above) as [m r].
+      rewrite m, r in inside. apply Rabs_le_between in inside. lra.
+    - intros [i0 [i1 others]] j. destruct j as [| [| j]].
+      + rewrite m0, r0. exact i0.
+      + rewrite m1, r1. exact i1.
+      + destruct (rest (S (S j)) ltac:(lia)) as [m r]. rewrite m, r, others by lia. rewrite Rminus_0_r, Rabs_R0. lra. }
+  destruct (checked_zero bits 2 corner_system corner_den corner_centre corner_radius
+    corner_matrix_den corner_inverse corner_matrix_den corner_jacobian) as [x [inside [zero alone]]];
+    [vm_cast_no_check (eq_refl true) |].
+  exists (x 0%nat), (x 1%nat). destruct (proj1 (boxes x) inside) as [b0 [b1 _]].
+  split; [exact b0 | split; [exact b1 | split; [exact (proj1 (corner_system_zero x) zero) |]]].
+  intros h' lam' c0 c1 laws.
+  set (y := fun j : nat => match j with 0%nat => h' | 1%nat => lam' | _ => 0 end).
+  assert (same := alone y). split; [apply (same) with (j := 0%nat) | apply (same) with (j := 1%nat)];
+    try (apply (proj2 (boxes y)); repeat split; try assumption; intros [| [| j]] above; [lia | lia | reflexivity]);
+    exact (proj2 (corner_system_zero y) laws).
+Qed.
+
+(** [lambda-star] and [phi-star]: the contraction at which the orbit through both corners exists. *)
 Theorem corner_orbit :
   exists lam h phi,
     0.071217245248915980 < lam < 0.071217245248915981
@@ -130,22 +201,15 @@ Theorem corner_orbit :
       /\ flight (- corner) (- h) t0 (- phi) (- eta1) /\ - phi1 = - lam * - eta1
       /\ flight (- h) corner t1 (- phi1) (- eta2) /\ phi = - lam * - eta2.
 Proof.
-  assert (order : low < high) by (unfold low, high; lra).
-  assert (at_low : law_defect low < 0) by (unfold low; unfolded; interval with (i_prec 120)).
-  assert (at_high : 0 < law_defect high) by (unfold high; unfolded; interval with (i_prec 120)).
-  destruct (IVT_interv law_defect low high law_defect_continuous order at_low at_high) as [h [range zero]].
-  destruct (normals_positive h range) as [n1 [n2 [n3 [n4 n5]]]].
-  assert (nonzero : angle corner (- h) < 0 \/ 0 < angle corner (- h)).
-  { unfold low, high in range. unfolded. first [left; interval | right; interval]. }
-  assert (not0 : angle corner (- h) <> 0) by (destruct nonzero; lra).
-  exists (- angle corner h / angle corner (- h)), h, (angle corner h).
-  split; [| split; [| split]].
+  destruct corner_laws_have_one_solution as [h [lam [near_h [near_lam [[law back] _]]]]].
+  apply Rabs_le_between in near_h, near_lam.
+  assert (range : low <= h <= high) by (unfold low, high; lra).
+  destruct (normals_positive h range) as [n1 [n2 [n3 n4]]].
+  exists lam, h, (angle corner h).
+  split; [lra | split; [| split]].
   - clear - range. unfold low, high in range. unfolded. split; interval with (i_prec 120).
-  - clear - range. unfold low, high in range. unfolded. split; interval with (i_prec 120).
-  - destruct range as [[less | same] [more | same']]; try lra; exfalso; subst; lra.
-  - assert (other : angle (- corner) h = - angle corner (- h)).
-    { rewrite <- mirror_angle. rewrite Ropp_involutive. reflexivity. }
-    exists (chord_length corner h), (chord_length h (- corner)), (angle h (- corner)), (angle h corner), (angle (- corner) h).
+  - unfold low, high. lra.
+  - exists (chord_length corner h), (chord_length h (- corner)), (angle h (- corner)), (angle h corner), (angle (- corner) h).
     assert (first := flight_exists corner h n1 n2). assert (second := flight_exists h (- corner) n3 n4).
     assert (turned : forall h0 h1, 0 < normal h0 h1 -> 0 < normal h1 h0 ->
       flight (- h0) (- h1) (chord_length h0 h1) (- angle h0 h1) (- angle h1 h0)).
@@ -155,12 +219,5 @@ Proof.
       - unfold chord_length. destruct (mirror h0 h1) as [-> ->]. f_equal. ring. }
     assert (third := turned corner h n1 n2). assert (fourth := turned h (- corner) n3 n4).
     rewrite Ropp_involutive in fourth.
-    assert (law : angle h (- corner) = - (- angle corner h / angle corner (- h)) * angle h corner).
-    { unfold law_defect in zero. apply Rmult_eq_reg_r with (angle corner (- h)); [| exact not0].
-      replace (- (- angle corner h / angle corner (- h)) * angle h corner * angle corner (- h))
-        with (angle corner h * angle h corner) by (field; exact not0). lra. }
-    assert (back : - angle corner h = - (- angle corner h / angle corner (- h)) * angle (- corner) h).
-    { rewrite other. field. exact not0. }
-    set (lam := - angle corner h / angle corner (- h)) in *. clearbody lam.
     repeat (split; [first [assumption | lra] |]). lra.
 Qed.

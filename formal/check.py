@@ -17,8 +17,10 @@ from pathlib import Path
 HERE = Path(__file__).parent
 RECORD = HERE / "assumptions.txt"
 # In an order in which each finds what it needs.
-CARDIOID = ("Cardioid", "Stretch", "Cycles")
-FILES = ("Bounce", "Cone", *CARDIOID, "Generated", "Frames", "Algebra", "Errata", "Fold", "Numbers")
+CARDIOID = ("Cardioid", "Stretch", "Cycles", "Map")
+NEWTON = ("Newton", "Jets", "Checked", "Boxes")
+EGG = ("Cascade", "Equations", "Doublings")
+FILES = ("Bounce", "Cone", *CARDIOID, "Generated", "Frames", "Algebra", "Errata", "Fold", *NEWTON, *EGG, "Numbers")
 LIBRARIES = "From Coquelicot Require Import Coquelicot. From Interval Require Import Tactic."
 NEEDED = "make formal needs coqc 8.16 with coquelicot and interval (Debian: coq libcoq-coquelicot libcoq-interval)"
 COQC = ("coqc", "-q", "-w", "-ambiguous-paths", "-Q", ".", "Pinball")

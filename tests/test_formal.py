@@ -25,7 +25,7 @@ def script(name):
 
 
 check = script("check")
-ENCLOSURES = {"Fold", "Numbers"}
+ENCLOSURES = {"Fold", "Jets", "Checked", "Doublings", "Numbers"}
 PROOFS = [FORMAL / f"{name}.v" for name in check.FILES]
 
 
@@ -36,6 +36,10 @@ def recorded():
 
 def test_the_generated_definitions_are_what_sympy_and_the_printed_claims_give():
     assert script("generate").text() == (FORMAL / "Generated.v").read_text()
+
+
+def test_the_boxes_are_what_newtons_method_finds():
+    assert script("boxes").text() == (FORMAL / "Boxes.v").read_text()
 
 
 def test_every_file_of_the_folder_is_checked():

@@ -8,15 +8,20 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
-from sympy import Expr, Float, Pow, Symbol, cos, pi, sin
+from sympy import Add, Dummy, Expr, Float, I, Mul, Pow, Symbol, cos, pi, sin
 from sympy import sympify as exact
 
 from numeric.lowering.program import Builder, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.motion import flight
+from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
 from symbolic.tables.table import Component, Table, theta
 from symbolic.tables.validity import closed_and_finite
+from symbolic.tables.waves import LONG, highest, size, waves
+
+DEEP = 12  # operations within each other, beyond which derivatives are not written out
+DEGREE = 16  # the highest harmonic of a chord polynomial: its text grows with the third power
 
 
 def named(name: str, K: int = 3) -> TableIR:
@@ -116,22 +121,95 @@ def _program(symbols: list[Symbol], formula: Callable[[Any], list[Any]], *first:
     nodes = dict(zip([theta] if first == ("theta",) else [], builder.nodes, strict=False))
     nodes |= dict(zip(symbols, builder.nodes[len(first) :], strict=True))
 
-    def convert(expression: Any) -> Node:
-        return converted(builder, exact(expression), nodes)
+    def convert(expression: Any, more: dict[Symbol, Node] | None = None) -> Node:
+        return converted(builder, exact(expression), {**nodes, **more} if more else nodes)
 
     convert.inputs = builder.nodes[: len(first)]  # type: ignore[attr-defined]
     return builder.program(*formula(convert))
 
 
 def _part(component: Component, symbols: list[Symbol]) -> Part:
+    ends = _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)])
+    if sum(map(size, component.point)) > LONG or max(map(levels, component.point)) > DEEP:
+        return Part(component.name, ends, _long_curve(component, symbols))
     first = velocity(component)
     second = first.diff(theta)
     curve = [*component.point, *first, *second]
-    return Part(
-        component.name,
-        _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)]),
-        _program(symbols, lambda nodes: [nodes(expression) for expression in curve], "theta"),
-    )
+    return Part(component.name, ends, _program(symbols, lambda nodes: [nodes(expr) for expr in curve], "theta"))
+
+
+def _long_curve(component: Component, symbols: list[Symbol]) -> Program:
+    """Point, velocity and acceleration of a long formula: harmonic by harmonic, or one operation after the other.
+
+    Its derivatives are not written out: those of a product of thirty factors have some thousand factors each.
+    """
+    x, y = component.point
+    found = waves(x + I * y)
+    c = flight.harmonics(component) if found is not None and highest(found) <= LONG else None
+    if c is not None:
+        once = flight.differentiated(c)
+        u = cos(theta), sin(theta)
+
+        def waved(nodes: Any) -> list[Any]:
+            at = nodes(u[0]), nodes(u[1])
+            known = [{k: tuple((nodes(x), nodes(y)) for x, y in v) for k, v in h.items()} for h in
+                     (c, once, flight.differentiated(once))]  # fmt: skip
+            return [value for h in known for value in flight.point_at(h, at)]  # type: ignore[arg-type]
+
+        return _program(symbols, waved, "theta")
+
+    def jets(nodes: Any) -> list[Any]:
+        known: dict[Expr, Jet] = {}
+        x, y = (_jet(expression, nodes, known) for expression in component.point)
+        return [value for pair in zip(x, y, strict=True) for value in pair]
+
+    return _program(symbols, jets, "theta")
+
+
+Jet = tuple[Node, Node, Node]  # a value and its first two derivatives by theta
+
+
+def _jet(expression: Expr, nodes: Any, known: dict[Expr, Jet]) -> Jet:
+    """The value of an expression and its derivatives by `theta`, by the chain rule on each operation."""
+    if expression in known:
+        return known[expression]
+    if not expression.args or _is_wave(expression) or not expression.has(theta):
+        first = expression.diff(theta)
+        found = nodes(expression), nodes(first), nodes(first.diff(theta))
+    elif isinstance(expression, Add | Mul) and len(expression.args) > 2:
+        half = len(expression.args) // 2
+        parts = (expression.func(*some) for some in (expression.args[:half], expression.args[half:]))
+        found = _chained(expression.func, [_jet(part, nodes, known) for part in parts], nodes)
+    else:
+        inner = [part for part in expression.args if part.has(theta)]
+
+        def outer(*given: Expr) -> Expr:
+            by_part = dict(zip(inner, given, strict=True))
+            return expression.func(*(by_part.get(part, part) for part in expression.args))
+
+        found = _chained(outer, [_jet(part, nodes, known) for part in inner], nodes)
+    known[expression] = found
+    return found
+
+
+def _chained(outer: Any, inner: list[Jet], nodes: Any) -> Jet:
+    """The jet of a function of one or two expressions, from theirs."""
+    letters = [Dummy(real=True) for _ in inner]
+    whole = outer(*letters)
+    known = {letter: jet[0] for letter, jet in zip(letters, inner, strict=True)}
+    value = nodes(whole, known)
+    first, second = nodes(0), nodes(0)
+    for letter, jet in zip(letters, inner, strict=True):
+        slope = whole.diff(letter)
+        first = first + nodes(slope, known) * jet[1]
+        second = second + nodes(slope, known) * jet[2]
+        for other, more in zip(letters, inner, strict=True):
+            second = second + nodes(slope.diff(other), known) * jet[1] * more[1]
+    return value, first, second
+
+
+def _is_wave(expression: Expr) -> bool:
+    return isinstance(expression, cos | sin) and bool((expression.args[0] / theta).is_Integer)
 
 
 def _same_as(table: Table) -> str:
@@ -147,8 +225,10 @@ def _same_as(table: Table) -> str:
 def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     """The programs of a closed curve that is a finite Fourier sum; none of any other boundary."""
     whole = len(table.components) == 1 and table.components[0].end - table.components[0].start == 2 * pi
-    h = flight.harmonics(table.components[0]) if whole else None
-    if h is None:
+    if not whole or any(highest(waves(x) or {}) > DEGREE for x in table.components[0].point):
+        return {}
+    h = flight.harmonics(table.components[0])
+    if h is None or max(h) > DEGREE:
         return {}
     degree = max(h)
 

@@ -20,7 +20,7 @@ The pinball map of the unit circle, explicit. Paper: section 3.1.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sympy import Expr, I, S, cos, exp, expand, im, pi, re, simplify, sin, symbols
+from sympy import Expr, I, Pow, S, cos, exp, expand, im, pi, re, simplify, sin, symbols
 
 from symbolic.tables.geometry import boundary_coefficients
 from symbolic.tables.table import Component, lam, phi, s, theta
@@ -43,9 +43,15 @@ def harmonics(component: Component) -> dict[int, tuple[Complex, Complex]] | None
     found = {}
     for k in sorted(set(map(abs, c))):
         there, back = c.get(k, S.Zero), c.get(-k, S.Zero)
-        C, sine = simplify(there + back if k else there), simplify(I * (there - back))
+        C, sine = _tidy(there + back if k else there), _tidy(I * (there - back))
         found[k] = ((re(C), im(C)), (re(sine), im(sine)))
     return found
+
+
+def _tidy(value: Expr) -> Expr:
+    """A coefficient in its simplest form, which a complex fraction has when it is expanded."""
+    fraction = not value.has(Pow) and all(part.is_Rational or part is I for part in value.atoms())
+    return expand(value) if fraction else simplify(value)
 
 
 def times(z: Complex, w: Complex) -> Complex:

@@ -46,6 +46,9 @@ from sympy.simplify.fu import TR8
 
 from symbolic.expressions.signs import vanishes
 from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.waves import LONG, exactly, size, waves
+
+HIGHEST = 24  # harmonic of what is written as a polynomial in the tangent of half the angle
 
 
 def velocity(component: Component) -> Matrix:
@@ -316,7 +319,10 @@ def _keeps(part: Component, image: Component, matrix: Matrix, sign: int, shift: 
     """Is the image of a point the point of the image?"""
     moved = matrix * Matrix(part.point)
     target = [coordinate.subs(theta, sign * theta + shift) for coordinate in image.point]
-    return all(vanishes(expand(left - right, trig=True)) for left, right in zip(moved, target, strict=True))
+    differences = [left - right for left, right in zip(moved, target, strict=True)]
+    if max(map(size, differences)) > LONG:
+        return all(waves(each) == {} for each in differences)
+    return all(vanishes(expand(each, trig=True)) for each in differences)
 
 
 def _name(sign: int, angle: Expr) -> str:
@@ -333,6 +339,11 @@ def coefficients(expression: Expr) -> dict[int, Expr] | None:
     >>> coefficients(1 / (2 + cos(theta))) is None
     True
     """
+    found = waves(S(expression))
+    if found is not None:
+        return {k: exactly(c) for k, c in found.items()}
+    if size(S(expression)) > LONG or any(f.args[0].atoms(cos, sin) for f in S(expression).atoms(cos, sin)):
+        return None
     u = Dummy("u")
     text = S(expression).rewrite(exp) if S(expression).has(cos, sin) else S(expression)
     rational = expand(expand(text).replace(exp, lambda power: u ** expand(power / (I * theta))))
@@ -361,6 +372,8 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
 def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
     """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
 
+    None where the expression is no such polynomial, or has harmonics above HIGHEST.
+
     Here `x = g*theta` with `g` the common divisor of the frequencies.
 
     >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
@@ -368,7 +381,7 @@ def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
     (3, 1)
     """
     c = coefficients(expression)
-    if c is None:
+    if c is None or max(map(abs, c), default=0) > HIGHEST:
         return None
     step = reduce(gcd, (abs(k) for k in c), 0) or 1
     n = max((abs(k) for k in c), default=0) // step

@@ -39,11 +39,14 @@ from sympy import (
     zoo,
 )
 
+from symbolic.expressions.enclosures import UnboundedError, pole, sign_on
 from symbolic.expressions.signs import Box, Outcome, bernstein, conjunction, positive, vanishes
 from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
 from symbolic.tables.table import Component, Table, lam, theta
+from symbolic.tables.waves import LONG, alone, is_periodic, size, waves
 
-HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box
+HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box, of a radius judged by Sturm's theorem
+TURN = Rational(7, 2)  # beyond pi: what holds from -TURN to TURN holds for every angle
 
 
 def validated(table: Table) -> Table:
@@ -84,13 +87,21 @@ def positive_radius(name: str, rho: Expr) -> bool:
 
 
 def radius_sign(rho: Expr) -> Outcome:
-    """Is `rho(theta) > 0` for every theta? A polar curve is then simple and counterclockwise."""
-    half = in_half_tangent(rho)
-    if half is None:
-        return Outcome.PROVED if rho.is_positive else Outcome.UNKNOWN
+    """Is `rho(theta) > 0` for every theta? A polar curve is then simple and counterclockwise.
+
+    Low harmonics are judged by Sturm's theorem, everything else by enclosures.
+    """
     c = coefficients(rho) or {}
-    if c.get(0, S.Zero) > sum(abs(value) for k, value in c.items() if k):
+    if c and c.get(0, S.Zero) > sum(abs(value) for k, value in c.items() if k):
         return Outcome.PROVED
+    half = in_half_tangent(rho) if max(map(abs, c), default=0) <= HIGHEST_HARMONIC else None
+    if half is None:
+        if alone(rho) and not rho.is_number:
+            try:
+                return sign_on(rho, theta, -TURN, TURN).outcome
+            except UnboundedError:
+                pass
+        return Outcome.PROVED if rho.is_positive else Outcome.UNKNOWN
     polynomial, T, at_pi = half
     sides = (positive(polynomial.subs(T, s * T), {T: Interval(0, oo)}) for s in (1, -1))
     return conjunction(positive(at_pi, {}), *sides).outcome
@@ -123,6 +134,14 @@ def _finite(table: Table, component: Component) -> None:
             f"{table.name}: {component.name} runs from theta = {start} to {end}; the end must be a larger number"
         )
     for coordinate in component.point:
+        if waves(coordinate) is not None:
+            continue
+        if size(coordinate) > LONG:
+            low, high = (Rational(str(end.evalf(20))) if end.is_number else None for end in (start, component.end))
+            divisor = pole(coordinate, theta, low, high) if low is not None and high is not None else None
+            if divisor is not None:
+                raise ValueError(f"{table.name}: {component.name} has a pole, where {divisor} = 0; it must be finite")
+            continue
         below = together(coordinate.replace(tan, lambda x: sin(x) / cos(x))).as_numer_denom()[1]
         half = in_half_tangent(below) if below.has(theta) else None
         if half is None:
@@ -134,6 +153,9 @@ def _finite(table: Table, component: Component) -> None:
 
 
 def _closed(table: Table) -> None:
+    only = table.components[0]
+    if len(table.components) == 1 and only.end - only.start == 2 * pi and all(map(is_periodic, only.point)):
+        return
     ring = (*table.components, table.components[0])
     for before, after in pairwise(ring):
         leaves, arrives = before.at(before.end), after.at(after.start)
@@ -166,6 +188,13 @@ def enclosed_area(table: Table) -> Expr | None:
     total = S.Zero
     for component in table.components:
         x, y = component.point
+        found = waves(x + I * y)
+        if found is not None and component.end - component.start == 2 * pi:
+            swept = sum(k * (u * u + v * v) for k, (u, v) in found.items())
+            total += pi * Rational(swept.numerator, swept.denominator)
+            continue
+        if size(x) + size(y) > LONG:
+            return None
         swept = expand(x * y.diff(theta) - y * x.diff(theta))
         if not swept.is_polynomial(theta) and coefficients(swept) is None:
             return None
@@ -185,9 +214,7 @@ def simple(table: Table) -> None:
     if len(table.components) == 1 and not table.undefined:
         scale = (whole.end - whole.start) / (2 * pi)
         x, y = whole.point
-        radius = trigonometric(x * cos(theta) + y * sin(theta))
-        straight = scale == 1 and trigonometric(y * cos(theta) - x * sin(theta)) == 0
-        if straight and radius_sign(radius) is Outcome.PROVED:
+        if scale == 1 and _is_polar(x, y) and radius_sign(_radius(x, y)) is Outcome.PROVED:
             return
         c = boundary_coefficients(replace(whole, point=(x.subs(theta, scale * theta), y.subs(theta, scale * theta))))
         if c is not None and max(abs(k) for k in c) <= HIGHEST_HARMONIC:
@@ -198,6 +225,20 @@ def simple(table: Table) -> None:
     crossing = polygon_crossing(table)
     if crossing:
         raise ValueError(f"{table.name}: {crossing}")
+
+
+def _is_polar(x: Expr, y: Expr) -> bool:
+    """Is the parameter the polar angle?"""
+    across = y * cos(theta) - x * sin(theta)
+    found = waves(across)
+    if found is not None or size(across) > LONG:
+        return found == {}
+    return bool(trigonometric(across) == 0)
+
+
+def _radius(x: Expr, y: Expr) -> Expr:
+    radius = x * cos(theta) + y * sin(theta)
+    return radius if waves(radius) is not None or size(radius) > LONG else trigonometric(radius)
 
 
 CORNERS = 96  # of the polygon, over all components
@@ -271,10 +312,17 @@ def _corners(table: Table) -> tuple[list[Corner], list[str]]:
     for component in table.components:
         for k in range(count):
             value = component.start + (component.end - component.start) * Rational(3 * k + 1, 3 * count)
-            x, y = (Rational(coordinate.evalf(20)) for coordinate in component.at(value))
+            x, y = (Rational(_evaluated(coordinate, value)) for coordinate in component.point)
             corners.append((Fraction(x.p, x.q), Fraction(y.p, y.q)))
             names.append(f"{component.name} at theta = {value}")
     return corners, names
+
+
+def _evaluated(coordinate: Expr, value: Expr) -> Expr:
+    """A coordinate with 20 digits; a long one is evaluated as it stands, without exact values of its sines."""
+    if size(coordinate) > LONG:
+        return coordinate.evalf(20, subs={theta: value})
+    return coordinate.subs(theta, value).evalf(20)
 
 
 def _turns(corners: list[Corner]) -> int:

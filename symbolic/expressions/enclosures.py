@@ -1,0 +1,322 @@
+"""Signs over an interval, proved in integers: for expressions that Sturm and Bernstein are too slow for or cannot read.
+
+A number is enclosed by two integers, its bounds times `2**BITS`, and every operation rounds outwards. An interval on
+which the sign is not seen is halved, until it is seen everywhere, a point refutes it, or a given number of operations
+is spent. The time grows with the number of distinct subexpressions, not with what they would be multiplied out.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from math import isqrt
+
+from sympy import Abs, Add, Expr, Mul, Pow, Rational, S, Symbol, atan, cos, cosh, exp, log, pi, sin, sinh, tan, tanh
+
+from symbolic.expressions.signs import Finding, Outcome
+
+BITS = 96
+ONE = 1 << BITS
+GUARD = 64  # further bits of pi and log(2), which are multiplied by whole numbers
+LARGEST = 1 << 12  # modulus of what exp is taken of
+WORK = 150_000  # operations on intervals: about a second
+Bounds = tuple[int, int]
+
+
+class UnboundedError(Exception):
+    """An operation has no finite enclosure here: a pole, a root of what may be negative, a word that is not known."""
+
+
+def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: int = WORK) -> Finding:
+    """Is `expression` > 0 for all `x` with `low <= x <= high`? A refutation holds a rational point.
+
+    >>> x = Symbol("x")
+    >>> sign_on(2 + cos(cos(x)) / (3 + sin(x)), x, S(-4), S(4)).outcome.name
+    'PROVED'
+    >>> sign_on(cos(x) - Rational(1, 2), x, S(-4), S(4)).reason
+    'at x = -4 the value is negative or 0'
+    """
+    steps = _steps(expression, x)
+    boxes, spent = [(_ceil(low) - 1, _ceil(high))], 0
+    for end in (low, high):
+        if _value(steps, _rational(end))[1] <= 0:
+            return Finding(Outcome.REFUTED, f"at {x} = {end} the value is negative or 0", ((x, end),))
+    while boxes:
+        spent += 2 * len(steps)
+        lower, upper = boxes.pop()
+        if spent > work or upper - lower < 1 << BITS // 2:
+            return Finding(Outcome.UNKNOWN, f"no sign was proved with {work} operations on intervals")
+        if _value(steps, (lower, upper))[0] > 0:
+            continue
+        middle = (lower + upper) // 2
+        if _value(steps, (middle, middle))[1] <= 0:
+            at = Rational(middle, ONE)
+            return Finding(Outcome.REFUTED, f"at {x} = {at} the value is negative or 0", ((x, at),))
+        boxes += [(lower, middle), (middle, upper)]
+    return Finding(Outcome.PROVED, f"enclosures: positive for {x} from {low} to {high}")
+
+
+def pole(expression: Expr, x: Symbol, low: Rational, high: Rational) -> Expr | None:
+    """A divisor within `expression` that has a zero between `low` and `high`, shown by its change of sign or a 0.
+
+    None proves nothing: a divisor may touch 0 without a change of sign.
+
+    >>> x = Symbol("x")
+    >>> pole(3 + 1 / (cos(x) - Rational(1, 2)), x, S(0), S(2))
+    cos(x) - 1/2
+    """
+    expression = expression.replace(tan, lambda inside: sin(inside) / cos(inside))
+    for power in sorted(expression.atoms(Pow), key=str):
+        if power.exp.is_negative and power.base.free_symbols == {x}:
+            try:
+                signs = {sign_on(sign * power.base, x, low, high).outcome for sign in (1, -1)}
+            except UnboundedError:
+                continue
+            if signs == {Outcome.REFUTED}:
+                return power.base
+    return None
+
+
+EVERYTHING: Bounds = (-(1 << 4096), 1 << 4096)
+Step = tuple[Callable[..., Bounds], tuple[int, ...]]
+
+
+def _steps(expression: Expr, x: Symbol) -> list[Step]:
+    """The distinct subexpressions, operands first; the first is `x` itself."""
+    at: dict[Expr, int] = {x: 0}
+    steps: list[Step] = [(lambda: (0, 0), ())]
+
+    def place(e: Expr) -> int:
+        if e not in at:
+            operands, function = _reading(e)
+            numbers = tuple(place(operand) for operand in operands)
+            steps.append((function, numbers))
+            at[e] = len(steps) - 1
+        return at[e]
+
+    steps.append((lambda value: value, (place(expression),)))
+    return steps
+
+
+def _reading(e: Expr) -> tuple[tuple[Expr, ...], Callable[..., Bounds]]:
+    """The operands of a subexpression, and the operation on their enclosures."""
+    if isinstance(e, Rational):
+        bounds = _rational(e)
+        return (), lambda: bounds
+    if e is pi or e is S.Exp1:
+        known = _shifted(_pi()) if e is pi else _exp((ONE, ONE))
+        return (), lambda: known
+    if isinstance(e, Add):
+        return e.args, lambda *values: (sum(v[0] for v in values), sum(v[1] for v in values))
+    if isinstance(e, Mul):
+        return e.args, _product
+    if isinstance(e, Pow) and isinstance(e.exp, Rational):
+        p, q = e.exp.p, e.exp.q
+        return (e.base,), lambda value: _power(value, p, q)
+    if e.func in FUNCTIONS:
+        return e.args, FUNCTIONS[e.func]
+    raise UnboundedError(f"{e.func.__name__} is not known")
+
+
+def _value(steps: list[Step], here: Bounds) -> Bounds:
+    """The enclosure over `here`; everything where an operation has no finite one."""
+    known = [here]
+    try:
+        for function, operands in steps[1:]:
+            known.append(function(*[known[i] for i in operands]))
+    except UnboundedError:
+        return EVERYTHING
+    return known[-1]
+
+
+# ---- operations, rounded outwards
+
+
+def _ceil(value: Rational) -> int:
+    return -int((-value.p << BITS) // value.q)
+
+
+def _rational(value: Rational) -> Bounds:
+    return (value.p << BITS) // value.q, _ceil(value)
+
+
+def _shifted(value: Bounds, bits: int = GUARD) -> Bounds:
+    return value[0] >> bits, -(-value[1] >> bits)
+
+
+def _times(a: Bounds, b: Bounds) -> Bounds:
+    corners = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
+    return _shifted((min(corners), max(corners)), BITS)
+
+
+def _product(first: Bounds, *others: Bounds) -> Bounds:
+    for other in others:
+        first = _times(first, other)
+    return first
+
+
+def _inverse(a: Bounds) -> Bounds:
+    if a[0] <= 0 <= a[1]:
+        raise UnboundedError("a divisor may be 0")
+    return ONE * ONE // a[1], -(-ONE * ONE // a[0])
+
+
+def _power(a: Bounds, p: int, q: int) -> Bounds:
+    """`a**(p/q)`: a whole power of a square root or, for other roots, of the exponential of a logarithm."""
+    if q == 2:
+        if a[0] < 0:
+            raise UnboundedError("a root of what may be negative")
+        a = isqrt(a[0] << BITS), isqrt(a[1] << BITS) + 1
+    elif q != 1:
+        low, high = _log(a)
+        a = _exp((low // q, -(-high // q)))
+    n = abs(p)
+    found, even = (ONE, ONE), n % 2 == 0
+    if even and a[0] < 0:  # the range of an even power, and not the product of two ranges
+        a = (0, max(-a[0], a[1])) if a[1] > 0 else (-a[1], -a[0])
+    while n:
+        found = _times(found, a) if n % 2 else found
+        a, n = _times(a, a), n // 2
+    return _inverse(found) if p < 0 else found
+
+
+def _abs(a: Bounds) -> Bounds:
+    if a[0] >= 0:
+        return a
+    return (-a[1], -a[0]) if a[1] <= 0 else (0, max(-a[0], a[1]))
+
+
+def _turn(a: Bounds, quarters: int) -> Bounds:
+    """`cos(x - quarters*pi/2)`: Taylor at the middle, and its two first derivatives for the width."""
+    middle, radius = (a[0] + a[1]) // 2, (a[1] - a[0]) // 2 + 1
+    if radius > 2 * ONE:
+        return -ONE, ONE
+    half_pi = _pi()[0] // 2, _pi()[1] // 2 + 1
+    turns, _ = divmod((middle << GUARD) + half_pi[0] // 2, half_pi[0])
+    rest = (middle << GUARD) - turns * half_pi[0] >> GUARD  # of modulus below 0.8, wrong by at most turns/2**GUARD + 2
+    wrong = (2 * abs(turns) >> GUARD) + 3
+    cosine, sine = _series(rest, 0), _series(rest, 1)
+    quarter = (turns - quarters) % 4
+    value = (cosine, -sine, -cosine, sine)[quarter]
+    slope = abs((sine, cosine)[quarter % 2]) + wrong + TERMS
+    reach = (slope * radius >> BITS) + (radius * radius >> BITS + 1) + 3 + wrong + TERMS
+    return max(-ONE, value - reach), min(ONE, value + reach)
+
+
+TERMS = 40  # of Taylor's series, each rounded once; the next, of (0.8)**81/81!, is below 2**-BITS
+
+
+def _series(x: int, first: int) -> int:
+    """Taylor's sum of the cosine (`first` = 0) or sine (1) of `|x| < 0.8`, wrong by less than TERMS."""
+    square = x * x >> BITS
+    total = term = x if first else ONE
+    for k in range(first + 2, 2 * TERMS, 2):
+        term = -(term * square >> BITS) // (k * (k - 1))
+        total += term
+    return total
+
+
+def _exp(a: Bounds) -> Bounds:
+    """Monotone, so the ends decide: `2**k` times Taylor's sum of what is left, all of whose terms are added."""
+    if max(-a[0], a[1]) > LARGEST * ONE:
+        raise UnboundedError("the exponential of a large number")
+
+    def at(x: int, upwards: bool) -> int:
+        low, high = _log2()
+        k = (x << GUARD) // low
+        rest = ((x << GUARD) - k * (low if upwards == (k >= 0) else high) >> GUARD) + upwards
+        total = term = ONE
+        for n in range(1, TERMS):
+            term = term * rest // (n << BITS)
+            total += term
+        total += 2 * TERMS if upwards else -2 * TERMS
+        return max(0, total << k if k >= 0 else (-(-total >> -k) if upwards else total >> -k))
+
+    return at(a[0], False), at(a[1], True)
+
+
+def _log(a: Bounds) -> Bounds:
+    if a[0] <= 0:
+        raise UnboundedError("a logarithm of what may be 0")
+
+    def at(x: int, upwards: bool) -> int:
+        k = x.bit_length() - BITS
+        m = x >> k if k >= 0 else x << -k  # from 1/2 to 1, in units of 2**-BITS
+        s = ((m - ONE) << BITS) // (m + ONE)  # log(m) = 2*artanh(s), |s| <= 1/3
+        square, total, power = s * s >> BITS, 0, s
+        for n in range(1, 3 * TERMS, 2):
+            total += power // n
+            power = power * square >> BITS
+        low, high = _log2()
+        part = k * (high if upwards == (k >= 0) else low) >> GUARD
+        return 2 * total + part + (8 * TERMS if upwards else -8 * TERMS)
+
+    return at(a[0], False), at(a[1], True)
+
+
+def _atan(a: Bounds) -> Bounds:
+    """Monotone: `atan(x) = 8*atan(y)` with `y` three times half the angle, and Taylor's sum for `|y| < 0.2`."""
+
+    def at(x: int) -> int:
+        for _ in range(3):
+            x = (x << BITS) // (ONE + isqrt(ONE * ONE + x * x))
+        square, total, power = x * x >> BITS, 0, x
+        for n in range(1, 2 * TERMS, 2):
+            total += power // n if (n // 2) % 2 == 0 else -(power // n)
+            power = power * square >> BITS
+        return 8 * total
+
+    reach = 64 * TERMS
+    return at(a[0]) - reach, at(a[1]) + reach
+
+
+def _hyperbolic(a: Bounds, sign: int) -> Bounds:
+    """Half of `exp(x) + sign*exp(-x)`, at the ends of what is monotone."""
+
+    def at(x: int) -> Bounds:
+        up, down = _exp((x, x)), _exp((-x, -x))
+        return (up[0] + sign * down[sign < 0]) // 2, -(-(up[1] + sign * down[sign > 0]) // 2)
+
+    if sign > 0:
+        a = _abs(a)
+    return at(a[0])[0], at(a[1])[1]
+
+
+def _quotient(a: Bounds, b: Bounds) -> Bounds:
+    return _times(a, _inverse(b))
+
+
+FUNCTIONS: dict[type[Expr], Callable[[Bounds], Bounds]] = {
+    cos: lambda x: _turn(x, 0),
+    sin: lambda x: _turn(x, 1),
+    tan: lambda x: _quotient(_turn(x, 1), _turn(x, 0)),
+    exp: _exp,
+    log: _log,
+    atan: _atan,
+    Abs: _abs,
+    sinh: lambda x: _hyperbolic(x, -1),
+    cosh: lambda x: _hyperbolic(x, 1),
+    tanh: lambda x: _quotient(_hyperbolic(x, -1), _hyperbolic(x, 1)),
+}
+
+
+@cache
+def _pi() -> Bounds:
+    """Pi times `2**(BITS + GUARD)` by Machin's formula."""
+    one, total = 1 << BITS + GUARD + 32, 0
+    for factor, inverse in ((16, 5), (-4, 239)):
+        power, n = one // inverse, 1
+        while power:
+            total += factor * (power // n if n % 4 == 1 else -(power // n))
+            power, n = power // inverse**2, n + 2
+    total >>= 32
+    return total - 1, total + 2
+
+
+@cache
+def _log2() -> Bounds:
+    """`log(2) = 2*artanh(1/3)` times `2**(BITS + GUARD)`."""
+    power, total, n = (1 << BITS + GUARD + 32) // 3, 0, 1
+    while power:
+        total += 2 * (power // n)
+        power, n = power // 9, n + 2
+    total >>= 32
+    return total - 1, total + 2

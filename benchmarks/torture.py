@@ -1,19 +1,24 @@
 """Long attacks on what reads, keeps and proves: `torture.py [PART ...] [--scale SHARE]`; all parts take half an hour.
 
     images      object files and images of machine code with fields written over, read in children that may die
+    restarts    sweeps that are killed, refused and damaged again and again, until they are done
 
 Each part prints one line: what was tried, how often, and how much of it failed. The exit status is 1 when anything
 failed. The same functions with smaller counts are tests of the suite.
 """
 
 import argparse
+import errno
 import os
 import random
 import struct
 import sys
+import tempfile
 import time
+import warnings
 from collections.abc import Callable
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 Attack = Callable[[random.Random], None]
 
@@ -114,8 +119,106 @@ def images(executions: int, seed: int = 1, batch: int = 20_000) -> Outcome:
     return Outcome(executions, failed, f"an object file of {len(whole)} bytes, its section table at {table}")
 
 
+class Gone(BaseException):
+    """The process ends here: nothing of what would tidy up behind it is done."""
+
+
+def interrupted(work: Callable[[], object], where: str, moment: int) -> bool:
+    """Does `work` and lets its write number `moment` fail; was it reached?
+
+    `before`: the disk is full when the file is written. `between`: the process ends after the write and before the
+    rename, so that the temporary file stays.
+    """
+    count, fsync, replace, unlink = [0], os.fsync, Path.replace, Path.unlink
+
+    def written(handle: int) -> None:
+        count[0] += 1
+        if where == "before" and count[0] > moment:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        fsync(handle)
+
+    def renamed(self: Path, target: Path) -> Path:
+        if where == "between" and count[0] > moment and self.name.endswith(".partial"):
+            raise Gone
+        return replace(self, target)
+
+    def kept(self: Path, missing_ok: bool = False) -> None:
+        if not (where == "between" and count[0] > moment):
+            unlink(self, missing_ok)
+
+    os.fsync, Path.replace, Path.unlink = written, renamed, kept  # type: ignore[method-assign, assignment]
+    try:
+        work()
+    except (Gone, OSError):
+        return True
+    except Exception as stop:
+        if type(stop).__name__ in ("UnfinishedError", "ValueError"):  # one sentence, as a user sees it
+            return True
+        raise
+    finally:
+        os.fsync, Path.replace, Path.unlink = fsync, replace, unlink  # type: ignore[method-assign]
+    return False
+
+
+def _files(store: Path) -> dict[str, bytes]:
+    return {str(file.relative_to(store)): file.read_bytes() for file in store.rglob("*") if file.is_file()}
+
+
+def restarts(sweeps: int, seed: int = 1) -> Outcome:
+    """Sweeps of random grids, each interrupted at random writes and damaged between its runs, until it is done.
+
+    At the end every byte is that of a sweep that nothing disturbed, and no part that was whole was computed again.
+    """
+    import numpy as np
+
+    from numeric.sweeps.run import run
+    from numeric.sweeps.sweep import Axis, Field, Sweep
+
+    chance, failed, runs = random.Random(seed), 0, 0
+    for number in range(sweeps):
+        size, cut = chance.randint(3, 12), chance.randint(1, 4)
+        axes = (Axis("x", np.arange(float(size)), "1", "a number", cut),)
+        fields = tuple(Field(name, ("x",), "float64", "1", name) for name in ("square", "noise"))
+        done: list[tuple[int, ...]] = []
+
+        def task(part: Any, done: list[tuple[int, ...]] = done) -> dict[str, Any]:
+            done.append(part.at)
+            x = part.values["x"]
+            return {"square": x**2, "noise": np.random.default_rng(part.seed).random(x.size)}
+
+        sweep = Sweep("squares", "Squares", axes, fields, task, number, "none", {}, size, lambda: None)
+        with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of damaged files
+            run(sweep, Path(folder) / "whole", workers=1)
+            store, damaged = Path(folder) / "store", 0
+            done.clear()
+            while True:
+                runs += 1
+                where, moment = chance.choice(("before", "between")), chance.randint(6, 20)
+                before = set(_chunks(store))
+                done.clear()
+                if not interrupted(lambda: run(sweep, store, workers=1), where, moment):  # noqa: B023
+                    break
+                failed += bool(before & {f"c/{at[0]}" for at in done})
+                if chance.random() < 0.3 and (chunks := sorted(store.rglob("c/*"))):
+                    victim, damaged = chance.choice(chunks), damaged + 1
+                    whole = victim.read_bytes()
+                    victim.write_bytes(whole[: chance.randrange(len(whole))])
+            failed += _files(store) != _files(Path(folder) / "whole")
+    return Outcome(sweeps, failed, f"{runs} starts")
+
+
+def _chunks(store: Path) -> list[str]:
+    """The parts of which both fields are whole files; a damaged one is shorter."""
+    sizes: dict[str, list[int]] = {}
+    for file in store.rglob("c/*"):
+        sizes.setdefault(f"c/{file.name}", []).append(file.stat().st_size)
+    return [name for name, found in sizes.items() if len(found) == 2 and min(found) > 20]
+
+
 PARTS: dict[str, Callable[[float], Outcome]] = {
     "images": lambda share: images(int(1_000_000 * share)),
+    "restarts": lambda share: restarts(int(400 * share)),
 }
 
 

@@ -133,9 +133,16 @@ def _found(future: Any) -> dict[str, Array] | None:
 
 
 FULL = {
-    errno.ENOSPC: "the disk is full",
-    errno.EDQUOT: "the quota is used up",
-    errno.EFBIG: "a file would be too large",
+    getattr(errno, name): words
+    for name, words in {
+        "ENOSPC": "the disk is full",
+        "EDQUOT": "the quota is used up",
+        "EFBIG": "a file would be too large",
+        "EROFS": "the store lies on a file system that is read-only",
+        "EACCES": "the store may not be written",
+        "EIO": "the disk does not answer",
+    }.items()
+    if hasattr(errno, name)
 }
 Tick = Callable[[int, int], None]
 

@@ -1,16 +1,19 @@
 """Where results go: a Zarr store that grows chunk by chunk and is whole at every moment, or plain memory.
 
 A part is done when the file of each of its fields is there and its checksum is right; a file appears at once or not
-at all. So there is no journal to lose, and whatever a killed sweep leaves behind is redone or overwritten.
+at all. So there is no journal to lose, and whatever a killed sweep leaves behind is redone or overwritten. A part has
+the same bits whoever computes it: two drivers are kept apart where the system has locks, and only waste time elsewhere.
 """
 
-import fcntl
+import itertools
 import json
 import os
+import re
 import shutil
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +25,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Index = tuple[int, ...]
+PARTIAL = ".partial"  # at the end of the name of a file that is being written
+ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/")  # of an object store; a path made of it has lost a slash
+_written = itertools.count()
 
 
 class Memory:
@@ -64,8 +70,16 @@ class Stored:
             self.arrays: dict[str, Any] = {field.name: group[field.name] for field in sweep.fields}
 
     def missing(self) -> list[Index]:
-        """The parts that are not there, or not whole."""
-        return [index for index in self.sweep.indices() if not all(self._has(f, index) for f in self.sweep.fields)]
+        """The parts that are not there, or not whole; a warning names files that are there and damaged."""
+        damaged: list[Path] = []
+        missing = []
+        for index in self.sweep.indices():
+            there = [self._has(field, index, damaged) for field in self.sweep.fields]
+            missing += [] if all(there) else [index]
+        if damaged:
+            first, count = damaged[0], len(damaged)
+            warnings.warn(f"{count} damaged files are computed again, {first} among them", stacklevel=3)
+        return missing
 
     def write(self, index: Index, arrays: dict[str, Array]) -> None:
         """Writes the results of a part; `OSError` when the disk is full, and then the part is still missing."""
@@ -80,15 +94,17 @@ class Stored:
         found: xr.Dataset = xr.open_zarr(self.path)
         return found
 
-    def _has(self, field: Field, index: Index) -> bool:
+    def _has(self, field: Field, index: Index, damaged: list[Path]) -> bool:
         at = dict(zip(self.sweep.axis, index, strict=True))
         array = self.arrays[field.name]
         key = array.metadata.encode_chunk_key(tuple(at[name] for name in field.dims))
-        if not (self.path / field.name / key).is_file():
+        file = self.path / field.name / key
+        if not file.is_file():
             return False
         try:
             array[self.sweep.where(field, index)]
         except Exception:  # whatever a codec says of a damaged file
+            damaged.append(file)
             return False
         return True
 
@@ -96,17 +112,37 @@ class Stored:
 @contextmanager
 def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
     """The store of a sweep, new or to be resumed; `ValueError` for another's, or when another process writes to it."""
+    if ADDRESS.match(path.as_posix()):
+        raise ValueError(
+            f"--store {path}: an object store has no files that appear at once; accepted: a directory on a disk, which "
+            "may be copied to an object store when the sweep is done"
+        )
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         _made(sweep, path)
     _same(sweep, path)
+    with _alone(path):
+        for left in path.rglob(f".*{PARTIAL}"):  # of a driver that was killed
+            with suppress(OSError):
+                left.unlink()
+        yield Stored(sweep, path)
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """Keeps a second driver out, where the system has locks that end with their process."""
+    try:
+        locks: Any = import_module("fcntl")
+    except ImportError:  # not a POSIX system: two drivers do everything twice, with the same bits
+        yield
+        return
     handle = os.open(path, os.O_RDONLY)
     try:
         with suppress(OSError):  # a file system without locks
             try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                locks.flock(handle, locks.LOCK_EX | locks.LOCK_NB)
             except BlockingIOError:
                 raise ValueError(f"--store {path}: another process is writing to it; wait for it or stop it") from None
-        yield Stored(sweep, path)
+        yield
     finally:
         os.close(handle)
 
@@ -171,9 +207,22 @@ def _same(sweep: Sweep, path: Path) -> None:
             f"--store {path} is not a sweep of ours; accepted: a new directory, or one to be resumed"
         ) from None
     for key, value in sweep.attributes().items():
+        if key == "versions" and found.get(key) != value:
+            raise ValueError(
+                f"--store {path} was begun with {_listed(found.get(key))}, and here are {_listed(value)}, which may "
+                "differ in the last bits; install those versions to go on, or name another store"
+            )
         if found.get(key) != value:
             said = "another grid" if key == "grid" else f"{key} = {found.get(key)} and not {value}"
             raise ValueError(f"--store {path} holds a sweep with {said}; resume it as it was begun, or name another")
+
+
+def _listed(versions: Any) -> str:
+    """Packages with their versions, in words."""
+    try:
+        return ", ".join(f"{name} {number}" for name, number in json.loads(versions).items())
+    except (TypeError, ValueError, AttributeError):
+        return "versions that it does not say"
 
 
 def _whole_files() -> Any:
@@ -186,7 +235,7 @@ def _whole_files() -> Any:
         async def set(self, key: str, value: Any) -> None:
             place = Path(self.root) / key
             place.parent.mkdir(parents=True, exist_ok=True)
-            partial = place.with_name(f".{place.name}.partial")
+            partial = place.with_name(f".{place.name}.{os.getpid()}.{next(_written)}{PARTIAL}")  # this writer's own
             try:
                 with partial.open("wb") as file:
                     file.write(value.to_bytes())

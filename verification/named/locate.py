@@ -63,10 +63,16 @@ class Located:
         """True when the whole checklist is proved."""
         return all(value is True for value in self.checks.values())
 
+    @property
+    def title(self) -> str:
+        """The name of what was shown: the one asked for, or what it was continued from where nothing else is known."""
+        return self.notes.get("called", self.name)
+
     def to_dict(self) -> dict[str, Any]:
         """The keys of `pinball locate --json`."""
         return {
             "name": self.name,
+            "title": self.title,
             "value": self.value,
             "radius": self.radius,
             "digits": self.digits,
@@ -79,12 +85,12 @@ class Located:
         }
 
     def __str__(self) -> str:
-        return f"{self.name} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
+        return f"{self.title} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><td>{item}</td><td>{WORDS[value]}</td></tr>" for item, value in self.checks.items())
         said = "certified" if self.certified else "not certified"
-        return f"<p>{self.name} = {self.value} &plusmn; {self.radius}, {said}</p><table>{rows}</table>"
+        return f"<p>{self.title} = {self.value} &plusmn; {self.radius}, {said}</p><table>{rows}</table>"
 
 
 @dataclass(frozen=True)
@@ -247,7 +253,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
 
     That no other contact ends the attractor before is not.
     """
-    from verification.proofs.manifolds.known import crisis, decimals, proof  # NumPy, which no other name needs
+    from verification.proofs.manifolds.known import SHAPE, crisis, decimals, proof  # NumPy, which no other name needs
 
     found = crisis(kind, alpha, digits)
     stable, unstable = found.touch.multipliers[:2]
@@ -263,6 +269,8 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
         "second_method": f"tangency of the manifolds, {found.apart:.1e} away with error {found.touch.error:.1e}",
         "transient": f"if an attractor ends here, lasts like (distance beyond)^-{found.exponent:.4f}, in the limit",
     }
+    if alpha != SHAPE:
+        notes = _continued(kind, alpha, float(found.letter), notes)
     value, error = decimals(found)
     with working(bits_of(digits, 100)):
         ball = arb(value, error)
@@ -276,6 +284,26 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     if held:
         notes["proved"] = f"the two manifolds touch, within {error} of the value; that the attractor ends there is not"
     return Found(ball, checks, made if held else None, notes)
+
+
+def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str]) -> dict[str, str]:
+    """The notes of a tangency away from the shape at which the attractor was looked at: its name, and what balls see.
+
+    An exponent of transients belongs to an attractor that ends; where no orbit is chaotic, there is none.
+    """
+    from numeric import PinballMap
+    from verification.named.crises import ORBITS, extent
+
+    event = f"{kind} crisis" if kind in ("merging", "boundary") else kind
+    notes = {"called": f"tangency continued from the {event} at alpha = 2/25"} | notes
+    below = lam * (1 - 1e-3)
+    seen = extent(PinballMap("egg", lam=below, alpha=str(alpha)))
+    if seen is None:
+        del notes["transient"]
+        return notes | {"attractor": f"none of {ORBITS} orbits is chaotic at lam = {below:.6f}: no crisis is seen"}
+    return notes | {
+        "attractor": f"some orbits are chaotic at lam = {below:.6f}; whether that ends here was not looked at"
+    }
 
 
 def one_of(kind: str, letter: str, digits: int, alpha: Expr, **which: Expr) -> Found:

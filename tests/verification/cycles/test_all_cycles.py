@@ -11,7 +11,7 @@ from numeric import PinballMap
 from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.app.commands.orbit import cycles_command as cycles
 from verification.cycles.continuation.cells import Corrector, fixed_points
-from verification.cycles.continuation.search import all_cycles
+from verification.cycles.continuation.search import Catalogue, all_cycles
 from verification.proofs.periodic.completeness import no_others
 from verification.proofs.slap_map.periodic_points import periodic_points
 
@@ -141,3 +141,11 @@ def test_families_of_cycles_are_said_to_be_there_and_not_listed():
     assert searched.catalogue.cycles == []
     assert searched.catalogue.degenerate > 100
     assert searched.balanced == {2: None}
+
+
+def test_the_count_says_what_it_cannot_tell_apart():
+    """A pair just born at a fold has the indices +1 and -1: the sums vanish with it and without it."""
+    said = Catalogue(egg(3).at(alpha="0.08"), 0.378).resolution(3)
+
+    assert said.startswith("cycles of period 3 nearer than about 3e-07 radians count as one")
+    assert said.endswith("a pair so near its fold is missed, and the index sums vanish without it")

@@ -11,7 +11,7 @@ from verification.app.commands.locate import check_command as check
 from verification.app.commands.locate import command as locate_command
 from verification.cycles.recurrence.cascade import ladder
 from verification.named.files import document
-from verification.named.locate import NAMES, locate
+from verification.named.locate import NAMES, Located, _continued, locate
 
 ALPHA = Rational(2, 25)
 SHAPES = {
@@ -57,6 +57,22 @@ def test_a_crisis_is_an_estimate_and_says_so(name, near):
     assert not found.certified
     assert abs(float(found.value) - near) < 1e-4
     assert 0 < float(found.radius) < 1e-3
+
+
+def test_away_from_its_shape_a_tangency_is_not_called_a_crisis():
+    notes = {"transient": "lasts"}
+    calm, chaotic = (
+        _continued("boundary", alpha, lam, notes) for alpha, lam in ((Rational(1, 50), 0.5), (ALPHA, 0.66))
+    )
+
+    assert calm["called"] == chaotic["called"] == "tangency continued from the boundary crisis at alpha = 2/25"
+    assert calm["attractor"].startswith("none of 400 orbits is chaotic at lam = 0.4995")
+    assert "transient" not in calm
+    assert chaotic["transient"] == "lasts"
+    assert notes == {"transient": "lasts"}
+    found = Located("boundary-crisis", "0.5", "1e-9", 8, {}, 0.0, None, None, calm)
+    assert str(found).startswith("tangency continued from the boundary crisis at alpha = 2/25 = 0.5 +- 1e-9")
+    assert (found.to_dict()["name"], found.to_dict()["title"]) == ("boundary-crisis", calm["called"])
 
 
 def test_more_digits_agree_with_fewer():

@@ -64,7 +64,7 @@ def command(
         _write(certificate, found)
     output.write(found.to_dict())
     said = "certified" if found.certified else "not certified"
-    output.console.print(f"{name} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
+    output.console.print(f"{found.title} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
     for item, value in found.checks.items():
         output.console.print(f"  {item.replace('_', ' '):28} {WORDS[value]}")
     notes = {**found.notes, "arithmetic": f"mpmath {'on' if GMPY2 else 'without'} gmpy2 to search, arb to prove"}

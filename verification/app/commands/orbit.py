@@ -237,7 +237,12 @@ def cycles_command(
         "rounds": found.rounds,
         "degenerate": catalogue.degenerate,
         "periods": [
-            {"period": n, "cycles": catalogue.count(n), "index_sums_vanish": found.balanced[n]}
+            {
+                "period": n,
+                "cycles": catalogue.count(n),
+                "index_sums_vanish": found.balanced[n],
+                "resolution": catalogue.resolution(n),
+            }
             for n in range(2, period + 1)
         ],
         "cycles": [entry(cycle) | worth(solution) for cycle, solution in zip(catalogue.cycles, solutions, strict=True)],
@@ -334,6 +339,8 @@ def show_cycles(console: "Console", catalogue: "Catalogue", document: dict[str, 
     for row in document["periods"]:
         laws = {True: "index sums vanish", False: "index sums do NOT vanish", None: "no index law here"}
         console.print(f"period {row['period']:<3} {row['cycles']:>5} cycles, {laws[row['index_sums_vanish']]}")
+    if document["periods"]:
+        console.print(document["periods"][-1]["resolution"])
     for row in document["second_count"]:
         said = {True: "agrees with the search", False: "DISAGREES with the search", None: "cells left open"}
         console.print(

@@ -83,6 +83,18 @@ class Catalogue:
         )
         return True
 
+    def resolution(self, n: int) -> str:
+        """What the search cannot tell apart at a period, in a sentence.
+
+        Two cycles of opposite index that are born at a fold leave every index sum as it is, so that sums vanish is
+        no sign that such a pair was not missed.
+        """
+        return (
+            f"cycles of period {n} nearer than about {SAME * n:.0e} radians count as one, and a cycle with "
+            f"|det(M - 1)| < {FAMILY:.0e} as none: a pair so near its fold is "
+            "missed, and the index sums vanish without it"
+        )
+
     def of(self, n: int) -> Iterator[Found]:
         """The cycles whose bounces are fixed points of `T**n`."""
         return (cycle for cycle in self.cycles if n % cycle.period == 0)

@@ -1,0 +1,170 @@
+"""Whatever fails while a sweep is written, the store is whole, nothing is lost or done twice, and the end is the same.
+
+`benchmarks/torture.py restarts` draws such faults for minutes.
+"""
+
+import errno
+import json
+import os
+import runpy
+import threading
+import time
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from numeric.sweeps import store as stores
+from numeric.sweeps.run import UnfinishedError, run
+from numeric.sweeps.store import opened
+from numeric.sweeps.sweep import Axis, Field, Sweep
+
+TORTURE = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "torture.py"))
+
+
+def squares(part):
+    x = part.values["x"]
+    return {"square": x**2, "noise": np.random.default_rng(part.seed).random(x.size)}
+
+
+def table(task=squares):
+    axes = (Axis("x", np.arange(8.0), "1", "a number", 2),)
+    fields = tuple(Field(name, ("x",), "float64", "1", f"the {name}") for name in ("square", "noise"))
+    return Sweep("squares", "Squares", axes, fields, task, 1, "none", {"n": 8}, 8, lambda: None)
+
+
+def files(store):
+    return {str(file.relative_to(store)): file.read_bytes() for file in store.rglob("*") if file.is_file()}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The files of a sweep that nothing disturbed."""
+    store = tmp_path_factory.mktemp("whole") / "store"
+    run(table(), store)
+    return files(store)
+
+
+@pytest.mark.parametrize("moment", range(0, 20, 3))
+@pytest.mark.parametrize("where", ["before", "between"])
+def test_a_fault_at_any_write_leaves_a_store_that_goes_on(whole, where, moment, tmp_path):
+    """`before`: the disk is full. `between`: the process is gone after the write and before the rename."""
+    store = tmp_path / "store"
+    hit = TORTURE["interrupted"](lambda: run(table(), store, workers=1), where, moment)
+    run(table(), store)
+
+    assert hit or moment > 12  # 15 files: 7 of the store itself, two for each part
+    assert files(store) == whole
+
+
+def test_restarts_drawn_at_random_end_with_the_same_bits():
+    assert TORTURE["restarts"](6, seed=3).failed == 0
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda old: old[:-3], lambda old: b"", lambda old: old[:5] + bytes([old[5] ^ 4]) + old[6:]],
+    ids=["truncated", "empty", "flipped"],
+)  # fmt: skip
+def test_a_damaged_chunk_is_found_named_and_computed_again(whole, damage, tmp_path):
+    run(table(), tmp_path)
+    chunk = tmp_path / "noise" / "c" / "2"
+    chunk.write_bytes(damage(chunk.read_bytes()))
+    again = []
+    with pytest.warns(UserWarning, match=f"1 damaged files are computed again, {chunk} among them"):
+        run(table(lambda part: again.append(part.at) or squares(part)), tmp_path)
+
+    assert again == [(2,)]
+    assert files(tmp_path) == whole
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run(table(), tmp_path)
+
+
+@pytest.mark.parametrize("number", ["EROFS", "EACCES", "EIO"])
+def test_a_store_that_cannot_be_written_is_one_sentence(number, tmp_path, monkeypatch):
+    with opened(table(), tmp_path / "store"):
+        pass
+
+    def refused(handle):
+        raise OSError(getattr(errno, number), os.strerror(getattr(errno, number)))
+
+    monkeypatch.setattr("os.fsync", refused)
+    with pytest.raises(UnfinishedError, match=r"^the (store|disk) [a-z -]*; 0 of 4 parts are in "):
+        run(table(), tmp_path / "store")
+
+
+def test_a_whole_store_is_read_where_nothing_can_be_written(tmp_path, monkeypatch):
+    kept = run(table(), tmp_path / "store").load()
+
+    def refused(*_, **__):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    for name in ("os.fsync", "os.unlink", "os.replace", "pathlib.Path.unlink", "pathlib.Path.replace"):
+        monkeypatch.setattr(name, refused)
+
+    assert run(table(), tmp_path / "store").identical(kept)
+
+
+def test_without_locks_two_drivers_write_the_same_bits(whole, tmp_path, monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    def slowly(part):
+        time.sleep(0.01)
+        return squares(part)
+
+    monkeypatch.setattr(stores, "import_module", missing)
+    store, failed = tmp_path / "store", []
+
+    def drive():
+        try:
+            run(table(slowly), store, workers=1)
+        except BaseException as error:
+            failed.append(error)
+
+    with opened(table(), store):
+        pass
+    drivers = [threading.Thread(target=drive) for _ in range(2)]
+    for driver in drivers:
+        driver.start()
+    for driver in drivers:
+        driver.join()
+
+    assert failed == []
+    assert files(store) == whole
+
+
+@pytest.mark.parametrize("address", ["memory://sweep", "s3://bucket/sweep"])
+def test_an_object_store_is_refused_in_one_sentence(address, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match="an object store has no files that appear at once; accepted: a directory"):
+        run(table(), Path(address))
+
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_another_version_is_refused_and_says_what_to_install(tmp_path, monkeypatch):
+    run(table(), tmp_path)
+    before = files(tmp_path)
+    newer = {"pinball-billiards": "9.0", "numpy": "9.1"}
+    monkeypatch.setattr("numeric.sweeps.sweep.versions", lambda: newer)
+    with pytest.raises(ValueError, match=r"was begun with .*numpy .*, and here are numpy 9.1, pinball-billiards 9.0"):
+        run(table(), tmp_path)
+    assert files(tmp_path) == before
+    monkeypatch.undo()
+    metadata = tmp_path / "zarr.json"
+    known = json.loads(metadata.read_text())
+    known["attributes"]["versions"] = "no list"
+    metadata.write_text(json.dumps(known))
+    with pytest.raises(ValueError, match="was begun with versions that it does not say"):
+        run(table(), tmp_path)
+
+
+def test_a_clock_that_is_set_back_changes_nothing(whole, tmp_path, monkeypatch):
+    times = iter(range(10**9, 0, -3600))
+    monkeypatch.setattr("time.time", lambda: float(next(times)))
+    TORTURE["interrupted"](lambda: run(table(), tmp_path / "store"), "before", 12)
+    run(table(), tmp_path / "store")
+
+    assert files(tmp_path / "store") == whole

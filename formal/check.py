@@ -17,7 +17,7 @@ from pathlib import Path
 HERE = Path(__file__).parent
 RECORD = HERE / "assumptions.txt"
 # In an order in which each finds what it needs.
-CARDIOID = ("Cardioid", "Stretch", "Cycles", "Map")
+CARDIOID = ("Cardioid", "Stretch", "Cycles", "Map", "Landing", "Near", "Unstable")
 NEWTON = ("Newton", "Jets", "Checked", "Boxes")
 EGG = ("Cascade", "Equations", "Doublings")
 FILES = ("Bounce", "Cone", *CARDIOID, "Generated", "Frames", "Algebra", "Errata", "Fold", *NEWTON, *EGG, "Numbers")

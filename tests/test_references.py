@@ -151,6 +151,23 @@ def test_a_citation_with_an_entry_passes(text):
     assert not unknown(text)
 
 
+MODULE = re.compile(r"`((?:symbolic|numeric|verification)(?:\.[a-z_0-9]+)+)")
+
+
+def exists(name):
+    """Is there a module of that dotted name, or a name of its last part written in one?"""
+    path = ROOT.joinpath(*name.split("."))
+    if path.is_dir() or path.with_suffix(".py").is_file():
+        return True
+    home = path.parent.with_suffix(".py")
+    return home.is_file() and re.search(rf"^(?:def |class )?{path.name}\b", home.read_text(), re.MULTILINE) is not None
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=named)
+def test_a_module_that_a_page_names_exists(page):
+    assert [name for name in MODULE.findall(page.read_text()) if not exists(name)] == []
+
+
 def plain(text):
     """Letters and digits only, without TeX, so that a quotation can be looked for."""
     return " ".join(re.findall(r"[a-z0-9]+", re.sub(r"\\[a-z]+|[`$]", " ", text.lower())))

@@ -2,7 +2,7 @@
 
 A float64 kernel, or mpmath where that fails, guesses a landing. Newton's method sharpens it; an interval
 Newton step then shows that near it every ball of the start lands exactly once; and the boundary is covered
-to show that no such flight meets it before (`certificates.first_hit`), whatever the shape of the table.
+to show that no such flight meets it before (`maps.first_hit`), whatever the shape of the table.
 What is proved rests on the balls alone, and not on where the guess came from.
 
 Orbits beyond float64: to a number of digits with mpmath, or enclosed in balls.

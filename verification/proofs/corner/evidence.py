@@ -104,7 +104,7 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
 
     Where half the return has its fixed points `(u, v)` in units of `lam - lambda-star`, on the arc and on the
     wall: `base + (1 - A)^-1 (H(base)/e - base)`, with the `A` of a point of the region, lies in a ball inside of it,
-    so that there is one; and there is one only. From 0.07122 on `certificates.everywhere` follows both.
+    so that there is one; and there is one only. From 0.07122 on `proofs.periodic.over_interval` follows both.
 
     >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
     {0: '-0.532', 1: '10.1'}

@@ -3,7 +3,7 @@
 The second branch of the transfer operator ends at `pi/4`, with a density that vanishes quadratically there; so the
 density bends at `pi/4` and, ever more weakly, at its images. Between them it is analytic. Collocation at
 Chebyshev's points is solved in floats and refined in balls whose radii are dropped: nothing here is proved, and
-nothing needs to be, for `certificates.slap_residual` judges the result as it is.
+nothing needs to be, for `verification.proofs.slap_map.candidate` judges the result as it is.
 
 What the transfer operator changes in a piecewise polynomial, and its mean of `log F'`: both bounded in balls.
 

@@ -1,12 +1,12 @@
 """The Lyapunov exponent of a chaotic attractor, proved: the cardioid at `lam = 0`, where the map is its slap map.
 
-Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `certificates.slap_transfer`, for functions on
+Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `slap_map.transfer`, for functions on
 `[0, pi/2]` of bounded variation that end in 0; norms are in `L1`.
 
 **There is one invariant density.** The means of `L^n f`, for any such density `f`, are bounded in variation, so by
 Helly's theorem some of them converge, to a density `h = L h`; it ends in 0, because the rate is 0 at the cusp. Let
 `e` be another fixed point up to `r`: `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P e)
-+ P r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `certificates.ulam`,
++ P r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
 
     ||e|| <= (c/2)*(K + 1)*Var e + K*||r||,     Var e <= (adds*||e|| + Var r)/(1 - shrinks),
 
@@ -25,7 +25,7 @@ inequality for variations is the same, and so is the argument, with a `K` for al
 slap map itself has one invariant density, and it is its own mirror image.
 
 **The density is near `f`.** For any `f` with integral 1, here polynomials, `e = h - f` has `r = L f - f`, which
-`certificates.slap_residual` bounds.
+`verification.proofs.slap_map.candidate` bounds.
 
 **The exponent.** `T0'(s)` and the slope `F'` in half angles differ by the factor `cos(theta/2)` at either end of a
 flight, whose logarithm is integrable; so the exponent of almost every start is the integral of `log F'` times `h`.

@@ -55,7 +55,11 @@ def test_without_a_certified_loss_of_symmetry_the_sentence_stays_open(monkeypatc
     assert verdict(on_egg_cascade.negative_exponents, "egg.negative_exponents") is Verdict.OPEN
 
 
-def test_period_4_alone_is_supported_and_open_where_another_cycle_is_found(monkeypatch: pytest.MonkeyPatch):
+def test_period_4_alone_is_proved_and_without_the_cover_supported_or_open(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(on_egg_cascade, "SMALL", ("0.2",))
+    assert verdict(on_egg_cascade.only_period4, "egg.only_period4") is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_egg_cascade, "cycles_for_small_lam", lambda: UNKNOWN)
     assert verdict(on_egg_cascade.only_period4, "egg.only_period4") is Verdict.SUPPORTED
     monkeypatch.setattr(on_egg_cascade, "SMALL", ("0.4",))
 

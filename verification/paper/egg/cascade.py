@@ -13,17 +13,19 @@ from symbolic.cycles.thresholds import tilt
 from symbolic.expressions.signs import Finding, Outcome, positive
 from symbolic.tables import egg as table_of
 from symbolic.tables.table import alpha
+from verification.arithmetic.progress import telling
 from verification.cycles.recurrence.cascade import attractor
 from verification.named.branches import cascade
 from verification.paper.cardioid.splitting import bounced, ends_of_period
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, shown
 from verification.paper.egg.egg import SHAPES
-from verification.paper.egg.stability import chaos_at
+from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.shared.attractors import STARTS, egg, proved_at, unsettled
 from verification.paper.shared.located import certified, located
 from verification.paper.shared.samples import sampled
 from verification.proofs.periodic.over_interval import Stability, everywhere
+from verification.proofs.periodic.returning import returning
 
 SHAPE = Rational(2, 25)
 SMALL = ("0", "0.05", "0.1", "0.2", "0.28")  # contractions where period 4 is alone
@@ -31,6 +33,7 @@ BETWEEN = 0.33, (0.289, 0.371)  # inside the life of the period 4 without a mirr
 OTHERS = (Rational(3, 40), Rational(9, 100))  # shapes where the cascade at 0.08 should be typical
 TONGUE = ("0.02", "0.05", "0.07", "0.08", "0.09", "0.1")
 LAMS = np.round(np.arange(0.05, 0.96, 0.05), 3)
+PROVED = 3 / 128  # contractions up to which the cycles are proved
 STOPS = (0.03, 0.01, 1e-12)  # tolerances of Newton's method
 STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # shapes side by side, and starts
 
@@ -119,16 +122,35 @@ def representative(claim: Claim) -> Judgement:
     )
 
 
+@cache
+def cycles_for_small_lam() -> Finding:
+    """For every contraction up to `PROVED`: each cycle repels, or is the one, up to symmetry, that may attract."""
+    bands = [(k * PROVED / 3, (k + 1) * PROVED / 3) for k in range(3)]
+    found = [returning(SHAPE, band, tick=telling(f"cycles for lam up to {band[1]:.4f}")) for band in bands]
+    parts = " and ".join(str(len(each.repelling)) for each in found)
+    return answer(
+        all(each.proved for each in found),
+        f"for every lam in [0, 3/128] a cover of phase space leaves {parts} parts where every cycle is unstable, and one "
+        "where there is at most one cycle, up to symmetry",
+    )
+
+
 @judges("egg.only_period4")
 def only_period4(claim: Claim) -> Judgement:
-    """Every random start at a few small contractions reaches a certified cycle of period 4."""
+    """Proved for small contractions by a cover of phase space; beyond it random starts reach certified cycles alone."""
     alone = all([a.period for a in egg(x)] == [4, 4, 4] and unsettled(egg(x)) == 0 for x in SMALL)
     proofs = [proved_at(x, 4) for x in SMALL]
-    return sampled(
-        "three attracting orbits of period 4, one at each diameter, up to lam = 0.2878",
-        f"at lam = {', '.join(SMALL)} each of {STARTS} random starts reaches one of three cycles of period 4, which "
-        f"are proved to attract; a share below {3 / STARTS:.1%} of others is not excluded",
-        alone and all(proofs),
+    said = (
+        f"sampled at lam = {', '.join(SMALL)}, each of {STARTS} random starts reaches one of three cycles of period 4, "
+        f"which are proved to attract; a share below {3 / STARTS:.1%} of others is not excluded"
+    )
+    whole = by("the attracting cycles are those of period 4", cycles_for_small_lam(), attracting_4())
+    if not whole:
+        return sampled("three attracting orbits of period 4", said, alone and all(proofs))
+    return Judgement(
+        whole,
+        "proved for 0 <= lam <= 3/128: a stable cycle has period 4, and there is one, up to symmetry; up to the pitchfork "
+        f"at 0.2878 three are found: {said}",
     )
 
 

@@ -130,8 +130,8 @@ def cycles_for_small_lam() -> Finding:
     parts = " and ".join(str(len(each.repelling)) for each in found)
     return answer(
         all(each.proved for each in found),
-        f"for every lam in [0, 3/128] a cover of phase space leaves {parts} parts where every cycle is unstable, and one "
-        "where there is at most one cycle, up to symmetry",
+        f"for every lam in [0, 3/128] a cover of phase space leaves {parts} parts where every cycle is unstable, and "
+        "one where there is at most one cycle, up to symmetry",
     )
 
 
@@ -149,8 +149,8 @@ def only_period4(claim: Claim) -> Judgement:
         return sampled("three attracting orbits of period 4", said, alone and all(proofs))
     return Judgement(
         whole,
-        "proved for 0 <= lam <= 3/128: a stable cycle has period 4, and there is one, up to symmetry; up to the pitchfork "
-        f"at 0.2878 three are found: {said}",
+        "proved for 0 <= lam <= 3/128: a stable cycle has period 4, and there is one, up to symmetry; up to the "
+        f"pitchfork at 0.2878 three are found: {said}",
     )
 
 

@@ -27,11 +27,11 @@ from scipy.sparse.csgraph import connected_components
 from sympy import Expr
 
 from symbolic.expressions.text import load
+from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import FLOAT64, balls, working
 from verification.arithmetic.progress import Tick, silent
-from verification.cycles.recurrence.chords import chord_kernel
 from verification.maps.first_hit import convex
 
 BITS = 64

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
+import numpy as np
 from sympy import Expr, N, Rational
 
 from symbolic import tables
@@ -143,6 +144,7 @@ def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tup
 
 
 GRID = [k / 25 for k in range(20, -1, -1)]
+START = 0.05, 3.1  # two successive bounces near a diameter
 TRIED = f"a ball settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
 HIGHEST = 17  # the rung whose period, 2**16, still takes minutes
 
@@ -182,10 +184,22 @@ def ladder(alpha: Expr) -> Iterator[Rung]:
         n, critical = n + 1, following
 
 
+def _back_after_four(table: Table) -> list[float]:
+    """The contractions of the grid at which a ball near a diameter is back after four bounces, in one float64 run."""
+    from numeric import PinballMap
+
+    theta = np.full(len(GRID), START[1])
+    map = PinballMap("egg", lam=np.array(GRID), alpha=str(dict(table.fixed)["alpha"]))
+    orbit = map.orbit(theta, 0 * theta, 4000).theta[-5:]
+    return [
+        lam for lam, gap in zip(GRID, orbit[-1] - orbit[0], strict=True) if abs(math.remainder(gap, math.tau)) < SAME
+    ]
+
+
 def stable_four(table: Table) -> tuple[float, list[float]]:
     """The largest contraction of a coarse grid with an attracting cycle of period 4 near a diameter."""
-    for lam in GRID:
-        cycle = attractor(table, lam, (0.05, 3.1), 16)
+    for lam in _back_after_four(table):
+        cycle = attractor(table, lam, START, 16)
         if len(cycle) == 4:
             return lam, cycle
     raise ValueError(
@@ -202,8 +216,8 @@ def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
     """
     table = tables.egg(3).at(alpha=alpha)
     problem = Problem(table, (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR)
-    for lam in GRID:
-        cycle = attractor(table, lam, (0.05, 3.1), 16)
+    for lam in _back_after_four(table):
+        cycle = attractor(table, lam, START, 16)
         if len(cycle) == 4 and abs(math.remainder(cycle[0] + cycle[2], 2 * math.pi)) < 1e-6:
             for share in range(1, 12):
                 try:

@@ -130,3 +130,15 @@ def test_the_command_says_where_and_clears(place, capsys):
     place.chmod(0o777)
     assert main(["cache"]) == 1
     assert "is not used: others can write in it (mode 0777; chmod 700 mends that)" in capsys.readouterr().out
+
+
+def test_everything_that_is_kept_is_counted_and_cleared(place):
+    from numeric import PinballMap
+    from numeric.kernels import machine
+
+    machine._loaded.clear()
+    PinballMap("egg", lam=0.5, alpha="0.08").step(0.3, 0.2)
+
+    assert len(cache.entries()) == len(list(place.iterdir())) == 2
+    cache.clear()
+    assert list(place.iterdir()) == []

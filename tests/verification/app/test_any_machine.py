@@ -1,0 +1,77 @@
+"""The same answers on odd machines: no assertions, no locale, no home, little memory, many threads."""
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+PROGRAM = """
+import sys
+import numpy as np
+from numeric import PinballMap
+from verification.app.cli import main
+map = PinballMap("egg", lam=0.7, alpha="0.08")
+theta = np.linspace(-3, 3, 640)
+orbit = map.orbit(theta, 0 * theta, 20, threads=THREADS)
+print(orbit.theta[-1].tobytes().hex()[:400], float(np.sum(orbit.x)).hex())
+AFTER
+sys.exit(main(["locate", "lambda-c", "--digits", "20", "--json", "-"]))
+"""
+FORK = """
+import os
+child = os.fork()
+if child == 0:
+    again = map.orbit(theta, 0 * theta, 20, threads=2)
+    os._exit(0 if again.theta.tobytes() == orbit.theta.tobytes() else 1)
+if os.waitpid(child, 0)[1] != 0:
+    sys.exit(3)
+"""
+
+
+def answers(threads=2, after="", prepare=None, without=(), **environment):
+    """What the program says, and its exit status; the seconds are left out."""
+    known = {name: value for name, value in os.environ.items() if name not in without}
+    with tempfile.TemporaryDirectory() as folder:
+        known |= {"PYTHONPATH": str(ROOT), "PINBALL_CACHE": folder} | environment
+        known = {name: value for name, value in known.items() if name not in without}
+        text = PROGRAM.replace("THREADS", str(threads)).replace("AFTER", after)
+        done = subprocess.run(
+            [sys.executable, "-W", "ignore::DeprecationWarning", "-c", text], cwd=folder, env=known, text=True,
+            capture_output=True, preexec_fn=prepare, check=False,
+        )  # fmt: skip
+    said = [line for line in done.stdout.splitlines() if "seconds" not in line]
+    return done.returncode, said, done.stderr
+
+
+@pytest.fixture(scope="module")
+def usual():
+    status, said, error = answers()
+    assert status == 0, error
+    assert len(said) > 5
+    return said
+
+
+MACHINES = {
+    "without assertions": {"PYTHONOPTIMIZE": "1"},
+    "without docstrings": {"PYTHONOPTIMIZE": "2"},
+    "without a locale": {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    "without a home": {"without": ("HOME", "XDG_CACHE_HOME", "USER", "LOGNAME")},
+    "64 threads": {"threads": 64},
+    "a fork after threads": {"after": FORK},
+    "2 GB of addresses": {"prepare": lambda: resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))},
+    "read-only Python": {"PYTHONDONTWRITEBYTECODE": "1", "PINBALL_CACHE": "/proc/nowhere"},
+}
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_the_answers_are_the_same(machine, usual):
+    status, said, error = answers(**MACHINES[machine])
+
+    assert status == 0, error
+    assert said == usual
+    assert "Traceback" not in error

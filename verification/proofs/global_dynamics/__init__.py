@@ -1,0 +1,1 @@
+"""Global dynamics: attractor blocks, Morse graphs, horseshoes, proved by covering phase space with boxes."""

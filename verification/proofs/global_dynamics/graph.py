@@ -1,0 +1,333 @@
+"""A grid of phase space, its transition graph, and what follows from that graph for every orbit.
+
+Each chart is cut into equal cells; a leaf is a square block of cells, finer where orbits return. A leaf has an edge to
+every leaf that its outer image meets. So every orbit walks along edges, and what no walk does no orbit does:
+
+- A walk without end stays, from some step on, in one strongly connected component that has an edge within itself. Such
+  components are the Morse sets; every orbit that goes on for ever is in one of them from some bounce on.
+- Leaves from which no edge leads away are a trapping region, also called an attractor block: the map takes them
+  into their interior.
+- A leaf from which every walk ends in a trapping region lies in its basin.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+from verification.proofs.global_dynamics.images import Boxes, BoxMap, Chart, Images
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+BLOCK = 1 << 14  # boxes that are mapped together: their arrays stay in the cache
+PAD = 1e-7  # of a cell: more than the rounding of an index, for charts of at most LARGEST cells
+LARGEST = 1 << 20
+EDGES = 1 << 28  # at most, so that their indices take no more than two gigabytes
+
+
+class Cells(NamedTuple):
+    """Blocks of `size` by `size` cells: the chart, the first column and row."""
+
+    chart: Indices
+    column: Indices
+    row: Indices
+    size: Indices
+
+
+class Rectangles(NamedTuple):
+    """Ranges of cells that outer images meet: columns `left` to `right`, beyond the last ones for one turn more."""
+
+    source: Indices
+    chart: Indices
+    left: Indices
+    right: Indices
+    bottom: Indices
+    top: Indices
+    out: Mask  # does the image leave the chart?
+
+
+@dataclass(frozen=True)
+class Grid:
+    """`columns` by `rows` cells in each chart of a map.
+
+    >>> from verification.proofs.global_dynamics.images import Chart
+    >>> grid = Grid((Chart("plane", (0, 1), (0, 1)),), 4, 2)
+    >>> [end[0] for end in grid.boxes(grid.whole(2)).x]
+    [array([-1.e-15]), array([0.5])]
+    """
+
+    charts: tuple[Chart, ...]
+    columns: int
+    rows: int
+
+    def __post_init__(self) -> None:
+        if not (1 <= self.columns <= LARGEST and 1 <= self.rows <= LARGEST):
+            raise ValueError(f"grid: {self.columns} by {self.rows} cells; accepted: 1 to {LARGEST} each way")
+
+    def whole(self, size: int = 1) -> Cells:
+        """All of phase space in blocks of `size` by `size` cells."""
+        shape = len(self.charts), self.columns // size, self.rows // size
+        chart, column, row = (index.ravel() for index in np.indices(shape))
+        return Cells(chart, column * size, row * size, np.full(chart.size, size))
+
+    def boxes(self, cells: Cells) -> Boxes:
+        """The blocks as boxes, rounded outwards."""
+        ends = []
+        for side, first, count in (("x", cells.column, self.columns), ("y", cells.row, self.rows)):
+            low, high = (np.array([getattr(chart, side)[i] for chart in self.charts])[cells.chart] for i in (0, 1))
+            step = (high - low) / count
+            slop = 1e-15 * (np.abs(low) + np.abs(high))
+            ends.append((low + first * step - slop, low + (first + cells.size) * step + slop))
+        return Boxes(cells.chart, *ends)
+
+    def met(self, images: Images) -> Rectangles:
+        """The cells that rectangles meet, borders included."""
+        boxes, found = images.boxes, []
+        out = np.zeros(boxes.chart.size, dtype=bool)
+        kept, turning = (np.array([getattr(c, name) for c in self.charts])[boxes.chart] for name in ("kept", "period"))
+        for side, ends, count in (("x", boxes.x, self.columns), ("y", boxes.y, self.rows)):
+            low, high = (np.array([getattr(chart, side)[i] for chart in self.charts])[boxes.chart] for i in (0, 1))
+            scale = count / (high - low)
+            first, last = np.floor((ends[0] - low) * scale - PAD), np.floor((ends[1] - low) * scale + PAD)
+            bounded = ~turning if side == "x" else np.ones(out.shape, dtype=bool)
+            out |= bounded & ~kept & ((first < 0) | (last >= count))
+            first, last = (np.where(bounded, np.clip(i, 0, count - 1), i) for i in (first, last))
+            if side == "x":
+                last = np.where(turning, np.minimum(last, first + count - 1), last)
+                first, last = (i - np.where(turning, np.floor(first / count) * count, 0) for i in (first, last))
+            found += [first.astype(np.int64), last.astype(np.int64)]
+        return Rectangles(images.source, boxes.chart, *found, out)
+
+    def painted(self, cells: Cells, values: Indices | Mask, empty: int = 0) -> NDArray[np.int32]:
+        """An array of all cells, with the value of each block at its cells."""
+        picture = np.full((len(self.charts), self.columns, self.rows), empty, dtype=np.int32)
+        for size in np.unique(cells.size):
+            on = cells.size == size
+            for i in range(size):
+                for j in range(size):
+                    picture[cells.chart[on], cells.column[on] + i, cells.row[on] + j] = values[on]
+        return picture
+
+
+def halved(cells: Cells) -> Cells:
+    """Each block cut into four."""
+    size = cells.size // 2
+    parts = [(i, j) for i in (0, 1) for j in (0, 1)]
+    column = np.concatenate([cells.column + i * size for i, _ in parts])
+    row = np.concatenate([cells.row + j * size for _, j in parts])
+    return Cells(np.tile(cells.chart, 4), column, row, np.tile(size, 4))
+
+
+def mapped(
+    map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Callable[[float], None] | None = None
+) -> tuple[Rectangles, Mask]:
+    """What the images of blocks meet, each cut into `parts` by `parts`; and the blocks of which nothing is proved."""
+    found, lost = [], np.zeros(cells.chart.size, dtype=bool)
+    step = max(1, BLOCK // parts**2)
+    for start in range(0, cells.chart.size, step):
+        some = Cells(*(field[start : start + step] for field in cells))
+        boxes, source = grid.boxes(some).parts(parts, parts)
+        images = map.images(boxes)
+        met = grid.met(images)
+        lost[start + source[images.lost]] = True
+        found.append(met._replace(source=start + source[met.source]))
+        if told is not None:
+            told(min(1.0, (start + step) / cells.chart.size))
+    if not found:
+        raise ValueError("no boxes to map; give a grid with at least one")
+    return Rectangles(*(np.concatenate(column) for column in zip(*found, strict=True))), lost
+
+
+def inside(grid: Grid, cells: Cells, met: Rectangles, lost: Mask) -> Mask:
+    """For each block: is its whole image covered by the blocks? Images need no edges for that, only counts of cells."""
+    member = grid.painted(cells, np.ones(cells.chart.size, dtype=bool))
+    doubled = np.concatenate([member, member], axis=1).cumsum(1, dtype=np.int64).cumsum(2, dtype=np.int64)
+    total = np.pad(doubled, ((0, 0), (1, 0), (1, 0)))
+    a, b, c, d = met.left, met.right + 1, met.bottom, met.top + 1
+    held = total[met.chart, b, d] - total[met.chart, a, d] - total[met.chart, b, c] + total[met.chart, a, c]
+    good = (held == (b - a) * (d - c)) & ~met.out
+    result = ~lost
+    result[met.source[~good]] = False
+    return result
+
+
+@dataclass(frozen=True)
+class Transitions:
+    """The transition graph of leaves: `edges` in rows, with one vertex more, the outside, after the last leaf.
+
+    A leaf of which nothing is proved has an edge to that vertex, which has one to every leaf: an orbit may do
+    anything there. So has a leaf whose image leaves the charts.
+    """
+
+    grid: Grid
+    leaves: Cells
+    edges: csr_matrix
+
+    @property
+    def count(self) -> int:
+        """How many leaves."""
+        return int(self.leaves.chart.size)
+
+    @cached_property
+    def components(self) -> Indices:
+        """The strongly connected component of each vertex."""
+        return np.asarray(connected_components(self.edges, directed=True, connection="strong")[1], dtype=np.int64)
+
+    @cached_property
+    def recurrent(self) -> Mask:
+        """The vertices that lie on a closed walk."""
+        sizes = np.bincount(self.components)
+        return np.asarray((sizes[self.components] > 1) | self.edges.diagonal())
+
+    @cached_property
+    def condensed(self) -> tuple[csr_matrix, csr_matrix]:
+        """The graph whose vertices are the strongly connected components, and the same with its edges turned."""
+        labels, size = self.components, int(self.components.max()) + 1
+        labels = labels.astype(np.int32)
+        source, target = np.repeat(labels, np.diff(self.edges.indptr)), labels[self.edges.indices]
+        between = source != target
+        ones = np.ones(int(between.sum()), dtype=bool)
+        made = csr_matrix((ones, (source[between], target[between])), shape=(size, size))
+        return made, made.T.tocsr()
+
+    def reached(self, start: Mask, backward: bool = False) -> Mask:
+        """The vertices to which walks lead from `start`, itself included; or, backward, from which they lead there."""
+        graph = self.condensed[1 if backward else 0]
+        size = graph.shape[0]
+        first = np.unique(self.components[start])
+        indptr = np.append(graph.indptr, graph.indptr[-1] + first.size)  # one vertex more, with an edge to each start
+        indices = np.append(graph.indices, first.astype(graph.indices.dtype))
+        whole = csr_matrix((np.ones(indices.size, dtype=bool), indices, indptr), shape=(size + 1, size + 1))
+        walked = np.zeros(size + 1, dtype=bool)
+        walked[breadth_first_order(whole, size, return_predecessors=False)] = True
+        return walked[self.components]
+
+
+def transitions(
+    map: BoxMap, grid: Grid, leaves: Cells, parts: int = 1, told: Callable[[float], None] | None = None
+) -> Transitions:
+    """The transition graph of leaves that cover phase space, or a part of it; the rest counts as outside."""
+    return joined(grid, leaves, *mapped(map, grid, leaves, parts, told))
+
+
+def joined(grid: Grid, leaves: Cells, met: Rectangles, lost: Mask) -> Transitions:
+    """The transition graph, given what images meet."""
+    count, unit = leaves.chart.size, int(leaves.size.min())  # cells are counted in units of the smallest leaf
+    columns, rows = grid.columns // unit, grid.rows // unit
+    coarse = Cells(leaves.chart, *(field // unit for field in leaves[1:]))
+    names = Grid(grid.charts, columns, rows).painted(coarse, np.arange(count), count).reshape(len(grid.charts), -1)
+    order = np.argsort(met.source, kind="stable")
+    met = Rectangles(*(field[order] // (1 if i < 2 or i > 5 else unit) for i, field in enumerate(met)))
+    high, across = met.top - met.bottom + 1, met.right - met.left + 1
+    total = int((across * high).sum())
+    if total > EDGES:
+        raise ValueError(f"grid: {total} edges, at most {EDGES} fit; use smaller boxes where orbits return, or fewer")
+    sources, targets = [], []
+    for start in range(0, met.source.size, BLOCK):
+        some = slice(start, start + BLOCK)
+        column = ranges(met.left[some], met.right[some] + 1)
+        owner = np.repeat(np.arange(start, start + across[some].size), across[some])
+        first = (column % columns) * rows + met.bottom[owner]
+        cell = ranges(first, first + high[owner])
+        owner = np.repeat(owner, high[owner])
+        source, target = met.source[owner].astype(np.int32), names[met.chart[owner], cell]
+        new = np.append(True, (source[1:] != source[:-1]) | (target[1:] != target[:-1]))
+        sources.append(source[new])
+        targets.append(target[new])
+    away = np.union1d(np.flatnonzero(lost), met.source[met.out])
+    sources += [away.astype(np.int32), np.full(count + 1, count, dtype=np.int32)]
+    targets += [np.full(away.size, count, dtype=np.int32), np.arange(count + 1, dtype=np.int32)]
+    source, target = np.concatenate(sources), np.concatenate(targets)
+    graph = csr_matrix((np.ones(source.size, dtype=bool), (source, target)), shape=(count + 1, count + 1))
+    return Transitions(grid, leaves, graph)
+
+
+def ranges(first: Indices, last: Indices) -> Indices:
+    """The numbers from `first` to below `last`, for each pair, one after the other.
+
+    >>> ranges(np.array([3, 10]), np.array([5, 13]))
+    array([ 3,  4, 10, 11, 12])
+    """
+    lengths = np.asarray(last - first, dtype=np.int64)
+    starts = np.cumsum(lengths) - lengths
+    return np.arange(lengths.sum()) - np.repeat(starts - first, lengths)
+
+
+@dataclass(frozen=True)
+class MorseGraph:
+    """The Morse sets of a transition graph, the largest first, and their order: `below[i, j]` says that a walk leads
+    from set `i` to set `j`. Several sets may hold one attractor with what is near it; each set may hold no orbit."""
+
+    transitions: Transitions
+    sets: tuple[Indices, ...]
+    below: Mask
+
+    @property
+    def attracting(self) -> tuple[int, ...]:
+        """The sets from which no walk leads to another set."""
+        return tuple(i for i in range(len(self.sets)) if not np.any(np.delete(self.below[i], i)))
+
+    def trapping(self, index: int) -> Mask:
+        """The leaves to which walks lead from a set: a trapping region, unless the outside is among them."""
+        return self.transitions.reached(self._set(index))
+
+    def basin(self, block: Mask) -> Mask:
+        """The leaves from which every walk ends in a trapping region."""
+        other = self.transitions.recurrent & ~block
+        return ~self.transitions.reached(other, backward=True)
+
+    def _set(self, index: int) -> Mask:
+        start = np.zeros(self.transitions.count + 1, dtype=bool)
+        start[self.sets[index]] = True
+        return start
+
+
+MOST = 400  # Morse sets whose order is worked out
+
+
+def morse_graph(transitions: Transitions) -> MorseGraph:
+    """The Morse graph of a transition graph; the outside is a vertex of its own and counts as a set where it is met."""
+    labels, recurrent = transitions.components, transitions.recurrent.copy()
+    recurrent[-1] = np.any(transitions.edges.indices[: transitions.edges.indptr[-2]] == transitions.count)
+    vertices = np.flatnonzero(recurrent)
+    vertices = vertices[np.argsort(labels[vertices], kind="stable")]
+    cuts = np.flatnonzero(np.diff(labels[vertices])) + 1
+    sets = sorted(np.split(vertices, cuts), key=len, reverse=True) if vertices.size else []
+    if len(sets) > MOST:
+        raise ValueError(f"{len(sets)} Morse sets, at most {MOST} are ordered; use smaller boxes or another contraction")
+    graph, first = transitions.condensed[0], [labels[members[0]] for members in sets]
+    below = np.zeros((len(sets), len(sets)), dtype=bool)
+    for i, label in enumerate(first):
+        walked = breadth_first_order(graph, label, return_predecessors=False)
+        below[i] = np.isin(first, walked)
+    return MorseGraph(transitions, tuple(sets), below)
+
+
+def refined(
+    map: BoxMap, grid: Grid, coarsest: int, parts: int = 1, told: Callable[[float], None] | None = None
+) -> Transitions:
+    """The transition graph of leaves that begin at `coarsest` cells and are halved, where orbits may return, to one."""
+    if coarsest & (coarsest - 1) or grid.columns % coarsest or grid.rows % coarsest:
+        raise ValueError(f"grid: blocks of {coarsest} do not fit {grid.columns} by {grid.rows} cells; use powers of 2")
+    leaves = grid.whole(coarsest)
+    met, lost = mapped(map, grid, leaves, parts, told)
+    while True:
+        found = joined(grid, leaves, met, lost)
+        cut = found.recurrent[:-1] & (leaves.size > 1)
+        if not np.any(cut):
+            return found
+        fine = halved(Cells(*(field[cut] for field in leaves)))
+        more, more_lost = mapped(map, grid, fine, parts, told)
+        count = int(np.sum(~cut))  # what stays keeps its images under a new number
+        number, stay = np.cumsum(~cut) - 1, ~cut[met.source]
+        old = Rectangles(*(field[stay] for field in met))
+        old, more = old._replace(source=number[old.source]), more._replace(source=more.source + count)
+        met = Rectangles(*(np.concatenate(pair) for pair in zip(old, more, strict=True)))
+        leaves = Cells(*(np.concatenate([field[~cut], new]) for field, new in zip(leaves, fine, strict=True)))
+        lost = np.concatenate([lost[~cut], more_lost])

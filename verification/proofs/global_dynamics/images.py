@@ -1,0 +1,416 @@
+"""Outer images of boxes: rectangles that hold every point to which the map takes a point of the box.
+
+In a convex table the line of a flight cuts the boundary in two arcs. Counterclockwise from the start, boundary points
+lie to the right of the line before the landing and to its left after it. So two points, guessed in float64, enclose the
+landings of a whole box as soon as one is proved to lie to the right of every flight of the box and the other to the
+left: two signs of a cross product, and no equation is solved. Within that arc the mean-value theorem encloses the image
+more closely. The exit angle needs no more than the angles `tau` of the tangents,
+
+    phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi.
+
+Where the arc holds a join, the image is given for both sides of it. Paper: section 2.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from symbolic.tables.scene import Scene
+from verification.maps.first_hit import convex
+from verification.proofs.global_dynamics.arrays import ArrayOps, BallArray, direction, exactly, hull, turned
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+TRIES = 7  # widenings of a guessed arc
+CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
+
+
+class Boxes(NamedTuple):
+    """Boxes in the charts of a phase space: the chart, and the ends of both coordinates, one entry for each box."""
+
+    chart: Indices
+    x: tuple[Array, Array]
+    y: tuple[Array, Array]
+
+    def __getitem__(self, index: Any) -> "Boxes":  # type: ignore[override]
+        return Boxes(self.chart[index], *((low[index], high[index]) for low, high in (self.x, self.y)))
+
+    def parts(self, across: int, up: int) -> tuple["Boxes", Indices]:
+        """The boxes cut into equal parts, and for each part the index of its box."""
+        source = np.repeat(np.arange(self.chart.size), across * up)
+        sides = [np.tile(np.repeat(np.arange(across), up), self.chart.size), np.tile(np.arange(up), source.size // up)]
+        ends = []
+        for (low, high), step, count in zip((self.x, self.y), sides, (across, up), strict=True):
+            low, high = low[source], high[source]
+            size = np.abs(low) + np.abs(high)
+            cut = [low + (high - low) * ((step + end) / count) for end in (0, 1)]
+            ends.append((np.maximum(cut[0] - 1e-15 * size, low), np.minimum(cut[1] + 1e-15 * size, high)))
+        return Boxes(self.chart[source], *ends), source
+
+
+class Images(NamedTuple):
+    """Rectangles: the box each belongs to, and where it lies; `lost` are boxes of which nothing is proved."""
+
+    source: Indices
+    boxes: Boxes
+    lost: Indices
+
+
+class Chart(NamedTuple):
+    """A rectangle of phase space, closed; with `period` its first coordinate runs around once."""
+
+    name: str
+    x: tuple[float, float]
+    y: tuple[float, float]
+    period: bool = False
+    kept: bool = False  # does the map keep to the charts? Then what juts out of one is rounding
+
+
+class BoxMap(Protocol):
+    """A map of a phase space in charts, with outer images."""
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts."""
+
+    @property
+    def label(self) -> str:
+        """The map and its parameters, in words."""
+
+    def images(self, boxes: Boxes) -> Images:
+        """Rectangles that hold the image of each box, a part outside all charts included."""
+
+
+@dataclass(frozen=True)
+class PlaneImages:
+    """A map of a rectangle of the plane, given by its formula in balls and by that of its derivative matrix.
+
+    >>> half = PlaneImages("halving", Chart("plane", (-1, 1), (-1, 1)), lambda x, y: (x / 2, y / 2),
+    ...     lambda x, y: ((0.5, 0), (0, 0.5)))
+    >>> box = Boxes(np.array([0]), (np.array([0.5]), np.array([1.0])), (np.array([0.0]), np.array([0.5])))
+    >>> [round(float(end[0]), 9) for end in half.images(box).boxes.x]
+    [0.25, 0.5]
+    """
+
+    label: str
+    chart: Chart
+    formula: Any
+    derivative: Any
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        return (self.chart,)
+
+    def images(self, boxes: Boxes) -> Images:
+        centre, reach, whole = centred(boxes)
+        (a, b), (c, d) = self.derivative(*whole)
+        values = self.formula(*centre)
+        x, y = (value + p * reach[0] + q * reach[1] for value, (p, q) in zip(values, ((a, b), (c, d)), strict=True))
+        everything = np.arange(boxes.chart.size)
+        return collected([(everything, boxes.chart, x.lower(), x.upper(), y.lower(), y.upper())], everything)
+
+
+def centred(boxes: Boxes) -> tuple[list[BallArray], list[BallArray], list[BallArray]]:
+    """Midpoints, what the boxes hold beside them, and the boxes, for both coordinates."""
+    whole = [hull(*boxes.x), hull(*boxes.y)]
+    return [BallArray(b.m) for b in whole], [BallArray(0.0 * b.m, b.r) for b in whole], whole
+
+
+Row = tuple[Indices, Indices, Array, Array, Array, Array]
+
+
+def collected(rows: list[Row], asked: Indices) -> Images:
+    """Images from rows of `source, chart, x low, x high, y low, y high`; a box with an end not finite is lost."""
+    source, chart, *ends = (np.concatenate(column) for column in zip(*rows, strict=True))
+    good = np.logical_and.reduce([np.isfinite(end) for end in ends])
+    bad = np.union1d(source[~good], np.setdiff1d(asked, source))
+    keep = ~np.isin(source, bad)
+    a, b, c, d = (end[keep] for end in ends)
+    return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), bad.astype(np.int64))
+
+
+class PinballImages:
+    """The map of a scene whose table is proved convex, for every contraction from `lam[0]` to `lam[1]`.
+
+    Phase space is the strip `|phi| <= lam*pi/2`, in which every particle is after one bounce. An orbit that lands on
+    a join has no next bounce; its images here are those of both sides.
+
+    >>> egg = PinballImages(Scene("egg", alpha="0.08", lam="1/2"))
+    >>> egg.label
+    'egg, alpha = 2/25, lam = 1/2'
+    """
+
+    def __init__(self, scene: Scene, lam: tuple[Fraction, Fraction] | None = None) -> None:
+        self.scene = scene
+        low, high = lam or (Fraction(str(scene.lam)), Fraction(str(scene.lam)))
+        if not 0 <= low <= high < 1 or high == 0:
+            raise ValueError(f"lam = {low}:{high} is no range; accepted: 0 <= LOW <= HIGH, with 0 < HIGH < 1")
+        self.range = low, high
+        self.map = PinballMap(scene, lam=high)
+        if convex(self.map.table) is not True:
+            raise ValueError(f"{scene.name}: the table is not proved convex; accepted: convex tables")
+        ends = [exactly(end) for end in (low, high)]
+        self.lam = hull(ends[0].lower(), ends[1].upper())
+        self.ops = ArrayOps()
+        shape = [Fraction(x) for x in self.map.exact_shape]
+        self.shape = [exactly(x) for x in shape]
+        self.closed = len(self.map.blueprint.parts) == 1
+        if self.closed and not _smooth(self.map.table):
+            raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
+        self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.blueprint.parts]
+        self.top = float((self.lam * self.ops.pi() / 2).upper())
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        parts = self.map.blueprint.parts
+        return tuple(
+            Chart(part.name, (float(low.m), float(high.m)), (-self.top, self.top), self.closed, True)
+            for part, (low, high) in zip(parts, self.ends, strict=True)
+        )
+
+    @property
+    def label(self) -> str:
+        shape = "".join(f", {name} = {value}" for name, value in self.scene.shape.items())
+        low, high = self.range
+        return f"{self.scene.name}{shape}, lam = {low}" + ("" if low == high else f" to {high}")
+
+    # ---- places on the boundary
+
+    def place(self, chart: Indices, theta: BallArray) -> list[BallArray]:
+        """Point, velocity and acceleration at parameters of components."""
+        if self.closed:
+            return [spread(value, theta.m) for value in self.map.blueprint.parts[0].curve(self.ops, theta, *self.shape)]
+        m, r = np.broadcast_arrays(theta.m, theta.r)
+        made = [BallArray(np.zeros(m.shape), np.zeros(m.shape)) for _ in range(6)]
+        for index, part in enumerate(self.map.blueprint.parts):
+            on = chart == index
+            for whole, value in zip(made, part.curve(self.ops, BallArray(m[on], r[on]), *self.shape), strict=True):
+                whole.m[on], whole.r[on] = value.m, value.r
+        return made
+
+    def images(self, boxes: Boxes) -> Images:
+        with np.errstate(all="ignore"):  # what overflows or is no number counts as not known
+            flights = _Flights(self, boxes)
+            rows = flights.rows(*flights.arcs())
+        return collected(rows, np.arange(boxes.chart.size))
+
+
+End = tuple[Indices, Array]  # component and parameter of boundary points
+
+
+class _Flights:
+    """What a block of boxes needs more than once."""
+
+    def __init__(self, map: PinballImages, boxes: Boxes) -> None:
+        self.map, self.boxes, self.chart = map, boxes, boxes.chart
+        (theta, phi), self.reach, (self.thetas, self.phis) = centred(boxes)
+        self.theta, self.phi = theta, phi
+        self.centre = self._leaving(theta, phi)
+        self.whole = self._leaving(self.thetas, self.phis)
+
+    def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
+        """Start, velocity of the boundary, its speed and bend, and the direction of flight."""
+        x, y, dx, dy, ddx, ddy = self.map.place(self.chart, theta)
+        square = dx * dx + dy * dy
+        speed = self.map.ops.sqrt(square)
+        c, s = turned(phi)
+        v, w = (s * dx - c * dy) / speed, (s * dy + c * dx) / speed
+        return {"x": x, "y": y, "speed": speed, "bend": (dx * ddy - dy * ddx) / square, "v": v, "w": w, "cos": c}
+
+    def sides(self, end: End) -> BallArray:
+        """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""
+        x, y, *_ = self.map.place(end[0], BallArray(end[1]))
+        at, all_of = self.centre, self.whole
+        value = at["v"] * (y - at["y"]) - at["w"] * (x - at["x"])
+        along = all_of["v"] * (x - all_of["x"]) + all_of["w"] * (y - all_of["y"])
+        by_theta = all_of["cos"] * all_of["speed"] - all_of["bend"] * along
+        return value + by_theta * self.reach[0] + along * self.reach[1]
+
+    # ---- the arc of landings
+
+    def arcs(self) -> tuple[End, End]:
+        """An arc for each box that holds its landings; parameters are nan where none is proved."""
+        chart, theta, ahead, behind = self._guess()
+        found = []
+        for sign in (-1, 1):
+            where, at = chart.copy(), np.full(theta.shape, np.nan)
+            width, open_ = np.where(sign < 0, ahead, behind), np.ones(theta.shape, dtype=bool)
+            for attempt in range(TRIES):
+                trial = self._moved(chart, theta, sign * width * 1.4**attempt)
+                side = self.sides(trial)
+                good = open_ & (side.negative() if sign < 0 else side.positive())
+                where[good], at[good] = trial[0][good], trial[1][good]
+                open_ &= ~good
+                if not np.any(open_):
+                    break
+            found.append((where, at))
+        if not self.map.closed:  # a landing comes after every start of the box, and before that start comes again
+            unknown = [np.isnan(at) for _, at in found]
+            for (where, at), mine, other, own in zip(found, unknown, unknown[::-1], self.boxes.x, strict=True):
+                use = mine & ~other
+                where[use], at[use] = self.chart[use], own[use]
+        return found[0], found[1]
+
+    def _guess(self) -> tuple[Indices, Array, Array, Array]:
+        """Landings of the midpoints, and how far the box's landings may lie before and after, in float64."""
+        ends = self.map.map.states.ends
+        low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
+        theta = np.clip(self.theta.m, low, high) if not self.map.closed else self.theta.m
+        step = self.map.map.step(theta, self.phi.m, self.chart)
+        chart, landed = step.component, np.where(step.code == 0, step.theta, np.nan)
+        chart = np.where(step.code == 0, chart, self.chart)
+        x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(np.nan_to_num(landed))))
+        at = {name: value.m for name, value in self.centre.items()}
+        with np.errstate(all="ignore"):
+            along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
+            slope = np.abs(at["v"] * dy - at["w"] * dx)
+            rate = np.abs(at["cos"] * at["speed"] - at["bend"] * along) * self.reach[0].r
+            width = (rate + np.abs(along) * self.reach[1].r) / slope * 1.1 + CENTRE
+        if self.map.closed:
+            landed = landed + 2 * np.pi * (landed < self.theta.m)
+        return chart, landed, width, width
+
+    def _moved(self, chart: Indices, theta: Array, by: Array) -> End:
+        """Boundary points moved along by a parameter; past a join onto the next component, by the same length."""
+        if self.map.closed:
+            return chart, theta + by
+        count = len(self.map.ends)
+        low = np.array([float(end[0].upper()) for end in self.map.ends])
+        high = np.array([float(end[1].lower()) for end in self.map.ends])
+        place = [value.m for value in self.map.place(chart, BallArray(np.nan_to_num(theta)))]
+        speed = np.hypot(place[2], place[3])
+        chart, moved = chart.copy(), theta + by
+        for edge, step, start in ((high, 1, low), (low, -1, high)):
+            over = moved > edge[chart] if step > 0 else moved < edge[chart]
+            length = np.abs(moved - edge[chart]) * speed
+            following = np.where(over, (chart + step) % count, chart)
+            place = [value.m for value in self.map.place(following, BallArray(start[following]))]
+            moved = np.where(over, start[following] + step * length / np.hypot(place[2], place[3]), moved)
+            chart = following
+        return chart, np.clip(moved, low[chart], high[chart])
+
+    # ---- the image within the arc
+
+    def rows(self, low: End, high: End) -> list[Row]:
+        """Rectangles that hold the images of the boxes, given the arcs of landings."""
+        if self.map.closed:
+            return [self._within(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
+        rows, count = [], len(self.map.ends)
+        ends = [(float(a.lower()), float(b.upper())) for a, b in self.map.ends]
+        whole = (low[0] == high[0]) & (low[1] < high[1]) & ~np.isnan(low[1])
+        rows.append(self._within(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True))
+        joined = np.flatnonzero(~whole)
+        steps = (high[0][joined] - low[0][joined]) % count
+        steps = np.where(steps == 0, count, steps)  # around all of the boundary
+        for step in range(int(steps.max(initial=0)) + 1):
+            on = joined[steps >= step]
+            last = steps[steps >= step] == step
+            chart = (low[0][on] + step) % count
+            bottom, top = (np.array([end[i] for end in ends])[chart] for i in (0, 1))
+            a = low[1][on] if step == 0 else bottom
+            b = np.where(last, high[1][on], top)
+            rows.append(self._within(on, chart, a, b, False))
+        return rows
+
+    def _within(self, on: Indices, chart: Indices, low: Array, high: Array, smooth: bool) -> Row:
+        """One rectangle for each box of `on`, whose landings lie on one component between two parameters.
+
+        Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
+        """
+        arc = hull(low, high)
+        turn = _turn(self._tangent(on, self.thetas), self.map.place(chart, arc)[2:4])
+        eta = _incidence(self.phis[on] + turn)
+        theta = arc
+        if smooth:
+            theta, eta = self._mean_value(on, chart, arc, eta)
+            theta = _both(arc, theta)
+        phi = -(self.map.lam * eta)
+        top = self.map.top
+        low_y, high_y = np.maximum(phi.lower(), -top), np.minimum(phi.upper(), top)
+        known = np.isfinite(phi.r) & (low_y <= high_y)
+        none = np.isfinite(phi.r) & (low_y > high_y) & (not smooth)  # no landing has such an angle
+        low_y, high_y = np.where(known, low_y, -top), np.where(known, high_y, top)
+        bad = np.isnan(low) | np.isnan(high)
+        left, right = np.where(bad, np.nan, theta.lower()), np.where(bad, np.nan, theta.upper())
+        return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
+
+    def _tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
+        return self.map.place(self.chart[on], theta[on])[2:4]
+
+    def _mean_value(
+        self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
+    ) -> tuple[BallArray, BallArray]:
+        """Landing and angle of incidence by the mean-value theorem, about the landing of the midpoint."""
+        at = {name: value[on] for name, value in self.whole.items()}
+        x, y, dx, dy, ddx, ddy = self.map.place(chart, arc)
+        along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
+        slope = at["v"] * dy - at["w"] * dx
+        slope = BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
+        by_theta = (at["bend"] * along - at["cos"] * at["speed"]) / slope
+        by_phi = -along / slope
+        bend = (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
+        reach = self.reach[0][on], self.reach[1][on]
+        middle = self._midpoint(on, chart, arc)
+        theta = middle + by_theta * reach[0] + by_phi * reach[1]
+        turn = _turn(self._tangent(on, self.theta), self.map.place(chart, middle)[2:4])
+        fine = self.phi[on] + turn + (bend * by_theta - at["bend"]) * reach[0] + (bend * by_phi + 1) * reach[1]
+        return theta, _both(eta, _incidence(fine))
+
+    def _midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
+        """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
+        at = {name: value[on] for name, value in self.centre.items()}
+        guess = BallArray(np.asarray(arc.m))
+        place, slopes = self.map.place(chart, guess), self.map.place(chart, arc)
+        for _ in range(2):  # of Newton's method, in float64
+            value = at["v"].m * (place[1].m - at["y"].m) - at["w"].m * (place[0].m - at["x"].m)
+            guess = BallArray(guess.m - value / (at["v"].m * place[3].m - at["w"].m * place[2].m))
+            place = self.map.place(chart, guess)
+        value = at["v"] * (place[1] - at["y"]) - at["w"] * (place[0] - at["x"])
+        slope = at["v"] * slopes[3] - at["w"] * slopes[2]
+        inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
+        found = guess - value / slope
+        return BallArray(found.m, np.where(inside, found.r, np.inf))
+
+
+def _turn(first: list[BallArray], last: list[BallArray]) -> BallArray:
+    """The angle from one tangent to another, less half a turn, up to whole turns."""
+    c, s = first[0] * last[0] + first[1] * last[1], first[0] * last[1] - first[1] * last[0]
+    return direction(-c, -s)
+
+
+def _incidence(eta: BallArray) -> BallArray:
+    """Angles of incidence known up to whole turns, as they are: they lie within a quarter turn.
+
+    An enclosure within three quarters of a turn holds no number that is a whole turn away from such an angle; of a
+    wider one nothing is kept.
+    """
+    return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))
+
+
+def _both(x: BallArray, y: BallArray) -> BallArray:
+    """What two enclosures of one number have in common; one where the other knows nothing."""
+    low = np.fmax(np.where(np.isfinite(x.r), x.lower(), -np.inf), np.where(np.isfinite(y.r), y.lower(), -np.inf))
+    high = np.fmin(np.where(np.isfinite(x.r), x.upper(), np.inf), np.where(np.isfinite(y.r), y.upper(), np.inf))
+    with np.errstate(invalid="ignore"):
+        return hull(low, high)
+
+
+def spread(value: Any, like: Array) -> BallArray:
+    """A ball array of the shape of another; programs give one ball for a coordinate that is constant."""
+    value = value if isinstance(value, BallArray) else BallArray(value)
+    m, r = np.broadcast_arrays(value.m, value.r, like)[:2]
+    return BallArray(m, r)
+
+
+def _smooth(table: Any) -> bool:
+    """Is the curve of a table of one component the same formula after a whole turn? Then it closes smoothly."""
+    from sympy import pi
+
+    from symbolic.tables.table import theta
+
+    part = table.components[0]
+    return bool(part.end - part.start == 2 * pi) and all(x.subs(theta, theta + 2 * pi) == x for x in part.point)

@@ -146,6 +146,7 @@ COMMANDS = {
     "slap": "The slap map: what remains at lambda = 0.",
     "basins": "Which attractor does each start reach?",
     "bifurcation": "The attractors against the contraction.",
+    "morse": "Which attractors and repellers are proved, and in what order?",
     "sweep": "Grids of tasks, on all cores or a Dask cluster.",
     "figure": "One of the paper's figures, or the data behind it.",
     "explore": "A live table on a page of this machine.",

@@ -69,16 +69,16 @@ class BallArray:
         return BallArray(m, np.where(gap > 0, r, np.inf))
 
     def __radd__(self, other: Any) -> "BallArray":
-        return self + other
+        return self.__add__(other)
 
     def __rsub__(self, other: Any) -> "BallArray":
-        return ball(other) - self
+        return (-self).__add__(other)
 
     def __rmul__(self, other: Any) -> "BallArray":
-        return self * other
+        return self.__mul__(other)
 
     def __rtruediv__(self, other: Any) -> "BallArray":
-        return ball(other) / self
+        return BallArray(other).__truediv__(self)
 
     def __getitem__(self, index: Any) -> "BallArray":
         m, r = np.broadcast_arrays(self.m, self.r)
@@ -87,12 +87,12 @@ class BallArray:
     def upper(self) -> Array:
         """Doubles above every number of each ball."""
         m = np.asarray(self.m + self.r)
-        return m + (np.abs(m) * ROUNDING + TINY)
+        return np.asarray(m + (np.abs(m) * ROUNDING + TINY))
 
     def lower(self) -> Array:
         """Doubles below every number of each ball."""
         m = np.asarray(self.m - self.r)
-        return m - (np.abs(m) * ROUNDING + TINY)
+        return np.asarray(m - (np.abs(m) * ROUNDING + TINY))
 
     def positive(self) -> NDArray[np.bool_]:
         """Where every number is positive; False says only that this is not known."""

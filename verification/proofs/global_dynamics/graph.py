@@ -28,6 +28,8 @@ Mask = NDArray[np.bool_]
 BLOCK = 1 << 14  # boxes that are mapped together: their arrays stay in the cache
 PAD = 1e-7  # of a cell: more than the rounding of an index, for charts of at most LARGEST cells
 LARGEST = 1 << 20
+CELLS = 1 << 24  # of all charts together: their counts take 300 MB
+Told = Callable[[float], None]  # is told the share of a long work that is done
 EDGES = 1 << 28  # at most, so that their indices take no more than two gigabytes
 
 
@@ -58,8 +60,8 @@ class Grid:
 
     >>> from verification.proofs.global_dynamics.images import Chart
     >>> grid = Grid((Chart("plane", (0, 1), (0, 1)),), 4, 2)
-    >>> [end[0] for end in grid.boxes(grid.whole(2)).x]
-    [array([-1.e-15]), array([0.5])]
+    >>> [round(float(end[0]), 9) + 0.0 for end in grid.boxes(grid.whole(2)).x]
+    [0.0, 0.5]
     """
 
     charts: tuple[Chart, ...]
@@ -69,9 +71,13 @@ class Grid:
     def __post_init__(self) -> None:
         if not (1 <= self.columns <= LARGEST and 1 <= self.rows <= LARGEST):
             raise ValueError(f"grid: {self.columns} by {self.rows} cells; accepted: 1 to {LARGEST} each way")
+        if self.columns * self.rows * len(self.charts) > CELLS:
+            raise ValueError(f"grid: {self.columns} by {self.rows} cells in each chart; accepted: {CELLS} in all")
 
     def whole(self, size: int = 1) -> Cells:
         """All of phase space in blocks of `size` by `size` cells."""
+        if self.columns % size or self.rows % size:
+            raise ValueError(f"grid: blocks of {size} do not fit {self.columns} by {self.rows} cells")
         shape = len(self.charts), self.columns // size, self.rows // size
         chart, column, row = (index.ravel() for index in np.indices(shape))
         return Cells(chart, column * size, row * size, np.full(chart.size, size))
@@ -102,7 +108,8 @@ class Grid:
                 last = np.where(turning, np.minimum(last, first + count - 1), last)
                 first, last = (i - np.where(turning, np.floor(first / count) * count, 0) for i in (first, last))
             found += [first.astype(np.int64), last.astype(np.int64)]
-        return Rectangles(images.source, boxes.chart, *found, out)
+        left, right, bottom, top = found
+        return Rectangles(images.source, boxes.chart, left, right, bottom, top, out)
 
     def painted(self, cells: Cells, values: Indices | Mask, empty: int = 0) -> NDArray[np.int32]:
         """An array of all cells, with the value of each block at its cells."""
@@ -124,9 +131,7 @@ def halved(cells: Cells) -> Cells:
     return Cells(np.tile(cells.chart, 4), column, row, np.tile(size, 4))
 
 
-def mapped(
-    map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Callable[[float], None] | None = None
-) -> tuple[Rectangles, Mask]:
+def mapped(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> tuple[Rectangles, Mask]:
     """What the images of blocks meet, each cut into `parts` by `parts`; and the blocks of which nothing is proved."""
     found, lost = [], np.zeros(cells.chart.size, dtype=bool)
     step = max(1, BLOCK // parts**2)
@@ -159,20 +164,26 @@ def inside(grid: Grid, cells: Cells, met: Rectangles, lost: Mask) -> Mask:
 
 @dataclass(frozen=True)
 class Transitions:
-    """The transition graph of leaves: `edges` in rows, with one vertex more, the outside, after the last leaf.
+    """A transition graph: a vertex for each block of `cells`, and one more, the outside, after the last.
 
-    A leaf of which nothing is proved has an edge to that vertex, which has one to every leaf: an orbit may do
+    A block that was cut is no `leaf` any more; it has edges to its four parts, for the sake of those that led to it.
+    A leaf of which nothing is proved has an edge to the outside, which has one to every block: an orbit may do
     anything there. So has a leaf whose image leaves the charts.
     """
 
     grid: Grid
-    leaves: Cells
+    cells: Cells
+    leaf: Mask
     edges: csr_matrix
 
     @property
     def count(self) -> int:
-        """How many leaves."""
-        return int(self.leaves.chart.size)
+        """How many blocks."""
+        return int(self.leaf.size)
+
+    def chosen(self, vertices: Mask) -> Cells:
+        """The leaves among some vertices."""
+        return Cells(*(field[vertices[:-1] & self.leaf] for field in self.cells))
 
     @cached_property
     def components(self) -> Indices:
@@ -192,8 +203,7 @@ class Transitions:
         labels = labels.astype(np.int32)
         source, target = np.repeat(labels, np.diff(self.edges.indptr)), labels[self.edges.indices]
         between = source != target
-        ones = np.ones(int(between.sum()), dtype=bool)
-        made = csr_matrix((ones, (source[between], target[between])), shape=(size, size))
+        made = sparse(source[between], target[between], size)
         return made, made.T.tocsr()
 
     def reached(self, start: Mask, backward: bool = False) -> Mask:
@@ -209,43 +219,66 @@ class Transitions:
         return walked[self.components]
 
 
-def transitions(
-    map: BoxMap, grid: Grid, leaves: Cells, parts: int = 1, told: Callable[[float], None] | None = None
-) -> Transitions:
-    """The transition graph of leaves that cover phase space, or a part of it; the rest counts as outside."""
-    return joined(grid, leaves, *mapped(map, grid, leaves, parts, told))
+Arrows = tuple[NDArray[np.int32], NDArray[np.int32]]  # sources and targets; OUTSIDE is the outside
+OUTSIDE = -1
 
 
-def joined(grid: Grid, leaves: Cells, met: Rectangles, lost: Mask) -> Transitions:
-    """The transition graph, given what images meet."""
-    count, unit = leaves.chart.size, int(leaves.size.min())  # cells are counted in units of the smallest leaf
+def transitions(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> Transitions:
+    """The transition graph of blocks that cover phase space, or a part of it; the rest counts as outside."""
+    everywhere = np.arange(cells.chart.size)
+    return joined(grid, cells, everywhere >= 0, arrows(map, grid, cells, everywhere, everywhere, parts, told))
+
+
+def arrows(
+    map: BoxMap,
+    grid: Grid,
+    cells: Cells,
+    new: Indices,
+    leaves: Indices,
+    parts: int,
+    told: Callable[[float], None] | None,
+) -> Arrows:
+    """The edges that begin at the blocks `new`, to the `leaves`; vertices are numbered as in `cells`."""
+    some = Cells(*(field[new] for field in cells))
+    met, lost = mapped(map, grid, some, parts, told)
+    unit = int(some.size.min())  # of the smallest leaves; no finer cells are counted
     columns, rows = grid.columns // unit, grid.rows // unit
-    coarse = Cells(leaves.chart, *(field // unit for field in leaves[1:]))
-    names = Grid(grid.charts, columns, rows).painted(coarse, np.arange(count), count).reshape(len(grid.charts), -1)
-    order = np.argsort(met.source, kind="stable")
-    met = Rectangles(*(field[order] // (1 if i < 2 or i > 5 else unit) for i, field in enumerate(met)))
-    high, across = met.top - met.bottom + 1, met.right - met.left + 1
-    total = int((across * high).sum())
-    if total > EDGES:
-        raise ValueError(f"grid: {total} edges, at most {EDGES} fit; use smaller boxes where orbits return, or fewer")
-    sources, targets = [], []
+    coarse = Cells(cells.chart[leaves], *(field[leaves] // unit for field in cells[1:]))
+    names = Grid(grid.charts, columns, rows).painted(coarse, leaves, OUTSIDE).reshape(len(grid.charts), -1)
+    left, right, bottom, top = (side // unit for side in met[2:6])
+    across, high = right - left + 1, top - bottom + 1
+    if int((across * high).sum()) > EDGES:
+        raise ValueError(f"grid: {int((across * high).sum())} edges, at most {EDGES} fit; use fewer or smaller boxes")
+    away = np.union1d(np.flatnonzero(lost), met.source[met.out])
+    sources, targets = [new[away]], [np.full(away.size, OUTSIDE)]
     for start in range(0, met.source.size, BLOCK):
-        some = slice(start, start + BLOCK)
-        column = ranges(met.left[some], met.right[some] + 1)
-        owner = np.repeat(np.arange(start, start + across[some].size), across[some])
-        first = (column % columns) * rows + met.bottom[owner]
+        piece = slice(start, start + BLOCK)
+        column = ranges(left[piece], right[piece] + 1)
+        owner = np.repeat(np.arange(start, start + across[piece].size), across[piece])
+        first = (column % columns) * rows + bottom[owner]
         cell = ranges(first, first + high[owner])
         owner = np.repeat(owner, high[owner])
-        source, target = met.source[owner].astype(np.int32), names[met.chart[owner], cell]
-        new = np.append(True, (source[1:] != source[:-1]) | (target[1:] != target[:-1]))
-        sources.append(source[new])
-        targets.append(target[new])
-    away = np.union1d(np.flatnonzero(lost), met.source[met.out])
-    sources += [away.astype(np.int32), np.full(count + 1, count, dtype=np.int32)]
-    targets += [np.full(away.size, count, dtype=np.int32), np.arange(count + 1, dtype=np.int32)]
-    source, target = np.concatenate(sources), np.concatenate(targets)
-    graph = csr_matrix((np.ones(source.size, dtype=bool), (source, target)), shape=(count + 1, count + 1))
-    return Transitions(grid, leaves, graph)
+        source, target = new[met.source[owner]], names[met.chart[owner], cell]
+        fresh = np.append(True, (source[1:] != source[:-1]) | (target[1:] != target[:-1]))
+        sources.append(source[fresh].astype(np.int32))
+        targets.append(target[fresh].astype(np.int32))
+    return np.concatenate(sources).astype(np.int32), np.concatenate(targets).astype(np.int32)
+
+
+def joined(grid: Grid, cells: Cells, leaf: Mask, edges: Arrows) -> Transitions:
+    """The graph of edges, with those of the outside."""
+    count = leaf.size
+    source = np.concatenate([edges[0], np.full(count + 1, count, dtype=np.int32)])
+    target = np.concatenate([edges[1], np.arange(count + 1, dtype=np.int32)])
+    target = np.where(target == OUTSIDE, np.int32(count), target)
+    return Transitions(grid, cells, leaf, sparse(source, target, count + 1))
+
+
+def sparse(source: NDArray[np.int32], target: NDArray[np.int32], size: int) -> csr_matrix:
+    """A graph from its edges, in rows; an edge may be there twice."""
+    order = np.argsort(source, kind="stable")
+    starts = np.concatenate([[0], np.cumsum(np.bincount(source, minlength=size))])
+    return csr_matrix((np.ones(target.size, dtype=bool), target[order], starts), shape=(size, size))
 
 
 def ranges(first: Indices, last: Indices) -> Indices:
@@ -300,7 +333,7 @@ def morse_graph(transitions: Transitions) -> MorseGraph:
     cuts = np.flatnonzero(np.diff(labels[vertices])) + 1
     sets = sorted(np.split(vertices, cuts), key=len, reverse=True) if vertices.size else []
     if len(sets) > MOST:
-        raise ValueError(f"{len(sets)} Morse sets, at most {MOST} are ordered; use smaller boxes or another contraction")
+        raise ValueError(f"{len(sets)} Morse sets, at most {MOST} are ordered; use smaller boxes or another lam")
     graph, first = transitions.condensed[0], [labels[members[0]] for members in sets]
     below = np.zeros((len(sets), len(sets)), dtype=bool)
     for i, label in enumerate(first):
@@ -309,25 +342,25 @@ def morse_graph(transitions: Transitions) -> MorseGraph:
     return MorseGraph(transitions, tuple(sets), below)
 
 
-def refined(
-    map: BoxMap, grid: Grid, coarsest: int, parts: int = 1, told: Callable[[float], None] | None = None
-) -> Transitions:
+def refined(map: BoxMap, grid: Grid, coarsest: int, parts: int = 1, told: Told | None = None) -> Transitions:
     """The transition graph of leaves that begin at `coarsest` cells and are halved, where orbits may return, to one."""
-    if coarsest & (coarsest - 1) or grid.columns % coarsest or grid.rows % coarsest:
-        raise ValueError(f"grid: blocks of {coarsest} do not fit {grid.columns} by {grid.rows} cells; use powers of 2")
-    leaves = grid.whole(coarsest)
-    met, lost = mapped(map, grid, leaves, parts, told)
+    if coarsest & (coarsest - 1):
+        raise ValueError(f"grid: blocks of {coarsest} cells cannot be halved down to one; use a power of 2")
+    cells = grid.whole(coarsest)
+    leaf = np.ones(cells.chart.size, dtype=bool)
+    new = np.arange(leaf.size)
+    source, target = arrows(map, grid, cells, new, new, parts, told)
     while True:
-        found = joined(grid, leaves, met, lost)
-        cut = found.recurrent[:-1] & (leaves.size > 1)
-        if not np.any(cut):
+        found = joined(grid, cells, leaf, (source, target))
+        cut = np.flatnonzero(found.recurrent[:-1] & leaf & (cells.size > 1))
+        if not cut.size:
             return found
-        fine = halved(Cells(*(field[cut] for field in leaves)))
-        more, more_lost = mapped(map, grid, fine, parts, told)
-        count = int(np.sum(~cut))  # what stays keeps its images under a new number
-        number, stay = np.cumsum(~cut) - 1, ~cut[met.source]
-        old = Rectangles(*(field[stay] for field in met))
-        old, more = old._replace(source=number[old.source]), more._replace(source=more.source + count)
-        met = Rectangles(*(np.concatenate(pair) for pair in zip(old, more, strict=True)))
-        leaves = Cells(*(np.concatenate([field[~cut], new]) for field, new in zip(leaves, fine, strict=True)))
-        lost = np.concatenate([lost[~cut], more_lost])
+        new = np.arange(leaf.size, leaf.size + 4 * cut.size)
+        fine = halved(Cells(*(field[cut] for field in cells)))
+        cells = Cells(*(np.concatenate(pair) for pair in zip(cells, fine, strict=True)))
+        leaf = np.concatenate([leaf, np.ones(new.size, dtype=bool)])
+        leaf[cut] = False
+        more = arrows(map, grid, cells, new, np.flatnonzero(leaf), parts, told)
+        kept = leaf[source] | ~np.isin(source, cut)  # what was cut leads to its parts instead
+        source = np.concatenate([source[kept], np.tile(cut, 4).astype(np.int32), more[0]])
+        target = np.concatenate([target[kept], new.astype(np.int32), more[1]])

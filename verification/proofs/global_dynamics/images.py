@@ -36,9 +36,6 @@ class Boxes(NamedTuple):
     x: tuple[Array, Array]
     y: tuple[Array, Array]
 
-    def __getitem__(self, index: Any) -> "Boxes":  # type: ignore[override]
-        return Boxes(self.chart[index], *((low[index], high[index]) for low, high in (self.x, self.y)))
-
     def parts(self, across: int, up: int) -> tuple["Boxes", Indices]:
         """The boxes cut into equal parts, and for each part the index of its box."""
         source = np.repeat(np.arange(self.chart.size), across * up)
@@ -158,15 +155,15 @@ class PinballImages:
         self.ops = ArrayOps()
         shape = [Fraction(x) for x in self.map.exact_shape]
         self.shape = [exactly(x) for x in shape]
-        self.closed = len(self.map.blueprint.parts) == 1
+        self.closed = len(self.map.ir.parts) == 1
         if self.closed and not _smooth(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
-        self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.blueprint.parts]
+        self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
         self.top = float((self.lam * self.ops.pi() / 2).upper())
 
     @property
     def charts(self) -> tuple[Chart, ...]:
-        parts = self.map.blueprint.parts
+        parts = self.map.ir.parts
         return tuple(
             Chart(part.name, (float(low.m), float(high.m)), (-self.top, self.top), self.closed, True)
             for part, (low, high) in zip(parts, self.ends, strict=True)
@@ -183,10 +180,10 @@ class PinballImages:
     def place(self, chart: Indices, theta: BallArray) -> list[BallArray]:
         """Point, velocity and acceleration at parameters of components."""
         if self.closed:
-            return [spread(value, theta.m) for value in self.map.blueprint.parts[0].curve(self.ops, theta, *self.shape)]
+            return [spread(value, theta.m) for value in self.map.ir.parts[0].curve(self.ops, theta, *self.shape)]
         m, r = np.broadcast_arrays(theta.m, theta.r)
         made = [BallArray(np.zeros(m.shape), np.zeros(m.shape)) for _ in range(6)]
-        for index, part in enumerate(self.map.blueprint.parts):
+        for index, part in enumerate(self.map.ir.parts):
             on = chart == index
             for whole, value in zip(made, part.curve(self.ops, BallArray(m[on], r[on]), *self.shape), strict=True):
                 whole.m[on], whole.r[on] = value.m, value.r
@@ -341,9 +338,7 @@ class _Flights:
     def _tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
         return self.map.place(self.chart[on], theta[on])[2:4]
 
-    def _mean_value(
-        self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
-    ) -> tuple[BallArray, BallArray]:
+    def _mean_value(self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray) -> tuple[BallArray, BallArray]:
         """Landing and angle of incidence by the mean-value theorem, about the landing of the midpoint."""
         at = {name: value[on] for name, value in self.whole.items()}
         x, y, dx, dy, ddx, ddy = self.map.place(chart, arc)

@@ -1,0 +1,112 @@
+"""Balls in arrays: every operation holds the true value, against balls of many bits."""
+
+import numpy as np
+import pytest
+from flint import arb, fmpq
+from hypothesis import given
+from hypothesis import strategies as st
+
+from verification.arithmetic.balls import working
+from verification.proofs.global_dynamics.arrays import (
+    HALF_PI,
+    LARGEST,
+    UNIT_ERROR,
+    ArrayOps,
+    BallArray,
+    direction,
+    exactly,
+    hull,
+    turned,
+)
+
+NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=True)
+RADII = st.floats(0, 10)
+SHARES = st.integers(-16, 16)
+
+
+def holds(found: BallArray, true: arb) -> bool:
+    """Is the true value proved to lie in the ball?"""
+    return bool(abs(true - arb(float(found.m))) <= arb(float(found.r)))
+
+
+@given(a=NUMBERS, ra=RADII, p=SHARES, b=NUMBERS, rb=RADII, q=SHARES)
+def test_sums_products_and_quotients_of_points_lie_in_those_of_balls(a, ra, p, b, rb, q):
+    x, y = BallArray(np.array(a), np.array(ra)), BallArray(np.array(b), np.array(rb))
+    with working(4000):
+        s, t = arb(a) + arb(ra) * p / 16, arb(b) + arb(rb) * q / 16
+
+        assert holds(x + y, s + t)
+        assert holds(x - y, s - t)
+        assert holds(x * y, s * t)
+        assert not np.isfinite((x / y).r) or holds(x / y, s / t)
+
+
+@given(x=st.floats(-LARGEST, LARGEST, exclude_min=True, exclude_max=True))
+def test_sine_and_cosine_err_by_less_than_the_bound(x):
+    c, s = turned(BallArray(np.array(x)))
+    with working(200):
+        errors = [abs(arb(x).cos() - arb(float(c.m))), abs(arb(x).sin() - arb(float(s.m)))]
+
+    assert all(error < UNIT_ERROR / 2 for error in errors)  # the proof has room for rounding twice
+
+
+def test_sine_and_cosine_hold_at_quarter_turns_where_reduction_cancels():
+    k = np.arange(-40, 41)
+    c, s = turned(BallArray(k * (np.pi / 2)))
+    with working(200):
+        for x, cosine, sine in zip(k * (np.pi / 2), c.m, s.m, strict=True):
+            assert abs(arb(x).cos() - arb(cosine)) < UNIT_ERROR
+            assert abs(arb(x).sin() - arb(sine)) < UNIT_ERROR
+
+
+def test_three_doubles_hold_a_quarter_turn():
+    with working(400):
+        assert abs(arb.pi() / 2 - sum(map(arb, HALF_PI))) < arb(2) ** -120
+
+
+def test_nothing_is_known_of_the_sine_of_a_large_number_or_of_a_nan():
+    c, s = turned(BallArray(np.array([1e9, np.nan, np.inf])))
+
+    assert not np.any(np.isfinite(c.r) | np.isfinite(s.r))
+
+
+@given(angle=st.floats(-3.1, 3.1), size=st.floats(0.1, 10), r=st.floats(0, 0.05), p=SHARES, q=SHARES)
+def test_the_direction_of_every_vector_is_enclosed(angle, size, r, p, q):
+    c, s = size * np.cos(angle), size * np.sin(angle)
+    found = direction(BallArray(np.array(c), np.array(r)), BallArray(np.array(s), np.array(r)))
+    with working(200):
+        true = arb.atan2(arb(float(s)) + arb(r) * q / 16, arb(float(c)) + arb(r) * p / 16)
+        turns = [true + 2 * k * arb.pi() for k in (-1, 0, 1)]
+
+        assert not np.isfinite(found.r) or any(holds(found, turn) for turn in turns)
+
+
+def test_a_quotient_by_a_ball_about_zero_and_a_root_of_one_say_nothing():
+    about_zero = BallArray(np.array([0.5]), np.array([0.5]))
+
+    assert not np.isfinite((BallArray(1.0) / about_zero).r).any()
+    assert not np.isfinite(ArrayOps().sqrt(about_zero).r).any()
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_comparison_has_three_answers(sign):
+    straddling, unknown = BallArray(np.array(0.1 * sign), 0.2), BallArray(np.array(1.0 * sign), np.inf)
+
+    for x in (straddling, unknown, BallArray(np.array(np.nan), 0.0), BallArray(np.array(1.0), np.nan)):
+        assert not x.positive()
+        assert not x.negative()
+
+
+@given(p=st.integers(-(10**30), 10**30), q=st.integers(1, 10**30))
+def test_a_rational_lies_in_its_ball(p, q):
+    from fractions import Fraction
+
+    with working(400):
+        assert holds(exactly(Fraction(p, q)), arb(fmpq(p, q)))
+
+
+@given(ends=st.tuples(NUMBERS, NUMBERS).map(sorted), share=st.integers(0, 16))
+def test_a_hull_holds_all_between_its_ends(ends, share):
+    low, high = ends
+    with working(400):
+        assert holds(hull(np.array(low), np.array(high)), arb(low) + (arb(high) - arb(low)) * share / 16)

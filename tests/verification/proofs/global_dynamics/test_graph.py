@@ -1,0 +1,197 @@
+"""Morse graphs and trapping regions of maps whose dynamics is known, and statements that must be refused."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from symbolic.tables.scene import Scene
+from verification.app.cli import main
+from verification.proofs.global_dynamics.arrays import ArrayOps, BallArray
+from verification.proofs.global_dynamics.graph import Cells, Grid, inside, mapped, morse_graph, refined, transitions
+from verification.proofs.global_dynamics.images import Chart, PinballImages, PlaneImages
+from verification.proofs.global_dynamics.regions import Region, checked, region, shares
+
+EGG = Scene("egg", alpha="0.08", lam="1/2")
+
+
+def henon() -> PlaneImages:
+    """The map of Henon at his parameters, 1.4 and 0.3. `x' = 1 - a*x**2 + y, y' = b*x`."""
+    a, b = (ArrayOps().constant(p, 10) for p in (14, 3))
+    chart = Chart("plane", (-1.5, 1.5), (-0.6, 0.6))
+    return PlaneImages("Henon", chart, lambda x, y: (1 - a * x * x + y, b * x), lambda x, y: ((-2 * a * x, 1), (b, 0)))
+
+
+def logistic(r: Fraction) -> PlaneImages:
+    """The logistic map, and half of a coordinate that is contracted to zero."""
+    letter = ArrayOps().constant(r.numerator, r.denominator)
+    chart = Chart("plane", (-0.05, 1.05), (-1.0, 1.0))
+    return PlaneImages(
+        "logistic",
+        chart,
+        lambda x, y: (letter * x * (1 - x), y * 0.25),
+        lambda x, y: ((letter * (1 - 2 * x), 0.0), (0.0, 0.25)),
+    )
+
+
+def test_henons_quadrilateral_is_kept_by_outer_images():
+    """Henon 1976, section 4, prints the four vertices of a region that the map takes into itself."""
+    corners = np.array([(-1.33, 0.42), (1.32, 0.133), (1.245, -0.14), (-1.06, -0.5)])
+    map = henon()
+    grid = Grid(map.charts, 1024, 1024)
+    cells = grid.whole()
+    boxes = grid.boxes(cells)
+    meets = wholly = np.ones(cells.chart.size, dtype=bool)
+    for (px, py), (qx, qy) in zip(corners, np.roll(corners, -1, axis=0), strict=True):  # clockwise: inside is right
+        sides = [(qx - px) * (y - py) - (qy - py) * (x - px) for x in boxes.x for y in boxes.y]
+        meets, wholly = meets & (np.min(sides, axis=0) <= 0), wholly & (np.max(sides, axis=0) <= 0)
+    block = Cells(*(field[meets] for field in cells))
+    held = inside(grid, block, *mapped(map, grid, block))
+
+    assert wholly.sum() > 100_000
+    assert np.all(held[wholly[meets]])
+
+
+def test_henons_attractor_has_a_trapping_region_and_every_other_orbit_leaves():
+    map = henon()
+    graph = morse_graph(refined(map, Grid(map.charts, 1024, 1024), 8))
+    (attractor,) = [i for i in graph.attracting if graph.transitions.count not in graph.sets[i]]
+    block = graph.transitions.chosen(graph.trapping(attractor))
+    grid = graph.transitions.grid
+
+    assert not graph.trapping(attractor)[-1]
+    assert np.all(inside(grid, block, *mapped(map, grid, block)))
+    picture, (x, y) = grid.painted(block, np.ones(block.chart.size, dtype=bool))[0], (0.1, 0.1)
+    for n in range(2000):
+        x, y = 1 - 1.4 * x * x + y, 0.3 * x
+        if n > 50:
+            assert picture[int((x + 1.5) / 3 * 1024), int((y + 0.6) / 1.2 * 1024)]
+
+
+def test_the_logistic_maps_cycle_of_period_two_attracts_and_both_fixed_points_repel():
+    map = logistic(Fraction(33, 10))
+    graph = morse_graph(refined(map, Grid(map.charts, 512, 32), 4))
+    found = [i for i in graph.attracting if graph.transitions.count not in graph.sets[i]]
+    fixed = 1 - 10 / 33
+    (attractor,) = found
+    boxes = graph.transitions.grid.boxes(graph.transitions.chosen(graph._set(attractor)))
+
+    assert not np.any((boxes.x[0] <= fixed) & (fixed <= boxes.x[1]))
+    for x in (0.4794270198, 0.8236032832):  # the cycle, to ten digits
+        assert np.any((boxes.x[0] <= x) & (x <= boxes.x[1]) & (boxes.y[0] <= 0) & (boxes.y[1] >= 0))
+
+
+def test_of_a_rotation_nothing_is_said_but_the_whole():
+    turn = ArrayOps().constant(3, 10)
+    map = PlaneImages(
+        "rotation",
+        Chart("cylinder", (-np.pi, np.pi), (-1.0, 1.0), True, True),
+        lambda x, y: (x + turn, y),
+        lambda x, y: ((1.0, 0.0), (0.0, 1.0)),
+    )
+    graph = morse_graph(transitions(map, grid := Grid(map.charts, 64, 16), grid.whole()))
+
+    assert [len(members) for members in graph.sets] == [64 * 16]
+
+
+@pytest.mark.parametrize("coarsest", [1, 4])
+def test_every_orbit_of_the_egg_walks_along_edges_and_ends_in_a_morse_set(coarsest):
+    map = PinballImages(EGG)
+    graph = morse_graph(refined(map, Grid(map.charts, 128, 64), coarsest))
+    grid, found = graph.transitions.grid, graph.transitions
+    picture = grid.painted(found.chosen(np.ones(found.count + 1, dtype=bool)), np.flatnonzero(found.leaf))[0]
+    rng = np.random.default_rng(7)
+    orbit = PinballMap(EGG).orbit(rng.uniform(-np.pi, np.pi, 40), rng.uniform(-0.7, 0.7, 40), 60)
+    column = np.clip((orbit.theta + np.pi) / (2 * np.pi) * 128, 0, 127).astype(int)
+    row = np.clip((orbit.phi + map.top) / (2 * map.top) * 64, 0, 63).astype(int)
+    vertex = picture[column, row]
+    labels = found.components
+    below = found.condensed[0]
+
+    assert set(vertex[-1]) <= set(np.concatenate(graph.sets))
+    for here, there in zip(vertex[1:-1].ravel(), vertex[2:].ravel(), strict=True):
+        targets = set(found.edges.indices[found.edges.indptr[here] : found.edges.indptr[here + 1]])
+        inner = {part for t in targets if t < found.count and not found.leaf[t] for part in _parts(found, t)}
+        assert there in targets | inner
+    assert below.shape[0] == labels.max() + 1
+
+
+def _parts(found, vertex):
+    """The leaves within a block that was cut."""
+    below = found.edges.indices[found.edges.indptr[vertex] : found.edges.indptr[vertex + 1]]
+    return [leaf for part in below for leaf in ([part] if found.leaf[part] else _parts(found, part))]
+
+
+@pytest.fixture(scope="module")
+def small_region() -> Region:
+    map = PinballImages(EGG)
+    graph = morse_graph(refined(map, Grid(map.charts, 512, 256), 4))
+    found = [region(map, graph, index) for index in graph.attracting]
+
+    assert len(found) == 3  # attractors at least, since no point is in two regions
+    assert None not in found
+    assert sum(low for low, _ in (shares(graph, i) for i in graph.attracting)) < 1
+    return min(found, key=lambda block: block.cells.chart.size)
+
+
+def test_a_region_is_proved_again_from_its_document_alone(small_region):
+    document = json.loads(json.dumps(small_region.to_dict()))
+    name, checks = checked(document)
+
+    assert all(checks.values())
+    assert name == small_region.name
+
+
+def test_a_region_of_which_one_box_is_removed_is_refused(small_region):
+    cells = small_region.cells
+    for lost in range(0, cells.chart.size, 40):
+        block = Cells(*(np.delete(field, lost) for field in cells))
+        assert replace(small_region, cells=block).checks["images_inside"] is None
+
+
+def test_a_region_of_another_contraction_is_refused(small_region):
+    document = small_region.to_dict() | {"lam": ["2/5", "1/2"]}
+    with pytest.raises(ValueError, match="is not what it states"):
+        checked(document)
+    renamed = document | {"name": Region.from_dict(document).name}
+    assert not all(checked(renamed)[1].values())
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [{"runs": []}, {"runs": [[0, 1, 511, 0, 2], [0, 1, 512, 0, 1]]}, {"runs": [[0, 1, 0, 250, 9]]}, {"parts": 99},
+     {"columns": 1 << 19, "rows": 1 << 19}, {"runs": "all"}, {"lam": ["1/2", "1"]}, {"schema": 2}, {"rows": True}],
+)  # fmt: skip
+def test_documents_that_are_no_regions_are_refused_in_one_sentence(small_region, entry):
+    document = small_region.to_dict() | entry
+    with pytest.raises(ValueError, match=r"accepted|certificate|invalid literal"):
+        checked(document)
+
+
+def test_the_command_says_what_is_proved_and_its_certificates_check(tmp_path, capsys):
+    arguments = ["egg", "--alpha", "0.08", "--lam", "0.5", "--columns", "256", "--rows", "128"]
+    status = main(["morse", *arguments, "--certificates", str(tmp_path), "--plot", str(tmp_path / "morse.png")])
+    shown = capsys.readouterr().out
+
+    assert status == 0
+    assert "proved: trapping region of egg" in shown
+    assert (tmp_path / "morse.png").stat().st_size > 1000
+    for path in tmp_path.glob("*.json"):
+        assert main(["check", str(path)]) == 0
+
+
+@pytest.mark.parametrize("lam", ["1", "0.5:0.4", "0:0", "x", "0.1:0.2:0.3"])
+def test_the_command_refuses_what_is_no_range_of_contractions(lam, capsys):
+    assert main(["morse", "egg", "--alpha", "0.08", "--lam", lam]) == 2
+    assert "accepted" in capsys.readouterr().err
+
+
+def test_an_image_that_leaves_the_chart_leads_outside():
+    half, unit = BallArray(0.5), ((1.0, 0.0), (0.0, 1.0))
+    away = PlaneImages("shift", Chart("plane", (0, 1), (0, 1)), lambda x, y: (x + half, y), lambda x, y: unit)
+    graph = morse_graph(transitions(away, grid := Grid(away.charts, 8, 8), grid.whole()))
+
+    assert all(graph.trapping(i)[-1] for i in range(len(graph.sets)))

@@ -1,0 +1,153 @@
+"""`pinball morse`: which attractors and repellers are proved, and in what order?"""
+
+import json
+import time
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
+from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
+from verification.app.scene import table_options
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from verification.proofs.global_dynamics.graph import MorseGraph
+    from verification.proofs.global_dynamics.regions import Region
+
+SHOWN = 24  # Morse sets in the table for people
+
+
+@click.command(epilog="Example: pinball morse egg --alpha 0.08 --lam 0.5 --columns 512 --rows 256 --plot morse.png")
+@table_options
+@click.option("--lam", "lams", metavar="LOW:HIGH", required=True, help="Contractions, all at once, or one; below 1.")
+@click.option("--columns", type=click.IntRange(8, 1 << 13), default=512, show_default=True, help="Cells along theta.")
+@click.option("--rows", type=click.IntRange(8, 1 << 13), default=256, show_default=True, help="Cells along phi.")
+@click.option("--coarsest", type=click.IntRange(1, 64), default=4, show_default=True, help="Cells a box begins with.")
+@click.option("--parts", type=click.IntRange(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
+@click.option("--certificates", metavar="DIR", help="Write each trapping region, for `pinball check`.")
+@click.option("--plot", metavar="FILE", help="Draw the Morse sets over phase space, as PNG, PDF or SVG.")
+@json_option
+def command(
+    scene: Scene,
+    lams: str,
+    columns: int,
+    rows: int,
+    coarsest: int,
+    parts: int,
+    certificates: str | None,
+    plot: str | None,
+    output: Output,
+) -> int:
+    """Which attractors are proved, and in what order? Exit status 1 when no trapping region smaller than all is found.
+
+    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. Proved: from some
+    bounce on, every orbit that never lands on a join is in one of the Morse sets listed; it goes from one to another
+    only in the order given; and each trapping region keeps what enters it. A set may hold several attractors, or none.
+    """
+    from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
+    from verification.proofs.global_dynamics.images import PinballImages
+    from verification.proofs.global_dynamics.regions import region, shares
+
+    if certificates is not None and not Path(certificates).is_dir():
+        raise ValueError(f"--certificates {certificates!r} is no directory; create it first")
+    if plot and Path(plot).suffix not in (".png", ".pdf", ".svg"):
+        raise ValueError(f"--plot {plot} has no known ending; accepted: .png, .pdf, .svg")
+    started = time.perf_counter()
+    low, high = span(lams)
+    map = PinballImages(scene.at(lam=low), (low, high))
+    grid = Grid(map.charts, columns, rows)
+    with output.progress("Covering phase space", 1) as step:
+        graph = morse_graph(refined(map, grid, coarsest, parts))
+        step("ordered")
+    leaves = int(graph.transitions.leaf.sum())
+    regions = [region(map, graph, index, parts) for index in graph.attracting]
+    document: dict[str, Any] = {
+        "scene": map.scene.document,
+        "lam": [str(low), str(high)],
+        "boxes": leaves,
+        "edges": int(graph.transitions.edges.nnz),
+        "sets": [entry(graph, index) for index in range(len(graph.sets))],
+        "regions": [
+            {"set": index, "name": found.name, "boxes": int(found.cells.chart.size), "basin": shares(graph, index)}
+            for index, found in zip(graph.attracting, regions, strict=True)
+            if found is not None
+        ],
+        "seconds": time.perf_counter() - started,
+    }
+    output.write(document)
+    show(output.console, map.label, document)
+    if certificates is not None:
+        for number, found in enumerate(found for found in regions if found is not None):
+            written(found, Path(certificates) / f"region{number}.json", output.console)
+    if plot:
+        drawn(graph, map.label, plot)
+    return DONE if any(0 < found["boxes"] < leaves for found in document["regions"]) else FAILED
+
+
+def span(text: str) -> tuple[Fraction, Fraction]:
+    """`LOW:HIGH`, or one number, as exact contractions.
+
+    >>> span("0.5"), span("1/4:1/2")
+    ((Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 4), Fraction(1, 2)))
+    """
+    ends = [exact("--lam", part) for part in text.split(":")]
+    low, high = ends[0], ends[-1]
+    if len(ends) > 2 or not (isinstance(low, Fraction) and isinstance(high, Fraction)) or not 0 <= low <= high < 1:
+        raise ValueError(f"--lam {text!r} is no range of contractions; accepted: rationals LOW:HIGH in [0, 1), or one")
+    return low, high
+
+
+def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
+    """A Morse set: how many boxes, the range of them, and where walks lead from it."""
+    from verification.proofs.global_dynamics.graph import Cells
+
+    members = graph.sets[index]
+    inner = members[members < graph.transitions.count]
+    boxes = graph.transitions.grid.boxes(Cells(*(field[inner] for field in graph.transitions.cells)))
+    names = [chart.name for chart in graph.transitions.grid.charts]
+    ends = {name: [float(low.min()), float(high.max())] for name, (low, high) in (("theta", boxes.x), ("phi", boxes.y))}
+    below = [other for other in range(len(graph.sets)) if other != index and graph.below[index, other]]
+    found = {"boxes": int(members.size), "components": sorted({names[i] for i in boxes.chart.tolist()}), **ends}
+    return found | {"attracting": index in graph.attracting, "leads_to": below}
+
+
+def show(console: "Console", label: str, document: dict[str, Any]) -> None:
+    """The Morse graph, for people."""
+    console.print(f"{label}: {document['boxes']} boxes, {document['edges']} edges, {document['seconds']:.1f} s")
+    console.print("proved: from some bounce on every orbit that never lands on a join is in one of these sets")
+    console.print("  set    boxes  attracting  phi                   leads to")
+    for index, found in enumerate(document["sets"][:SHOWN]):
+        ends = f"{found['phi'][0]:.4f} to {found['phi'][1]:.4f}"
+        leads = " ".join(map(str, found["leads_to"][:8])) or "-"
+        console.print(
+            f"  {index:3} {found['boxes']:8}  {'yes' if found['attracting'] else 'no':10}  {ends:20}  {leads}"
+        )
+    if len(document["sets"]) > SHOWN:
+        console.print(f"  and {len(document['sets']) - SHOWN} more")
+    for found in document["regions"]:
+        low, high = found["basin"]
+        console.print(f"proved: {found['name']}, about set {found['set']}")
+        console.print(f"        its basin holds between {low:.2%} and {high:.2%} of phase space, by area")
+
+
+def written(region: "Region", path: Path, console: "Console") -> None:
+    """Writes a certificate, which `pinball check` proves anew."""
+    write_whole(path, json.dumps(region.to_dict()) + "\n")
+    console.print(f"{path}: {region.name}")
+
+
+def drawn(graph: "MorseGraph", label: str, path: str) -> None:
+    """Writes the picture."""
+    from verification.plots.dynamics import morse_sets
+    from verification.plots.sheet import styled
+
+    with styled():
+        try:
+            morse_sets(graph, label).savefig(path)
+        except OSError as error:
+            raise ValueError(f"--plot {path} cannot be written ({error.strerror or error})") from None

@@ -19,8 +19,9 @@ RECORD = HERE / "assumptions.txt"
 # In an order in which each finds what it needs.
 CARDIOID = ("Cardioid", "Stretch", "Cycles", "Map", "Landing", "Near", "Unstable")
 NEWTON = ("Newton", "Jets", "Checked", "Boxes")
-EGG = ("Cascade", "Equations", "Doublings")
-FILES = ("Bounce", "Cone", *CARDIOID, "Generated", "Frames", "Algebra", "Errata", "Fold", *NEWTON, *EGG, "Numbers")
+PAPER = ("Generated", "Frames", "Algebra", "Errata", "Stability", "Fold")
+EGG = ("Cascade", "Triangles", "Sentences", "Equations", "Doublings")
+FILES = ("Bounce", "Cone", *CARDIOID, *PAPER, *NEWTON, *EGG, "Numbers")
 LIBRARIES = "From Coquelicot Require Import Coquelicot. From Interval Require Import Tactic."
 NEEDED = "make formal needs coqc 8.16 with coquelicot and interval (Debian: coq libcoq-coquelicot libcoq-interval)"
 COQC = ("coqc", "-q", "-w", "-ambiguous-paths", "-Q", ".", "Pinball")

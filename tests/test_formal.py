@@ -25,7 +25,7 @@ def script(name):
 
 
 check = script("check")
-ENCLOSURES = {"Fold", "Jets", "Checked", "Doublings", "Numbers"}
+ENCLOSURES = {"Fold", "Jets", "Checked", "Sentences", "Doublings", "Numbers"}
 PROOFS = [FORMAL / f"{name}.v" for name in check.FILES]
 
 

@@ -23,6 +23,7 @@ LAID_OUT, SYMBOLS, RELOCATIONS = 1, 2, 4  # kinds of sections: SHT_PROGBITS, SHT
 ALLOCATED, EXECUTABLE = 2, 4
 ADDRESS, RELATIVE = 1, (2, 4)  # R_X86_64_64; R_X86_64_PC32 and PLT32
 PAGE = 4096  # memory is mapped at multiples of it; a section cannot ask for more
+LONGEST = 6 << 20  # characters of a kernel that is compiled; forty harmonics have half of it
 LARGEST = 1 << 24  # bytes of an image; kernels have 10 to 100 thousand
 NEAR = 64  # an address relative to the next instruction lies this much before what it means, at most
 
@@ -226,7 +227,16 @@ def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSp
                 return None
             from numeric.kernels.text import kernel_text
 
-            made = object_code(kernel_text(family, shape, spec, width))
+            text = kernel_text(family, shape, spec, width)
+            if len(text) > LONGEST:
+                warnings.warn(
+                    f"the kernel of this table has {len(text) >> 20} MB of text, more than {LONGEST >> 20} that are "
+                    "compiled in some twenty seconds; it runs on NumPy arrays",
+                    stacklevel=2,
+                )
+                _loaded[key] = None
+                return None
+            made = object_code(text)
             code = image(made) or made
             found = _entered(code)
             if found is None:  # a system that lets nobody but LLVM make memory executable

@@ -4,6 +4,7 @@ What is picked there is a map, a command line and a few lines of Python; what is
 points in phase space, and the cycle near a point.
 """
 
+import os
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -365,9 +366,20 @@ def page() -> Any:
     return LiveTable().view()
 
 
-def serve(port: int, show: bool) -> None:
-    """Serves the page on this machine only, until it is interrupted."""
-    pn.serve(
+FROM_OUTSIDE = ("BOKEH_ALLOW_WS_ORIGIN", "BOKEH_ADDRESS")  # would let pages of other addresses in
+FORGOTTEN = 15_000  # milliseconds after which the table of a visitor who left is given up
+
+
+def serve(port: int, show: bool, **more: Any) -> Any:
+    """Serves the page on this machine only, until it is interrupted.
+
+    A page of another address that a browser shows cannot talk to it: its origin is not among those allowed, and what
+    the environment says of origins and addresses is not heard.
+    """
+    for name in FROM_OUTSIDE:
+        os.environ.pop(name, None)
+    return pn.serve(
         {"": page}, port=port, address="127.0.0.1", websocket_origin=[f"127.0.0.1:{port}", f"localhost:{port}"],
-        show=show, title="Pinball billiards", verbose=False,
+        show=show, title="Pinball billiards", verbose=False, unused_session_lifetime=FORGOTTEN,
+        check_unused_sessions=FORGOTTEN // 5, **more,
     )  # fmt: skip

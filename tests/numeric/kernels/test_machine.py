@@ -132,3 +132,12 @@ def test_a_compiler_without_a_version_has_an_empty_one_and_none_has_none(library
     monkeypatch.setattr(machine, "_llvm", lambda: library)
 
     assert machine._version() == version
+
+
+def test_a_kernel_that_is_too_long_to_compile_is_left_to_numpy(compiled, monkeypatch):
+    monkeypatch.setattr(machine, "LONGEST", 1000)
+    with pytest.warns(UserWarning, match="it runs on NumPy arrays"):
+        assert compiled() is None
+
+    assert compiled() is None  # and it is said once
+    assert compiled.made == []

@@ -76,7 +76,7 @@ def references(map, own):
 def apart(map, one, other):
     """The distance of two landings, in position and in direction."""
     gaps = [np.abs(np.asarray(a - b, dtype=float)) for a, b in zip(one, other, strict=True)]
-    if map.family.name == "circle":
+    if map.family.position == ("theta",):
         gaps[0] = np.minimum(gaps[0], 2 * np.pi - gaps[0])
     half = len(map.family.position)
     return np.max(gaps[:half], axis=0), np.max([*gaps[half:], 0 * gaps[0]], axis=0)

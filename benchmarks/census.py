@@ -57,7 +57,7 @@ def main(alpha: str = "0.08", steps: str = "500", starts: str = "1500", seed: st
     table, map = egg(3).at(alpha=alpha), PinballMap("egg", lam=0, alpha=alpha)
     console = Console(stderr=True)
     lams = [(k + 0.5) / int(steps) for k in range(int(steps))]
-    rows = [row(map.at(lam), table, int(starts), int(seed)) for lam in track(lams, "starts", console=console)]
+    rows = [row(map.at(lam), int(starts), int(seed)) for lam in track(lams, "starts", console=console)]
     click.echo(f"alpha = {alpha}, {steps} contractions, {starts} starts each, seed {seed}\n")
     click.echo(table_of_rows(rows) + "\n")
     click.echo(table_of_branches(list(branches(map, table, rows))))

@@ -10,43 +10,6 @@ Nothing is imported before it is asked for: `import numeric` alone loads neither
 (2.14159265359, 0.25)
 """
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-if TYPE_CHECKING:
-    from numeric.flights.family import Status
-    from numeric.pinball.map import PinballMap
-    from numeric.pinball.sampling import Starts, interior_starts, phase_grid, phase_starts
-    from numeric.pinball.states import Exponents, Orbit, Slap
-
-__all__ = [
-    "Exponents",
-    "Orbit",
-    "PinballMap",
-    "Slap",
-    "Starts",
-    "Status",
-    "interior_starts",
-    "phase_grid",
-    "phase_starts",
-]
-
-if not TYPE_CHECKING:
-    HOMES = {
-        "flights.family": ("Status",),
-        "pinball.map": ("PinballMap",),
-        "pinball.states": ("Exponents", "Orbit", "Slap"),
-        "pinball.sampling": ("Starts", "interior_starts", "phase_grid", "phase_starts"),
-    }
-
-    def __getattr__(name):
-        """A public name, imported when it is first asked for."""
-        from importlib import import_module
-
-        for home, names in HOMES.items():
-            if name in names:
-                value = globals()[name] = getattr(import_module(f"numeric.{home}"), name)
-                return value
-        raise AttributeError(f"numeric has no {name}; it has {', '.join(__all__)}")
-
-    def __dir__():
-        return sorted({*globals(), *__all__})
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

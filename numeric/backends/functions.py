@@ -12,8 +12,10 @@ enters a loop that keeps a change of sign and cannot leave it. Lanes that are do
 so that no lane's result depends on its neighbours.
 """
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from numeric.backends.protocol import Backend, Low, M, N, Pair, bound, modulus
 
 ATAN = (
     -0.3333333333333333, 0.1999999999999552, -0.14285714284666542, 0.11111111015256347,
@@ -33,7 +35,7 @@ HALF_PI, HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17  # their sum is
 TWO_OVER_PI = 0.6366197723675814
 
 
-def horner(ops: Any, coefficients: tuple[float, ...], x: Any) -> Any:
+def horner(ops: Backend[N, M], coefficients: tuple[float, ...], x: N) -> N:
     """The polynomial with these coefficients, constant first, at `x`."""
     value = ops.number(coefficients[-1])
     for c in reversed(coefficients[:-1]):
@@ -41,9 +43,9 @@ def horner(ops: Any, coefficients: tuple[float, ...], x: Any) -> Any:
     return value
 
 
-def angle(ops: Any, y: Any, x: Any) -> Any:
+def angle(ops: Backend[N, M], y: N, x: N) -> N:
     """`atan2(y, x)` for `x >= 0`, in radians; the pair need not have length one."""
-    size = abs(y)
+    size = modulus(y)
     steep = x < size
     low, high = ops.select(steep, x, size), ops.select(steep, size, x)
     far = ops.number(TAN_EIGHTH) * high < low
@@ -56,15 +58,15 @@ def angle(ops: Any, y: Any, x: Any) -> Any:
     return ops.with_sign(base * ops.number(HALF_PI_LOW / HALF_PI) + small + base, y)
 
 
-def turn(ops: Any, x: Any, quarters: int = 2) -> tuple[Any, Any]:
+def turn(ops: Backend[N, M], x: N, quarters: int = 2) -> Pair[N]:
     """`(cos x, sin x)` for `|x| <= quarters*pi/2`; `quarters` is 1 or 2."""
-    size = abs(x)
+    size = modulus(x)
     if quarters == 1:
         odd = ops.number(HALF_PI / 2) < size
         j = ops.select(odd, ops.number(1.0), ops.number(0.0))
     else:
         j = ops.rounded(size * ops.number(TWO_OVER_PI))
-        odd = abs(j - ops.number(1.0)) < ops.number(0.5)
+        odd = modulus(j - ops.number(1.0)) < ops.number(0.5)
     r = ops.fma(-j, ops.number(HALF_PI), size)
     r = ops.fma(-j, ops.number(HALF_PI_LOW), r)
     w = r * r
@@ -77,10 +79,7 @@ def turn(ops: Any, x: Any, quarters: int = 2) -> tuple[Any, Any]:
     return along, ops.times_sign(across, x)
 
 
-Pair = tuple[Any, Any]
-
-
-def times(z: Pair, w: Pair) -> Pair:
+def times(z: Pair[N], w: Pair[N]) -> Pair[N]:
     """`z*w`.
 
     >>> times((1, 2), (3, 4))
@@ -89,45 +88,50 @@ def times(z: Pair, w: Pair) -> Pair:
     return z[0] * w[0] - z[1] * w[1], z[0] * w[1] + z[1] * w[0]
 
 
-def conjugate(z: Pair) -> Pair:
+def scaled(factor: N, z: Pair[N]) -> Pair[N]:
+    """`factor*z` for a real factor."""
+    return factor * z[0], factor * z[1]
+
+
+def conjugate(z: Pair[N]) -> Pair[N]:
     """The mirror image in the x axis; the inverse of a unit vector."""
     return z[0], -z[1]
 
 
-def squared(z: Pair) -> Pair:
+def squared(z: Pair[N]) -> Pair[N]:
     """`z*z`, with the real part as a product so that nothing cancels twice."""
     return (z[0] - z[1]) * (z[0] + z[1]), (z[0] + z[0]) * z[1]
 
 
-def dot(z: Pair, w: Pair) -> Any:
+def dot(z: Pair[N], w: Pair[N]) -> N:
     """The scalar product, `Re(conj(z)*w)`."""
     return z[0] * w[0] + z[1] * w[1]
 
 
-def cross(z: Pair, w: Pair) -> Any:
+def cross(z: Pair[N], w: Pair[N]) -> N:
     """`Im(conj(z)*w)`, positive when `w` lies to the left of `z`."""
     return z[0] * w[1] - z[1] * w[0]
 
 
-def exact_cross(ops: Any, z: Pair, w: Pair) -> Any:
+def exact_cross(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> N:
     """`cross` to two units in the last place even where it almost vanishes, by Kahan [JeannerodLouvetMuller2013]."""
     product = z[1] * w[0]
     lost = ops.fma(-z[1], w[0], product)
     return ops.fma(z[0], w[1], -product) + lost
 
 
-def exact_dot(ops: Any, z: Pair, w: Pair) -> Any:
+def exact_dot(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> N:
     """`dot`, as `exact_cross`."""
     return exact_cross(ops, (z[0], -z[1]), (w[1], w[0]))
 
 
-def product_and_error(ops: Any, x: Any, y: Any) -> Pair:
+def product_and_error(ops: Backend[N, M], x: N, y: N) -> Pair[N]:
     """`x*y` rounded, and the rounding error, exactly."""
     product = ops.product(x, y)
     return product, ops.fma(x, y, -product)
 
 
-def cross_and_error(ops: Any, z: Pair, w: Pair) -> Pair:
+def cross_and_error(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> Pair[N]:
     """`cross` rounded, and its rounding error, to twice the digits."""
     (x, x_error), (y, y_error) = product_and_error(ops, z[0], w[1]), product_and_error(ops, z[1], w[0])
     total = x - y
@@ -135,14 +139,14 @@ def cross_and_error(ops: Any, z: Pair, w: Pair) -> Pair:
     return total, ((x - (total - back)) - (y + back)) + (x_error - y_error)
 
 
-def unit(ops: Any, z: Pair) -> Pair:
+def unit(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
     """`z` with its length set to one again, when it is one up to rounding."""
     short = ops.fma(-z[0], z[0], ops.fma(-z[1], z[1], ops.number(1.0)))
     half = short * ops.number(0.5)
     return ops.fma(z[0], half, z[0]), ops.fma(z[1], half, z[1])
 
 
-def normalised(ops: Any, z: Pair) -> Pair:
+def normalised(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
     """`z` divided by its length, whatever that is."""
     scale = ops.number(1.0) / ops.sqrt(dot(z, z))
     return unit(ops, (z[0] * scale, z[1] * scale))
@@ -152,10 +156,7 @@ TOLERANCE = 2.0**-27  # of the last Newton correction: the error left is its squ
 ENOUGH = 200  # passes of the bracketed loop, of which every second one at worst halves the bracket
 
 
-Low = Any | Callable[[], Any]
-
-
-def value_and_slope(p: list[Any], x: Any) -> tuple[Any, Any]:
+def value_and_slope(p: Sequence[N], x: N) -> Pair[N]:
     """A polynomial, constant first, and its derivative at `x`.
 
     >>> value_and_slope([5, 0, 1], 3)
@@ -168,7 +169,7 @@ def value_and_slope(p: list[Any], x: Any) -> tuple[Any, Any]:
     return value, slope
 
 
-def halley(p: list[Any], x: Any) -> Any:
+def halley(p: Sequence[N], x: N) -> N:
     """One step of Halley's method on a polynomial: third order for one division."""
     value, slope, half = p[-1] * x + p[-2], p[-1], None
     for c in reversed(p[:-2]):
@@ -181,16 +182,16 @@ def halley(p: list[Any], x: Any) -> Any:
 
 
 def bracketed_zero(
-    ops: Any,
-    function: Callable[[Any], tuple[Any, Any]],
-    x: Any,
-    low: Low,
-    high: Any,
-    scale: Any,
+    ops: Backend[N, M],
+    function: Callable[[N], Pair[N]],
+    x: N,
+    low: Low[N],
+    high: N,
+    scale: N,
     newton: int,
-    wanted: Any = None,
-    accepts: Callable[[Any], Any] | None = None,
-) -> Any:
+    wanted: M | None = None,
+    accepts: Callable[[N], M] | None = None,
+) -> N:
     """The only zero in `[low, high]` of a function that is negative at `low` and positive at `high`.
 
     `function` returns value and slope; `scale` is the size below which the zero's absolute error
@@ -204,14 +205,15 @@ def bracketed_zero(
         step = value / slope
         x = x - step
     tolerance = ops.number(TOLERANCE)
-    done = (abs(step) <= tolerance * ops.maximum(abs(x), scale)) & (x <= high)
-    done = done & (accepts(x) if accepts is not None else low <= x)
+    done = (modulus(step) <= tolerance * ops.maximum(modulus(x), scale)) & (x <= high)
+    above = accepts(x) if accepts is not None else bound(low) <= x
+    done = done & above
     if wanted is not None:
         done = done | ops.negated(wanted)
     unfinished = ops.negated(done)
 
-    def bracketed() -> list[Any]:
-        bottom = low() if callable(low) else low
+    def bracketed() -> list[N]:
+        bottom = bound(low)
         inside = (bottom < x) & (x < high)
         start = ops.select(inside, x, ops.number(0.5) * (bottom + high))
         flag = ops.select(unfinished, ops.number(1.0), ops.number(0.0))
@@ -219,19 +221,19 @@ def bracketed_zero(
         found = ops.repeat(lambda state: ops.number(0.5) < state[3], improved, state, ENOUGH)[0]
         return [ops.select(unfinished, found, x)]
 
-    def improved(state: list[Any]) -> list[Any]:
+    def improved(state: Sequence[N]) -> list[N]:
         x, low, high, flag, before = state
         value, slope = function(x)
         below = value < ops.number(0.0)
         low, high = ops.select(below, x, low), ops.select(below, high, x)
         step = value / slope
         middle, newton = ops.number(0.5) * (low + high), x - step
-        good = (low < newton) & (newton < high) & (abs(step) <= before)
+        good = (low < newton) & (newton < high) & (modulus(step) <= before)
         moved = ops.select(good, newton, middle)
-        change = abs(moved - x)
-        small = tolerance * ops.maximum(abs(moved), scale)
+        change = modulus(moved - x)
+        small = tolerance * ops.maximum(modulus(moved), scale)
         exact = value == ops.number(0.0)
-        settled = (good & (abs(step) <= small)) | exact | (high - low <= ops.number(2.0**-26) * small)
+        settled = (good & (modulus(step) <= small)) | exact | (high - low <= ops.number(2.0**-26) * small)
         return [
             ops.select(exact, x, moved),
             low,
@@ -244,17 +246,57 @@ def bracketed_zero(
 
 
 def polynomial_zero(
-    ops: Any,
-    p: list[Any],
-    x: Any,
-    low: Low,
-    high: Any,
-    scale: Any,
+    ops: Backend[N, M],
+    p: Sequence[N],
+    x: N,
+    low: Low[N],
+    high: N,
+    scale: N,
     steps: tuple[int, int],
-    wanted: Any = None,
-    accepts: Callable[[Any], Any] | None = None,
-) -> Any:
+    wanted: M | None = None,
+    accepts: Callable[[N], M] | None = None,
+) -> N:
     """`ops.zero` of a polynomial given by its coefficients; `steps` of Halley, then of Newton."""
     for _ in range(steps[0]):
         x = halley(p, x)
     return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)
+
+
+class DoubleBackend(Backend[N, M], Protocol[N, M]):
+    """What backends of float64 have in common: their elementary functions and zeros are those of this module."""
+
+    def angle(self, y: N, x: N) -> N:
+        """`atan2(y, x)` for `x >= 0`."""
+        return angle(self, y, x)
+
+    def turn(self, x: N, quarters: int = 2) -> Pair[N]:
+        """`(cos x, sin x)`."""
+        return turn(self, x, quarters)
+
+    def zero(
+        self,
+        function: Callable[[N], Pair[N]],
+        x: N,
+        low: Low[N],
+        high: N,
+        scale: N,
+        newton: int,
+        wanted: M | None = None,
+        accepts: Callable[[N], M] | None = None,
+    ) -> N:
+        """The only zero in `[low, high]`."""
+        return bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
+
+    def polynomial_zero(
+        self,
+        p: Sequence[N],
+        x: N,
+        low: Low[N],
+        high: N,
+        scale: N,
+        steps: tuple[int, int],
+        wanted: M | None = None,
+        accepts: Callable[[N], M] | None = None,
+    ) -> N:
+        """That of a polynomial."""
+        return polynomial_zero(self, p, x, low, high, scale, steps, wanted, accepts)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from numeric.backends import functions
-from numeric.backends.functions import bracketed_zero, polynomial_zero
+from numeric.backends.functions import DoubleBackend
 
 Fold = float | None
 
@@ -114,17 +114,14 @@ class LLVMVector:
     __hash__ = None  # type: ignore[assignment]
 
 
-class LLVMBackend:
+class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     """Writes LLVM instructions on vectors of `width` doubles."""
-
-    zero = bracketed_zero
-    polynomial_zero = polynomial_zero
 
     def __init__(self, width: int = 32) -> None:
         self.width, self.type = width, f"<{width} x double>"
         self.masks, self.integers = f"<{width} x i1>", f"<{width} x i64>"
         self.lines: list[str] = []
-        self.known: list[dict[Any, Any]] = [{}]
+        self.known: list[dict[str, str]] = [{}]
         self.scopes, self.scope, self.opened = [0], 0, 0
         self.block, self.count = "entry", 0
         self.called: set[str] = set()
@@ -136,12 +133,12 @@ class LLVMBackend:
         self.count += 1
         return f"%{stem}{self.count}"
 
-    def emit(self, text: str, key: Any = None) -> str:
+    def emit(self, text: str, key: str | None = None) -> str:
         """Write `name = text`, once per scope for equal keys."""
         key = key if key is not None else text
         for known in reversed(self.known):
             if key in known:
-                return str(known[key])
+                return known[key]
         name = self.fresh()
         self.lines.append(f"  {name} = {text}")
         self.known[-1][key] = name
@@ -189,18 +186,20 @@ class LLVMBackend:
 
     # ---- arithmetic
 
-    def constant(self, p: int, q: int = 1) -> LLVMVector:
-        """The double nearest to `p/q`."""
-        return self.number(p / q)
+    def q(self, p: int, n: int) -> LLVMVector:
+        """The double nearest to `p/n`."""
+        return self.number(p / n)
 
     def number(self, x: float) -> LLVMVector:
         """A double."""
         return LLVMVector(self, value=float(x))
 
+    @property
     def pi(self) -> LLVMVector:
         """The double nearest to pi."""
         return self.number(2 * functions.HALF_PI)
 
+    @property
     def pi_low(self) -> LLVMVector:
         """What that double lacks."""
         return self.number(2 * functions.HALF_PI_LOW)
@@ -257,6 +256,10 @@ class LLVMBackend:
         magic = self._bits("or", self._bits("lshr", field, "splat (i64 52)"), f"splat (i64 {0x433 << 52})")
         return inverse, self._double(magic) - self.number(2.0**52 + 1023)
 
+    def atan2(self, y: LLVMVector, x: LLVMVector) -> LLVMVector:
+        """Not inside a bounce, where `angle` does."""
+        raise NotImplementedError("a kernel has no atan2; it has angle")
+
     def sin(self, x: LLVMVector) -> LLVMVector:
         """The sine, of angles up to 2**30."""
         return self.turn(self._within_a_turn(x))[1]
@@ -276,14 +279,6 @@ class LLVMBackend:
         """Write these values here, where what they are made of is at hand, and not where they are needed."""
         for x in values:
             assert x.text
-
-    def angle(self, y: LLVMVector, x: LLVMVector) -> LLVMVector:
-        """`atan2(y, x)` for `x >= 0`."""
-        return functions.angle(self, y, x)  # type: ignore[no-any-return]
-
-    def turn(self, x: LLVMVector, quarters: int = 2) -> tuple[LLVMVector, LLVMVector]:
-        """`(cos x, sin x)`."""
-        return functions.turn(self, x, quarters)
 
     def _integer(self, x: LLVMVector) -> str:
         return self.emit(f"bitcast {self.type} {x.text} to {self.integers}")

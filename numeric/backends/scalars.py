@@ -1,59 +1,63 @@
-"""NumPy arrays as an arithmetic: the step function runs on them as it stands.
+"""NumPy arrays, and single numbers of any precision, as backends: flights run on them as they stand.
 
-Single numbers of any precision as an arithmetic: what mpmath, or any library like it, provides.
-
-The library is handed in, never imported: a context with `mpf`, `pi`, `sqrt`, `sin`, `cos` and
-`atan2`. Elementary functions are the context's own and every zero is found to its full precision.
+The library of single numbers, mpmath or one like it, is handed in as a `Context`, never imported. Its elementary
+functions are its own, and every zero is found to its full precision.
 """
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Protocol, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from numeric.backends import functions
-from numeric.backends.functions import bracketed_zero, polynomial_zero, value_and_slope
+from numeric.backends.functions import DoubleBackend, value_and_slope
+from numeric.backends.protocol import Backend, Low, N, Pair, bound, modulus
+
+Array = NDArray[np.float64]
+Masks = NDArray[np.bool_]
+Unary = Callable[[Array], Array]
+Binary = Callable[[Array, Array], Array]
 
 
-class ArrayBackend:
+class ArrayBackend(DoubleBackend[Array, Masks]):
     """Float64 arrays. Masks are boolean arrays."""
 
     splitter = 2.0**27 + 1  # halves a mantissa of 53 bits
 
-    zero = bracketed_zero
-    polynomial_zero = polynomial_zero
+    def q(self, p: int, n: int) -> Array:
+        """The double nearest to `p/n`."""
+        return self.number(p / n)
 
-    def constant(self, p: int, q: int = 1) -> Any:
-        """The double nearest to `p/q`."""
-        return p / q
+    def number(self, x: float) -> Array:
+        """A double, which stands for an array of any shape."""
+        return cast(Array, x)
 
-    def number(self, x: float) -> Any:
-        """A double."""
-        return x
-
-    def pi(self) -> Any:
+    @property
+    def pi(self) -> Array:
         """The double nearest to pi."""
-        return np.pi
+        return self.number(np.pi)
 
-    def pi_low(self) -> Any:
+    @property
+    def pi_low(self) -> Array:
         """What that double lacks."""
-        return 2 * functions.HALF_PI_LOW
+        return self.number(2 * functions.HALF_PI_LOW)
 
-    sqrt = staticmethod(np.sqrt)
-    atan2 = staticmethod(np.arctan2)
-    sin = staticmethod(np.sin)
-    cos = staticmethod(np.cos)
-    select = staticmethod(np.where)
-    maximum = staticmethod(np.maximum)
-    rounded = staticmethod(np.rint)
-    with_sign = staticmethod(np.copysign)
-    negated = staticmethod(np.logical_not)
+    sqrt = staticmethod(cast(Unary, np.sqrt))
+    atan2 = staticmethod(cast(Binary, np.arctan2))
+    sin = staticmethod(cast(Unary, np.sin))
+    cos = staticmethod(cast(Unary, np.cos))
+    select = staticmethod(cast(Callable[[Masks, Array, Array], Array], np.where))
+    maximum = staticmethod(cast(Binary, np.maximum))
+    rounded = staticmethod(cast(Unary, np.rint))
+    with_sign = staticmethod(cast(Binary, np.copysign))
+    negated = staticmethod(cast(Callable[[Masks], Masks], np.logical_not))
 
-    def times_sign(self, x: Any, y: Any) -> Any:
+    def times_sign(self, x: Array, y: Array) -> Array:
         """`x` with its sign flipped where `y` is negative."""
         return np.where(np.signbit(y), -x, x)
 
-    def fma(self, x: Any, y: Any, z: Any) -> Any:
+    def fma(self, x: Array, y: Array, z: Array) -> Array:
         """`x*y + z` from an exact product and an exact sum; no hardware instruction is assumed."""
         product = x * y
         xs, ys = self.splitter * x, self.splitter * y
@@ -65,33 +69,25 @@ class ArrayBackend:
         total_low = (product - (total - back)) + (z - back)
         return total + (product_low + total_low)
 
-    def product(self, x: Any, y: Any) -> Any:
+    def product(self, x: Array, y: Array) -> Array:
         """`x*y`, rounded by itself."""
         return x * y
 
-    def settle(self, *values: Any) -> None:
+    def settle(self, *values: Array) -> None:
         """Nothing to do: every value is computed where it stands."""
 
-    def angle(self, y: Any, x: Any) -> Any:
-        """`atan2(y, x)` for `x >= 0`."""
-        return functions.angle(self, y, x)
-
-    def turn(self, x: Any, quarters: int = 2) -> tuple[Any, Any]:
-        """`(cos x, sin x)`."""
-        return functions.turn(self, x, quarters)
-
-    def power_of_two(self, x: Any) -> tuple[Any, Any]:
+    def power_of_two(self, x: Array) -> Pair[Array]:
         """`(2**-e, e)` with `2**e <= x < 2**(e + 1)`."""
         exponent = np.frexp(x)[1] - 1.0
         return np.ldexp(1.0, -exponent.astype(np.int64)), exponent
 
     def repeat(
         self,
-        condition: Callable[[list[Any]], Any],
-        body: Callable[[list[Any]], list[Any]],
-        state: list[Any],
+        condition: Callable[[list[Array]], Masks],
+        body: Callable[[list[Array]], list[Array]],
+        state: list[Array],
         limit: int,
-    ) -> list[Any]:
+    ) -> list[Array]:
         """Apply `body` to the elements for which `condition` holds, until it holds for none."""
         for _ in range(limit):
             active = condition(state)
@@ -100,150 +96,172 @@ class ArrayBackend:
             state = [np.where(active, new, old) for new, old in zip(body(state), state, strict=True)]
         return state
 
-    def when(self, mask: Any, values: list[Any], changed: Callable[[], list[Any]]) -> list[Any]:
+    def when(self, mask: Masks, values: list[Array], changed: Callable[[], list[Array]]) -> list[Array]:
         """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
         return changed() if np.any(mask) else values
 
 
-class ScalarBackend:
+class Context(Protocol[N]):
+    """What a library of numbers must have, under the names of mpmath's contexts."""
+
+    pi: N
+    eps: N
+    prec: int
+    dps: int
+
+    def mpf(self, x: float, /) -> N: ...
+    def sqrt(self, x: N, /) -> N: ...
+    def sin(self, x: N, /) -> N: ...
+    def cos(self, x: N, /) -> N: ...
+    def atan2(self, y: N, x: N, /) -> N: ...
+    def nint(self, x: N, /) -> N: ...
+
+
+class ScalarBackend(Backend[N, bool]):
     """Numbers of a multiprecision context. Masks are Python's bools."""
 
-    def __init__(self, context: Any) -> None:
+    def __init__(self, context: Context[N]) -> None:
         self.context = context
 
-    def constant(self, p: int, q: int = 1) -> Any:
-        """`p/q` to the context's precision."""
-        return self.context.mpf(p) / q
+    def q(self, p: int, n: int) -> N:
+        """`p/n` to the context's precision."""
+        return self.context.mpf(p) / n  # type: ignore[operator,no-any-return]  # an integer of any size, exactly
 
-    def number(self, x: float) -> Any:
+    def number(self, x: float) -> N:
         """A double, exactly."""
         return self.context.mpf(x)
 
-    def pi(self) -> Any:
+    @property
+    def pi(self) -> N:
         """Pi to the context's precision."""
-        return +self.context.pi
+        return self.context.pi + self.number(0.0)
 
-    def pi_low(self) -> Any:
+    @property
+    def pi_low(self) -> N:
         """Nothing: `pi` is as good as every other number here."""
         return self.context.mpf(0)
 
-    def sqrt(self, x: Any) -> Any:
+    def sqrt(self, x: N) -> N:
         """The square root."""
         return self.context.sqrt(x)
 
-    def sin(self, x: Any) -> Any:
+    def sin(self, x: N) -> N:
         """The sine."""
         return self.context.sin(x)
 
-    def cos(self, x: Any) -> Any:
+    def cos(self, x: N) -> N:
         """The cosine."""
         return self.context.cos(x)
 
-    def settle(self, *values: Any) -> None:
+    def settle(self, *values: N) -> None:
         """Nothing to do: every value is computed where it stands."""
 
-    def atan2(self, y: Any, x: Any) -> Any:
+    def atan2(self, y: N, x: N) -> N:
         """The angle of the point `(x, y)`, anywhere in the plane."""
         return self.context.atan2(y, x)
 
-    def angle(self, y: Any, x: Any) -> Any:
+    def angle(self, y: N, x: N) -> N:
         """`atan2(y, x)`."""
         return self.context.atan2(y, x)
 
-    def turn(self, x: Any, quarters: int = 2) -> tuple[Any, Any]:
+    def turn(self, x: N, quarters: int = 2) -> Pair[N]:
         """`(cos x, sin x)`."""
         return self.context.cos(x), self.context.sin(x)
 
-    def select(self, mask: Any, x: Any, y: Any) -> Any:
+    def select(self, mask: bool, x: N, y: N) -> N:
         """`x` if the mask holds, else `y`."""
         return x if mask else y
 
-    def maximum(self, x: Any, y: Any) -> Any:
+    def maximum(self, x: N, y: N) -> N:
         """The larger one."""
-        return max(x, y)
+        return y if x < y else x
 
-    def with_sign(self, x: Any, y: Any) -> Any:
+    def with_sign(self, x: N, y: N) -> N:
         """`|x|` with the sign of `y`."""
-        return -abs(x) if y < 0 else abs(x)
+        return -modulus(x) if y < self.number(0.0) else modulus(x)
 
-    def times_sign(self, x: Any, y: Any) -> Any:
+    def times_sign(self, x: N, y: N) -> N:
         """`x` with its sign flipped where `y` is negative."""
-        return -x if y < 0 else x
+        return -x if y < self.number(0.0) else x
 
-    def negated(self, mask: Any) -> Any:
+    def rounded(self, x: N) -> N:
+        """The nearest integer."""
+        return self.context.nint(x)
+
+    def negated(self, mask: bool) -> bool:
         """The opposite of a mask."""
         return not mask
 
-    def fma(self, x: Any, y: Any, z: Any) -> Any:
+    def fma(self, x: N, y: N, z: N) -> N:
         """`x*y + z`."""
         return x * y + z
 
-    def product(self, x: Any, y: Any) -> Any:
+    def product(self, x: N, y: N) -> N:
         """`x*y`."""
         return x * y
 
-    def power_of_two(self, x: Any) -> tuple[Any, Any]:
+    def power_of_two(self, x: N) -> Pair[N]:
         """No scaling is needed where exponents have no bound."""
         return self.context.mpf(1), self.context.mpf(0)
 
     def polynomial_zero(
         self,
-        p: list[Any],
-        x: Any,
-        low: Any,
-        high: Any,
-        scale: Any,
+        p: Sequence[N],
+        x: N,
+        low: Low[N],
+        high: N,
+        scale: N,
         steps: tuple[int, int],
-        wanted: Any = None,
-        accepts: Callable[[Any], Any] | None = None,
-    ) -> Any:
+        wanted: bool | None = None,
+        accepts: Callable[[N], bool] | None = None,
+    ) -> N:
         """The zero of a polynomial, negative at `low` and positive at `high`, to full precision."""
         return self.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted)
 
     def zero(
         self,
-        function: Callable[[Any], tuple[Any, Any]],
-        x: Any,
-        low: Any,
-        high: Any,
-        scale: Any,
+        function: Callable[[N], Pair[N]],
+        x: N,
+        low: Low[N],
+        high: N,
+        scale: N,
         newton: int,
-        wanted: Any = None,
-        accepts: Callable[[Any], Any] | None = None,
-    ) -> Any:
+        wanted: bool | None = None,
+        accepts: Callable[[N], bool] | None = None,
+    ) -> N:
         """Safeguarded Newton until the correction drops below the context's rounding."""
         if wanted is not None and not wanted:
             return x
-        low = low() if callable(low) else low
-        last = high - low
-        if not low < x < high:
-            x = (low + high) / 2
+        bottom, top = bound(low), high
+        last, half, nought = top - bottom, self.number(0.5), self.number(0.0)
+        if not bottom < x < top:
+            x = (bottom + top) * half
         for _ in range(50 * self.context.prec):
             value, slope = function(x)
-            if value == 0:
+            if value == nought:
                 return x
-            low, high = (x, high) if value < 0 else (low, x)
-            step = value / slope if slope != 0 else high - low
+            bottom, top = (x, top) if value < nought else (bottom, x)
+            step = value / slope if slope != nought else top - bottom
             new = x - step
-            if not (low < new < high and 2 * abs(step) <= last):
-                new = (low + high) / 2
-            last, x = abs(new - x), new
-            if last <= max(abs(x), scale) * self.context.eps:
+            if not (bottom < new < top and modulus(step) <= last * half):
+                new = (bottom + top) * half
+            last, x = modulus(new - x), new
+            if last <= self.maximum(modulus(x), scale) * self.context.eps:
                 return x
-        raise ArithmeticError(f"no zero found in [{low}, {high}] to {self.context.dps} digits")
+        raise ArithmeticError(f"no zero found in [{bottom}, {top}] to {self.context.dps} digits")
 
     def repeat(
         self,
-        condition: Callable[[list[Any]], Any],
-        body: Callable[[list[Any]], list[Any]],
-        state: list[Any],
+        condition: Callable[[list[N]], bool],
+        body: Callable[[list[N]], list[N]],
+        state: list[N],
         limit: int,
-    ) -> list[Any]:
+    ) -> list[N]:
         """Apply `body` while `condition` holds."""
         while condition(state):
             state = body(state)
         return state
 
-    def when(self, mask: Any, values: list[Any], changed: Callable[[], list[Any]]) -> list[Any]:
+    def when(self, mask: bool, values: list[N], changed: Callable[[], list[N]]) -> list[N]:
         """`changed()` if the mask holds, else `values`."""
         return changed() if mask else values

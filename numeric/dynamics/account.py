@@ -21,6 +21,7 @@ from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
 from numeric.pinball.sampling import Growth
 
+Document = dict[str, Any]  # of JSON
 METHOD = (
     "batch means over orbits and blocks, batches merged until their ends matter little and put right with the "
     "integrated autocorrelation time; the last level is one batch for each independent orbit"
@@ -28,7 +29,7 @@ METHOD = (
 CHECKED_PARTICLES, CHECKED_BOUNCES = 32, 500
 
 
-def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
+def account(map: PinballMap, survey: Survey) -> Document:
     """The document of `pinball lyapunov`. At the top stands the one attractor's result; null where there are several.
 
     >>> from numeric.pinball.sampling import phase_starts
@@ -57,10 +58,10 @@ def account(map: PinballMap, survey: Survey) -> dict[str, Any]:
     }
 
 
-def numbers(measured: Measured | None) -> dict[str, Any]:
+def numbers(measured: Measured | None) -> Document:
     """Exponents and sum with standard errors, null where there is no finite number."""
     whole = measured or Measured(None, None, None)
-    found: dict[str, Any] = {}
+    found: Document = {}
     for name, value in (("nu_plus", whole.upper), ("nu_minus", whole.lower), ("sum", whole.total)):
         found[name] = None if value is None else value.mean
         found[f"{name}_stderr"] = None if value is None or np.isnan(value.error) else value.error
@@ -72,7 +73,7 @@ def is_cycle(group: Group) -> bool:
     return group.attractor is not None and group.attractor.kind is Kind.CYCLE
 
 
-def of_cycle(cycle: Attractor | None) -> dict[str, Any]:
+def of_cycle(cycle: Attractor | None) -> Document:
     """Exponents from multipliers. Along orbits they are less good: a turning vector leaves an error of order `1/n`."""
     assert cycle is not None
     finite = bool(np.isfinite(cycle.nu_minus))
@@ -86,11 +87,11 @@ def of_cycle(cycle: Attractor | None) -> dict[str, Any]:
     }
 
 
-def described(group: Group, survey: Survey) -> dict[str, Any]:
+def described(group: Group, survey: Survey) -> Document:
     """One group: its kind and size, its exponents, and how far their error bars can be trusted."""
     attractor, measured = group.attractor, group.measured
     lost = group.kind.startswith("stopped") or group.kind == CHANGED
-    found: dict[str, Any] = {
+    found: Document = {
         "kind": group.kind,
         "orbits": int(group.members.size),
         **numbers(None if lost else measured),
@@ -119,7 +120,7 @@ def trusted(measured: Measured) -> bool:
     return all(x.trusted for x in measured[:3] if isinstance(x, Estimate))
 
 
-def trace(group: Group, survey: Survey) -> list[dict[str, Any]]:
+def trace(group: Group, survey: Survey) -> list[Document]:
     """How estimate and error came to be: after the first block, two, four, ... and after all of them."""
     blocks, count = 1, survey.count
     found = []
@@ -131,7 +132,7 @@ def trace(group: Group, survey: Survey) -> list[dict[str, Any]]:
     return found
 
 
-def sum_rule(map: PinballMap, survey: Survey) -> dict[str, Any]:
+def sum_rule(map: PinballMap, survey: Survey) -> Document:
     """`log|det D(T^n)|` by the tangent kernel and from the angles alone, along the same orbits."""
     end = survey.count.growth
     few = np.nonzero(end.code == 0)[0][:CHECKED_PARTICLES]

@@ -9,7 +9,7 @@ that its orbits join (`numeric.dynamics.phase_points`). Whatever is still leavin
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,8 +53,11 @@ def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
     return PhasePoints(np.array(symmetry.onto)[particles.component], theta, symmetry.sign * particles.phi)
 
 
-def with_images(map: PinballMap, attractors: Sequence[Attractor], group: "Sequence[Symmetry]") -> list[Attractor]:
-    """The attractors with their families and stabilisers; images that were missing come last."""
+def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attractor]:
+    """The attractors with their families and stabilisers under the table's symmetries; missing images come last."""
+    from numeric.lowering.lower import symmetries
+
+    group = symmetries(map.table)
     found = [replace(a, family=-1) for a in united(map, attractors, group)]
     at = families = 0
     while at < len(found):
@@ -281,18 +284,17 @@ def find(
     map: PinballMap,
     orbits: int,
     seed: int,
-    table: Any = None,
     transient: int = 1000,
     bounces: int = 4000,
     known: Sequence[Attractor] = (),
+    images: bool = False,
 ) -> tuple[Attractor, ...]:
     """The attractors that random starts reach, the most visited first, each with the share of starts it attracts.
 
-    Starts are those of the paper's appendix. With the exact `table` the images under its symmetries belong
-    to the result, also those that no start has reached: their share is 0 out of `orbits`.
+    Starts are those of the paper's appendix. With `images` those under the table's symmetries belong to the
+    result, also those that no start has reached: their share is 0 out of `orbits`.
 
-    >>> from symbolic.tables import egg
-    >>> found = find(PinballMap("egg", alpha="0.08", lam="0.7"), 200, seed=1, table=egg(3).at(alpha="0.08"))
+    >>> found = find(PinballMap("egg", alpha="0.08", lam="0.7"), 200, seed=1, images=True)
     >>> [(a.kind.name, a.period, a.symmetry, a.family) for a in found]
     [('CYCLE', 3, 'C3', 0), ('CYCLE', 3, 'C3', 0)]
     """
@@ -303,11 +305,8 @@ def find(
         replace(measured(map, attractor, bounces), share=wilson(int(np.sum(label == i)), orbits))
         for i, attractor in enumerate(attractors)
     ]
-    if table is not None:
-        from numeric.lowering.lower import symmetries
-
-        images = with_images(map, found, symmetries(table))
-        found = [a if a.share else replace(a, share=wilson(0, orbits)) for a in images]
+    if images:
+        found = [a if a.share else replace(a, share=wilson(0, orbits)) for a in with_images(map, found)]
     found.sort(key=lambda a: -a.share.count if a.share else 0)
     order = list(dict.fromkeys(a.family for a in found))
     return tuple(replace(a, family=order.index(a.family)) for a in found)

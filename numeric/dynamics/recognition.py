@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,7 +191,7 @@ def gap(map: PinballMap, left: Array, right: Array) -> Array:
     return np.asarray(np.remainder(left - right + np.pi, 2 * np.pi) - np.pi)
 
 
-def _moved(map: PinballMap, here: PhasePoints, step: NDArray[Any]) -> PhasePoints | None:
+def _moved(map: PinballMap, here: PhasePoints, step: Array) -> PhasePoints | None:
     theta, phi = here.theta - step[:, 0], here.phi - step[:, 1]
     ends = np.array(map.states.ends)[here.component]
     if len(map.states.ends) > 1 and np.any((theta <= ends[:, 0]) | (theta >= ends[:, 1])):

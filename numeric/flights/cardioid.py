@@ -9,13 +9,12 @@ more the arc would have to bulge inwards. Paper: section 4; [BackerDullin1997].
 """
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
-from numeric.backends.functions import Pair
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Boundary, Family, Frame, Landing, Status, grazing
 
 
@@ -34,7 +33,7 @@ class Cardioid(Family):
     def matches(cls, boundary: Boundary) -> bool:
         return boundary.ir.same_as == "cardioid"
 
-    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         radius = 2 * np.cos(theta / 2) ** 2  # relative accuracy near the cusp
         return Frame(radius * np.cos(theta), radius * np.sin(theta), -np.sin(1.5 * theta), np.cos(1.5 * theta))
 
@@ -44,29 +43,29 @@ class Cardioid(Family):
     def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         return np.ones(np.shape(theta)), np.asarray(-0.75 / np.cos(theta / 2))
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         half = theta * ops.number(0.5)
         return [ops.cos(half), ops.sin(half)]
 
-    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return ops.number(0.0), ops.number(2.0) * ops.atan2(position[1], position[0])
 
-    def aim(self, ops: Any, frame: Frame, phi: Any) -> list[Any]:
+    def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         return [ops.cos(phi), ops.sin(phi)]
 
-    def exit(self, ops: Any, frame: Frame, leaving: list[Any]) -> Any:
+    def exit(self, ops: Backend[N, M], frame: Frame[N], leaving: Fields[N]) -> N:
         return ops.atan2(leaving[1], leaving[0])
 
-    def heading(self, ops: Any, frame: Frame, phi: Any, leaving: list[Any]) -> tuple[Any, Any]:
+    def heading(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
         return frame.direction(ops, phi)
 
-    def arclength(self, ops: Any, component: int, theta: Any) -> Any:
-        return ops.constant(4) * ops.sin(theta * ops.constant(1, 2))
+    def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
+        return ops.q(4, 1) * ops.sin(theta * ops.q(1, 2))
 
     def parameter(self, component: int, s: Array) -> Array | None:
         return np.asarray(2 * np.arcsin(np.clip(s / 4, -1, 1)))
 
-    def cubic(self, ops: Any, sigma: Pair, exit: Pair) -> tuple[list[Any], Any, Any, Pair]:
+    def cubic(self, ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> tuple[list[N], N, N, Pair[N]]:
         """The flight equation in `S`, mirrored so that `k >= 0`; then `sin(theta0/2)` so mirrored, `k`, and `-v`."""
         p, q = sigma
         k = plane.exact_cross(ops, (q, p), (exit[1], exit[0]))
@@ -76,12 +75,12 @@ class Cardioid(Family):
         twice = two * p2 + one
         first = back[1] * p * twice - two * q * back[0] * (p2 + one)
         last = back[1] * q * twice + two * back[0] * p * p2
-        size, Q = abs(k), ops.times_sign(q, k)
+        size, Q = modulus(k), ops.times_sign(q, k)
         return [p2 * last, ops.times_sign(p * first, k), size * Q, size], Q, k, back
 
     def interval(
-        self, ops: Any, cubic: list[Any], Q: Any, c: Any, ahead: Pair
-    ) -> tuple[Any, Callable[[], Any], Callable[[Any], Any]]:
+        self, ops: Backend[N, M], cubic: Fields[N], Q: N, c: N, ahead: Pair[N]
+    ) -> tuple[N, Callable[[], N], Callable[[N], M]]:
         """A start for the zero below `Q`, a bound below it, and a test of being above that bound.
 
         The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless the particle would have to cross the negative
@@ -93,13 +92,13 @@ class Cardioid(Family):
         far = ops.sqrt(ops.maximum((c - D) / cubic[3], ops.number(0.0)))
         free = Q * ahead[0] <= ahead[1]
 
-        def low() -> Any:
-            bound = Q - ops.number(8.0) - ops.number(2.0) * ops.sqrt((c + abs(D)) / cubic[3])
+        def low() -> N:
+            bound = Q - ops.number(8.0) - ops.number(2.0) * ops.sqrt((c + modulus(D)) / cubic[3])
             return ops.select(free, bound, ahead[1] / ahead[0])
 
         return Q - ops.maximum(far, c), low, lambda S: free | (ahead[1] <= S * ahead[0])
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         sigma, leaving = (position[0], position[1]), (exit[0], exit[1])
         coefficients, Q, k, back = self.cubic(ops, sigma, leaving)
         ahead = ops.number(1.0) - back[0], -sigma[0] * ops.times_sign(back[1], k)
@@ -114,27 +113,29 @@ class Cardioid(Family):
         code = ops.select(aside & (ops.number(NEAR) < landing[0]), code, ops.number(float(Status.CUSP.code)))
         return Landing(list(landing), w[1], -w[0], code, {"back": back})
 
-    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+    def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         if law == ELASTIC:
             return list(plane.unit(ops, (landing.along, landing.across)))
         return list(ops.turn(lam * ops.angle(landing.across, landing.along), 1))
 
-    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(1.0), ops.number(0.0)]
 
-    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         return exit[0]
 
-    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return list(self.point(ops, position))
 
-    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
-        return plane.dot((start[0] - end[0], start[1] - end[1]), landing.more["back"])
+    def length(
+        self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
+    ) -> N:
+        return plane.dot((start[0] - end[0], start[1] - end[1]), landing.vectors["back"])
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         return ops.number(-0.75), landing.position[0]
 
-    def point(self, ops: Any, position: list[Any]) -> Pair:
+    def point(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         """The boundary point `2*cos(theta/2)**2*exp(i*theta)`."""
         radius = ops.number(2.0) * position[0] * position[0]
         x, y = plane.squared((position[0], position[1]))

@@ -1,7 +1,6 @@
 """The unit circle: angles are the state, and a bounce is `theta + pi - 2*phi`, `lam*phi`."""
 
-from typing import Any
-
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing
 
 
@@ -18,46 +17,48 @@ class Circle(Family):
     def matches(cls, boundary: Boundary) -> bool:
         return boundary.ir.same_as == "circle"
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         return [theta]
 
-    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return ops.number(0.0), position[0]
 
-    def aim(self, ops: Any, frame: Frame, phi: Any) -> list[Any]:
+    def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         return [phi]
 
-    def exit(self, ops: Any, frame: Frame, leaving: list[Any]) -> Any:
+    def exit(self, ops: Backend[N, M], frame: Frame[N], leaving: Fields[N]) -> N:
         return leaving[0]
 
-    def heading(self, ops: Any, frame: Frame, phi: Any, leaving: list[Any]) -> tuple[Any, Any]:
+    def heading(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
         return frame.direction(ops, phi)
 
-    def distance(self, ops: Any, fields: list[Any], others: list[Any]) -> Any:
+    def distance(self, ops: Backend[N, M], fields: Fields[N], others: Fields[N]) -> N:
         half = (fields[0] - others[0]) * ops.number(0.5)  # angles are compared modulo a whole turn
-        return abs(ops.number(2.0) * ops.atan2(ops.sin(half), ops.cos(half)))
+        return modulus(ops.number(2.0) * ops.atan2(ops.sin(half), ops.cos(half)))
 
-    def arclength(self, ops: Any, component: int, theta: Any) -> Any:
+    def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
         return theta
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         (theta,), (phi,) = position, exit
         turned = theta - (phi + phi) if law != SLAP else theta
-        half_turn = ops.with_sign(ops.pi(), turned)
-        low = ops.with_sign(ops.pi_low(), turned)
+        half_turn = ops.with_sign(ops.pi, turned)
+        low = ops.with_sign(ops.pi_low, turned)
         return Landing([(turned - half_turn) - low], phi, ops.number(1.0))
 
-    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+    def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         return [lam * landing.across]
 
-    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(0.0)]
 
-    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         return ops.number(1.0)
 
-    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+    def length(
+        self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
+    ) -> N:
         return ops.number(2.0)  # times cos(phi), which `departure` and `along` leave out as well
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         return ops.number(-1.0), ops.number(1.0)

@@ -11,13 +11,11 @@ formed from the state with twice the digits, and distances from the wall from ex
 `(2*p**2 - 1/2)**2` from it, at the height `4*p**3*q`, where `p, q` is `sigma`, whose length is one up to rounding only.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
-from numeric.backends.functions import Pair
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.cardioid import Cardioid
 from numeric.flights.family import NEAR, SLAP, Array, Boundary, Frame, Landing, Status, grazing
 
@@ -41,7 +39,7 @@ class Cuspless(Cardioid):
     def matches(cls, boundary: Boundary) -> bool:
         return boundary.ir.same_as == "cuspless"
 
-    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         wall, arc = component == 1, super().frame(component, theta)
         x, y = np.where(wall, -QUARTER, arc.x), np.where(wall, -theta, arc.y)
         return Frame(x, y, np.where(wall, 0.0, arc.tx), np.where(wall, -1.0, arc.ty))
@@ -53,23 +51,23 @@ class Cuspless(Cardioid):
         rate, curvature = super().bending(component, theta)
         return rate, np.where(component == 1, 0.0, curvature)
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         wall = ops.number(0.5) < component
         p, q = super().enter(ops, component, theta)
         return [component, ops.select(wall, -theta, p), ops.select(wall, ops.number(0.0), q)]
 
-    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         component, p, q = position
         _, theta = super().place(ops, [p, q])
         return component, ops.select(ops.number(0.5) < component, -p, theta)
 
-    def arclength(self, ops: Any, component: int, theta: Any) -> Any:
+    def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
         return theta if component == 1 else super().arclength(ops, component, theta)
 
     def parameter(self, component: int, s: Array) -> Array | None:
         return super().parameter(component, s) if component == 0 else None
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         nought, one, two = (ops.number(x) for x in (0.0, 1.0, 2.0))
         root3 = ops.sqrt(ops.number(3.0))  # tan(theta/2) at the join
         from_wall = ops.number(0.5) < position[0]
@@ -83,7 +81,7 @@ class Cuspless(Cardioid):
         # from the wall, at height y after a mirroring that lets it fly upwards: a quartic in tan(theta1/2), or, where
         # the flight is near-grazing at the wall, or at the arc next to the join, in sqrt(3) - tan(theta1/2), so that
         # nothing cancels
-        y, up, four = -ops.times_sign(p, s), abs(s), ops.number(4.0)
+        y, up, four = -ops.times_sign(p, s), modulus(s), ops.number(4.0)
         L, below = ops.fma(c, y, ops.number(QUARTER) * up), ops.number(QUARTER) * root3 - y
         near_grazing = (c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
         plain = [-two * up - L, four * c, two * (up - L), nought, -L]
@@ -112,7 +110,7 @@ class Cuspless(Cardioid):
         flat = (to_wall | (q * landing[1] < nought)) & (cosine < small)
         rough = [back[0], height, *landing, sine, cosine]
 
-        def sharp() -> list[Any]:
+        def sharp() -> list[N]:
             real, high, moved = sharpened(ops, (p, q), (c, s), back[1], landing, -w[0])
             turned = plane.times(plane.times(moved, plane.squared(moved)), (real, -back[1]))
             angle = ops.select(to_wall, back[1], turned[1]), ops.select(to_wall, real, -turned[0])
@@ -120,7 +118,9 @@ class Cuspless(Cardioid):
 
         real, height, *found, sine, cosine = ops.when(flat, rough, sharp)
         back, landing = (real, back[1]), (found[0], found[1])
-        join = ops.select(to_wall, abs(abs(height) - ops.number(QUARTER) * root3), abs(abs(tangent) - root3 * base))
+        join = ops.select(
+            to_wall, modulus(modulus(height) - ops.number(QUARTER) * root3), modulus(modulus(tangent) - root3 * base)
+        )
         code = ops.select(ops.number(NEAR) * base < join, nought, ops.number(float(Status.JOIN.code)))
         if law != SLAP:
             code = ops.select(grazing(ops, sine, cosine), ops.number(float(Status.GRAZING.code)), code)
@@ -128,20 +128,20 @@ class Cuspless(Cardioid):
         landed = [wall, ops.select(to_wall, height, landing[0]), ops.select(to_wall, nought, landing[1])]
         return Landing(landed, sine, cosine, code, {"back": back})
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         wall = ops.number(0.5) < landing.position[0]
         return ops.select(wall, ops.number(0.0), ops.number(-0.75)), ops.select(
             wall, ops.number(1.0), landing.position[1]
         )
 
-    def point(self, ops: Any, position: list[Any]) -> Pair:
+    def point(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         """The boundary point on the arc or on the wall."""
         wall = ops.number(0.5) < position[0]
         x, y = super().point(ops, position[1:])
         return ops.select(wall, ops.number(-QUARTER), x), ops.select(wall, position[1], y)
 
 
-def sharp_back(ops: Any, sigma: Pair, exit: Pair) -> Any:
+def sharp_back(ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> N:
     """The real part of `sigma**3*conj(exit)` to the last bits however small it is."""
     (p, q), (c, s) = sigma, exit
     a, a_error = plane.cross_and_error(ops, sigma, (q, p))
@@ -153,7 +153,7 @@ def sharp_back(ops: Any, sigma: Pair, exit: Pair) -> Any:
     return real + (error + (a * w_error + w * a_error) - (b * k_error + k * b_error))
 
 
-def above_the_wall(ops: Any, sigma: Pair) -> Pair:
+def above_the_wall(ops: Backend[N, M], sigma: Pair[N]) -> Pair[N]:
     """The root of an arc point's distance from the wall, and its height, of `sigma` made a unit number."""
     p, q = sigma
     (pp, low), (qq, lower) = plane.product_and_error(ops, p, p), plane.product_and_error(ops, q, q)
@@ -165,7 +165,9 @@ def above_the_wall(ops: Any, sigma: Pair) -> Pair:
     return gap, height - two * excess * height
 
 
-def sharpened(ops: Any, sigma: Pair, exit: Pair, by: Any, landing: Pair, along: Any) -> tuple[Any, Any, Pair]:
+def sharpened(
+    ops: Backend[N, M], sigma: Pair[N], exit: Pair[N], by: N, landing: Pair[N], along: N
+) -> tuple[N, N, Pair[N]]:
     """Back's real part, the height on the wall, and the landing on the arc after one step of Newton's method.
 
     `by` is the other part of back; `along` the cosine of the incidence on the arc.

@@ -20,14 +20,17 @@ departure's, the paper's derivative matrix then needs no division when the vecto
 The determinant is `lam*N0/N1` of the next departure and this landing.
 """
 
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, Generic, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.backends.scalars import ArrayBackend
 from numeric.lowering.program import TableIR
 
@@ -59,20 +62,20 @@ Array = NDArray[np.float64]
 FINE = 4096  # points on which a boundary is examined
 
 
-class Frame(NamedTuple):
+class Frame(NamedTuple, Generic[N]):
     """Points of the boundary with the unit tangent there; the normal to its left points into the table."""
 
-    x: Any
-    y: Any
-    tx: Any
-    ty: Any
+    x: N
+    y: N
+    tx: N
+    ty: N
 
-    def direction(self, ops: Any, phi: Any) -> tuple[Any, Any]:
+    def direction(self, ops: Backend[N, M], phi: N) -> Pair[N]:
         """The unit direction of exit angle `phi`."""
         c, s = ops.cos(phi), ops.sin(phi)
         return s * self.tx - c * self.ty, s * self.ty + c * self.tx
 
-    def angle(self, ops: Any, vx: Any, vy: Any) -> Any:
+    def angle(self, ops: Backend[N, M], vx: N, vy: N) -> N:
         """The angle of a direction from the inward normal, positive towards the tangent."""
         return ops.atan2(vx * self.tx + vy * self.ty, vy * self.tx - vx * self.ty)
 
@@ -82,7 +85,9 @@ class Boundary:
 
     def __init__(self, ir: TableIR, shape: list[float]) -> None:
         self.ir, self.shape, self.ops = ir, shape, ArrayBackend()
-        self.ends = [tuple(float(x) for x in part.ends(self.ops, *shape)) for part in ir.parts]
+        self.numbers = [self.ops.number(x) for x in shape]
+        ends = [part.ends(self.ops, *self.numbers) for part in ir.parts]
+        self.ends = [(float(low), float(high)) for low, high in ends]
 
     @property
     def closed(self) -> bool:
@@ -100,16 +105,15 @@ class Boundary:
         """Rows `x, y`, first and second derivatives with respect to `theta`."""
         rows = np.empty((6, *theta.shape))
         for index, part in enumerate(self.ir.parts):
-            here: Any = component == index
+            here = component == index
             if not np.any(here):
                 continue
-            if np.all(here):
-                here = ...  # a view in place of copies
-            for i, values in enumerate(part.curve(self.ops, theta[here], *self.shape)):
-                rows[i, here] = values
+            place = ... if np.all(here) else here  # a view in place of copies
+            for i, values in enumerate(part.curve(self.ops, theta[place], *self.numbers)):
+                rows[i, place] = values
         return rows
 
-    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Point and unit tangent."""
         x, y, dx, dy, _, _ = self.curve(component, theta)
         speed = np.hypot(dx, dy)
@@ -139,22 +143,25 @@ def law_of(lam_low: float, lam_high: float) -> str:
     return ELASTIC if lam_low == lam_high == 1 else PINBALL
 
 
-class Landing:
+@dataclass
+class Landing(Generic[N]):
     """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
 
     `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an
-    outcome that stops the particle (0 none, else `Status`), or is None where a family has none.
+    outcome that stops the particle (0 none, else `Status`), or is None where a family has none. `vectors` and
+    `numbers` are what the family's own methods need again, by name.
     """
 
-    def __init__(
-        self, position: list[Any], across: Any, along: Any, code: Any = None, more: dict[str, Any] | None = None
-    ) -> None:
-        self.position, self.across, self.along, self.code = position, across, along, code
-        self.more = more if more is not None else {}
+    position: list[N]
+    across: N
+    along: N
+    code: N | None = None
+    vectors: dict[str, Pair[N]] = field(default_factory=dict)
+    numbers: dict[str, N] = field(default_factory=dict)
 
 
-class Family:
-    """Common ground. A subclass names its fields and defines the methods that raise here."""
+class Family(ABC):
+    """A subclass names its fields and defines the abstract methods; the others have an answer here."""
 
     name = ""  # a label for files and tables; nobody decides by it
     path = ""  # how flights are computed, in words
@@ -173,9 +180,9 @@ class Family:
             self.boundary = boundary
 
     @classmethod
+    @abstractmethod
     def matches(cls, boundary: Boundary) -> bool:
         """Does this family serve the table?"""
-        raise NotImplementedError
 
     @property
     def identity(self) -> str:
@@ -184,7 +191,7 @@ class Family:
 
     # ---- between people's coordinates and fields
 
-    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Points and unit tangents; a closed form without cancellation where there is one."""
         return self.boundary.frame(component, theta)
 
@@ -196,34 +203,34 @@ class Family:
         """`ds/dp` for the parameter `p` of this family's tangent vectors, `theta` or arc length; and the curvature."""
         return self.boundary.bending(component, theta)
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    @abstractmethod
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         """The position fields of a boundary point."""
-        raise NotImplementedError
 
-    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+    @abstractmethod
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         """Component, as a number, and parameter of position fields."""
-        raise NotImplementedError
 
-    def aim(self, ops: Any, frame: Frame, phi: Any) -> list[Any]:
+    def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         """The exit fields of the exit angle `phi`."""
         return [*frame.direction(ops, phi)]
 
-    def exit(self, ops: Any, frame: Frame, leaving: list[Any]) -> Any:
+    def exit(self, ops: Backend[N, M], frame: Frame[N], leaving: Fields[N]) -> N:
         """The exit angle of exit fields, in radians."""
         return frame.angle(ops, *leaving)
 
-    def heading(self, ops: Any, frame: Frame, phi: Any, leaving: list[Any]) -> tuple[Any, Any]:
+    def heading(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
         """The unit direction of the flight that begins: the one that is kept as a field, if one is."""
         return leaving[0], leaving[1]
 
-    def distance(self, ops: Any, fields: list[Any], others: list[Any]) -> Any:
+    def distance(self, ops: Backend[N, M], fields: Fields[N], others: Fields[N]) -> N:
         """How far two states of the same component are apart, in the numbers that are kept as fields."""
         total = sum(((x - y) * (x - y) for x, y in zip(fields[1:], others[1:], strict=True)), start=ops.number(0.0))
         return ops.sqrt(total + (fields[0] - others[0]) * (fields[0] - others[0]))
 
     # ---- arc length
 
-    def arclength(self, ops: Any, component: int, theta: Any) -> Any | None:
+    def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N | None:
         """Arc length from `theta = 0` in elementary functions, or None where there is no such form."""
         return None
 
@@ -237,53 +244,64 @@ class Family:
 
     # ---- a bounce
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    @abstractmethod
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         """The landing of the particle that leaves `position` along `exit`."""
-        raise NotImplementedError
 
-    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+    @abstractmethod
+    def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         """The exit fields after the reflection."""
-        raise NotImplementedError
 
-    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    @abstractmethod
+    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         """The exit fields of a particle that leaves along the normal."""
-        raise NotImplementedError
 
-    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+    @abstractmethod
+    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         """`N0 = speed*cos(phi0)`."""
-        raise NotImplementedError
 
-    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         """What `length` needs of either end of a flight, kept from one bounce to the next: often nothing."""
         return []
 
-    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
+    def length(
+        self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
+    ) -> N:
         """The length `t` of a flight, from `N0` and what was `kept` at its ends."""
-        return plane.dot((end[0] - start[0], end[1] - start[1]), landing.more["v"])
+        return plane.dot((end[0] - start[0], end[1] - start[1]), landing.vectors["v"])
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> tuple[Any, Any]:
+    @abstractmethod
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         """`K*speed` at the landing as a quotient, negative where the boundary focuses; `below` is positive."""
-        raise NotImplementedError
 
     def fields(self, law: str) -> tuple[str, ...]:
         """The names of a particle's state."""
         return self.position if law == SLAP else self.position + self.direction
 
-    def bounce(self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any]) -> tuple[list[Any], Any]:
+    def bounce(
+        self, ops: Backend[N, M], law: str, shape: Fields[N], lam: N, state: Fields[N]
+    ) -> tuple[list[N], N | None]:
         """One flight and one reflection: the new state, and the code of the outcome or None."""
         position, exit = self._split(ops, shape, law, state)
         landing = self.fly(ops, shape, law, position, exit)
         leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
         return landing.position + leaving, landing.code
 
-    def rate(self, ops: Any, shape: list[Any], law: str, state: list[Any]) -> Any:
+    def rate(self, ops: Backend[N, M], shape: Fields[N], law: str, state: Fields[N]) -> N:
         """`N0` of a particle that is about to leave."""
         return self.departure(ops, shape, *self._split(ops, shape, law, state, whole=True))
 
     def bounce_with_tangent(
-        self, ops: Any, law: str, shape: list[Any], lam: Any, state: list[Any], tangent: list[Any], kept: list[Any]
-    ) -> tuple[list[Any], Any, list[Any], list[Any]]:
-        """As `bounce`, with the rows of `Question` for a tangent vector, and what is kept for the next flight.
+        self,
+        ops: Backend[N, M],
+        law: str,
+        shape: Fields[N],
+        lam: N,
+        state: Fields[N],
+        tangent: Fields[N],
+        kept: Fields[N],
+    ) -> tuple[list[N], N | None, list[N], list[N]]:
+        """As `bounce`, with the rows `numeric.kernels.spec.TANGENT`, and what is kept for the next flight.
 
         The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`.
         """
@@ -303,33 +321,33 @@ class Family:
         rows = [moved * rise, turned, growth, up * rise, down, volume, n0]
         return landing.position + leaving, landing.code, rows, end
 
-    def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
+    def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
         """`departure` at a landing, whose frame is known already."""
         exit = leaving or self.slapped_with_unit(ops, shape, landing.position)
         return self.departure(ops, shape, landing.position, exit)
 
     def _split(
-        self, ops: Any, shape: list[Any], law: str, state: list[Any], whole: bool = False
-    ) -> tuple[list[Any], list[Any]]:
+        self, ops: Backend[N, M], shape: Fields[N], law: str, state: Fields[N], whole: bool = False
+    ) -> tuple[list[N], list[N]]:
         count = len(self.position)
-        position = state[:count]
+        position = list(state[:count])
         if law != SLAP:
-            return position, state[count:]
+            return position, list(state[count:])
         return position, self.slapped_with_unit(ops, shape, position) if whole else self.slapped(ops, shape, position)
 
-    def slapped_with_unit(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def slapped_with_unit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         """As `slapped`, of length one; a flight alone may get along with any length."""
         return self.slapped(ops, shape, position)
 
 
-def grazing(ops: Any, across: Any, along: Any) -> Any:
+def grazing(ops: Backend[N, M], across: N, along: N) -> M:
     """The mask of landings that are tangent, or no landings at all."""
-    return ops.negated(ops.number(GRAZE) * abs(across) < along)
+    return ops.negated(ops.number(GRAZE) * modulus(across) < along)
 
 
-def reflected(ops: Any, law: str, lam: Any, landing: Landing) -> list[Any]:
+def reflected(ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> list[N]:
     """The unit direction after a reflection, from the flight's direction `v` and the boundary's velocity `d`."""
-    v, d = landing.more["v"], landing.more["d"]
+    v, d = landing.vectors["v"], landing.vectors["d"]
     if law == ELASTIC:
         inverse = ops.number(1.0) / plane.dot(d, d)
         x, y = plane.times(plane.squared(d), plane.conjugate(v))

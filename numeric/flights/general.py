@@ -7,12 +7,12 @@ brackets both zeros. State: the component, the parameter `theta`, and the direct
 """
 
 import itertools
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
 from numeric.backends import functions as plane
-from numeric.backends.functions import Pair
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
 
 GRID = 4096  # points on which a component's turning is examined
@@ -47,13 +47,13 @@ class General(Family):
     def identity(self) -> str:
         return repr(self.pieces)
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         return [component, theta]
 
-    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return position[0], position[1]
 
-    def curve(self, ops: Any, shape: list[Any], component: Any, theta: Any) -> list[Any]:
+    def curve(self, ops: Backend[N, M], shape: Fields[N], component: N, theta: N) -> list[N]:
         """Point, velocity and acceleration, chosen lane by lane among the components."""
         values = self.parts[0].curve(ops, theta, *shape)
         for index, part in enumerate(self.parts[1:], start=1):
@@ -63,7 +63,7 @@ class General(Family):
             ]
         return values
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         component, theta = position
         v = exit[0], exit[1]
         x0, y0, *_ = self.curve(ops, shape, component, theta)
@@ -79,7 +79,7 @@ class General(Family):
         speed = ops.sqrt(dx * dx + dy * dy)
         for index, (low, high) in enumerate(self.ends):
             if not self.closed:
-                here = ops.number(0.25) < abs(where - ops.number(float(index)))
+                here = ops.number(0.25) < modulus(where - ops.number(float(index)))
                 gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
                 gap = ops.select(here, one, gap * speed)
                 code = ops.select(gap < ops.number(NEAR), ops.number(float(Status.JOIN.code)), code)
@@ -87,44 +87,47 @@ class General(Family):
             float((Status.LOST if self.closed else Status.JOIN).code)
         )  # what is lost between two components is at a join
         code = ops.select(t < far, code, nowhere)
-        return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy), "t": t})
+        return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy)}, {"t": t})
 
     def _hits(
         self,
-        ops: Any,
-        shape: list[Any],
+        ops: Backend[N, M],
+        shape: Fields[N],
         piece: tuple[int, float, float],
-        start: Pair,
-        z0: Pair,
-        v: Pair,
-        best: list[Any],
-    ) -> list[Any]:
+        start: Pair[N],
+        z0: Pair[N],
+        v: Pair[N],
+        best: list[N],
+    ) -> list[N]:
         """The nearest of `best` and the landings on one piece."""
         index, low, high = piece
         curve = self.parts[index].curve
         component, theta = start
         a, b, nought = ops.number(low), ops.number(high), ops.number(0.0)
 
-        def flight(at: Any) -> tuple[Any, Any]:
+        def flight(at: N) -> Pair[N]:
             x, y, dx, dy, _, _ = curve(ops, at, *shape)
             return plane.cross(v, (x - z0[0], y - z0[1])), plane.cross(v, (dx, dy))
 
-        def slope(at: Any) -> tuple[Any, Any]:
+        def slope(at: N) -> Pair[N]:
             _, _, dx, dy, ax, ay = curve(ops, at, *shape)
             return plane.cross(v, (dx, dy)), plane.cross(v, (ax, ay))
 
-        def each(x: Any) -> Any:
+        def signed(sign: N, function: Callable[[N], Pair[N]]) -> Callable[[N], Pair[N]]:
+            return lambda at: plane.scaled(sign, function(at))
+
+        def each(x: N) -> N:
             return x + theta * nought  # one for each particle
 
         at_low, at_high = each(slope(a)[0]), each(slope(b)[0])
         turns = at_low * at_high < nought
         sign = ops.times_sign(ops.number(1.0), at_high)
         middle = ops.zero(
-            lambda x: tuple(sign * f for f in slope(x)), each(ops.number(0.5) * (a + b)), a, b,
+            signed(sign, slope), each(ops.number(0.5) * (a + b)), a, b,
             ops.number(high - low), 2, turns,
         )  # fmt: skip
         middle = ops.select(turns, middle, b)
-        here = abs(component - ops.number(float(index))) < ops.number(0.25)
+        here = modulus(component - ops.number(float(index))) < ops.number(0.25)
         own = here & (a <= theta) & (theta <= b)
         for first, last in ((a, middle), (middle, b)):
             f0, f1 = flight(first)[0], flight(last)[0]
@@ -135,7 +138,7 @@ class General(Family):
             crosses = ops.negated((nought < f0 * f1) | (f0 == f1) | departs) & (first < last)
             up = ops.times_sign(ops.number(1.0), f1 - f0)
             at = ops.zero(
-                lambda x, up=up: tuple(up * f for f in flight(x)), each(ops.number(0.5) * (first + last)),
+                signed(up, flight), each(ops.number(0.5) * (first + last)),
                 each(first), each(last), ops.number(high - low), 3, crosses,
             )  # fmt: skip
             x, y, *_ = curve(ops, at, *shape)
@@ -146,21 +149,23 @@ class General(Family):
             ]
         return best
 
-    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+    def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         return reflected(ops, law, lam, landing)
 
-    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         _, _, dx, dy, _, _ = self.curve(ops, shape, *position)
         return list(plane.normalised(ops, (-dy, dx)))
 
-    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         _, _, dx, dy, _, _ = self.curve(ops, shape, *position)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
-    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
-        return landing.more["t"]
+    def length(
+        self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
+    ) -> N:
+        return landing.numbers["t"]
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         _, _, dx, dy, ax, ay = self.curve(ops, shape, *landing.position)
         return plane.cross((ax, ay), (dx, dy)), plane.dot((dx, dy), (dx, dy))
 

@@ -4,10 +4,8 @@ State: the unit numbers `u = exp(i*theta)` and `v`, the particle's direction. Th
 needs come from `symbolic.motion.flight` through the table IR.
 """
 
-from typing import Any
-
 from numeric.backends import functions as plane
-from numeric.backends.functions import Pair
+from numeric.backends.protocol import Backend, Fields, M, N, Pair
 from numeric.flights.family import SLAP, Boundary, Family, Landing, Status, grazing, reflected
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
@@ -26,13 +24,13 @@ class Harmonic(Family):
         self.velocity = boundary.ir.program("velocity")
         self.acceleration = boundary.ir.program("acceleration")
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         return [ops.cos(theta), ops.sin(theta)]
 
-    def place(self, ops: Any, position: list[Any]) -> tuple[Any, Any]:
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return ops.number(0.0), ops.atan2(position[1], position[0])
 
-    def landed(self, ops: Any, shape: list[Any], law: str, u: Pair, v: Pair) -> Landing:
+    def landed(self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N]) -> Landing[N]:
         """The landing at `u` of a particle that flies along `v`."""
         dx, dy = self.velocity(ops, *u, *shape)
         across = plane.exact_dot(ops, (dx, dy), v)
@@ -42,30 +40,30 @@ class Harmonic(Family):
             code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), ops.number(0.0))
         return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
 
-    def leave(self, ops: Any, shape: list[Any], law: str, lam: Any, landing: Landing) -> list[Any]:
+    def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         return reflected(ops, law, lam, landing)
 
-    def slapped_with_unit(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def slapped_with_unit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.velocity(ops, *position, *shape)
         return list(plane.normalised(ops, (-dy, dx)))
 
     slapped = slapped_with_unit
 
-    def departure(self, ops: Any, shape: list[Any], position: list[Any], exit: list[Any]) -> Any:
+    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         dx, dy = self.velocity(ops, *position, *shape)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
-    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return self.point(ops, *position, *shape)
 
-    def leaving_rate(self, ops: Any, shape: list[Any], landing: Landing, leaving: list[Any]) -> Any:
-        d = landing.more["d"]
+    def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
+        d = landing.vectors["d"]
         if not leaving:
             return ops.sqrt(plane.dot(d, d))
         return plane.cross(d, (leaving[0], leaving[1]))
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
-        d = landing.more["d"]
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+        d = landing.vectors["d"]
         ax, ay = self.acceleration(ops, *landing.position, *shape)
         return plane.cross((ax, ay), d), plane.dot(d, d)
 
@@ -90,33 +88,35 @@ class Ellipse(Harmonic):
             return None
         return float((1 + left) * (1 - left))  # the axis is -left: the velocity at the top
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         v = exit[0], exit[1]
         M = self.support(ops, v[1], -v[0], *shape)
         inverse = ops.number(1.0) / plane.dot((M[0], M[1]), (M[0], M[1]))
         x, y = plane.times(plane.squared((M[0], M[1])), (position[0], -position[1]))
         landing = self.landed(ops, shape, law, plane.unit(ops, (x * inverse, y * inverse)), v)
-        landing.more["inverse"] = inverse
+        landing.numbers["inverse"] = inverse
         return landing
 
-    def kept(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return []
 
-    def length(self, ops: Any, shape: list[Any], n0: Any, start: list[Any], end: list[Any], landing: Landing) -> Any:
-        return ops.number(-2.0) * self.turning(ops, shape) * (n0 * landing.more["inverse"])
+    def length(
+        self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
+    ) -> N:
+        return ops.number(-2.0) * self.turning(ops, shape) * (n0 * landing.numbers["inverse"])
 
-    def bend(self, ops: Any, shape: list[Any], landing: Landing) -> Pair:
-        d = landing.more["d"]
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+        d = landing.vectors["d"]
         return self.turning(ops, shape), plane.dot(d, d)
 
-    def turning(self, ops: Any, shape: list[Any]) -> Any:
+    def turning(self, ops: Backend[N, M], shape: Fields[N]) -> N:
         """Acceleration times velocity, minus the determinant of the map from the circle: the same everywhere."""
         start = ops.number(1.0), ops.number(0.0)
         ax, ay = self.acceleration(ops, *start, *shape)
         dx, dy = self.velocity(ops, *start, *shape)
         return plane.cross((ax, ay), (dx, dy))
 
-    def slapped(self, ops: Any, shape: list[Any], position: list[Any]) -> list[Any]:
+    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.velocity(ops, *position, *shape)
         return [-dy, dx]
 
@@ -136,7 +136,7 @@ class Fourier(Harmonic):
     def matches(cls, boundary: Boundary) -> bool:
         return boundary.ir.has("chord") and boundary.convex
 
-    def fly(self, ops: Any, shape: list[Any], law: str, position: list[Any], exit: list[Any]) -> Landing:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         v = exit[0], exit[1]
         E = v[1], -v[0]
         # the rounding of B moves the zero most where the boundary is flat, and is its own to the last bit here

@@ -6,7 +6,7 @@ Every lane computes what it would compute alone, so results depend neither on th
 import itertools
 import os
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +56,7 @@ class Engine(NamedTuple):
         names = fields(self.family, spec)
         count = own[0].size
         width = -(-count // self.width) * self.width
-        start: list[Any] = [*own, *([0.0, 0.0] if self.family.stops else []), *tangent]
+        start: list[Array | float] = [*own, *([0.0, 0.0] if self.family.stops else []), *tangent]
         state = np.empty((len(names), width))
         for row, values in zip(state, start, strict=True):
             row[:count] = values

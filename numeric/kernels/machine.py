@@ -18,6 +18,8 @@ from numeric.flights.family import Family
 from numeric.kernels.spec import KernelSpec
 from numeric.lowering import cache
 
+SOURCES = ("numeric/backends", "numeric/flights", "numeric/kernels", "numeric/lowering")  # what a kernel depends on
+Untyped = Any  # of llvmlite, ctypes and mmap
 MAGIC = b"flat"
 LAID_OUT, SYMBOLS, RELOCATIONS = 1, 2, 4  # kinds of sections: SHT_PROGBITS, SHT_SYMTAB, SHT_RELA
 ALLOCATED, EXECUTABLE = 2, 4
@@ -128,7 +130,7 @@ def _entry(code: bytes, sections: list[Section], entry: bytes, at: dict[int, int
     return None
 
 
-def entered(image: bytes) -> tuple[int, Any] | None:
+def entered(image: bytes) -> tuple[int, Untyped] | None:
     """The address of the function in memory of its own, executable and no longer writable, and that memory's owner.
 
     None where the system refuses such memory, and for bytes that are no image: every place lies within the code.
@@ -163,12 +165,12 @@ def entered(image: bytes) -> tuple[int, Any] | None:
 
 
 Run = Callable[..., None]
-_loaded: dict[tuple[str, ...], Any] = {}
-_kept: list[Any] = []  # engines own the code that ctypes calls; they must outlive it
+_loaded: dict[tuple[str, ...], Untyped] = {}
+_kept: list[Untyped] = []  # engines own the code that ctypes calls; they must outlive it
 
 
 @memoised
-def _llvm() -> Any:
+def _llvm() -> Untyped:
     """The library, or None when it is missing or cannot serve this machine."""
     try:
         import llvmlite.binding as llvm
@@ -198,7 +200,7 @@ def _processor() -> tuple[str, ...] | None:
     return None if llvm is None else (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
 
 
-def _target() -> Any:
+def _target() -> Untyped:
     llvm = _llvm()
     name, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     return llvm.Target.from_default_triple().create_target_machine(cpu=name, features=features, opt=3)
@@ -219,7 +221,7 @@ def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSp
         version, processor = _version(), _processor()
         if version is None or processor is None:
             return None
-        stamp = (*key, cache.sources("numeric"), version, *processor)
+        stamp = (*key, cache.sources(*SOURCES), version, *processor)
         code = cache.read("kernel", *stamp)
         found = _entered(code) if code is not None else None
         if found is None:
@@ -251,7 +253,7 @@ def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSp
     return _loaded[key]  # type: ignore[no-any-return]
 
 
-def _entered(code: bytes) -> tuple[int, Any] | None:
+def _entered(code: bytes) -> tuple[int, Untyped] | None:
     """The address of the kernel in memory and what owns it: an image needs no LLVM, an object file does."""
     if code[: len(MAGIC)] == MAGIC:
         return entered(code)
@@ -264,7 +266,7 @@ def _entered(code: bytes) -> tuple[int, Any] | None:
     return engine.get_function_address("run"), engine
 
 
-def optimised(text: str) -> Any:
+def optimised(text: str) -> Untyped:
     """The module after LLVM's passes."""
     llvm = _llvm()
     module = llvm.parse_assembly(text)

@@ -1,8 +1,9 @@
 """What a kernel is asked, and the rows of state that the question needs."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numeric.flights.family import Family
+from numeric.backends.protocol import Backend, M, N, modulus
+from numeric.flights.family import Array, Family
 
 TANGENT = ("shift", "omega", "growth", "up", "down", "volume", "n0")
 FAR = 2.0**100  # a double holds 2**1000
@@ -27,25 +28,25 @@ def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:
     return (*family.fields(spec.law), *(("code", "lost") if family.stops else ()), *extra)
 
 
-def starting(q: Any, omega: Any, n0: Any) -> list[Any]:
+def starting(q: Array, omega: Array, n0: Array) -> list[Array]:
     """The rows of a tangent vector at the start: `q` across the first flight, `omega`, and `N0` of its departure."""
     nought = 0.0 * q
     return [q, omega, nought, nought + 1.0, nought + 1.0, nought, n0]
 
 
-def rescaled(ops: Any, rows: list[Any]) -> list[Any]:
+def rescaled(ops: Backend[N, M], rows: list[N]) -> list[N]:
     """The rows of a tangent vector, with mantissas far from one brought back; done every `renormalise_every` bounces.
 
     The vector is `(q, omega)*2**growth/down` and the product of the ratios of cosines `2**volume*up/down`; so no
     logarithm and no division is needed on the way.
     """
     q, omega, growth, up, down, volume, n0 = rows
-    size, one, nought = ops.maximum(abs(q), abs(omega)), ops.number(1.0), ops.number(0.0)
+    size, one, nought = ops.maximum(modulus(q), modulus(omega)), ops.number(1.0), ops.number(0.0)
     away = (size < ops.number(1 / FAR)) | (ops.number(FAR) < size)
     for product in (up, down):
         away = away | (product < ops.number(1 / FAR)) | (ops.number(FAR) < product)
 
-    def nearer() -> list[Any]:
+    def nearer() -> list[N]:
         (small, gained), (smaller, rise), (smallest, fall) = (
             [ops.select(away, x, otherwise) for x, otherwise in zip(ops.power_of_two(y), (one, nought), strict=True)]
             for y in (size, up, down)

@@ -58,7 +58,7 @@ def _foreign(found: os.stat_result) -> str | None:
 
 @memoised
 def sources(*packages: str) -> str:
-    """A digest of the program text of some of this project's packages."""
+    """A digest of the program text of some of this project's packages, each as a path such as `numeric/flights`."""
     digest = hashlib.sha256()
     root = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
     for package in packages:

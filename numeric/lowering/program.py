@@ -1,6 +1,6 @@
 """Straight-line programs: the form in which a formula leaves the symbolic storey.
 
-A program is a list of lines in a closed vocabulary, without names, branches or floats. Any reader
+A program is a list of lines in a closed vocabulary, without names, branches or floats. Any backend
 (LLVM lanes, NumPy arrays, multiprecision numbers) runs it, and it is plain data: it can be
 hashed, and written to a file from which it is read back without importing SymPy.
 
@@ -13,14 +13,18 @@ is imported. Those of the paper's tables are kept on disk, so that a warm run ne
 import json
 import operator
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numeric.lowering import cache
+from symbolic.expressions.numbers import NumberSystem, R
+
+if TYPE_CHECKING:
+    from symbolic.tables.table import Table
 
 UNARY = {"neg", "sqrt", "sin", "cos"}
 BINARY = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
 VOCABULARY = {"q", "pi"} | UNARY | set(BINARY)
-Line = tuple[Any, ...]  # a word of the vocabulary and the numbers of its operands
+Line = tuple[str, *tuple[int, ...]]  # a word of the vocabulary and the numbers of its operands
 
 
 class Program(NamedTuple):
@@ -30,17 +34,17 @@ class Program(NamedTuple):
     lines: tuple[Line, ...]
     outputs: tuple[int, ...]
 
-    def __call__(self, ops: Any, *values: Any) -> list[Any]:
-        """The outputs, in the arithmetic of `ops`; every rational enters as `ops.constant(p, q)`."""
+    def __call__(self, ops: NumberSystem[R], *values: R) -> list[R]:
+        """The outputs, in the arithmetic of `ops`; every rational enters as `ops.q(p, n)`."""
         known = list(values)
         for word, *operands in self.lines:
             if word in BINARY:
                 i, j = operands
                 known.append(BINARY[word](known[i], known[j]))
             elif word == "q":
-                known.append(ops.constant(*operands))
+                known.append(ops.q(*operands))
             elif word == "pi":
-                known.append(ops.pi())
+                known.append(ops.pi)
             else:
                 x = known[operands[0]]
                 known.append(-x if word == "neg" else getattr(ops, word)(x))
@@ -52,7 +56,7 @@ class Program(NamedTuple):
         word, *numbers = self.lines[at] if at >= 0 else ("",)
         return Fraction(*numbers) if word == "q" else None
 
-    def as_data(self) -> list[Any]:
+    def as_data(self) -> list[list[object]]:
         """Nested lists for JSON."""
         return [list(self.inputs), [list(line) for line in self.lines], list(self.outputs)]
 
@@ -88,15 +92,15 @@ class Builder:
             self.lines.append(line)
         return self.numbers[line]
 
-    def node(self, *line: Any) -> "Node":
+    def node(self, word: str, *operands: int) -> "Node":
         """The value of a line whose operands are given by number."""
-        return Node(self, None, self.number(line))
+        return Node(self, None, self.number((word, *operands)))
 
-    def exact(self, value: Any) -> "Node":
+    def exact(self, value: "Exact") -> "Node":
         """A rational constant."""
         return value if isinstance(value, Node) else Node(self, Fraction(value), None)
 
-    def program(self, *outputs: Any) -> Program:
+    def program(self, *outputs: "Exact") -> Program:
         """The program of all lines so far that the outputs need."""
         wanted = [self.exact(output).number() for output in outputs]
         first, used = len(self.inputs), set(wanted)
@@ -125,9 +129,9 @@ class Node:
             self._number = self.builder.number(("q", self.value.numerator, self.value.denominator))
         return self._number
 
-    def _with(self, word: str, other: Any, swapped: bool = False) -> "Node":
-        other = self.builder.exact(other)
-        x, y = (other, self) if swapped else (self, other)
+    def _with(self, word: str, other: "Exact", swapped: bool = False) -> "Node":
+        node = self.builder.exact(other)
+        x, y = (node, self) if swapped else (self, node)
         if x.value is not None and y.value is not None:
             return Node(self.builder, Fraction(BINARY[word](x.value, y.value)), None)
         if word == "*" and 0 in (x.value, y.value):
@@ -144,28 +148,28 @@ class Node:
             x, y = y, x
         return self.builder.node(word, x.number(), y.number())
 
-    def __add__(self, other: Any) -> "Node":
+    def __add__(self, other: "Exact") -> "Node":
         return self._with("+", other)
 
-    def __radd__(self, other: Any) -> "Node":
+    def __radd__(self, other: "Exact") -> "Node":
         return self._with("+", other, swapped=True)
 
-    def __sub__(self, other: Any) -> "Node":
+    def __sub__(self, other: "Exact") -> "Node":
         return self._with("-", other)
 
-    def __rsub__(self, other: Any) -> "Node":
+    def __rsub__(self, other: "Exact") -> "Node":
         return self._with("-", other, swapped=True)
 
-    def __mul__(self, other: Any) -> "Node":
+    def __mul__(self, other: "Exact") -> "Node":
         return self._with("*", other)
 
-    def __rmul__(self, other: Any) -> "Node":
+    def __rmul__(self, other: "Exact") -> "Node":
         return self._with("*", other, swapped=True)
 
-    def __truediv__(self, other: Any) -> "Node":
+    def __truediv__(self, other: "Exact") -> "Node":
         return self._with("/", other)
 
-    def __rtruediv__(self, other: Any) -> "Node":
+    def __rtruediv__(self, other: "Exact") -> "Node":
         return self._with("/", other, swapped=True)
 
     def __neg__(self) -> "Node":
@@ -174,7 +178,14 @@ class Node:
         )
 
 
+Exact = Node | Fraction | int  # what a formula may be made of
 PAPER = ("circle", "ellipse", "cardioid", "cuspless", "egg")
+SOURCES = (
+    "symbolic/expressions",
+    "symbolic/motion",
+    "symbolic/tables",
+    "numeric/lowering",
+)  # what a table IR depends on
 
 
 class ShapeRange(NamedTuple):
@@ -256,7 +267,7 @@ class TableIR(NamedTuple):
         )
 
 
-def table_ir(table: Any, K: int = 3) -> TableIR:
+def table_ir(table: "Table | str", K: int = 3) -> TableIR:
     """The table IR of an exact table, or of one of the paper's tables by name.
 
     >>> table_ir("circle").same_as
@@ -269,7 +280,7 @@ def table_ir(table: Any, K: int = 3) -> TableIR:
     if table not in PAPER:
         raise ValueError(f"no table is called {table!r}; the paper's are {', '.join(PAPER)}")
     name = f"{table}{K}" if table == "egg" else table
-    kept = cache.read("table_ir", name, cache.sources("symbolic", "numeric"))
+    kept = cache.read("table_ir", name, cache.sources(*SOURCES))
     if kept is not None:
         try:
             return TableIR.from_text(kept.decode())
@@ -278,5 +289,5 @@ def table_ir(table: Any, K: int = 3) -> TableIR:
     from numeric.lowering.lower import named
 
     found = named(table, K)
-    cache.write("table_ir", name, cache.sources("symbolic", "numeric"), found.as_text().encode())
+    cache.write("table_ir", name, cache.sources(*SOURCES), found.as_text().encode())
     return found

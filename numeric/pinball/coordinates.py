@@ -12,7 +12,7 @@ a Fourier or Chebyshev series of the speed, extended until its tail is below rou
 by term. The inverse is Newton's method on these, whose derivative is the speed itself.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -34,7 +34,7 @@ class States:
 
     # ---- the boundary
 
-    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame:
+    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Point and tangent, in closed form where the table has one without cancellation."""
         return self.family.frame(component, theta)
 
@@ -69,7 +69,7 @@ class States:
     # ---- fields of the kernels
 
     def enter(
-        self, component: NDArray[np.int64], theta: Array, phi: Array, law: str, frame: Frame | None = None
+        self, component: NDArray[np.int64], theta: Array, phi: Array, law: str, frame: Frame[Array] | None = None
     ) -> list[Array]:
         """The kernel's fields of a particle that leaves `theta` at the exit angle `phi`; its frame, if it is known."""
         fields = self.family.enter(self.ops, component.astype(float), theta)
@@ -80,41 +80,54 @@ class States:
     def departure(self, own: list[Array], law: str) -> Array:
         """`N0 = speed*cos(phi)` of particles that are about to leave, from their fields."""
         with np.errstate(all="ignore"):
-            return np.asarray(self.family.rate(self.ops, self.shape, law, own) + np.zeros(own[0].size))
+            return np.asarray(self.family.rate(self.ops, self.boundary.numbers, law, own) + np.zeros(own[0].size))
 
-    def place(self, rows: Any) -> tuple[NDArray[np.int64], Array]:
+    def place(self, rows: Sequence[Array]) -> tuple[NDArray[np.int64], Array]:
         """Component and parameter of kernel fields."""
         component, theta = self.family.place(self.ops, list(rows[: len(self.family.position)]))
         return np.broadcast_to(np.rint(component).astype(np.int64), theta.shape), theta
 
     def exit(
-        self, component: NDArray[np.int64], theta: Array, rows: Any, law: str, frame: Frame | None = None
+        self,
+        component: NDArray[np.int64],
+        theta: Array,
+        rows: Sequence[Array],
+        law: str,
+        frame: Frame[Array] | None = None,
     ) -> Array:
         """The exit angle of kernel fields, in radians; the frame of their place, if it is known."""
         if law == SLAP:
             return np.zeros_like(theta)
         return np.asarray(self.family.exit(self.ops, frame or self.frame(component, theta), self.kept(rows)))
 
-    def leaving(self, frame: Frame, phi: Array, rows: Any, law: str) -> tuple[Array, Array]:
+    def leaving(self, frame: Frame[Array], phi: Array, rows: Sequence[Array], law: str) -> tuple[Array, Array]:
         """The unit direction of the flight that begins: the one that the kernel keeps, if it keeps one."""
         if law == SLAP:
             return frame.direction(self.ops, phi)
         return self.family.heading(self.ops, frame, phi, self.kept(rows))
 
-    def kept(self, rows: Any) -> list[Array]:
+    def kept(self, rows: Sequence[Array]) -> list[Array]:
         """The rows of the exit, which follow those of the place."""
         begin = len(self.family.position)
         return list(rows[begin : begin + len(self.family.direction)])
 
     def told(
-        self, record: Array, start: tuple[Any, ...], begun: Frame, own: list[Array], lam: Array, law: str
-    ) -> list[Any]:
+        self,
+        record: Array,
+        start: tuple[NDArray[np.int64], Array, Array],
+        begun: Frame[Array],
+        own: list[Array],
+        lam: Array,
+        law: str,
+    ) -> list[NDArray[Any]]:
         """Component, parameter, exit angle, incidence angle and point, at the start and after each recorded bounce.
 
         A tile at a time, so that what is worked on stays in the processor's cache.
         """
         where, theta, phi = start
-        told: list[Any] = [np.empty((len(record) + 1, lam.size), dtype=kind) for kind in (np.int64, *[float] * 5)]
+        told: list[NDArray[Any]] = [
+            np.empty((len(record) + 1, lam.size), dtype=kind) for kind in (np.int64, *[float] * 5)
+        ]
         for rows, first in zip(told, (where, theta, phi, np.nan, begun.x, begun.y), strict=True):
             rows[0] = first
         across = min(lam.size, TILE)
@@ -166,9 +179,9 @@ def located(states: States, x: Array, y: Array) -> tuple[NDArray[np.int64], Arra
     return component, theta
 
 
-def _gap(states: States, index: int, theta: Array, x: Array, y: Array) -> Any:
+def _gap(states: States, index: int, theta: Array, x: Array, y: Array) -> Array:
     px, py = states.point(np.full(theta.shape, index), theta)
-    return np.hypot(x - px, y - py)
+    return np.asarray(np.hypot(x - px, y - py))
 
 
 def _polished(states: States, index: int, theta: Array, x: Array, y: Array, low: float, high: float) -> Array:
@@ -259,7 +272,7 @@ class ArcLength:
         self.lengths = [self._length(index) for index in range(len(states.ends))]
         index, program = states.boundary.ir.origin
         offsets = {}
-        zero, (first, last) = float(program(states.ops, *states.shape)[0]), states.ends[index]
+        zero, (first, last) = float(program(states.ops, *states.boundary.numbers)[0]), states.ends[index]
         reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 where nothing else is said
         for turn in range(len(states.ends)):
             at = (index + turn) % len(states.ends)

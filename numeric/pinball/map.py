@@ -16,11 +16,23 @@ from numeric.lowering.cache import key_of
 from numeric.lowering.program import TableIR, table_ir
 from numeric.pinball.coordinates import States
 from numeric.pinball.sampling import Growth
-from numeric.pinball.states import Exponents, Orbit, Slap, angles, components, contraction, counted, real, shape_value
+from numeric.pinball.states import (
+    Contraction,
+    Exponents,
+    Orbit,
+    Slap,
+    angles,
+    components,
+    contraction,
+    counted,
+    real,
+    shape_value,
+)
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
     from numeric.pinball.coordinates import ArcLength
+    from symbolic.tables.table import Table
 
 Array = NDArray[np.float64]
 
@@ -38,7 +50,14 @@ class PinballMap:
     (-2.0, 0.0)
     """
 
-    def __init__(self, table: Any, lam: Any = None, K: int = 3, kernels: bool = True, **shape: Any) -> None:
+    def __init__(
+        self,
+        table: "Scene | Table | str",
+        lam: Contraction | None = None,
+        K: int = 3,
+        kernels: bool = True,
+        **shape: Any,
+    ) -> None:
         if isinstance(table, Scene):
             table, lam, K, shape = _unpacked(table, lam, shape)
         self.ir: TableIR = table_ir(table, K)
@@ -52,7 +71,7 @@ class PinballMap:
         self.engine = Engine(self.family, key_of(self.ir.as_text(), self.family.identity), names, kernels)
 
     @cached_property
-    def table(self) -> Any:
+    def table(self) -> "Table":
         """The exact table, with the numbers of its shape."""
         from numeric.lowering.lower import exact_table
 
@@ -172,7 +191,7 @@ class PinballMap:
 
         return located(self.states, real("x", x), real("y", y))
 
-    def at(self, lam: Any) -> "PinballMap":
+    def at(self, lam: Contraction) -> "PinballMap":
         """The same table with another contraction."""
         other = copy(self)
         other.lam = contraction(lam)
@@ -200,7 +219,7 @@ class PinballMap:
             values.append(value)
         return values
 
-    def _start(self, theta: Any, phi: Any, component: Any) -> tuple[NDArray[np.int64], Array, Array]:
+    def _start(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike) -> tuple[NDArray[np.int64], Array, Array]:
         theta, phi = angles("theta", theta), angles("phi", phi)
         where = components(component, [part.name for part in self.ir.parts])
         theta, phi, where = np.broadcast_arrays(theta, phi, where)
@@ -240,7 +259,9 @@ class PinballMap:
         return codes
 
 
-def _unpacked(scene: Scene, lam: Any, shape: dict[str, Any]) -> tuple[Any, Any, int, dict[str, Any]]:
+def _unpacked(
+    scene: Scene, lam: Contraction | None, shape: dict[str, Any]
+) -> "tuple[Table | str, Contraction, int, dict[str, Any]]":
     """A scene as table, contraction, points of the egg and shape; SymPy is needed for a formula or a root only."""
     if shape:
         raise ValueError(f"{scene.name}: {', '.join(shape)} given beside a scene; change its shape by scene.at")

@@ -24,7 +24,7 @@ from numeric.pinball.states import counted
 if TYPE_CHECKING:
     from numeric.pinball.map import PinballMap
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
@@ -194,7 +194,7 @@ class Growth:
         ds, dphi = (1.0, 0.0) if self.law == SLAP else GENERIC
         self.n0 = self.map.states.departure(self.own, self.law)
         omega = curvature * ds + dphi
-        self.tangent: list[Any] = starting(self.n0 * (ds / self.speed), omega, self.n0)
+        self.tangent = starting(self.n0 * (ds / self.speed), omega, self.n0)
         self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
 
     def skip(self, bounces: int, threads: int | None = None) -> None:
@@ -222,7 +222,7 @@ class Growth:
         made = bounces - (rows["lost"].astype(np.int64) if "lost" in rows else 0)
         self.bounces = self.bounces + np.where(going, made, 0)
 
-    def _run(self, spec: KernelSpec, bounces: int, tangent: Any, threads: int | None) -> dict[str, Array]:
+    def _run(self, spec: KernelSpec, bounces: int, tangent: Sequence[Array], threads: int | None) -> dict[str, Array]:
         map = self.map
         rows = map.engine.run(spec, self.own, self.lam, map.shape, bounces, tangent, threads).rows
         self.own = [rows[name] for name in map.family.fields(self.law)]

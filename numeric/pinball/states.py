@@ -5,17 +5,21 @@ What `PinballMap` answers with: arrays under the paper's names, with units when 
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from numeric.flights.family import Status
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Array = NDArray[np.float64]
+Contraction = ArrayLike | str | Fraction
 
 
-def real(name: str, given: Any) -> Array:
+def real(name: str, given: ArrayLike) -> Array:
     """An array of finite doubles."""
     try:
         array = np.asarray(given)
@@ -35,12 +39,12 @@ def real(name: str, given: Any) -> Array:
     return array
 
 
-def angles(name: str, given: Any) -> Array:
+def angles(name: str, given: ArrayLike) -> Array:
     """An array of angles in radians."""
     return real(name, given)
 
 
-def components(given: Any, names: Sequence[str]) -> NDArray[np.int64]:
+def components(given: ArrayLike, names: Sequence[str]) -> NDArray[np.int64]:
     """Component indices, from indices or from one name."""
     if isinstance(given, str):
         if given not in names:
@@ -55,7 +59,7 @@ def components(given: Any, names: Sequence[str]) -> NDArray[np.int64]:
     return array.astype(np.int64)
 
 
-def contraction(given: Any) -> Array:
+def contraction(given: Contraction) -> Array:
     """The contraction `lam`, one number or one for each particle.
 
     >>> float(contraction("1/4"))
@@ -96,7 +100,7 @@ def shape_value(label: str, given: Any) -> Fraction | float:
     return value
 
 
-def counted(name: str, given: Any, least: int = 1) -> int:
+def counted(name: str, given: object, least: int = 1) -> int:
     """A whole number of bounces."""
     if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < least:
         raise ValueError(f"{name} = {given!r} is not possible; give a whole number of at least {least}")
@@ -136,7 +140,7 @@ class Orbit(NamedTuple):
         """The outcome at each bounce: a `Status`, or an array of them."""
         return STATUSES[self.code]
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> "xr.Dataset":
         """The fields with their units, as an xarray Dataset over `bounce` and `particle`.
 
         >>> from numeric import PinballMap
@@ -163,7 +167,7 @@ class Exponents(NamedTuple):
         """The outcome of each particle: a `Status`, or an array of them."""
         return STATUSES[self.code]
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> "xr.Dataset":
         """The fields with their units, as an xarray Dataset over `particle`."""
         return labelled(self, ("particle",))
 
@@ -176,12 +180,12 @@ class Slap(NamedTuple):
     slope: Array
     code: NDArray[np.int64]
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> "xr.Dataset":
         """Iterates over `iterate` and `start`; `slope` over `start` alone."""
         return labelled(self, ("iterate", "start"))
 
 
-def labelled(fields: Any, axes: tuple[str, ...]) -> Any:
+def labelled(fields: Orbit | Exponents | Slap, axes: tuple[str, ...]) -> "xr.Dataset":
     """Named arrays as an xarray Dataset, particles in a row; an array with fewer axes than the others has the last."""
     try:
         import xarray

@@ -62,10 +62,10 @@ def basins(
     starts: int = 1000,
     transient: int = 1000,
     seed: int = 1,
-    table: Any = None,
+    images: bool = False,
     known: tuple[Attractor, ...] | None = None,
 ) -> Sweep:
-    """The sweep over the cells of a window, or of all phase space; with `table`, its symmetries give attractors too.
+    """The sweep over the cells of a window, or of all phase space; `images` adds those under the symmetries.
 
     Attractors that are `known` already are not looked for.
 
@@ -76,7 +76,7 @@ def basins(
     [0, 1]
     """
     map = map_of(scene, lam)
-    attractors = find(map, starts, seed, table, transient) if known is None else known
+    attractors = find(map, starts, seed, transient, images=images) if known is None else known
     where = window or whole(map)
     cells = Cells(scene, lam, attractors, transient)
     return Sweep(

@@ -25,7 +25,7 @@ from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
 from numeric.pinball.sampling import Growth, Starts, interior_starts
@@ -93,7 +93,7 @@ class Sweep:
     scene: str
     settings: Mapping[str, Any]
     collisions: int
-    map: Callable[[], Any]
+    map: Callable[[], PinballMap]
 
     def __post_init__(self) -> None:
         cut = [axis.name for axis in self.axes if axis.length < axis.size]
@@ -176,7 +176,7 @@ def versions() -> dict[str, str]:
     return found
 
 
-def missing_value(dtype: str) -> Any:
+def missing_value(dtype: str) -> float:
     """What stands where nothing was measured: nan, or -1 for whole numbers."""
     return np.nan if np.dtype(dtype).kind == "f" else -1
 
@@ -214,7 +214,7 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def speed(map: Any) -> float:
+def speed(map: PinballMap) -> float:
     """Nanoseconds for a bounce with exponents, on one core: the fastest of a few runs."""
     low, high = map.states.ends[0]
     theta = low + (high - low) * (np.arange(PARTICLES) + 0.5) / PARTICLES
@@ -238,7 +238,7 @@ def text_of(scene: Scene) -> str:
     return scene.at(lam=1).text
 
 
-def map_of(text: str, lam: Any) -> PinballMap:
+def map_of(text: str, lam: ArrayLike) -> PinballMap:
     """The map of a scene written by `text_of`, with a contraction, or one for each particle.
 
     >>> map_of(text_of(Scene("ellipse", a=2)), 0.5).law

@@ -77,7 +77,7 @@ class Bounced:
     """One bounce of many particles, and what the definition of the map says of it, table by table in plain words."""
 
     def __init__(self, map, where, theta, phi):
-        name, law = map.family.name if map.family.name != "fourier" else "egg", map.law
+        name, law = map.ir.table, map.law
         here = boundary(name, where, theta, map.shape)
         lams = np.full(theta.size, float(map.lam))
         own = map.states.enter(where, theta, phi, law)

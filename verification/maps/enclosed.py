@@ -37,16 +37,17 @@ class Refusal(Enum):
     UNPROVED = "no proof that the flight meets nothing before it lands"
 
 
-class Balls(ScalarBackend):
+class Balls(ScalarBackend[Any]):
     """What a program needs of ball arithmetic: constants, roots, sine and cosine."""
 
     def __init__(self) -> None:
-        super().__init__(None)
+        """No context: everything that a program needs is below."""
 
-    def constant(self, p: int, q: int = 1) -> arb:
-        """`p/q`, enclosed."""
-        return arb(fmpq(p, q))
+    def q(self, p: int, n: int) -> arb:
+        """`p/n`, enclosed."""
+        return arb(fmpq(p, n))
 
+    @property
     def pi(self) -> arb:
         """Pi, enclosed."""
         return arb.pi()
@@ -291,9 +292,10 @@ def _enclosed_length(enclosed: EnclosedMap, component: int, theta: arb, digits: 
 
 
 class _Complex(Balls):
-    def constant(self, p: int, q: int = 1) -> Any:
-        return acb(fmpq(p, q))
+    def q(self, p: int, n: int) -> Any:
+        return acb(fmpq(p, n))
 
+    @property
     def pi(self) -> Any:
         return acb.pi()
 

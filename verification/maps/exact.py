@@ -104,7 +104,7 @@ class ExactMap:
                 return component, sharp, code
         state = [mp.mpf(ball.component), mp.mpf(ball.theta)], [mp.mpf(x) for x in ball.v]
         landing = self.general.fly(self.ops, self.shape, "pinball", *state)
-        return int(landing.position[0]), landing.position[1], int(landing.code)
+        return int(landing.position[0]), landing.position[1], int(landing.code or 0)
 
     def _meets_the_cusp(self, ball: Ball) -> bool:
         """Does the flight pass the origin, which every point of the cardioid sees, closer than any landing tells?"""
@@ -136,7 +136,7 @@ class ExactMap:
             orbit.append(following)
         return orbit
 
-    def frame(self, component: int, theta: Any) -> Frame:
+    def frame(self, component: int, theta: Any) -> Frame[Any]:
         """Point and unit tangent."""
         tx, ty, x, y = self._frame(component, theta)
         return Frame(x, y, tx, ty)

@@ -173,15 +173,14 @@ class Row:
         return sum(member.copies for member in self.members)
 
 
-def row(map: PinballMap, table: Table, starts: int, seed: int) -> Row:
+def row(map: PinballMap, starts: int, seed: int) -> Row:
     """The row at the map's contraction.
 
-    >>> from symbolic.tables import egg
-    >>> found = row(PinballMap("egg", alpha="0.08", lam=0.2), egg(3).at(alpha="0.08"), 100, 1)
+    >>> found = row(PinballMap("egg", alpha="0.08", lam=0.2), 100, 1)
     >>> [(m.kind.name, m.period, m.symmetry, m.copies) for m in found.members], found.attractors
     ([('CYCLE', 4, 'D1', 3)], 3)
     """
-    found = find(map, starts, seed, table)
+    found = find(map, starts, seed, images=True)
     members = []
     for family in sorted({a.family for a in found}):
         images = [a for a in found if a.family == family]
@@ -197,7 +196,7 @@ def branches(map: PinballMap, table: Table, rows: Sequence[Row], longest: int = 
 
     >>> from symbolic.tables import cuspless
     >>> map = PinballMap("cuspless", lam=0.05)
-    >>> [(b.period, b.low.event.name, b.high.value) for b in branches(map, cuspless, [row(map, cuspless, 50, 1)])]
+    >>> [(b.period, b.low.event.name, b.high.value) for b in branches(map, cuspless, [row(map, 50, 1)])]
     [(2, 'EDGE', '0.09340033543136')]
     """
     symmetries = group(table)

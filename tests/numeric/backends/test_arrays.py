@@ -13,8 +13,8 @@ PI_TAIL = 1.2246467991473532e-16  # pi less its double
 
 
 def test_numbers_are_doubles():
-    assert (OPS.constant(1, 3), OPS.constant(7), OPS.number(0.1)) == (1 / 3, 7.0, 0.1)
-    assert (OPS.pi(), OPS.pi_low()) == (math.pi, PI_TAIL)
+    assert (OPS.q(1, 3), OPS.q(7, 1), OPS.number(0.1)) == (1 / 3, 7.0, 0.1)
+    assert (OPS.pi, OPS.pi_low) == (math.pi, PI_TAIL)
 
 
 def test_signs():

@@ -12,12 +12,12 @@ OPS = ScalarBackend(MP)
 
 
 def test_words_are_the_contexts_own():
-    third = OPS.constant(1, 3)
+    third = OPS.q(1, 3)
 
     assert abs(3 * third - 1) <= MP.eps
-    assert OPS.constant(7) == 7
+    assert OPS.q(7, 1) == 7
     assert OPS.number(0.1) == MP.mpf(0.1)
-    assert (OPS.pi(), OPS.pi_low()) == (+MP.pi, 0)
+    assert (OPS.pi, OPS.pi_low) == (+MP.pi, 0)
     assert (OPS.sqrt(third), OPS.sin(third), OPS.cos(third)) == (MP.sqrt(third), MP.sin(third), MP.cos(third))
     assert OPS.turn(third) == (MP.cos(third), MP.sin(third))
     assert OPS.angle(third, MP.mpf(2)) == MP.atan2(third, 2)

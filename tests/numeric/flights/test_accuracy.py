@@ -127,13 +127,12 @@ def test_the_step_itself_is_the_exact_map(table):
 
 
 def in_digits(map, mp, ball):
-    """A particle as the fields of its family's state."""
-    if map.family.name == "circle":
-        return [ball.theta, ball.phi]
-    place = [mp.cos(ball.theta), mp.sin(ball.theta)]
-    if map.family.name not in ("cardioid", "cuspless"):
-        return [*place, *ball.v]
-    place = [mp.cos(ball.theta / 2), mp.sin(ball.theta / 2)]
-    if map.family.name == "cuspless":
-        place = [mp.mpf(1), -ball.theta, mp.mpf(0)] if ball.component else [mp.mpf(0), *place]
-    return [*place, mp.cos(ball.phi), mp.sin(ball.phi)]
+    """A particle as the fields of its table's state, written down once more by hand."""
+    position, direction = map.family.position, map.family.direction
+    half = {"p": mp.cos(ball.theta / 2), "q": mp.sin(ball.theta / 2), "wall": mp.mpf(0)}
+    if ball.component:
+        half = {"wall": mp.mpf(1), "p": -ball.theta, "q": mp.mpf(0)}
+    known = half | {"theta": ball.theta, "phi": ball.phi, "vx": ball.v[0], "vy": ball.v[1]}
+    known |= {"ux": mp.cos(ball.theta), "uy": mp.sin(ball.theta)}
+    known |= {"cos_phi": mp.cos(ball.phi), "sin_phi": mp.sin(ball.phi)}
+    return [known[name] for name in (*position, *direction)]

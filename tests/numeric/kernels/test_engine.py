@@ -21,6 +21,16 @@ class Drift(Family):
     position, direction = ("x",), ("v",)
     renormalise_every = 3
 
+    @classmethod
+    def matches(cls, boundary):
+        return False
+
+    def enter(self, ops, component, theta):
+        return [theta]
+
+    def place(self, ops, position):
+        return ops.number(0.0), position[0]
+
     def fly(self, ops, shape, law, position, exit):
         x = position[0] + shape[0] * exit[0]
         code = ops.select(ops.number(END) < x, ops.number(1.0), ops.number(0.0))

@@ -1,15 +1,17 @@
 """The cache folder is never needed: read-only, full, truncated or shared, the results are the same."""
 
+import ast
 import os
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import pytest
 
 from numeric import PinballMap, Status
 from numeric.kernels import machine
-from numeric.lowering import cache
+from numeric.lowering import cache, program
 
 PROGRAM = """
 import sys
@@ -163,6 +165,28 @@ def test_sources_depend_on_every_file_of_the_packages_and_on_nothing_else(tmp_pa
     assert digest("numeric") != first
     file.rename(file.with_name("two.py"))
     assert digest("numeric") not in (first, both)
+
+
+@pytest.mark.parametrize(
+    ("module", "folders"),
+    [("numeric.kernels.text", machine.SOURCES), ("numeric.lowering.lower", program.SOURCES)],
+    ids=["kernel", "table IR"],
+)
+def test_digests_hold_every_file_that_an_entry_depends_on(module, folders):
+    """The modules that the maker of an entry imports, and those that they import, lazy imports counted."""
+    root, waiting, seen = Path(cache.__file__).parents[2], [module], set()
+    while waiting:
+        name = waiting.pop()
+        path = root.joinpath(*name.split(".")).with_suffix(".py")
+        if name in seen or not path.is_file():
+            continue
+        seen.add(name)
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module.split(".")[0] in ("numeric", "symbolic"):
+                waiting += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+
+    assert len(seen) > 5
+    assert {name for name in seen if not name.replace(".", "/").startswith(folders)} == set()
 
 
 def test_a_failed_write_leaves_nothing_and_names_the_folder_and_the_reason(tmp_path, monkeypatch):

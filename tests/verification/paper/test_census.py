@@ -9,7 +9,7 @@ from numeric import PinballMap
 from numeric.dynamics.attractors import Kind
 from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Finding, Outcome
-from symbolic.tables import cuspless, egg
+from symbolic.tables import egg
 from symbolic.tables.table import alpha
 from verification.named.attractors import branches, coexisting, row
 from verification.named.branches import Event
@@ -26,7 +26,7 @@ CLAIMS = {claim.id: claim for claim in catalogue()}
 def grown():
     """The branches that one contraction leads to, and those that they lead to."""
     map = PinballMap("egg", alpha="0.08", lam=0)
-    return list(branches(map, EGG, [row(map.at(0.39), EGG, 200, 1)], longest=16))
+    return list(branches(map, EGG, [row(map.at(0.39), 200, 1)], longest=16))
 
 
 def test_the_cycles_of_period_3_are_born_at_the_fold_in_closed_form(grown):
@@ -65,13 +65,13 @@ def test_symmetry_is_lost_before_the_period_doubles(grown):
 
 def test_the_branches_that_attract_are_those_that_starts_reach(grown):
     map = PinballMap("egg", alpha="0.08", lam=0.35)
-    seen = {(m.period, m.symmetry, m.copies) for m in row(map, EGG, 200, 3).members}
+    seen = {(m.period, m.symmetry, m.copies) for m in row(map, 200, 3).members}
 
     assert {(b.period, b.symmetry, b.copies) for b in coexisting(grown, 0.35)} == seen == {(4, "C1", 6)}
 
 
 def test_a_row_accounts_for_every_start():
-    found = row(PinballMap("cuspless", lam=0.09), cuspless, 150, 1)
+    found = row(PinballMap("cuspless", lam=0.09), 150, 1)
 
     assert sum(m.share.count for m in found.members) + found.unsettled == 150
     assert found.attractors == 2

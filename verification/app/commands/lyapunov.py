@@ -47,8 +47,8 @@ def attractor_command(
     from numeric import PinballMap
     from numeric.dynamics.attractors import find
 
-    map, table = PinballMap(scene), scene.table
-    found = find(map, orbits, seed, table, transient, bounces)
+    map = PinballMap(scene)
+    found = find(map, orbits, seed, transient, bounces, images=True)
     document: dict[str, Any] = {
         "orbits": orbits,
         "seed": seed,
@@ -204,7 +204,7 @@ def command(
 
         transient = min(bounces, LONG) if transient is None else transient
         survey = surveyed(map, starts, bounces, transient, until_error, budget, say)
-    survey = with_families(scene, map, survey)
+    survey = with_families(map, survey)
     document = {**account(map, survey), "bounces": bounces, "seed": seed, "start_law": start_law}
     if until_error is not None:
         document |= {"until_error": until_error, "reached": survey.ended == "error"}
@@ -223,7 +223,7 @@ def command(
     )
 
 
-def with_families(scene: Scene, map: "PinballMap", survey: "Survey") -> "Survey":
+def with_families(map: "PinballMap", survey: "Survey") -> "Survey":
     """The survey with attractors that are symmetry images of each other numbered alike."""
     from dataclasses import replace
 
@@ -231,9 +231,8 @@ def with_families(scene: Scene, map: "PinballMap", survey: "Survey") -> "Survey"
     if len(found) < 2:
         return survey
     from numeric.dynamics.attractors import with_images
-    from symbolic.tables.geometry import group
 
-    joined = iter(with_images(map, found, group(scene.table)))
+    joined = iter(with_images(map, found))
     groups = [one if one.attractor is None else one._replace(attractor=next(joined)) for one in survey.groups]
     return replace(survey, groups=tuple(groups))
 

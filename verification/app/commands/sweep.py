@@ -72,7 +72,7 @@ def basins_command(
         ends = Window((left, right), (low, high))
     lam = float(scene.lam)
     known = () if how.dry_run else None  # what the sweep costs does not depend on them
-    sweep = basins(text_of(scene), lam, columns, rows, ends, starts, transient, seed, scene.table, known)
+    sweep = basins(text_of(scene), lam, columns, rows, ends, starts, transient, seed, True, known)
     return carried_out(sweep, how, basins_lines)
 
 

@@ -51,18 +51,20 @@ class Wide(ArrayBackend):
 
     splitter = 2.0**32 + 1  # halves a mantissa of 64 bits
 
-    def constant(self, p: int, q: int = 1) -> Any:
-        """The 80-bit number nearest to `p/q`."""
-        return np.longdouble(p) / np.longdouble(q)
+    def q(self, p: int, n: int) -> Any:
+        """The 80-bit number nearest to `p/n`."""
+        return np.longdouble(p) / np.longdouble(n)
 
     def number(self, x: float) -> Any:
         """An 80-bit number."""
         return np.longdouble(x)
 
+    @property
     def pi(self) -> Any:
         """The 80-bit number nearest to pi."""
         return PI
 
+    @property
     def pi_low(self) -> Any:
         """What that number lacks."""
         return PI_LOW

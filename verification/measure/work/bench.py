@@ -37,7 +37,7 @@ from verification.maps.exact import ExactMap, errors
 from verification.measure.extremes.labelled import DIGITS, SCENES
 
 Array = NDArray[np.float64]
-LAWS = {"slap": 0, "pinball": "19/20", "elastic": 1}
+LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
 BALLS, RUNS = 4096, 5
 WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
 CHECKED = 24  # balls whose errors are measured

@@ -36,8 +36,7 @@ THREE = ("0.421", "0.425", "0.43", "0.435", "0.44", "0.443")  # from 0.42 to the
 @cache
 def found(name: str, contraction: str, starts: int = STARTS, **shape: Any) -> tuple[Attractor, ...]:
     """The attractors that random starts reach, with the images under the table's symmetries."""
-    table = tables.named(name).at(**shape)
-    return find(PinballMap(name, lam=contraction, **shape), starts, SEED, table, bounces=1000)
+    return find(PinballMap(name, lam=contraction, **shape), starts, SEED, bounces=1000, images=True)
 
 
 def egg(contraction: str, starts: int = STARTS, alpha: str = SHAPE) -> tuple[Attractor, ...]:

@@ -136,10 +136,11 @@ def hull(low: Any, high: Any) -> BallArray:
 class ArrayOps:
     """What a program of `numeric.lowering` needs of ball arrays: constants, roots, sine and cosine."""
 
-    def constant(self, p: int, q: int = 1) -> BallArray:
-        """`p/q`, enclosed."""
-        return exactly(Fraction(p, q))
+    def q(self, p: int, n: int) -> BallArray:
+        """`p/n`, enclosed."""
+        return exactly(Fraction(p, n))
 
+    @property
     def pi(self) -> BallArray:
         """Pi, enclosed."""
         return BallArray(np.pi, 2.0**-51)

@@ -159,7 +159,7 @@ class PinballImages:
         if self.closed and not _smooth(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
-        self.top = float((self.lam * self.ops.pi() / 2).upper())
+        self.top = float((self.lam * self.ops.pi / 2).upper())
 
     @property
     def charts(self) -> tuple[Chart, ...]:

@@ -20,14 +20,14 @@ EGG = Scene("egg", alpha="0.08", lam="1/2")
 
 def henon() -> PlaneImages:
     """The map of Henon at his parameters, 1.4 and 0.3. `x' = 1 - a*x**2 + y, y' = b*x`."""
-    a, b = (ArrayOps().constant(p, 10) for p in (14, 3))
+    a, b = (ArrayOps().q(p, 10) for p in (14, 3))
     chart = Chart("plane", (-1.5, 1.5), (-0.6, 0.6))
     return PlaneImages("Henon", chart, lambda x, y: (1 - a * x * x + y, b * x), lambda x, y: ((-2 * a * x, 1), (b, 0)))
 
 
 def logistic(r: Fraction) -> PlaneImages:
     """The logistic map, and half of a coordinate that is contracted to zero."""
-    letter = ArrayOps().constant(r.numerator, r.denominator)
+    letter = ArrayOps().q(r.numerator, r.denominator)
     chart = Chart("plane", (-0.05, 1.05), (-1.0, 1.0))
     return PlaneImages(
         "logistic",
@@ -85,7 +85,7 @@ def test_the_logistic_maps_cycle_of_period_two_attracts_and_both_fixed_points_re
 
 
 def test_of_a_rotation_nothing_is_said_but_the_whole():
-    turn = ArrayOps().constant(3, 10)
+    turn = ArrayOps().q(3, 10)
     map = PlaneImages(
         "rotation",
         Chart("cylinder", (-np.pi, np.pi), (-1.0, 1.0), True, True),

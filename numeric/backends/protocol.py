@@ -1,0 +1,131 @@
+"""What a flight asks of a number system: the words of programs, and selection, rounding, zeros and loops besides.
+
+`LLVMBackend`, `ArrayBackend` and `ScalarBackend` implement `Backend[N, M]` for their numbers `N` and masks `M`.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol, TypeVar, Union
+
+from symbolic.expressions.numbers import Mask, NumberSystem, Real
+
+N = TypeVar("N", bound=Real)
+M = TypeVar("M", bound=Mask)
+Pair = tuple[N, N]
+Fields = Sequence[N]  # of a state, or the parameters of a shape
+Low = Union[N, Callable[[], N]]  # noqa: UP007  (a union that begins with a variable)  a lower bound, or how to find it where it is dear
+
+
+def modulus(x: N) -> N:
+    """`abs(x)`, whose type the builtin forgets."""
+    size: N = abs(x)  # type: ignore[assignment]
+    return size
+
+
+def bound(low: Low[N]) -> N:
+    """The bound itself."""
+    return low() if callable(low) else low
+
+
+class Backend(NumberSystem[N], Protocol[N, M]):
+    """A number system on which flights run; masks select, number by number."""
+
+    @property
+    def pi_low(self) -> N:
+        """What `pi` lacks."""
+        ...
+
+    def number(self, x: float, /) -> N:
+        """A double."""
+        ...
+
+    def atan2(self, y: N, x: N, /) -> N:
+        """The angle of the point `(x, y)`, anywhere in the plane; between bounces, not inside one."""
+        ...
+
+    def angle(self, y: N, x: N, /) -> N:
+        """`atan2(y, x)` for `x >= 0`."""
+        ...
+
+    def turn(self, x: N, quarters: int = 2, /) -> Pair[N]:
+        """`(cos x, sin x)` for `|x| <= quarters*pi/2`."""
+        ...
+
+    def fma(self, x: N, y: N, z: N, /) -> N:
+        """`x*y + z`, rounded once."""
+        ...
+
+    def product(self, x: N, y: N, /) -> N:
+        """`x*y`, rounded by itself."""
+        ...
+
+    def maximum(self, x: N, y: N, /) -> N:
+        """The larger one."""
+        ...
+
+    def rounded(self, x: N, /) -> N:
+        """The nearest integer."""
+        ...
+
+    def with_sign(self, x: N, y: N, /) -> N:
+        """`|x|` with the sign of `y`."""
+        ...
+
+    def times_sign(self, x: N, y: N, /) -> N:
+        """`x` with its sign flipped where `y` is negative."""
+        ...
+
+    def power_of_two(self, x: N, /) -> Pair[N]:
+        """`(2**-e, e)` with `2**e <= x < 2**(e + 1)`."""
+        ...
+
+    def select(self, mask: M, x: N, y: N, /) -> N:
+        """`x` where the mask holds, else `y`."""
+        ...
+
+    def negated(self, mask: M, /) -> M:
+        """The opposite of a mask."""
+        ...
+
+    def settle(self, *values: N) -> None:
+        """Compute these values here, and not where they are needed."""
+        ...
+
+    def zero(
+        self,
+        function: Callable[[N], Pair[N]],
+        x: N,
+        low: Low[N],
+        high: N,
+        scale: N,
+        newton: int,
+        wanted: M | None = None,
+        accepts: Callable[[N], M] | None = None,
+        /,
+    ) -> N:
+        """The only zero in `[low, high]`; see `numeric.backends.functions.bracketed_zero`."""
+        ...
+
+    def polynomial_zero(
+        self,
+        p: Sequence[N],
+        x: N,
+        low: Low[N],
+        high: N,
+        scale: N,
+        steps: tuple[int, int],
+        wanted: M | None = None,
+        accepts: Callable[[N], M] | None = None,
+        /,
+    ) -> N:
+        """`zero` of a polynomial given by its coefficients, constant first."""
+        ...
+
+    def repeat(
+        self, condition: Callable[[list[N]], M], body: Callable[[list[N]], list[N]], state: list[N], limit: int, /
+    ) -> list[N]:
+        """Apply `body` to the numbers for which `condition` holds, until it holds for none."""
+        ...
+
+    def when(self, mask: M, values: list[N], changed: Callable[[], list[N]], /) -> list[N]:
+        """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
+        ...

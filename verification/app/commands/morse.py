@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.proofs.global_dynamics.graph import MorseGraph
+    from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import Region
 
 SHOWN = 24  # Morse sets in the table for people
@@ -29,6 +30,7 @@ SHOWN = 24  # Morse sets in the table for people
 @click.option("--rows", type=click.IntRange(8, 1 << 13), default=256, show_default=True, help="Cells along phi.")
 @click.option("--coarsest", type=click.IntRange(1, 64), default=4, show_default=True, help="Cells a box begins with.")
 @click.option("--parts", type=click.IntRange(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
+@click.option("--exponents", type=click.IntRange(1, 16), metavar="PARTS", help="Bound nu_plus; cuts of a box for it.")
 @click.option("--certificates", metavar="DIR", help="Write each trapping region, for `pinball check`.")
 @click.option("--plot", metavar="FILE", help="Draw the Morse sets over phase space, as PNG, PDF or SVG.")
 @json_option
@@ -39,6 +41,7 @@ def command(
     rows: int,
     coarsest: int,
     parts: int,
+    exponents: int | None,
     certificates: str | None,
     plot: str | None,
     output: Output,
@@ -66,6 +69,7 @@ def command(
         step("ordered")
     leaves = int(graph.transitions.leaf.sum())
     regions = [region(map, graph, index, parts) for index in graph.attracting]
+    least = dict.fromkeys(graph.attracting) if exponents is None else growths(map, graph, exponents)
     document: dict[str, Any] = {
         "scene": map.scene.document,
         "lam": [str(low), str(high)],
@@ -74,6 +78,7 @@ def command(
         "sets": [entry(graph, index) for index in range(len(graph.sets))],
         "regions": [
             {"set": index, "name": found.name, "boxes": int(found.cells.chart.size), "basin": shares(graph, index)}
+            | {"nu_plus_least": least[index]}
             for index, found in zip(graph.attracting, regions, strict=True)
             if found is not None
         ],
@@ -116,6 +121,20 @@ def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
     return found | {"attracting": index in graph.attracting, "leads_to": below}
 
 
+def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, float | None]:
+    """A lower bound for `nu_plus` in each trapping region, rounded down; None where no cones were found."""
+    from math import floor, isfinite
+
+    from verification.proofs.global_dynamics.exponents import expansion
+
+    found: dict[int, float | None] = {}
+    for index in graph.attracting:
+        block = graph.trapping(index)
+        low = -float("inf") if block[-1] else expansion(map, graph.transitions, block, parts=parts).low
+        found[index] = floor(low * 1e6) / 1e6 if isfinite(low) else None
+    return found
+
+
 def show(console: "Console", label: str, document: dict[str, Any]) -> None:
     """The Morse graph, for people."""
     console.print(f"{label}: {document['boxes']} boxes, {document['edges']} edges, {document['seconds']:.1f} s")
@@ -133,6 +152,10 @@ def show(console: "Console", label: str, document: dict[str, Any]) -> None:
         low, high = found["basin"]
         console.print(f"proved: {found['name']}, about set {found['set']}")
         console.print(f"        its basin holds between {low:.2%} and {high:.2%} of phase space, by area")
+        if found["nu_plus_least"] is not None:
+            console.print(
+                f"        nu_plus >= {found['nu_plus_least']:.6f} for every orbit there that never lands on a join"
+            )
 
 
 def written(region: "Region", path: Path, console: "Console") -> None:

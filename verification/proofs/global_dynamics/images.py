@@ -130,6 +130,28 @@ def collected(rows: list[Row], asked: Indices) -> Images:
     return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), bad.astype(np.int64))
 
 
+class Piece(NamedTuple):
+    """Boxes, and for each a part of its arc of landings, on one component; `smooth` if it is all of the arc."""
+
+    on: Indices
+    chart: Indices
+    low: Array
+    high: Array
+    smooth: bool
+
+
+class Slopes(NamedTuple):
+    """The landing's derivatives by `theta` and by `phi`, and how fast the tangent turns where it starts and lands.
+
+    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`.
+    """
+
+    by_theta: BallArray
+    by_phi: BallArray
+    bend_here: BallArray
+    bend_there: BallArray
+
+
 class PinballImages:
     """The map of a scene whose table is proved convex, for every contraction from `lam[0]` to `lam[1]`.
 
@@ -192,8 +214,18 @@ class PinballImages:
     def images(self, boxes: Boxes) -> Images:
         with np.errstate(all="ignore"):  # what overflows or is no number counts as not known
             flights = _Flights(self, boxes)
-            rows = flights.rows(*flights.arcs())
+            rows = [flights.within(*piece) for piece in flights.pieces(*flights.arcs())]
         return collected(rows, np.arange(boxes.chart.size))
+
+    def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
+        """What the derivative over whole boxes is made of, for each piece of the arcs where they land.
+
+        An entry of infinite radius is not known; a box without an arc has such entries.
+        """
+        with np.errstate(all="ignore"):
+            flights = _Flights(self, boxes)
+            pieces = flights.pieces(*flights.arcs())
+            return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]
 
 
 End = tuple[Indices, Array]  # component and parameter of boundary points
@@ -292,14 +324,14 @@ class _Flights:
 
     # ---- the image within the arc
 
-    def rows(self, low: End, high: End) -> list[Row]:
-        """Rectangles that hold the images of the boxes, given the arcs of landings."""
+    def pieces(self, low: End, high: End) -> list[Piece]:
+        """The arcs of landings, cut where components meet."""
         if self.map.closed:
-            return [self._within(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
-        rows, count = [], len(self.map.ends)
+            return [Piece(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
+        count = len(self.map.ends)
         ends = [(float(a.lower()), float(b.upper())) for a, b in self.map.ends]
         whole = (low[0] == high[0]) & (low[1] < high[1]) & ~np.isnan(low[1])
-        rows.append(self._within(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True))
+        found = [Piece(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True)]
         joined = np.flatnonzero(~whole)
         steps = (high[0][joined] - low[0][joined]) % count
         steps = np.where(steps == 0, count, steps)  # around all of the boundary
@@ -309,11 +341,10 @@ class _Flights:
             chart = (low[0][on] + step) % count
             bottom, top = (np.array([end[i] for end in ends])[chart] for i in (0, 1))
             a = low[1][on] if step == 0 else bottom
-            b = np.where(last, high[1][on], top)
-            rows.append(self._within(on, chart, a, b, False))
-        return rows
+            found.append(Piece(on, chart, a, np.where(last, high[1][on], top), False))
+        return found
 
-    def _within(self, on: Indices, chart: Indices, low: Array, high: Array, smooth: bool) -> Row:
+    def within(self, on: Indices, chart: Indices, low: Array, high: Array, smooth: bool) -> Row:
         """One rectangle for each box of `on`, whose landings lie on one component between two parameters.
 
         Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
@@ -340,20 +371,23 @@ class _Flights:
 
     def _mean_value(self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray) -> tuple[BallArray, BallArray]:
         """Landing and angle of incidence by the mean-value theorem, about the landing of the midpoint."""
+        by_theta, by_phi, here, there = self.slopes(on, chart, arc)
+        reach = self.reach[0][on], self.reach[1][on]
+        middle = self._midpoint(on, chart, arc)
+        theta = middle + by_theta * reach[0] + by_phi * reach[1]
+        turn = _turn(self._tangent(on, self.theta), self.map.place(chart, middle)[2:4])
+        fine = self.phi[on] + turn + (there * by_theta - here) * reach[0] + (there * by_phi + 1) * reach[1]
+        return theta, _both(eta, _incidence(fine))
+
+    def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
+        """The derivatives over the boxes `on`, whose landings lie in an arc."""
         at = {name: value[on] for name, value in self.whole.items()}
         x, y, dx, dy, ddx, ddy = self.map.place(chart, arc)
         along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
         slope = at["v"] * dy - at["w"] * dx
         slope = BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
         by_theta = (at["bend"] * along - at["cos"] * at["speed"]) / slope
-        by_phi = -along / slope
-        bend = (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
-        reach = self.reach[0][on], self.reach[1][on]
-        middle = self._midpoint(on, chart, arc)
-        theta = middle + by_theta * reach[0] + by_phi * reach[1]
-        turn = _turn(self._tangent(on, self.theta), self.map.place(chart, middle)[2:4])
-        fine = self.phi[on] + turn + (bend * by_theta - at["bend"]) * reach[0] + (bend * by_phi + 1) * reach[1]
-        return theta, _both(eta, _incidence(fine))
+        return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy))
 
     def _midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
         """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""

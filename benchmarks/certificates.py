@@ -2,7 +2,7 @@
 
 Three columns for each value: Newton's method in mpmath, the same in balls, and the certificate that
 the first of them leads to. Whole searches beside what was asked of them, and beside the check of the
-certificate alone. Proofs over sets. Then the ladder at 50 digits, whose cost must grow like the
+certificate alone. Proofs over sets. Then the cascade at 50 digits, whose cost must grow like the
 period, and its end. `--full` goes to 10,000 digits, to period 2**15 and to `lam = 0.14`, a few minutes.
 """
 
@@ -22,7 +22,7 @@ from symbolic import tables
 from symbolic.cycles.polygons import saddle_node
 from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import balls, bits_of, exact_balls, working
-from verification.cycles.recurrence.cascade import ladder
+from verification.cycles.recurrence.cascade import cascade
 from verification.cycles.recurrence.critical import corner
 from verification.cycles.recurrence.newton import GUARD, System, floats, levels, refined
 from verification.cycles.recurrence.problem import Problem
@@ -78,7 +78,7 @@ def systems() -> dict[str, tuple[System, list[float]]]:
     egg = tables.egg(3).at(alpha=ALPHA)
     turn = -float(N(acos(-ALPHA))) / 3
     triangle = [turn + 2 * float(N(pi)) * k / 3 for k in range(3)]
-    first = next(ladder(ALPHA))
+    first = next(cascade(ALPHA))
     return {
         "lambda-star": (corner(), [0.2545, 0.0712]),
         "saddle-node": (
@@ -149,19 +149,19 @@ def sets_table(console: Console, full: bool) -> None:
     console.print(shown)
 
 
-def ladder_table(console: Console, highest: int) -> None:
-    """Period against seconds at 50 digits, and where the ladder ends."""
+def cascade_table(console: Console, highest: int) -> None:
+    """Period against seconds at 50 digits, and where the cascade ends."""
     shown = Shown("n", "period", "start in float64", "mpmath", "certificate", "lambda_n", title="seconds at 50 digits")
     values = []
-    rungs = islice(ladder(ALPHA), highest - 2)
+    members = islice(cascade(ALPHA), highest - 2)
     while True:
-        seconds, rung = timed(lambda: next(rungs, None))
-        if rung is None:
+        seconds, each = timed(lambda: next(members, None))
+        if each is None:
             break
-        shooting, solution = timed(lambda r=rung: refined(r.problem, r.start, 50))
-        proof, _ = timed(lambda r=rung, s=solution: certificate(r.problem, s.z, 50))
+        shooting, solution = timed(lambda r=each: refined(r.problem, r.start, 50))
+        proof, _ = timed(lambda r=each, s=solution: certificate(r.problem, s.z, 50))
         values.append(mpmath.nstr(solution.z[-1], 55))
-        row = [str(rung.n), str(rung.problem.period), *(f"{t:.2f}" for t in (seconds, shooting, proof))]
+        row = [str(each.n), str(each.problem.period), *(f"{t:.2f}" for t in (seconds, shooting, proof))]
         shown.add_row(*row, values[-1][:24])
     console.print(shown)
     for name, found in (("lambda_infinity", limit(values)), ("delta", ratio(values))):
@@ -177,7 +177,7 @@ def main() -> None:
     digits_table(console, 10_000 if full else 1000)
     bars_table(console, 10_000 if full else 1000)
     sets_table(console, full)
-    ladder_table(console, 15 if full else 10)
+    cascade_table(console, 15 if full else 10)
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ from verification.cycles.recurrence.cascade import next_critical
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import Array, BifurcationKind
-from verification.named.curves import Rung, cascade
+from verification.named.curves import BifurcationCurve, cascade
 from verification.named.locate import certify
 
 ALPHA = Rational(2, 25)
@@ -118,10 +118,10 @@ def triangles(console: Console) -> None:
     console.print(f"the naive walk is lost below lam = {walked[-1][0]:.4f}; continuation turns at the fold")
 
 
-def doublings() -> tuple[list[Rung], Array]:
+def doublings() -> tuple[list[BifurcationCurve], Array]:
     """The curves, and for each doubling of period 4 to 64 its contractions on 50 shapes."""
-    rungs = [rung for rung in cascade(3, 64) if rung.what is BifurcationKind.FLIP and rung.period >= 4]
-    return rungs, np.array([[rung.lam(float(alpha)) for alpha in SHAPES] for rung in rungs])
+    curves = [each for each in cascade(3, 64) if each.what is BifurcationKind.FLIP and each.period >= 4]
+    return curves, np.array([[each.lam(float(alpha)) for alpha in SHAPES] for each in curves])
 
 
 def afresh(alpha: Rational, cycles: list[Array]) -> list[float]:
@@ -137,23 +137,23 @@ def afresh(alpha: Rational, cycles: list[Array]) -> list[float]:
 
 def cascades(console: Console, every: int) -> None:
     """The second table."""
-    seconds, (rungs, table) = timed(doublings)
-    wrong: dict[str, list[list[float]]] = {"curve": [[] for _ in rungs], "walk": [[] for _ in rungs]}
+    seconds, (curves, table) = timed(doublings)
+    wrong: dict[str, list[list[float]]] = {"curve": [[] for _ in curves], "walk": [[] for _ in curves]}
     walking = []
     for alpha in SHAPES[::every]:
-        at = [rung.curve.crossing(float(alpha))[0] for rung in rungs]
+        at = [each.curve.crossing(float(alpha))[0] for each in curves]
         start = time.perf_counter()
         walked = afresh(alpha, at)
         walking.append(time.perf_counter() - start)
-        for i, (rung, z, other) in enumerate(zip(rungs, at, walked, strict=True)):
-            problem = Problem(egg(3).at(alpha=alpha), (0,) * rung.period, BifurcationKind.FLIP, "lam")
+        for i, (each, z, other) in enumerate(zip(curves, at, walked, strict=True)):
+            problem = Problem(egg(3).at(alpha=alpha), (0,) * each.period, BifurcationKind.FLIP, "lam")
             proof = certify(problem, [*(float(x) for x in z[:-2]), float(z[-1])], 25)
             assert proof.certified
             wrong["curve"][i].append(abs(float(proof.value.mid() - z[-1])))
             wrong["walk"][i].append(abs(float(proof.value.mid() - other)))
     shown = Shown("period", "curve", "naive walk", title=f"doublings, largest error on {len(walking)} shapes")
-    for i, rung in enumerate(rungs):
-        shown.add_row(str(rung.period), f"{max(wrong['curve'][i]):.1e}", f"{max(wrong['walk'][i]):.1e}")
+    for i, each in enumerate(curves):
+        shown.add_row(str(each.period), f"{max(wrong['curve'][i]):.1e}", f"{max(wrong['walk'][i]):.1e}")
     console.print(shown)
     one = float(np.median(walking))
     console.print(

@@ -22,11 +22,12 @@ from flint import acb, arb, fmpq
 from numeric import PinballMap, Status
 from numeric.backends.scalars import ScalarBackend
 from verification.arithmetic.balls import as_ball, bits_of, enclose, working
+from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.maps.exact import Ball, ExactMap
 from verification.maps.first_hit import BITS, Boundary, Frame, free
 
 GUESSED = 40  # digits of a guess by mpmath
-STEPS = 40  # of Newton's method, whose digits double from 15 on
+NEWTON = Stop(small=1e-6, steps=40)  # the digits of a guess double from 15 on
 MARGIN = 2.0**-20  # how far a ball's angle must stay within what the kernels take
 
 
@@ -145,16 +146,11 @@ class EnclosedMap:
             x, y, dx, dy, _, _ = self.curve(guess.component, theta)
             return vx * (y - ball.y) - vy * (x - ball.x), vx * dy - vy * dx
 
-        middle, last = guess.theta, arb(1)
-        for _ in range(STEPS):
-            value, slope = (each.mid() for each in flight(middle))
-            if slope == 0:
-                return None
-            step = (value / slope).mid()
-            middle = (middle - step).mid()
-            if not abs(step) * 2 < last:  # what is left is rounding
-                break
-            last = abs(step)
+        def correction(at: Vector) -> Vector:
+            value, slope = (each.mid() for each in flight(*at))
+            return [(value / slope).mid()]
+
+        (middle,) = iterated(correction, [guess.theta], NEWTON, kept=arb.mid).x
         value, slope = flight(middle)
         radius = abs(value / slope) * 4 + (abs(middle) + 1) * arb(2) ** (4 - self.bits)
         if slope.contains(0) or not radius.is_finite():

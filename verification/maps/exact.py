@@ -21,6 +21,7 @@ from numeric import PinballMap, Status
 from numeric.backends.scalars import ScalarBackend
 from numeric.flights.family import NEAR, Frame, law_of
 from numeric.flights.general import General
+from verification.arithmetic.iteration import Stop, Vector, iterated
 
 GUARD = 30  # digits more than asked for: a grazing flight loses as many as its angle has zeros
 COARSE = 50  # digits of the search for the first hit, when more are asked for
@@ -113,18 +114,15 @@ class ExactMap:
 
     def _sharpened(self, ball: Ball, component: int, theta: Any) -> Any:
         """The zero of the flight function that Newton's method reaches; None if it is not the one nearby."""
-        mp, first = self.context, theta
-        vx, vy = ball.v
-        for _ in range(self.digits):
-            x, y, dx, dy, _, _ = self.general.parts[component].curve(self.ops, theta, *self.shape)
-            slope = vx * dy - vy * dx
-            step = (vx * (y - ball.y) - vy * (x - ball.x)) / slope if slope else mp.inf
-            theta -= step
-            if not abs(theta - first) < mp.mpf(10) ** (-COARSE):
-                return None
-            if abs(step) < mp.mpf(10) ** (-mp.dps * 3 // 5):  # the next one would be lost in rounding
-                return theta
-        return None
+        mp, (vx, vy) = self.context, ball.v
+
+        def correction(at: Vector) -> Vector:
+            x, y, dx, dy, _, _ = self.general.parts[component].curve(self.ops, *at, *self.shape)
+            return [(vx * (y - ball.y) - vy * (x - ball.x)) / (vx * dy - vy * dx)]
+
+        enough = mp.mpf(10) ** (-mp.dps * 3 // 5)  # the next correction would be lost in rounding
+        found = iterated(correction, [theta], Stop(enough=enough, steps=self.digits))
+        return found.x[0] if found.settled and abs(found.x[0] - theta) < mp.mpf(10) ** -COARSE else None
 
     def orbit(self, ball: Ball, bounces: int) -> list[Ball]:
         """The ball and its next `bounces` bounces; shorter when an outcome stops it."""

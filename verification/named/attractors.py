@@ -28,7 +28,7 @@ from symbolic.tables.geometry import Symmetry, group
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import balls, bits_of, decimal, working
 from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.named.branches import Branch, Event, alike, ends, own
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Checks
@@ -67,7 +67,7 @@ def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS
     bits = proof.claim.bits
     with working(bits):
         try:
-            chain = Linearised(Rows(problem, balls(bits)), proof.enclosure.zero).plain
+            chain = Linearised(problem, balls(bits), proof.enclosure.zero).plain
             trace, determinant = trace_and_determinant(chain.rows)
         except ZeroDivisionError:
             trace = determinant = arb("nan")

@@ -1,20 +1,18 @@
-"""A cycle followed in the contraction for as long as it attracts, and what happens at both ends.
+"""A cycle followed in the contraction for as long as it attracts: what happens at both ends, and its doublings.
 
 Steps are accepted only onto a cycle of the same period with the same symmetries, so a branch is neither left
 through a period doubling nor through a loss of symmetry. At an end the event is solved for on the chord
 system and proved there (`verification.named.locate.certify`).
 
-The period doublings that a cycle of the egg goes through as `lam` grows, each proved, and where they accumulate.
-
-`verification.cycles.recurrence.cascade` climbs the paper's cascade, from period 4 at the diameters. This one starts
-from any attracting
-cycle that random balls reach, such as those of higher period to which section 6.6 ascribes isolated chaotic regions.
+The cascade of doublings that follows is proved flip by flip. It may start from any attracting cycle that random
+particles reach, such as those of higher period to which section 6.6 ascribes isolated chaotic regions.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache
+from itertools import islice
 
 import numpy as np
 from sympy import Rational
@@ -28,7 +26,7 @@ from symbolic.tables import egg
 from symbolic.tables.geometry import Symmetry
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence.cascade import FEIGENBAUM, doubled, next_critical
+from verification.cycles.recurrence.cascade import FEIGENBAUM, doublings
 from verification.cycles.recurrence.newton import floats
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import IDENTITY, MIRROR, BifurcationKind, Closure
@@ -245,27 +243,18 @@ class Cascade:
 
 
 @cache
-def cascade(alpha: Rational, lam: Rational, period: int, step: float, rungs: int = 3) -> Cascade:
+def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int = 3) -> Cascade:
     """The first doublings of an attracting cycle of some period that exists at `lam`, followed in steps.
 
-    >>> found = cascade(Rational(2, 25), Rational(3, 10), 4, 0.005, rungs=1)  # the paper's lambda_3, section 6.6
+    >>> found = cascade(Rational(2, 25), Rational(3, 10), 4, 0.005, count=1)  # the paper's lambda_3, section 6.6
     >>> found.periods, round(found.lams[0], 6), found.proved
     ((4,), 0.371236, True)
     """
-    table, at = egg(3).at(alpha=alpha), float(lam)
-    critical = next_critical(table, reached(alpha, lam, period), at, step, BifurcationKind.FLIP)
-    gap, periods, lams, proved = (critical[-1] - at) / 4, [period], [critical[-1]], True
-    while True:
-        problem = Problem(table, (0,) * periods[-1], BifurcationKind.FLIP, "lam")
-        proof = certify(problem, critical, DIGITS)
-        proved = proved and proof.certified and proof.supercritical is True
-        if len(lams) == rungs:
-            return Cascade(tuple(periods), tuple(lams), proved)
-        theta, near = doubled(problem, critical, 0.3 * gap)
-        critical = next_critical(table, theta, near, 0.15 * gap, BifurcationKind.FLIP)
-        gap = (critical[-1] - lams[-1]) / FEIGENBAUM
-        periods.append(2 * periods[-1])
-        lams.append(critical[-1])
+    found = doublings(egg(3).at(alpha=alpha), reached(alpha, lam, period), float(lam), step)
+    members = list(islice(found, count))
+    proofs = [certify(member.problem, member.start, DIGITS) for member in members]
+    proved = all(proof.certified and proof.supercritical is True for proof in proofs)
+    return Cascade(tuple(m.problem.period for m in members), tuple(m.lam for m in members), proved)
 
 
 def reached(alpha: Rational, lam: Rational, period: int) -> list[float]:

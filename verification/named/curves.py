@@ -2,7 +2,7 @@
 
 For odd K the vertex-to-flat diameter doubles its period on `alpha-tilde`; the symmetric cycle of period 4
 that it bears breaks its symmetry (a pitchfork, on half the cycle), and what it bears doubles again and
-again, up to an accumulation curve. Every rung is followed in the two letters from one start.
+again, up to an accumulation curve. Every curve is followed in the two parameters from one start.
 
 Cycles that expand areas although `lam < 1`, and Neimark-Sacker bifurcations: proved, on the paper's own egg.
 
@@ -36,19 +36,19 @@ from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.critical import Small, critical
 from verification.cycles.recurrence.newton import refined
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Closure
 from verification.named.feigenbaum import limit
 from verification.named.locate import certify
 from verification.proofs.periodic.interval_newton import Enclosure, contraction
 
 TWO = ("alpha", "lam")
-SHARE = 0.96  # of the shape whose diameter doubles at lam = 0: there every rung has its contraction
+SHARE = 0.96  # of the shape whose diameter doubles at lam = 0: there every doubling has its contraction
 Tick = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Rung:
+class BifurcationCurve:
     """One curve of the cascade: what becomes of a cycle of `period` bounces along it."""
 
     name: str
@@ -72,11 +72,11 @@ def largest_shape(K: int) -> float:
     return 1 / (1 + K * K)
 
 
-def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> Iterator[Rung]:
+def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> Iterator[BifurcationCurve]:
     """The curves from the diameter's doubling up to the cycles of `highest` bounces; for odd K.
 
-    >>> rungs = cascade(3, 4)
-    >>> [(rung.name, [d.what.value for d in rung.special]) for rung in rungs]  # doctest: +NORMALIZE_WHITESPACE
+    >>> curves = cascade(3, 4)
+    >>> [(c.name, [d.what.value for d in c.special]) for c in curves]  # doctest: +NORMALIZE_WHITESPACE
     [('doubling of 2', ['1:2 resonance']), ('symmetry breaking of 4', ['1:2 resonance']),
      ('doubling of 4', ['1:2 resonance'])]
     """
@@ -94,13 +94,13 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
         name = f"{what} of {period}"
         tick(name)
         found = curve(event.ring, BifurcationKind.FLIP, event.x, TWO, (at["alpha"], event.value), box, steps=steps)
-        yield Rung(name, period, event.what, found)
+        yield BifurcationCurve(name, period, event.what, found)
         if period >= highest and event.what is BifurcationKind.FLIP:
             return
         one = switched(one, event, (0.0, 1.0))[0]
 
 
-def fold(K: int = 3, p: int = 1, q: int = 3) -> Rung:
+def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
     """The fold of the polygon that turns by `2*pi*p/q`, one bounce of it followed (closed form: `polygons`)."""
     ring = polygon(K, p, q)
     top = largest_shape(K)
@@ -109,7 +109,7 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> Rung:
     event = next(e for e in one.events if e.what is BifurcationKind.FOLD)
     box = ((top / 200, top), (0.0, 1.0))
     found = curve(ring, BifurcationKind.FOLD, event.x, TWO, (at["alpha"], event.value), box, steps=Steps(largest=0.15))
-    return Rung(f"fold of {p}/{q}", q, BifurcationKind.FOLD, found)
+    return BifurcationCurve(f"fold of {p}/{q}", q, BifurcationKind.FOLD, found)
 
 
 def polygon(K: int, p: int, q: int) -> Chords:
@@ -129,15 +129,15 @@ class Accumulation:
     error: Array
 
 
-def accumulation(rungs: list[Rung], alphas: Array) -> Accumulation:
+def accumulation(curves: list[BifurcationCurve], alphas: Array) -> Accumulation:
     """The end of the cascade at each shape that all the doublings reach.
 
-    The error is the difference to a second extrapolation, or to the same one without the last rung if that is larger.
+    The error is the difference to a second extrapolation, or to the same one without the last curve if that is larger.
     """
-    doublings = [rung for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
+    doublings = [c for c in curves if c.what is BifurcationKind.FLIP and c.period > 2]
     found = []
     for alpha in alphas:
-        values = [rung.lam(float(alpha)) for rung in doublings]
+        values = [c.lam(float(alpha)) for c in doublings]
         if any(value is None for value in values):
             continue
         decimals = [repr(value) for value in values]
@@ -175,7 +175,7 @@ def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
     problem = Problem(egg(3).at(alpha=alpha), (0,) * 6, lam=Rational(lam))
     proof = certify(problem, list(HEXAGON), 20)
     with working(BITS):
-        chain = Linearised(Rows(problem, balls(BITS)), proof.enclosure.zero).plain
+        chain = Linearised(problem, balls(BITS), proof.enclosure.zero).plain
         _, determinant = trace_and_determinant(chain.rows)
     return Expanding(proof.certified, determinant)
 

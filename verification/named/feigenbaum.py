@@ -1,4 +1,4 @@
-"""The end of a period-doubling ladder: `delta` and `lambda_infinity`, estimated and not certified.
+"""The end of a period-doubling cascade: `delta` and `lambda_infinity`, estimated and not certified.
 
 Two schemes that share no assumption but geometric convergence: Wynn's epsilon algorithm on the
 sequence itself, and Aitken's process on what is left after the leading term has been removed with
@@ -14,12 +14,12 @@ import mpmath
 from sympy import Expr
 
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence.cascade import rung
+from verification.cycles.recurrence.cascade import doubling
 from verification.named.locate import certify
 
 DELTA = "4.669201609102990671853203820466201617258185577475768632745651343"  # [Feigenbaum1979]; OEIS A006890
 DIGITS = 60
-RUNG_DIGITS = 50
+EACH = 50  # digits of each doubling
 
 
 @dataclass(frozen=True)
@@ -97,31 +97,31 @@ def aitken(values: Sequence[Any]) -> Any:
 
 @dataclass(frozen=True)
 class Accumulation:
-    """The certified rungs of a ladder as decimals, and the estimates of where and how it ends.
+    """The certified doublings of a cascade as decimals, and the estimates of where and how it ends.
 
-    `supercritical`: every rung bears a stable cycle, by the sign of its normal form in balls.
+    `supercritical`: each bears a stable cycle, by the sign of its normal form in balls.
     """
 
-    rungs: tuple[str, ...]
+    lams: tuple[str, ...]
     supercritical: bool
     limit: Estimate
     ratio: Estimate
 
 
 def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
-    """The ladder of the egg up to `lambda_highest`, each rung certified to 50 digits, and its end.
+    """The cascade of the egg up to `lambda_highest`, each doubling certified to 50 digits, and its end.
 
     >>> from sympy import Rational
     >>> found = accumulation(Rational(2, 25), 8)
     >>> mpmath.nstr(found.limit.value, 8), found.limit.error < 1e-7
     ('0.39352047', True)
     """
-    rungs, stable = [], True
+    lams, stable = [], True
     for n in range(3, highest + 1):
-        here = rung(alpha, n)
-        proof = certify(here.problem, here.start, RUNG_DIGITS)
+        here = doubling(alpha, n)
+        proof = certify(here.problem, here.start, EACH)
         if not proof.certified:
-            raise ValueError(f"ladder: lambda_{n} at alpha = {alpha} is not certified: {proof.checks}")
-        rungs.append(decimal(proof.value, RUNG_DIGITS)[0])
+            raise ValueError(f"cascade: lambda_{n} at alpha = {alpha} is not certified: {proof.checks}")
+        lams.append(decimal(proof.value, EACH)[0])
         stable = stable and proof.supercritical is True
-    return Accumulation(tuple(rungs), stable, limit(rungs), ratio(rungs))
+    return Accumulation(tuple(lams), stable, limit(lams), ratio(lams))

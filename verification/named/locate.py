@@ -21,7 +21,8 @@ from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
 from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
 from verification.arithmetic.progress import telling
-from verification.cycles.recurrence import cascade as ladder
+from verification.cycles.recurrence.cascade import HIGHEST, critical_cycle
+from verification.cycles.recurrence.cascade import symmetry_breaking as first_symmetry_breaking
 from verification.cycles.recurrence.critical import corner, focus
 from verification.cycles.recurrence.newton import Step, refined
 from verification.cycles.recurrence.problem import Problem
@@ -230,19 +231,19 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
 
 def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
     """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
-    if (period := 2 ** max(int(n) - 1, 0)) * digits > BUDGET and n <= ladder.HIGHEST:
+    if (period := 2 ** max(int(n) - 1, 0)) * digits > BUDGET and n <= HIGHEST:
         raise ValueError(
             f"locate doubling: period {period} with {digits} digits is more work than the budget allows; "
             f"accepted for n = {n}: up to {BUDGET // period} digits"
         )
-    problem, start = ladder.critical_cycle(alpha, int(n))
+    problem, start = critical_cycle(alpha, int(n))
     proof, steps = _searched(problem, start, digits)
     return Found(proof.value, proof.checks, proof, _direction(proof), steps)
 
 
 def symmetry_breaking(digits: int, alpha: Expr) -> Found:
     """The contraction at which the egg's symmetric cycle of period 4 gives way to two that are not."""
-    problem, start = ladder.symmetry_breaking(alpha)
+    problem, start = first_symmetry_breaking(alpha)
     proof = certify(problem, start, digits)
     born = "two stable cycles" if proof.supercritical else "two unstable cycles"
     return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})

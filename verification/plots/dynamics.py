@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from numeric import PinballMap
 from verification.cycles.continuation.cells import Array
-from verification.named.curves import Accumulation, Rung, accumulation, cascade, fold, largest_shape
+from verification.named.curves import Accumulation, BifurcationCurve, accumulation, cascade, fold, largest_shape
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -157,10 +157,10 @@ def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) 
     if sample is not None:
         axes.pcolormesh(sample.lam, sample.alpha, sample.share, cmap="Reds", vmin=0, vmax=1.6, shading="nearest")
     if K % 2:
-        rungs = list(cascade(K, highest))
-        for rung in rungs:
-            _line(axes, rung)
-        _limit(axes, accumulation(rungs, np.linspace(0.6 * top, top, 41)))
+        curves = list(cascade(K, highest))
+        for line in curves:
+            _line(axes, line)
+        _limit(axes, accumulation(curves, np.linspace(0.6 * top, top, 41)))
     for (p, q), dashes in zip(turns(K), ("-.", "--", ":", "-.", "--"), strict=False):
         plane = fold(K, p, q).curve.plane
         axes.plot(plane[:, 1], plane[:, 0], color="tab:blue", ls=dashes, lw=1.2, label=f"fold of the polygon {p}/{q}")
@@ -182,12 +182,12 @@ def turns(K: int) -> list[tuple[int, int]]:
     return [(p, K) for p in range(1, (K + 1) // 2) if np.gcd(p, K) == 1]
 
 
-def _line(axes: object, rung: Rung) -> None:
-    plane = rung.curve.plane
-    breaking = rung.what is BifurcationKind.PITCHFORK
-    label = rung.name if rung.period <= 4 else "doublings of 8, 16, ..." if rung.period == 8 else None
-    colour = "tab:purple" if breaking else "black" if rung.period == 2 else "tab:green"
-    axes.plot(plane[:, 1], plane[:, 0], color=colour, lw=1.6 if rung.period == 2 else 1.0, label=label)  # type: ignore[attr-defined]
+def _line(axes: object, line: BifurcationCurve) -> None:
+    plane = line.curve.plane
+    breaking = line.what is BifurcationKind.PITCHFORK
+    label = line.name if line.period <= 4 else "doublings of 8, 16, ..." if line.period == 8 else None
+    colour = "tab:purple" if breaking else "black" if line.period == 2 else "tab:green"
+    axes.plot(plane[:, 1], plane[:, 0], color=colour, lw=1.6 if line.period == 2 else 1.0, label=label)  # type: ignore[attr-defined]
 
 
 def _limit(axes: object, end: Accumulation) -> None:

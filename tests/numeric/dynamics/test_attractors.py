@@ -15,7 +15,7 @@ from numeric.pinball.sampling import interior_starts
 from symbolic.tables import cardioid, cuspless, egg, ellipse
 from symbolic.tables.geometry import group
 from verification.app.cli import main
-from verification.cycles.recurrence.cascade import ladder
+from verification.cycles.recurrence.cascade import cascade
 from verification.named.attractors import certificate
 
 EGG = egg(3).at(alpha="0.08")
@@ -54,8 +54,8 @@ def test_the_symmetric_cycles_of_period_4_have_given_way_to_twice_as_many():
 
 
 @pytest.mark.parametrize("n", [3, 4, 5, 6])
-def test_the_period_doubles_at_each_rung_of_the_ladder(n):
-    lam = next(islice(ladder(Rational(2, 25)), n - 3, None)).lam
+def test_the_period_doubles_at_each_member_of_the_cascade(n):
+    lam = next(islice(cascade(Rational(2, 25)), n - 3, None)).lam
     gap = 2e-5 if n < 6 else 4e-6
 
     for side, period in ((-gap, 2 ** (n - 1)), (gap, 2**n)):

@@ -23,7 +23,7 @@ from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.linear import spectrum
 from verification.cycles.continuation.starts import dataset, named
 from verification.cycles.continuation.switching import switched
-from verification.cycles.recurrence.cascade import ladder
+from verification.cycles.recurrence.cascade import cascade as followed_in_lam
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
 from verification.named.events import proof_of
@@ -65,11 +65,11 @@ def test_the_events_of_the_cascade_are_the_located_ones():
     (pitchfork,) = one.events
     two, mirrored = switched(one, pitchfork, (0.0, 0.6))
     doublings = cascade(two, (0.0, 0.6), 4)
-    rungs = [rung.lam for rung in islice(ladder(ALPHA), 4)]
+    members = [each.lam for each in islice(followed_in_lam(ALPHA), 4)]
 
     assert pitchfork.what is BifurcationKind.PITCHFORK
     assert abs(pitchfork.value - float(locate("symmetry-breaking", 15, alpha=ALPHA).value)) < 1e-12
-    assert [event.value for event in doublings] == pytest.approx(rungs, abs=1e-12)
+    assert [event.value for event in doublings] == pytest.approx(members, abs=1e-12)
     assert all(event.form.supercritical for event in doublings)
     assert [e.value for e in mirrored.events] == pytest.approx([e.value for e in two.events], abs=1e-12)
     assert proof_of(pitchfork, 20).certified

@@ -17,7 +17,7 @@ from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.switching import Special, curve
 from verification.cycles.continuation.systems import Critical, coefficients
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows, normal_form
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, henon
 from verification.named.curves import (
     accumulation,
@@ -95,11 +95,9 @@ def test_the_coefficients_are_those_of_the_certified_normal_form():
     table = egg(3).at(alpha="7/100")
     one = branch(Chords(table, (0, 0)), np.array([0.0, np.pi]), "lam", 0.1, (0.0, 1.0))
     (flip,) = one.events
-    at = Linearised(
-        Rows(Problem(table, (0, 0), BifurcationKind.FLIP, "lam"), FLOAT64), [*map(float, flip.x), flip.value]
-    )
+    at = Linearised(Problem(table, (0, 0), BifurcationKind.FLIP, "lam"), FLOAT64, [*map(float, flip.x), flip.value])
     v = np.array(at.critical.right)
-    expected = normal_form(at, FLOAT64).branch / np.mean(v**2)
+    expected = at.normal_form(FLOAT64).branch / np.mean(v**2)
 
     assert coefficients(flip.ring, flip.x, {"lam": flip.value}, BifurcationKind.FLIP, "lam").branch == pytest.approx(
         expected, rel=1e-9

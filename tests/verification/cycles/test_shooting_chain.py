@@ -14,7 +14,7 @@ from symbolic.tables.table import theta
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.recurrence.chain import Chain, Elimination
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import MIRROR, BifurcationKind
 
 fractions = st.fractions(-3, 3, max_denominator=7)
@@ -50,7 +50,7 @@ def test_solving_a_chain_inverts_its_matrix_exactly(chain, data):
     n = len(chain.diagonal)
     right = data.draw(st.lists(fractions, min_size=n, max_size=n))
     one = eliminated(chain)
-    assume(one.rest != 0)
+    assume(one.bordering != 0)
 
     assert chain.times(one.solve(right)) == right
 
@@ -75,9 +75,9 @@ def test_rest_vanishes_exactly_when_the_matrix_is_singular(chain):
     for pivot in one.pivots:
         product *= pivot
 
-    assert dense(chain).det() == Rational(product * one.rest)
-    assert chain.times(one.right) == [0] * (len(one.right) - 1) + [one.rest]
-    assert (rationals(one.left).T * dense(chain)).tolist() == [[0] * (len(one.left) - 1) + [Rational(one.rest)]]
+    assert dense(chain).det() == Rational(product * one.bordering)
+    assert chain.times(one.right) == [0] * (len(one.right) - 1) + [one.bordering]
+    assert (rationals(one.left).T * dense(chain)).tolist() == [[0] * (len(one.left) - 1) + [Rational(one.bordering)]]
 
 
 PROBLEMS = [
@@ -96,14 +96,18 @@ PROBLEMS = [
 
 @pytest.mark.parametrize(("problem", "z"), PROBLEMS)
 def test_newtons_correction_inverts_the_matrix_of_difference_quotients(problem, z):
-    rows, h = Rows(problem, FLOAT64), 1e-6
+    h = 1e-6
     correction = problem.newton(FLOAT64, z)
     up, down = ([x + s * h * d for x, d in zip(z, correction, strict=True)] for s in (1, -1))
     slope = [
         (a - b) / (2 * h)
-        for a, b in zip(Linearised(rows, up, slope=False).value, Linearised(rows, down, slope=False).value, strict=True)
+        for a, b in zip(
+            Linearised(problem, FLOAT64, up, slope=False).value,
+            Linearised(problem, FLOAT64, down, slope=False).value,
+            strict=True,
+        )
     ]
-    value = Linearised(rows, z).value
+    value = Linearised(problem, FLOAT64, z).value
 
     size = max(abs(d) for d in correction) ** 3 + 1  # the third derivative along the correction
     assert max(abs(a - b) for a, b in zip(slope, value, strict=True)) < 1e-7 * size

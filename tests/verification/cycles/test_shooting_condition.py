@@ -30,7 +30,7 @@ from verification.measure.extremes import near
 FINE = near.nearly_round(near.FINE_GAP)
 ONCE = near.nearly_flipped(near.FLIP_GAP, twice=False)
 TWICE = near.nearly_flipped(near.FLIP_GAP, twice=True)
-SOLVED = [near.folded(4), near.folded(None), near.nearly_round(near.COARSE_GAP), near.laddered(4)]
+SOLVED = [near.folded(4), near.folded(None), near.nearly_round(near.COARSE_GAP), near.in_the_cascade(4)]
 
 
 def row_sum(problem: Problem, z: list[float]) -> float:
@@ -111,7 +111,7 @@ def test_a_cycle_run_twice_is_named_where_it_settles_and_where_it_does_not():
 
 
 def test_a_true_cycle_of_period_eight_is_not_called_a_repeated_one():
-    problem, start = near.laddered(3)
+    problem, start = near.in_the_cascade(3)
 
     assert in_floats(problem, start).shorter == 0
     assert refined(problem, start, 30).conditioning is Conditioning.SOUND

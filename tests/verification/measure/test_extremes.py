@@ -16,7 +16,7 @@ from verification.arithmetic.balls import multiprecision
 from verification.cycles.recurrence.chain import trace_and_determinant as monodromy
 from verification.cycles.recurrence.critical import corner, corner_angle
 from verification.cycles.recurrence.newton import Conditioning, refined
-from verification.cycles.recurrence.problem import Linearised, Rows
+from verification.cycles.recurrence.problem import Linearised
 from verification.measure.extremes import flights as cases
 from verification.measure.extremes import kernels as products
 from verification.measure.extremes import near, page
@@ -149,7 +149,7 @@ def test_the_triangle_next_to_its_fold_has_a_multiplier_within_1e_12_of_one():
     problem, start = near.touching(near.FOLD_GAP)
     z = near.solution(problem, start)
     context = type(z[0]).context
-    trace, det = monodromy(Linearised(Rows(problem, multiprecision(context)), z).plain.rows)
+    trace, det = monodromy(Linearised(problem, multiprecision(context), z).terms.rows)
     shape = dict(problem.table.fixed)["alpha"]
     fold = N(saddle_node().subs(alpha, shape) - problem.lam, 60)
 

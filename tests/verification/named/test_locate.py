@@ -9,7 +9,7 @@ from sympy import Integer, Rational
 
 from verification.app.commands.locate import check_command as check
 from verification.app.commands.locate import command as locate_command
-from verification.cycles.recurrence.cascade import ladder
+from verification.cycles.recurrence.cascade import cascade
 from verification.named.files import document
 from verification.named.locate import NAMES, Located, _continued, locate
 
@@ -91,9 +91,9 @@ def test_what_is_located_tells_how_newtons_method_came_there():
     assert -2 * steps[-1].correction > 200  # so that the digits it leaves are right
 
 
-def test_the_ladder_approaches_feigenbaums_ratio():
-    rungs = ladder(ALPHA)
-    values = [next(rungs).lam for _ in range(7)]
+def test_the_cascade_approaches_feigenbaums_ratio():
+    members = cascade(ALPHA)
+    values = [next(members).lam for _ in range(7)]
     gaps = [b - a for a, b in pairwise(values)]
 
     assert abs(gaps[-2] / gaps[-1] - 4.6692) < 1e-3  # converges like 4.67**-n
@@ -103,7 +103,7 @@ PRINTED = [(3, 0.372, False), (4, 0.389, True), (5, 0.393, True), (6, 0.3935, Fa
 
 
 @pytest.mark.parametrize(("n", "printed", "right"), PRINTED)
-def test_the_papers_ladder_is_judged_digit_by_digit(n, printed, right):
+def test_the_papers_cascade_is_judged_digit_by_digit(n, printed, right):
     found = locate("doubling", 15, alpha=ALPHA, n=Integer(n))
     decimals = len(str(printed)) - 2
 

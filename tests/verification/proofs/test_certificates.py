@@ -14,7 +14,7 @@ from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from verification.arithmetic.balls import balls, exact_balls, working
 from verification.cycles.recurrence.critical import corner
 from verification.cycles.recurrence.newton import refined
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.named.locate import certify
@@ -67,7 +67,7 @@ def test_the_ball_at_128_bits_contains_the_one_at_1024_bits_and_never_the_other_
     found = []
     for bits in (128, 1024):
         with working(bits):
-            at = Linearised(Rows(problem, balls(bits)), z)
+            at = Linearised(problem, balls(bits), z)
             found.append([*at.value, *at.solve(at.value), at.corner])
     for wide, narrow in zip(*found, strict=True):
         if wide.is_finite():

@@ -11,7 +11,7 @@ from sympy import Rational
 
 from symbolic import tables
 from verification.arithmetic.balls import ARRAYS, FLOAT64
-from verification.cycles.recurrence.cascade import ladder
+from verification.cycles.recurrence.cascade import cascade
 from verification.cycles.recurrence.recurrence import Closure
 from verification.plots.dynamics import portrait
 from verification.proofs.manifolds.grow import branch, far
@@ -178,8 +178,8 @@ def test_the_folds_of_shadowing_cycles_approach_the_ends_of_windows_at_the_rate_
 
 def test_bands_merge_at_distances_from_the_end_of_the_cascade_that_fall_by_feigenbaums_ratio():
     """The end is from the certified doublings, with which the contacts share only the chord."""
-    rungs = ladder(SHAPE)
-    values = [next(rungs).lam for _ in range(8)]
+    members = cascade(SHAPE)
+    values = [next(members).lam for _ in range(8)]
     end = values[-1] + (values[-1] - values[-2]) / (4.669201609 - 1)
     joined = [CONTACTS[f"band-merging-{period}"].letter - end for period in (4, 8, 16)]
     ratios = [far / near for far, near in pairwise(joined)]

@@ -13,11 +13,12 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.optimize import brentq
 
+from verification.arithmetic.iteration import Stop, iterated, largest
 from verification.cycles.continuation.linear import above, solved
 from verification.cycles.recurrence.recurrence import Array
 
-NEWTON = 9  # steps before a corrector gives up
-CLOSE = 1e-11  # a correction that small is the last one, in units of the unknowns
+NEWTON = Stop(small=1e-7, enough=1e-11, steps=9)  # in units of the unknowns
+FAR = 1e3  # a correction that large leads nowhere
 TURNED = 0.95  # the least cosine between successive tangents
 QUICK, SLOW = 3, 5  # corrector steps that lengthen and shorten the next arc
 
@@ -92,27 +93,28 @@ class LostError(ValueError):
 
 def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[Array, int]:
     """The solution near `guess` on which `row . z = level`, and the Newton steps it took."""
-    z, before = guess.copy(), np.inf
-    for count in range(1, NEWTON + 1):
+    lost = LostError(f"{system.label}: Newton's method no longer converges")
+
+    def correction(unknowns: list[Array]) -> list[Array]:
+        (z,) = unknowns
         value, matrix = system.linear(z)
-        whole = above(matrix, row)
-        right = np.append(value, row @ z - level)
-        if not (np.all(np.isfinite(getattr(whole, "data", whole))) and np.all(np.isfinite(right))):
-            break
+        whole, right = above(matrix, row), np.append(value, row @ z - level)
+        if not (np.all(np.isfinite(whole.data)) and np.all(np.isfinite(right))):
+            raise lost
         if not np.any(right):
-            return z, count  # exact, and perhaps a crossing of branches, where the matrix is singular
-        try:
-            correction = solved(whole, right)
-        except ValueError:
-            break
-        z = z - correction
-        size = float(np.max(np.abs(correction)))
-        if size < CLOSE or (count > 2 and before < 1e-7 and size >= before / 4):
-            return z, count
-        if size > 1e3:
-            break
-        before = size
-    raise LostError(f"{system.label}: Newton's method no longer converges")
+            return [right]  # exact, and perhaps a crossing of branches, where the matrix is singular
+        moved = solved(whole, right)
+        if np.max(np.abs(moved)) > FAR:
+            raise lost
+        return [moved]
+
+    try:
+        found = iterated(correction, [guess], NEWTON, largest)
+    except ValueError:
+        raise lost from None
+    if not found.settled:
+        raise lost
+    return found.x[0], found.steps
 
 
 def tangent_at(system: System, z: Array, along: Array) -> Array:

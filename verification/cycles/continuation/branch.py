@@ -13,8 +13,9 @@ import numpy as np
 from verification.cycles.continuation import arc
 from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
 from verification.cycles.continuation.linear import Spectrum
-from verification.cycles.continuation.systems import Coefficients, Cycles, coefficients, parts, whole
+from verification.cycles.continuation.systems import Cycles, coefficients, parts, whole
 from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.problem import NormalForm
 from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Letters, Recurrence
 
 NOISE = 1e-9  # a test function that small has no sign
@@ -34,7 +35,7 @@ class Event:
     point: Point
     ring: Recurrence
     x: Array = field(repr=False)
-    form: Coefficients | None = None
+    form: NormalForm | None = None
     located: bool = True
 
     @property
@@ -219,7 +220,7 @@ def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
     return Event(BifurcationKind.BRANCH_POINT, point, ring, x)
 
 
-def _form(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> Coefficients | None:
+def _form(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> NormalForm | None:
     try:
         return coefficients(ring, x, at, kind, letter)
     except ValueError:

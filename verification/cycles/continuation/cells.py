@@ -21,12 +21,11 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS
+from verification.arithmetic.iteration import Stop, in_rows
 from verification.cycles.recurrence.chords import Chords, chord_angles
 
 Array = NDArray[np.float64]
-STEPS = 14
-REACH = 0.5  # radians that a bounce may move in one step
-CLOSE = 1e-11
+NEWTON = Stop(enough=1e-11, steps=14, reach=0.5)
 
 
 class Corrector:
@@ -47,20 +46,13 @@ class Corrector:
         array([[ 1.570796, -1.570796],
                [ 0.      ,  3.141593]])
         """
-        x, settled = seeds.copy(), np.zeros(len(seeds), dtype=bool)
-        with np.errstate(all="ignore"):
-            for _ in range(STEPS):
-                active = ~settled
-                if not np.any(active):
-                    break
-                step = self._correction(components, x[active])
-                if known is not None and len(known):
-                    step = step * deflation(x[active], step, known)[:, None]
-                size = np.max(np.abs(step), axis=1)
-                reach = np.minimum(1.0, REACH / np.maximum(size, 1e-300))
-                x[active] -= reach[:, None] * step
-                settled[active] = size < CLOSE
-        kept: Array = x[settled & np.all(np.isfinite(x), axis=1)]
+
+        def correction(x: Array) -> Array:
+            step = self._correction(components, x)
+            return step if known is None or not len(known) else step * deflation(x, step, known)[:, None]
+
+        x, settled = in_rows(correction, seeds, NEWTON)
+        kept: Array = x[settled]
         return kept
 
     def diagonals(self, components: tuple[int, ...], x: Array) -> tuple[Array, Array, Array, Array]:
@@ -69,7 +61,8 @@ class Corrector:
         value, lower, middle, upper = (np.empty_like(x) for _ in range(4))
         for i in range(n):
             near = x[:, i - 1], x[:, i], x[:, (i + 1) % n]
-            value[:, i], (lower[:, i], middle[:, i], upper[:, i]) = rule(i, near, {"lam": self.lam})
+            terms = rule(i, near, {"lam": self.lam})
+            value[:, i], (lower[:, i], middle[:, i], upper[:, i]) = terms.value, terms.slope
         return value, lower, middle, upper
 
     def _correction(self, components: tuple[int, ...], x: Array) -> Array:

@@ -28,7 +28,7 @@ def solved(matrix: Any, right: Array) -> Array:
     return found
 
 
-def ring_matrix(terms: Terms, closure: Closure, sign: int = 1) -> Any:
+def ring_matrix(terms: Terms[Array], closure: Closure, sign: int = 1) -> Any:
     """The linearised rules on vectors that come back multiplied by `sign`; sparse when it is large.
 
     >>> one = np.ones(3)
@@ -100,7 +100,7 @@ class Spectrum:
         return self.at_one > 0 and self.at_minus_one > 0 and self.determinant < 1
 
 
-def spectrum(terms: Terms, closure: Closure) -> Spectrum:
+def spectrum(terms: Terms[Array], closure: Closure) -> Spectrum:
     """The three numbers, from determinants of the ring: none cancels where a multiplier nears 1 or -1."""
     lower, _, upper = terms.slope
     n = len(lower)
@@ -141,30 +141,3 @@ def null_vectors(matrix: Any) -> tuple[Array, Array]:
     left, _, right = np.linalg.svd(dense(matrix))
     scale = np.sqrt(len(left))
     return right[-1] * scale, left[:, -1] * scale
-
-
-def along(terms: Terms, closure: Closure, v: Array, w: Array, sign: int) -> tuple[Array, dict[str, float]]:
-    """`d(w A v)` by the bounces and by each letter, `A` the ring's matrix with `sign`."""
-    n, bend = len(v), terms.bend
-    close = sign * closure.turn
-    before = np.concatenate([[close * v[-1]], v[:-1]])
-    after = np.concatenate([v[1:], [close * v[0]]])
-    ring = (before, v, after)
-    parts = []
-    for j in range(3):
-        total = np.zeros(n)
-        for k in range(3):
-            entry = bend.get((min(j, k), max(j, k)))
-            if entry is not None:
-                total = total + entry * ring[k]
-        parts.append(w * total)
-    found = parts[1].copy()
-    turned_back, turned_forth = parts[0].copy(), parts[2].copy()
-    turned_back[0] *= closure.turn
-    turned_forth[-1] *= closure.turn
-    np.add.at(found, np.arange(n) - 1, turned_back)
-    np.add.at(found, (np.arange(n) + 1) % n, turned_forth)
-    letters = {
-        name: float(np.dot(w, sum(e * x for e, x in zip(by, ring, strict=True)))) for name, by in terms.slope_by.items()
-    }
-    return found, letters

@@ -1,25 +1,17 @@
-"""The coefficients of normal forms in float64, for any recurrence, from Taylor series along the null vector.
+"""What is followed: a cycle in one parameter, or a bifurcating cycle in two; and the part of a symmetric cycle.
 
-As in `verification.cycles.recurrence.problem`, which has the certified ones: with `v` and `w` the vectors of
-the singular ring, `e` the amplitude along `v` and `F` the rules,
+A cycle has as many rules as bounces, so one free parameter makes a branch. Where it bifurcates, a vector `v` comes
+back unchanged (fold) or negated (flip), `A v = 0`. Bordered by two fixed vectors `b` and `c` the matrix is regular,
+and the last entry `g` of the solution of `[A b; c 0] (v, g) = (0, 1)` is 0 exactly there: one equation more for one
+parameter more. Its derivative is `dg = -w dA v` with the left vector `w`.
 
-    fold:  letter = critical - ([e**2] w.F)/(w.dF/dletter) * e**2,
-    flip:  letter = critical - ([e**3] w.F)/speed * e**2,   speed = d(w A v)/dletter along the cycle.
-
-The symmetries of a table and of its cycles: which part of a cycle makes up the whole.
-
-A rotation by `2*pi/k`, or the mirror `theta -> -theta`, that maps the boundary to itself maps cycles to
-cycles. A cycle that is its own image after `m` of its `n` bounces is a ring of `m` bounces that closes
-by the symmetry. Where a multiplier 1 is no fold, such a cycle gives way to two that lack the symmetry.
-
-What is followed: a cycle in one letter, or a bifurcating cycle in two.
-
-A cycle has as many rules as bounces, so one letter makes a branch. Where it bifurcates, a vector `v`
-comes back unchanged (fold) or negated (flip), `A v = 0`; bordered by two fixed vectors `b`, `c` the
-matrix is regular, and the last entry `g` of the solution of `[A b; c 0] (v, g) = (0, 1)` is 0 exactly
-there. `g = 0` is the one equation more for one letter more, and `dg = -w dA v` with the left vector.
+A rotation by `2*pi/k`, or the mirror `theta -> -theta`, that maps the boundary to itself maps cycles to cycles. A
+cycle that is its own image after `m` of its `n` bounces is a ring of `m` bounces that closes by the symmetry. Where
+such a cycle has the multiplier 1 without a fold, two cycles branch off that lack the symmetry: a pitchfork, at which
+the part flips.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from math import pi, remainder
@@ -30,11 +22,9 @@ from sympy import Matrix, Rational, cos, expand_trig, simplify, sin
 from sympy import pi as exact_pi
 
 from symbolic.tables.table import Table, theta
-from verification.arithmetic.balls import ARRAYS
-from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.balls import FLOAT64
 from verification.cycles.continuation.linear import (
     Spectrum,
-    along,
     beside,
     dense,
     null_vectors,
@@ -43,7 +33,15 @@ from verification.cycles.continuation.linear import (
     spectrum,
 )
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import mirrored
+from verification.cycles.recurrence.problem import (
+    NormalForm,
+    Series,
+    bend_of,
+    bordering_slopes,
+    expanded,
+    mirrored,
+    normal_form,
+)
 from verification.cycles.recurrence.recurrence import (
     IDENTITY,
     Array,
@@ -52,64 +50,25 @@ from verification.cycles.recurrence.recurrence import (
     Letters,
     Recurrence,
     Terms,
-    around,
 )
 
-JETS = jets(ARRAYS)
+
+def series_of(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind) -> Series:
+    """The rules along curves through a cycle, as `expanded` gives them."""
+    return lambda directions: expanded(ring, FLOAT64, [float(v) for v in x], at, kind.multiplier, directions)
 
 
-@dataclass(frozen=True)
-class Coefficients:
-    """`branch` of `letter = critical + branch*e**2`, `e` the root mean square amplitude, and what it means.
-
-    `supercritical` is that of a flip: the doubled cycle is born on the side where the old one is unstable.
-    """
-
-    branch: float
-    bend: float
-    speed: float
-    supercritical: bool | None = None
+def coefficients(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> NormalForm:
+    """The normal form of a cycle where it folds or flips in `letter`; its vectors have the root mean square 1."""
+    terms = ring.terms(x, at, 2)
+    v, w = (list(x) for x in null_vectors(ring_matrix(terms, ring.closure, kind.multiplier)))
+    solve = inverse(terms, ring.closure)
+    return normal_form(kind, letter, terms, ring.closure, v, w, series_of(ring, x, at, kind), solve)
 
 
-def bend_of(recurrence: Recurrence, x: Array, at: Letters, kind: BifurcationKind, v: Array, w: Array) -> float:
-    """`[e**2] w.F` at a fold; at a flip `[e**3] w.F` on the curve whose second order is solved for."""
-    second = _series(recurrence, x, at, kind.multiplier, [v])
-    if kind is BifurcationKind.FOLD:
-        return float(w @ second[2])
-    matrix = ring_matrix(recurrence.terms(x, at, 1), recurrence.closure)
-    bent = solved(matrix, -second[2])
-    return float(w @ _series(recurrence, x, at, kind.multiplier, [v, bent])[3])
-
-
-def coefficients(recurrence: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> Coefficients:
-    """The normal form of a cycle where it folds or flips in `letter`."""
-    terms = recurrence.terms(x, at, 2)
-    v, w = null_vectors(ring_matrix(terms, recurrence.closure, kind.multiplier))
-    bend = bend_of(recurrence, x, at, kind, v, w)
-    if kind is BifurcationKind.FOLD:
-        speed = float(w @ terms.by[letter])
-        return Coefficients(-bend / speed, bend, speed)
-    by_bounce, by_letter = along(terms, recurrence.closure, v, w, kind.multiplier)
-    motion = solved(ring_matrix(terms, recurrence.closure), -terms.by[letter])
-    speed = float(by_letter[letter] + by_bounce @ motion)
-    lower, _, upper = terms.slope
-    turn = recurrence.closure.turn * float(w[-1] * upper[-1] * v[0] - w[0] * lower[0] * v[-1])
-    return Coefficients(-bend / speed, bend, speed, bend * turn < 0 if turn else None)
-
-
-def _series(recurrence: Recurrence, x: Array, at: Letters, sign: int, directions: list[Array]) -> tuple[Any, ...]:
-    """Taylor coefficients of the rules on `x + directions[0]*e + directions[1]*e**2`, one order more than given."""
-    order = len(directions) + 1
-    rows = [x, *directions, *([np.zeros_like(x)] * (order - len(directions)))]
-    closure = recurrence.closure
-    ring = [around(closure, x)]
-    for k, row in enumerate(rows[1:], 1):
-        close = closure.turn * sign**k
-        ring.append(np.concatenate([[close * row[-1]], row, [close * row[0]]]))
-    before, here, after = (Jet(*(a[part] for a in ring)) for part in (slice(0, -2), slice(1, -1), slice(2, None)))
-    return tuple(
-        np.asarray(c, dtype=float) + np.zeros_like(x) for c in recurrence.rule(JETS, (before, here, after), at).c
-    )
+def inverse(terms: Terms[Array], closure: Closure) -> Callable[[Any], Any]:
+    """What solves with the linearised rules of a cycle, with pivoting."""
+    return lambda right: solved(ring_matrix(terms, closure), np.asarray(right))
 
 
 SAME = 1e-7  # radians
@@ -208,7 +167,7 @@ class Cycles:
         """All letters."""
         return {**self.fixed, self.letter: float(z[-1])}
 
-    def terms(self, z: Array, order: int = 1) -> Terms:
+    def terms(self, z: Array, order: int = 1) -> Terms[Array]:
         """The rule along the ring."""
         return self.recurrence.terms(z[:-1], self.at(z), order)
 
@@ -278,11 +237,11 @@ class Critical:
         """All letters."""
         return {**self.fixed, self.two[0]: float(z[-2]), self.two[1]: float(z[-1])}
 
-    def terms(self, z: Array, order: int = 2) -> Terms:
+    def terms(self, z: Array, order: int = 2) -> Terms[Array]:
         """The rule along the ring."""
         return self.recurrence.terms(z[:-2], self.at(z), order)
 
-    def vectors(self, terms: Terms) -> tuple[Array, Array, float]:
+    def vectors(self, terms: Terms[Array]) -> tuple[Array, Array, float]:
         """`v`, `w` and `g`."""
         n = self.recurrence.period
         whole = np.zeros((n + 1, n + 1))
@@ -296,14 +255,14 @@ class Critical:
         """The rules and `g`, with their derivatives."""
         terms = self.terms(z)
         v, w, g = self.vectors(terms)
-        by_bounce, by_letter = along(terms, self.recurrence.closure, v, w, self.kind.multiplier)
+        by_bounce, by_letter = bordering_slopes(terms, self.recurrence.closure, list(v), list(w), self.kind.multiplier)
         n = self.recurrence.period
         matrix = np.zeros((n + 1, n + 2))
         matrix[:n, :n] = dense(ring_matrix(terms, self.recurrence.closure))
         for j, name in enumerate(self.two):
             matrix[:n, n + j] = terms.by[name]
             matrix[n, n + j] = -by_letter[name]
-        matrix[n, :n] = -by_bounce
+        matrix[n, :n] = -np.asarray(by_bounce)
         return np.append(terms.value, g), matrix
 
     def tests(self, z: Array) -> dict[str, float]:
@@ -312,7 +271,8 @@ class Critical:
         v, w, _ = self.vectors(terms)
         found = spectrum(terms, self.recurrence.closure)
         other = found.determinant * self.kind.multiplier
-        bend = bend_of(self.recurrence, z[:-2], self.at(z), self.kind, v, w)
+        series = series_of(self.recurrence, z[:-2], self.at(z), self.kind)
+        bend = float(bend_of(self.kind, list(w), v, series, inverse(terms, self.recurrence.closure)))
         return {"bend": bend, "volume": found.determinant - 1, "other_one": other - 1, "other_minus_one": other + 1}
 
     def obstacle(self, z: Array) -> str:
@@ -323,5 +283,5 @@ class Critical:
         """Borders that fit the surroundings of `z`."""
         return self.bordered_at(z, self.borders)
 
-    def _matrix(self, terms: Terms) -> Any:
+    def _matrix(self, terms: Terms[Array]) -> Any:
         return ring_matrix(terms, self.recurrence.closure, self.kind.multiplier)

@@ -1,15 +1,12 @@
-"""Starts for Newton's method, in float64: attractors by iteration, cycles followed in the contraction.
+"""Period-doubling cascades in float64: an attracting cycle is followed to its flip, onto the cycle born there, and on.
 
-Nothing here is proved and nothing needs to be: a start only has to lie in reach of Newton's method.
-
-The period-doubling ladder of the egg: `lambda_n`, where period `2**(n-1)` becomes `2**n`.
-
-Paper: section 6.6, with `alpha = 0.08` and `lambda_3` to `lambda_6`. The second rung, where it exists,
-is the flip of the diameter; from the third on the cycles are followed from an attractor of period 4.
+Nothing here is proved: each flip is a start that lies in reach of Newton's method. The cascade of the paper (section
+6.6, `alpha = 0.08`) is the egg's, `lambda_n`, where period `2**(n-1)` becomes `2**n`. `lambda_2`, where it exists, is
+the flip of the diameter; from `lambda_3` on the cycles are followed from an attractor of period 4.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -22,8 +19,9 @@ from symbolic.tables.table import Table
 from symbolic.tables.table import lam as lam_letter
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.progress import telling
+from verification.cycles.recurrence.chords import chord_angles, landing
 from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows, normal_form
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import MIRROR, BifurcationKind
 
 FEIGENBAUM = 4.6692
@@ -40,11 +38,11 @@ def attractor(table: Table, lam: float, start: tuple[float, float], longest: int
     >>> [round(abs(x), 6) for x in attractor(ellipse.at(a="3/2"), 0.25, (0.4, 2.9))]
     [1.570796, 1.570796]
     """
-    angle = Rows(Problem(table, (0, 0), lam=Rational(0)), FLOAT64).kernel(0, 0, 1)
+    angle = chord_angles(table, FLOAT64)(0, 0, 1)
     before, here = start
     orbit: list[float] = []
     for bounce in range(SETTLE):
-        before, here = here, math.remainder(_landing(angle, here, -lam * angle(here, before)[0]), 2 * math.pi)
+        before, here = here, math.remainder(landing(table, here, -lam * angle(here, before)[0]), 2 * math.pi)
         orbit.append(here)
         if bounce % 200 == 199:
             last = orbit[-2 * longest :]
@@ -52,21 +50,6 @@ def attractor(table: Table, lam: float, start: tuple[float, float], longest: int
                 if all(_near(last[i], last[i + period]) for i in range(longest)):
                     return last[-period:]
     return []
-
-
-def _landing(angle: Callable[..., tuple[float, ...]], here: float, phi: float) -> float:
-    """Where a ball lands that leaves `here` at `phi`: the angle falls from pi/2 to -pi/2 on the way round."""
-    low, high = here, here + 2 * math.pi
-    x = here + math.pi - 2 * phi
-    for _ in range(60):
-        value, _, slope, *_ = angle(here, x)
-        low, high = (x, high) if value > phi else (low, x)
-        better = x - (value - phi) / slope
-        better = better if low < better < high else (low + high) / 2
-        if abs(better - x) < 4e-16 * 8:
-            return better
-        x = better
-    return x
 
 
 def _near(x: float, y: float) -> bool:
@@ -78,8 +61,8 @@ def characteristic(
 ) -> float:
     """`det(M - mu)` of a cycle's monodromy matrix `M`, up to sign; `mu` is the critical multiplier of `kind`."""
     free = Problem(table, components or (0,) * len(theta), kind, "lam")
-    found = Linearised(Rows(free, FLOAT64), [*theta, lam], slope=False).critical
-    value, power = found.rest / found.chain.upper[-1], 0
+    found = Linearised(free, FLOAT64, [*theta, lam], slope=False).critical
+    value, power = found.bordering / found.chain.upper[-1], 0
     for pivot, upper in zip(found.pivots, found.chain.upper, strict=False):
         value, more = math.frexp(value * pivot / upper)  # a long product leaves the range of floats on its way
         power += more
@@ -129,8 +112,8 @@ def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tup
 
     The branch is `lam + c*e**2`, with `c` from the third-order terms; it may lie on either side.
     """
-    at = Linearised(Rows(problem, FLOAT64), list(critical))
-    c, vector = float(normal_form(at, FLOAT64).branch), at.critical.right
+    at = Linearised(problem, FLOAT64, list(critical))
+    c, vector = float(at.normal_form(FLOAT64).branch), at.critical.right
     amplitude = math.sqrt(abs(distance / c))
     lam = critical[-1] + math.copysign(abs(distance), c)
     theta = critical[:-1]
@@ -146,16 +129,20 @@ def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tup
 GRID = [k / 25 for k in range(20, -1, -1)]
 START = 0.05, 3.1  # two successive bounces near a diameter
 TRIED = f"a ball settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
-HIGHEST = 17  # the rung whose period, 2**16, still takes minutes
+HIGHEST = 17  # the n of the doubling whose period, 2**16, still takes minutes
 
 
 @dataclass(frozen=True)
-class Rung:
-    """`lambda_n` in float64: the problem that defines it, and a start for its solution."""
+class Doubling:
+    """A flip in float64: the problem that defines it, and a start for its solution."""
 
-    n: int
     problem: Problem
     start: list[float]
+
+    @property
+    def n(self) -> int:
+        """`lambda_n` is where period `2**(n-1)` doubles."""
+        return self.problem.period.bit_length()
 
     @property
     def lam(self) -> float:
@@ -163,25 +150,29 @@ class Rung:
         return self.start[-1]
 
 
-def ladder(alpha: Expr) -> Iterator[Rung]:
-    """The rungs from the third on, in float64.
+def doublings(table: Table, theta: Sequence[float], lam: float, step: float) -> Iterator[Doubling]:
+    """The flips of an attracting cycle at `lam` and of those born at each, the first one sought in steps of `step`."""
+    critical = next_critical(table, theta, lam, step, BifurcationKind.FLIP)
+    gap = (critical[-1] - lam) / 4
+    while True:
+        problem = Problem(table, (0,) * (len(critical) - 1), BifurcationKind.FLIP, "lam")
+        yield Doubling(problem, critical)
+        theta, lam = doubled(problem, critical, 0.3 * gap)
+        following = next_critical(table, theta, lam, 0.15 * gap, BifurcationKind.FLIP)
+        gap, critical = (following[-1] - critical[-1]) / FEIGENBAUM, following
+
+
+def cascade(alpha: Expr) -> Iterator[Doubling]:
+    """The egg's, from `lambda_3` on.
 
     >>> from sympy import Rational
-    >>> rungs = ladder(Rational(2, 25))
-    >>> [round(next(rungs).lam, 9) for _ in range(4)]
+    >>> members = cascade(Rational(2, 25))
+    >>> [round(next(members).lam, 9) for _ in range(4)]
     [0.371235503, 0.388761023, 0.392501516, 0.393302227]
     """
     table = tables.egg(3).at(alpha=alpha)
     lam, theta = stable_four(table)
-    critical = next_critical(table, theta, lam, 0.005, BifurcationKind.FLIP)
-    n, gap = 3, (critical[-1] - lam) / 4
-    while True:
-        problem = Problem(table, (0,) * (len(critical) - 1), BifurcationKind.FLIP, "lam")
-        yield Rung(n, problem, critical)
-        theta, lam = doubled(problem, critical, 0.3 * gap)
-        following = next_critical(table, theta, lam, 0.15 * gap, BifurcationKind.FLIP)
-        gap = (following[-1] - critical[-1]) / FEIGENBAUM
-        n, critical = n + 1, following
+    yield from doublings(table, theta, lam, 0.005)
 
 
 def _back_after_four(table: Table) -> list[float]:
@@ -204,7 +195,7 @@ def stable_four(table: Table) -> tuple[float, list[float]]:
             return lam, cycle
     raise ValueError(
         f"egg: alpha = {dict(table.fixed)['alpha']} has no attracting cycle of period 4 near a diameter "
-        f"that {TRIED}; the ladder starts from one"
+        f"that {TRIED}; the cascade starts from one"
     )
 
 
@@ -212,7 +203,7 @@ def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
     """Where the mirror-symmetric cycle of period 4 bears two that are not: a flip of half the cycle.
 
     A symmetric cycle cannot double its period: half of it would need the multipliers `i` and `-i`,
-    whose product is 1. It breaks its symmetry first, and the ladder climbs from what it bears.
+    whose product is 1. It loses its symmetry first, and what is born there doubles.
     """
     table = tables.egg(3).at(alpha=alpha)
     problem = Problem(table, (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR)
@@ -235,27 +226,27 @@ def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
         raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
     if n == 2:
         return _second(alpha)
-    found = rung(alpha, n)
+    found = doubling(alpha, n)
     return found.problem, found.start
 
 
-def rung(alpha: Expr, n: int) -> Rung:
-    """The rung `lambda_n` in float64; those below it are climbed once."""
-    rungs, more = _climb(alpha)
-    tick = telling("rungs in float64")
-    while len(rungs) < n - 2:
+def doubling(alpha: Expr, n: int) -> Doubling:
+    """`lambda_n` of the egg in float64; those before it are computed once."""
+    known, more = _known(alpha)
+    tick = telling("doublings in float64")
+    while len(known) < n - 2:
         try:
-            rungs.append(next(more))
+            known.append(next(more))
         except (ValueError, StopIteration):
-            _climb.cache_clear()
+            _known.cache_clear()
             raise
-        tick(2.0 ** (rungs[-1].n - n - 1))  # a rung costs twice the one before
-    return rungs[n - 3]
+        tick(2.0 ** (known[-1].n - n - 1))  # each costs twice the one before
+    return known[n - 3]
 
 
 @cache
-def _climb(alpha: Expr) -> tuple[list[Rung], Iterator[Rung]]:
-    return [], ladder(alpha)
+def _known(alpha: Expr) -> tuple[list[Doubling], Iterator[Doubling]]:
+    return [], cascade(alpha)
 
 
 def _second(alpha: Expr) -> tuple[Problem, list[float]]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-Vector = list[Any]
+from verification.arithmetic.iteration import Vector
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,10 @@ def trace_and_determinant(rows: Iterable[tuple[Any, Any, Any]], turn: int = 1) -
 
 
 class Elimination:
-    """A chain with all unknowns but the last eliminated; the last one's pivot is `rest`.
+    """A chain with all unknowns but the last eliminated; the last one's pivot is the `bordering` function.
 
     `right` and `left` are the vectors with last entry 1 that the matrix, from either side, maps to
-    `(0, ..., 0, rest)`. The matrix is singular exactly when `rest` is 0; they span its kernels then.
+    `(0, ..., 0, bordering)`. The matrix is singular exactly when that is 0; they span its kernels then.
     """
 
     def __init__(self, chain: Chain) -> None:
@@ -88,7 +88,7 @@ class Elimination:
         self.row[-1] = self.row[-1] + chain.lower[n - 1]
         self.right: Vector = [*self.inner([-c for c in column]), 1]
         self.left: Vector = [*self._transposed([-c for c in self.row]), 1]
-        self.rest = chain.diagonal[n - 1] + dot(self.row, self.right)
+        self.bordering = chain.diagonal[n - 1] + dot(self.row, self.right)
 
     def inner(self, r: Sequence[Any]) -> Vector:
         """The solution of the rows but the last, with the last unknown 0."""
@@ -144,10 +144,10 @@ class Elimination:
         plain = inner(r[: n - 1])
         gap = r[n - 1] - dot(far, plain)
         if not column:
-            last = gap / self.rest
+            last = gap / self.bordering
             return [p + last * v for p, v in zip(plain, kernel, strict=False)] + [last]
         with_new = inner(column[: n - 1])
-        a, b = self.rest, column[n - 1] - dot(far, with_new)
+        a, b = self.bordering, column[n - 1] - dot(far, with_new)
         c, d = dot(row, kernel), corner[0] - dot(row, with_new)
         other = r[n] - dot(row, plain)
         determinant = a * d - b * c

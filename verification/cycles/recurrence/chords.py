@@ -1,5 +1,6 @@
 """Periodic orbits of a billiard: the collision rule in the angles of the two chords that meet at each bounce."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -11,9 +12,11 @@ from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
-from verification.arithmetic.series import Jet
-from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Letters, Rule, Slopes, Terms, around
+from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Letters, Pair, Rule, Terms, X, around
 from verification.maps.first_hit import convex
+
+SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
+CLOSE = 1e-13
 
 
 class ChordAngles:
@@ -36,9 +39,10 @@ class ChordAngles:
             self.loaded[key] = load(chord_kernel(self.table, *key), self.arithmetic)
         return self.loaded[key]
 
-    def places(self, order: int) -> dict[str, int]:
-        """Where a kernel returns each derivative."""
-        return {name: i for i, name in enumerate(chord_kernel(self.table, 0, 0, order).results)}
+
+@cache
+def _places(table: Table, order: int) -> dict[str, int]:
+    return {name: i for i, name in enumerate(chord_kernel(table, 0, 0, order).results)}
 
 
 def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:
@@ -75,7 +79,7 @@ class Chords:
         """`lam` and the shapes."""
         return "lam", *(p.symbol.name for p in self.table.shapes)
 
-    def terms(self, x: Array, at: Letters, order: int) -> Terms:
+    def terms(self, x: Array, at: Letters, order: int) -> Terms[Array]:
         """The collision rule and its derivatives.
 
         >>> from symbolic.tables import ellipse
@@ -83,43 +87,27 @@ class Chords:
         >>> bool(abs(axis.terms(np.array([np.pi / 2, -np.pi / 2]), {"lam": 0.5}, 1).value).max() < 1e-15)
         True
         """
-        lam, ring = at["lam"], around(self.closure, x)
-        shape = [at[name] for name in self.letters[1:]]
-        f = self._angles(ARRAYS, 1, ring[1:-1], ring[2:], shape, order)
-        b = self._angles(ARRAYS, -1, ring[1:-1], ring[:-2], shape, order)
-        none = np.zeros(self.period)
-        by, slope_by, bend = {"lam": b["angle"]}, {}, {}
-        for s in self.letters[1:]:
-            by[s] = f[f"angle_{s}"] + lam * b[f"angle_{s}"]
-        if order > 1:
-            bend = {
-                (0, 0): lam * b["angle_11"],
-                (0, 1): lam * b["angle_01"],
-                (1, 1): f["angle_00"] + lam * b["angle_00"],
-                (1, 2): f["angle_01"],
-                (2, 2): f["angle_11"],
-            }
-            slope_by = {"lam": (b["angle_1"], b["angle_0"], none)}
-            for s in self.letters[1:]:
-                own = f[f"angle_0_{s}"] + lam * b[f"angle_0_{s}"]
-                slope_by[s] = lam * b[f"angle_1_{s}"], own, f[f"angle_1_{s}"]
-        slope = lam * b["angle_1"], f["angle_0"] + lam * b["angle_0"], f["angle_1"]
-        return Terms(f["angle"] + lam * b["angle"], slope, by, bend, slope_by)
+        ring, shape = around(self.closure, x), [at[name] for name in self.letters[1:]]
+        ahead = self._angles(1, ring[1:-1], ring[2:], shape, order)
+        return self._terms(ahead, self._angles(-1, ring[1:-1], ring[:-2], shape, order), at["lam"], order)
 
-    def rule(self, arithmetic: Arithmetic, ring: tuple[Any, Any, Any], at: Letters) -> Any:
-        """The rule at `(before, here, after)`, Taylor series of arrays."""
-        before, here, after = ring
-        shape = [at[name] for name in self.letters[1:]]
-        parts, total = self.components, [np.zeros(self.period) for _ in here.c]
-        for way, other, factor in ((1, after, 1.0), (-1, before, at["lam"])):
-            pairs = list(zip(parts, (parts[(i + way) % len(parts)] for i in range(len(parts))), strict=True))
-            for pair in set(pairs):
-                chosen = np.array([p == pair for p in pairs])
-                angle = chord_angles(self.table, arithmetic)(*pair, 0)
-                pair_of = (Jet(*(c[chosen] for c in x.c)) for x in (here, other))
-                for row, value in zip(total, angle(*pair_of, *shape)[0].c, strict=True):
-                    row[chosen] += factor * value
-        return Jet(*total)
+    def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int) -> Terms[X]:
+        """The rule from the angles of the chords ahead and back, with derivatives as the kernels return them."""
+        zero = 0 * f[0]  # type: ignore[operator]  # of the same kind
+        if not order:
+            return Terms(f[0] + lam * b[0], (zero, zero, zero), {}, {}, {})
+        k, shapes = _places(self.table, order), self.letters[1:]
+        by = {"lam": b[0]} | {s: f[k[f"angle_{s}"]] + lam * b[k[f"angle_{s}"]] for s in shapes}
+        bend: dict[Pair, X] = {}
+        slope_by: dict[str, tuple[X, X, X]] = {}
+        if order > 1:
+            hh, ho, oo = k["angle_00"], k["angle_01"], k["angle_11"]
+            bend = {(0, 0): lam * b[oo], (0, 1): lam * b[ho], (1, 1): f[hh] + lam * b[hh], (1, 2): f[ho], (2, 2): f[oo]}
+            slope_by = {"lam": (b[2], b[1], zero)}
+            for s in shapes:
+                h, o = k[f"angle_0_{s}"], k[f"angle_1_{s}"]
+                slope_by[s] = lam * b[o], f[h] + lam * b[h], f[o]
+        return Terms(f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2]), by, bend, slope_by)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
         """The collision rule at single bounces.
@@ -127,18 +115,18 @@ class Chords:
         >>> from symbolic.tables import ellipse
         >>> from verification.arithmetic.balls import FLOAT64
         >>> low, high = -np.pi / 2, np.pi / 2
-        >>> value, _ = Chords(ellipse.at(a=2), (0, 0)).over(FLOAT64)(0, (low, high, low), {"lam": 0.5})
-        >>> abs(value) < 1e-15
+        >>> found = Chords(ellipse.at(a=2), (0, 0)).over(FLOAT64)(0, (low, high, low), {"lam": 0.5})
+        >>> abs(found.value) < 1e-15
         True
         """
         angles, parts = chord_angles(self.table, arithmetic), self.components
 
-        def rule(i: int, near: Sequence[Any], at: Mapping[str, Any]) -> tuple[Any, Slopes]:
-            (before, here, after), lam = near, at["lam"]
+        def rule(i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
+            before, here, after = near
             shape = [at[name] for name in self.letters[1:]]
-            f = angles(parts[i], parts[(i + 1) % len(parts)], 1)(here, after, *shape)
-            b = angles(parts[i], parts[i - 1], 1)(here, before, *shape)
-            return f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2])
+            f = angles(parts[i], parts[(i + 1) % len(parts)], order)(here, after, *shape)
+            b = angles(parts[i], parts[i - 1], order)(here, before, *shape)
+            return self._terms(f, b, at["lam"], order)
 
         return rule
 
@@ -149,8 +137,8 @@ class Chords:
     def angles(self, x: Array, at: Letters) -> tuple[Array, Array]:
         """Exit and incidence angles at each bounce, in radians."""
         ring, shape = around(self.closure, x), [at[name] for name in self.letters[1:]]
-        out = self._angles(ARRAYS, 1, ring[1:-1], ring[2:], shape, 0)["angle"]
-        return out, self._angles(ARRAYS, -1, ring[1:-1], ring[:-2], shape, 0)["angle"]
+        out, into = (self._angles(way, ring[1:-1], end, shape, 0) for way, end in ((1, ring[2:]), (-1, ring[:-2])))
+        return out[0], into[0]
 
     def obstacle(self, x: Array, at: Letters) -> str:
         """A bounce beyond its component, or next to its neighbour."""
@@ -193,23 +181,54 @@ class Chords:
         both = [(float(c.start), float(c.end)) for c in parts]
         return [min(ends, key=lambda e: abs(e - value)) for ends, value in zip(both, x, strict=True)]
 
-    def _angles(
-        self, arithmetic: Arithmetic, way: int, here: Array, there: Array, shape: list[float], order: int
-    ) -> dict[str, Array]:
+    def _angles(self, way: int, here: Array, there: Array, shape: list[float], order: int) -> list[Array]:
         parts = self.components
-        others = tuple(parts[(i + way) % len(parts)] for i in range(len(parts)))
-        angles = chord_angles(self.table, arithmetic)
-        names = angles.places(order)
-        found = {name: np.empty(len(parts)) for name in names}
+        pairs = [(part, parts[(i + way) % len(parts)]) for i, part in enumerate(parts)]
+        angles = chord_angles(self.table, ARRAYS)
+        found = np.empty((len(_places(self.table, order)), len(parts)))
         with np.errstate(all="ignore"):
-            for pair in set(zip(parts, others, strict=True)):
-                chosen = np.array([p == pair for p in zip(parts, others, strict=True)])
-                values = angles(*pair, order)(here[chosen], there[chosen], *shape)
-                for name, value in zip(names, values, strict=True):
-                    found[name][chosen] = value
-        return found
+            for pair in set(pairs):
+                chosen = np.array([p == pair for p in pairs])
+                for row, value in zip(found, angles(*pair, order)(here[chosen], there[chosen], *shape), strict=True):
+                    row[chosen] = value
+        return list(found)
 
 
 @cache
 def _map_of(table: Table, maker: Any) -> Any:
     return maker(table, lam=1)
+
+
+def landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
+    """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`, in float64.
+
+    For tables of one convex component: the angle falls from `pi/2` to `-pi/2` on the way round, so Newton's method is
+    kept between bounds; `nan` beyond those angles. Numbers or arrays.
+
+    >>> from symbolic.tables import circle
+    >>> round(landing(circle, 0.0, 0.5), 12)  # pi - 2*phi
+    2.14159265359
+    """
+    arrays = bool(np.ndim(here) or np.ndim(phi))
+    angle = chord_angles(table, ARRAYS if arrays else FLOAT64)(0, 0, 1)
+    pick: Callable[[Any, Any, Any], Any] = np.where if arrays else _either
+    if not arrays and not abs(phi) < math.pi / 2:
+        return math.nan
+    low = here + 2 * math.pi * turns
+    high = low + 2 * math.pi
+    x = low + math.pi - 2 * phi
+    with np.errstate(all="ignore"):
+        x = pick((x > low) & (x < high), x, low + math.pi)
+        for _ in range(SWEEPS):
+            value, _, slope = angle(here, x)[:3]
+            low, high = pick(value > phi, x, low), pick(value > phi, high, x)
+            better = x - (value - phi) / slope
+            better = pick((better > low) & (better < high), better, (low + high) / 2)
+            moved, x = abs(better - x), better
+            if np.max(moved, initial=0.0, where=np.isfinite(moved)) < CLOSE if arrays else moved < CLOSE:
+                break
+    return np.where(np.abs(phi) < math.pi / 2, x, math.nan) if arrays else x
+
+
+def _either(condition: Any, yes: Any, no: Any) -> Any:
+    return yes if condition else no

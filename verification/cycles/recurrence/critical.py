@@ -19,10 +19,10 @@ from symbolic.expressions.text import constant, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless, egg
 from verification.arithmetic.balls import Arithmetic
+from verification.arithmetic.iteration import Vector
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chain import Vector
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, Recurrence
+from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, Recurrence, Terms
 
 
 @dataclass(frozen=True)
@@ -151,9 +151,8 @@ def critical(
         at = {name: load(constant(value), arithmetic)()[0] for name, value in (fixed or {}).items()}
         at |= zip(parameters, z[n:], strict=True)
         ring = closure.padded(z[:n], closure.angle(arithmetic))
-        found = [rule(i, ring[i : i + 3], at) for i in range(n)]
-        rows = [slopes for _, slopes in found]
-        return [*(value for value, _ in found), *(kind.bordering(rows, closure.turn) for kind in kinds)]
+        terms = Terms.along([rule(i, ring[i : i + 3], at) for i in range(n)])
+        return [*terms.value, *(kind.bordering(terms.rows, closure.turn) for kind in kinds)]
 
     return Small(f"{' and '.join(kind.value for kind in kinds)} of {recurrence.label}", equations)
 

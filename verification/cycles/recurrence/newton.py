@@ -1,28 +1,26 @@
-"""What a solution's digits are worth: its condition number, and what that means for whoever asked.
+"""Newton's method on the equations of a cycle, in float64 and to any number of digits; what the digits are worth.
 
-The condition number is the largest row sum of the inverse of the system's matrix: no unknown moves farther when no
-equation is off by more than one. Next to a fold, where a multiplier is `1 + d`, it is of the size of `1/d`. Of a
-cycle it is estimated from a few solutions of the factored system: from below, and rarely off by more than a factor
-of 3 ([Higham2002], section 15.3). A system of a handful is inverted.
+In mpmath the precision doubles at each step: a step needs no more digits than it will make right, so the last step
+costs as much as all others together. The precision lives in a context made here; `mpmath.mp` is not touched.
 
-Newton's method on a problem, in mpmath, with a precision that doubles at each step.
-
-A step needs no more digits than it will make right, so the last step costs as much as all others
-together. The precision lives in a context made here; the ambient `mpmath.mp` is not touched.
+The condition number of a solution is the largest row sum of the inverse of the system's matrix: no unknown moves
+farther when no equation is off by more than one. Next to a fold, where a multiplier is `1 + d`, it is of the size of
+`1/d`. Of a cycle it is estimated from a few solutions of the factored system: from below, and rarely off by more than
+a factor of 3 ([Higham2002], section 15.3). A system of a handful of equations is inverted.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf, isfinite, log10
 from typing import Any, Protocol, runtime_checkable
 
 import mpmath
 
-from verification.arithmetic.balls import FLOAT64, Arithmetic, bits_of, multiprecision
+from verification.arithmetic.balls import FLOAT64, Arithmetic, multiprecision
+from verification.arithmetic.iteration import Iteration, Stop, Vector, iterated
 
-Vector = list[Any]
 Solve = Callable[[Vector], Vector]
 ASCENTS = 4  # vectors tried after the first; two are enough nearly always
 ROUNDINGS = 16  # of a residual
@@ -137,7 +135,9 @@ GUARD = 15  # decimal digits beyond those asked for
 START = 16  # digits of the first step in mpmath
 DIGITS = 15  # of a float64, which every number of so many digits survives
 ATTEMPTS = 6  # steps with the same number of digits
+SPARE = 8  # digits of the last step that may be rounding
 EPS = 2.0**-52
+IN_FLOATS = Stop(small=1e-6, enough=1e-15, steps=40, reach=0.3)
 NEAR = 1e-2  # radians: bounces farther apart are not the same, whatever the condition
 TOLD = 1e12  # the largest condition number that float64 can be trusted to tell
 
@@ -246,24 +246,30 @@ def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
     """
     context = mpmath.MPContext()
     context.prec = 53
-    z = [context.mpf(x) for x in floats(problem, start)]
+    z: Vector = [context.mpf(x) for x in floats(problem, start)]
     arithmetic = multiprecision(context)
     steps: list[Step] = []
     for level in levels(digits + GUARD):
         context.dps = level
-        for attempt in range(ATTEMPTS):
-            correction = problem.newton(arithmetic, z)
-            z = [x - d for x, d in zip(z, correction, strict=True)]
-            steps.append(Step(level, _log10(context, max(abs(d) for d in correction))))
-            right = -2 * steps[-1].correction  # convergence is quadratic
-            if right >= (digits + GUARD // 2 if level == digits + GUARD else 0.7 * level):
-                break
-            if attempt == ATTEMPTS - 1:
-                raise ValueError(
-                    f"{problem.label}: {ATTEMPTS} Newton steps with {level} digits still correct by "
-                    f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
-                )
+        enough = context.mpf(10) ** -enough_digits(level, digits + GUARD)
+        found = iterated(partial(problem.newton, arithmetic), z, Stop(enough=enough, steps=ATTEMPTS))
+        z = found.x
+        steps += [Step(level, float(context.log10(size))) for size in found.sizes or [context.mpf(10) ** -level]]
+        if not found.settled:
+            raise ValueError(
+                f"{problem.label}: {found.steps} Newton steps with {level} digits still correct by "
+                f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
+            )
     return Solution(problem, z, digits, tuple(steps))
+
+
+def enough_digits(level: int, digits: int) -> float:
+    """The digits of the last correction at a level: convergence is quadratic, so half of those that it leaves right.
+
+    >>> enough_digits(100, 100), enough_digits(50, 100)
+    (46.0, 17.5)
+    """
+    return (digits - SPARE if level == digits else 0.7 * level) / 2
 
 
 def levels(digits: int) -> list[int]:
@@ -278,7 +284,7 @@ def levels(digits: int) -> list[int]:
     return found if found[0] <= START or digits <= START else [START, *found]
 
 
-def floats(problem: System, start: Sequence[Any], steps: int = 40) -> list[float]:
+def floats(problem: System, start: Sequence[Any]) -> list[float]:
     """The solution near `start` in float64, as numbers alone.
 
     >>> from symbolic.tables import ellipse
@@ -287,11 +293,11 @@ def floats(problem: System, start: Sequence[Any], steps: int = 40) -> list[float
     >>> [round(x, 12) for x in floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6])]
     [1.570796326795, -1.570796326795]
     """
-    return in_floats(problem, start, steps).z
+    return in_floats(problem, start).z
 
 
-def in_floats(problem: System, start: Sequence[Any], steps: int = 40) -> Solution:
-    """The solution near `start` in float64: steps as long as they shorten.
+def in_floats(problem: System, start: Sequence[Any]) -> Solution:
+    """The solution near `start` in float64.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
@@ -299,23 +305,9 @@ def in_floats(problem: System, start: Sequence[Any], steps: int = 40) -> Solutio
     >>> in_floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6]).words
     'condition number 1.5, 15 of 15 digits sure'
     """
-    z = [float(x) for x in start]
-    sizes: list[float] = []
-    for _ in range(steps):
-        try:
-            correction = problem.newton(FLOAT64, z)
-        except ZeroDivisionError:
-            break
-        size = max(abs(d) for d in correction)
-        if len(sizes) > 4 and size < 1e-6 and size >= sizes[-1]:
-            return _in_floats(problem, z, sizes)
-        reach = min(1.0, 0.3 / size) if size > 0 else 1.0
-        z = [x - reach * d for x, d in zip(z, correction, strict=True)]
-        sizes.append(size)
-        if size < 1e-15:
-            break
-    last = _in_floats(problem, z, sizes)
-    if sizes and sizes[-1] < 1e-6:
+    found = settled(problem, FLOAT64, [float(x) for x in start])
+    last = Solution(problem, found.x, DIGITS, tuple(Step(START, log10(size)) for size in found.sizes[-1:]))
+    if found.settled:
         return last
     why = f"; at the last step: {last.words}" if last.advice else ""
     raise UnsettledError(
@@ -323,14 +315,12 @@ def in_floats(problem: System, start: Sequence[Any], steps: int = 40) -> Solutio
     )
 
 
-def _in_floats(problem: System, z: list[float], sizes: list[float]) -> Solution:
-    return Solution(problem, z, DIGITS, tuple(Step(START, log10(size) if size else -START) for size in sizes[-1:]))
+def settled(system: System, arithmetic: Arithmetic, start: Sequence[Any]) -> Iteration:
+    """The iteration in one arithmetic, until its corrections are rounding; slow convergence to a double zero counts."""
+    found = iterated(partial(system.newton, arithmetic), start, IN_FLOATS)
+    return replace(found, settled=found.settled or bool(found.sizes and found.sizes[-1] < IN_FLOATS.small))
 
 
 def given(problem: System, z: Sequence[Any]) -> Solution:
     """A solution in float64 that was found elsewhere, to say what its digits are worth."""
-    return _in_floats(problem, [float(x) for x in z], [])
-
-
-def _log10(context: Any, size: Any) -> float:
-    return float(context.log10(size)) if size else -float(bits_of(context.dps))
+    return Solution(problem, [float(x) for x in z], DIGITS, ())

@@ -1,22 +1,21 @@
-"""What is sought: a cycle of the chord system, by itself or where it bifurcates.
+"""A cycle of a billiard, by itself or where it folds or flips: its equations and their derivatives, over any numbers.
 
-Unknowns are the boundary parameters of the bounces and, at a bifurcation, one free letter: `lam` or
-a shape. Equations are the collision rule at every bounce and, at a bifurcation, `rest = 0`: the one
-number that makes the linearised system singular on vectors that come back unchanged (fold) or
-negated (flip). All of it holds for any kind of number that the kernels can be loaded with.
+Unknowns are the boundary parameters of the bounces and, at a bifurcation, one free parameter: `lam` or a shape.
+Equations are the collision rule at every bounce and, at a bifurcation, that the bordering function vanishes: the one
+number that makes the linearised rules singular on vectors that come back unchanged (fold) or negated (flip).
 
-How a cycle bifurcates: the numbers of the normal form, over any kind of number.
+The normal form says how the cycle bifurcates. With `v` and `w` the right and left vectors of the singular
+linearisation, `F` the rules and `e` the amplitude along `v`, the bifurcating branch is
+`parameter = critical + branch*e**2`:
 
-With `v` and `w` the right and left vectors of the singular linearisation, `F` the collision rule and
-`e` the amplitude along `v`, the bifurcating branch is `letter = critical + branch*e**2`:
+    fold:  branch = -[e**2] w.F / (w . dF/dparameter)
+    flip:  branch = -[e**3] w.F / speed,     speed = the derivative of the bordering function along the cycle,
 
-    fold:  branch = -[e**2]F / (w . dF/dletter)
-    flip:  branch = -[e**3]F / speed,     speed = d rest/d letter along the cycle,
-
-where the coefficient of `e**3` is taken on the curve `theta + e*v + e**2*u`, `u` chosen such that
-the one of `e**2` vanishes. `turn` is `d rest/d multiplier`: not 0 exactly when the multiplier is simple.
+where the coefficient of `e**3` is taken on the curve `theta + e*v + e**2*u`, `u` chosen such that the one of `e**2`
+vanishes. `turn` is the bordering function's derivative by the multiplier: not 0 exactly when that is simple.
 """
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import remainder, tau
@@ -27,11 +26,12 @@ from sympy import Expr, simplify
 from symbolic.expressions.text import constant, load
 from symbolic.tables.table import Component, Table, theta
 from verification.arithmetic.balls import Arithmetic
+from verification.arithmetic.iteration import Vector
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chain import Chain, Elimination, Vector, dot, trace_and_determinant
-from verification.cycles.recurrence.chords import chord_angles
+from verification.cycles.recurrence.chain import Chain, Elimination, dot, trace_and_determinant
+from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.newton import Solve
-from verification.cycles.recurrence.recurrence import IDENTITY, BifurcationKind, Closure
+from verification.cycles.recurrence.recurrence import IDENTITY, BifurcationKind, Closure, Recurrence, Terms
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,18 @@ class Problem:
         if self.mirror and not all(mirrored(component) for component in self.table.components):
             raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
 
+    @cached_property
+    def ring(self) -> Chords:
+        """The recurrence that its bounces obey."""
+        return Chords(self.table, self.components, self.closure)
+
+    def at(self, arithmetic: Arithmetic, z: Vector) -> dict[str, Any]:
+        """The parameters, given or unknown."""
+        lam = self.lam
+        if isinstance(lam, Expr):
+            lam = load(constant(lam), arithmetic)()[0]
+        return ({} if lam is None else {"lam": lam}) | ({self.free: z[self.period]} if self.free else {})
+
     @property
     def mirror(self) -> bool:
         """Is it half a cycle, that its mirror image completes?"""
@@ -74,20 +86,20 @@ class Problem:
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """`F(z)`."""
-        return Linearised(Rows(self, arithmetic), z, slope=False).value
+        return Linearised(self, arithmetic, z, slope=False).value
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
         """`F'(z)^-1 r`."""
-        return Linearised(Rows(self, arithmetic), z).solve(r)
+        return Linearised(self, arithmetic, z).solve(r)
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """`F'(z)^-1 F(z)`, Newton's correction."""
-        here = Linearised(Rows(self, arithmetic), z)
+        here = Linearised(self, arithmetic, z)
         return here.solve(here.value)
 
     def inverses(self, arithmetic: Arithmetic, z: Vector) -> tuple[Solve, Solve]:
         """`F'(z)^-1` and its transpose, from one factorisation."""
-        here = Linearised(Rows(self, arithmetic), z)
+        here = Linearised(self, arithmetic, z)
         return here.solve, here.solve_transposed
 
     def shorter(self, z: Vector, within: float) -> int:
@@ -124,55 +136,24 @@ def mirrored(component: Component) -> bool:
     return all(simplify(part) == 0 for part in image)
 
 
-class Rows:
-    """The collision rule along a cycle, with derivatives, in one kind of number."""
-
-    def __init__(self, problem: Problem, arithmetic: Arithmetic) -> None:
-        self.problem, self.arithmetic = problem, arithmetic
-        self.shape = problem.free if problem.free not in ("", "lam") else ""
-        self.kernel = chord_angles(problem.table, arithmetic)
-
-    def contraction(self, z: Vector) -> Any:
-        """`lam`, given or unknown."""
-        lam = self.problem.lam
-        if lam is None:
-            return z[-1]
-        return load(constant(lam), self.arithmetic)()[0] if isinstance(lam, Expr) else lam
-
-    def angles(self, z: Vector, order: int) -> tuple[list[Any], list[Any]]:
-        """Exit and incidence angles with derivatives at each bounce, as the kernels return them."""
-        components, n, closure = self.problem.components, self.problem.period, self.problem.closure
-        ring = closure.padded(z[:n], closure.angle(self.arithmetic))
-        shape = (z[n],) if self.shape else ()
-        out, into = [], []
-        for i in range(n):
-            here, before, after = components[i], (i - 1) % n, (i + 1) % n
-            out.append(self.kernel(here, components[after], order)(z[i], ring[i + 2], *shape))
-            into.append(self.kernel(here, components[before], order)(z[i], ring[i], *shape))
-        return out, into
-
-
 class Linearised:
     """The equations of a problem and their first derivatives at one point, or over one box."""
 
-    def __init__(self, rows: Rows, z: Vector, slope: bool = True) -> None:
-        problem = rows.problem
-        self.problem, self.z, self.rows = problem, z, rows
-        order = 2 if problem.kind is not None and slope else 1
-        self.lam = lam = rows.contraction(z)
-        self.out, self.into = out, into = rows.angles(z, order)
-        self.rule = [f[0] + lam * b[0] for f, b in zip(out, into, strict=True)]
-        upper = [f[2] for f in out]
-        diagonal = [f[1] + lam * b[1] for f, b in zip(out, into, strict=True)]
-        lower = [lam * b[2] for b in into]
-        self.value: Vector = list(self.rule)
-        self.plain = Chain(lower, diagonal, upper, problem.closure.turn)
-        if problem.kind is not None:
-            self.critical = Elimination(Chain(lower, diagonal, upper, problem.closure.turn * problem.kind.multiplier))
-            self.value.append(self.critical.rest)
+    def __init__(self, problem: Problem, arithmetic: Arithmetic, z: Vector, slope: bool = True) -> None:
+        kind, closure, n = problem.kind, problem.closure, problem.period
+        self.problem, self.z, self.at = problem, z, problem.at(arithmetic, z)
+        padded, rule = closure.padded(z[:n], closure.angle(arithmetic)), problem.ring.over(arithmetic)
+        order = 2 if kind is not None and slope else 1
+        self.terms = Terms.along([rule(i, padded[i : i + 3], self.at, order) for i in range(n)])
+        self.value: Vector = list(self.terms.value)
+        self.plain = Chain(*self.terms.slope, closure.turn)
+        if kind is not None:
+            self.critical = Elimination(Chain(*self.terms.slope, closure.turn * kind.multiplier))
+            self.value.append(self.critical.bordering)
             if slope:
-                self.by_letter = self._by_letter()
-                self.row, self.corner = self._of_rest()
+                both = self.critical.right, self.critical.left
+                self.row, by = bordering_slopes(self.terms, closure, *both, kind.multiplier)
+                self.column, self.corner = self.terms.by[problem.free], by[problem.free]
 
     @cached_property
     def cycle(self) -> Elimination:
@@ -183,55 +164,59 @@ class Linearised:
         """The matrix of first derivatives, inverted on `r`."""
         if self.problem.kind is None:
             return self.cycle.solve(r)
-        return self.cycle.bordered(self.by_letter[0], self.row, [self.corner], r)
+        return self.cycle.bordered(self.column, self.row, [self.corner], r)
 
     def solve_transposed(self, r: Vector) -> Vector:
         """The transposed matrix, inverted on `r`."""
         if self.problem.kind is None:
             return self.cycle.transposed([], [], [], r)
-        return self.cycle.transposed(self.by_letter[0], self.row, [self.corner], r)
+        return self.cycle.transposed(self.column, self.row, [self.corner], r)
 
-    def _by_letter(self) -> tuple[Vector, Vector, Vector, Vector]:
-        """The derivatives by the free letter of the rule and of the three diagonals."""
-        if self.problem.free == "lam":
-            rule, lower, diagonal = ([b[k] for b in self.into] for k in (0, 2, 1))
-            return rule, lower, diagonal, [0] * len(rule)
-        at, s, lam = self.rows.kernel.places(2), self.rows.shape, self.lam
-        r, d, u = at[f"angle_{s}"], at[f"angle_0_{s}"], at[f"angle_1_{s}"]
-        both = list(zip(self.out, self.into, strict=True))
-        return (
-            [f[r] + lam * b[r] for f, b in both],
-            [lam * b[u] for _, b in both],
-            [f[d] + lam * b[d] for f, b in both],
-            [f[u] for f, _ in both],
+    def normal_form(self, arithmetic: Arithmetic) -> "NormalForm":
+        """The normal form where the equations of a fold or a flip hold."""
+        problem, critical = self.problem, self.critical
+        kind = problem.kind or BifurcationKind.FOLD
+        x = self.z[: problem.period]
+
+        def series(directions: list[Vector]) -> list[Jet]:
+            return expanded(problem.ring, arithmetic, x, self.at, kind.multiplier, directions)
+
+        return normal_form(
+            kind, problem.free, self.terms, problem.closure, critical.right, critical.left, series, self.cycle.solve
         )
 
-    def _of_rest(self) -> tuple[Vector, Any]:
-        """The derivatives of `rest` by the parameters and by the free letter: `left . dJ . right`."""
-        at = self.rows.kernel.places(2)
-        hh, ho, oo = at["angle_00"], at["angle_01"], at["angle_11"]
-        n, sign, turn, lam = self.problem.period, self.critical.chain.sign, self.problem.closure.turn, self.lam
-        v, w = self.critical.right, self.critical.left
-        by_theta: Vector = [0] * n
-        for i, (f, b, weight) in enumerate(zip(self.out, self.into, w, strict=True)):
-            here = v[i]
-            before = v[i - 1] if i else sign * v[n - 1]
-            after = v[i + 1] if i < n - 1 else sign * v[0]
-            back_mixed, forth_mixed = lam * b[ho], f[ho]
-            back = lam * b[oo] * before + back_mixed * here
-            own = back_mixed * before + (f[hh] + lam * b[hh]) * here + forth_mixed * after
-            forth = forth_mixed * here + f[oo] * after
-            by_theta[i - 1] = by_theta[i - 1] + weight * back * (1 if i else turn)
-            by_theta[i] = by_theta[i] + weight * own
-            by_theta[(i + 1) % n] = by_theta[(i + 1) % n] + weight * forth * (1 if i < n - 1 else turn)
-        _, lower, diagonal, upper = self.by_letter
-        return by_theta, dot(w, Chain(lower, diagonal, upper, sign).times(v))
+
+def bordering_slopes(
+    terms: Terms[Any], closure: Closure, v: Sequence[Any], w: Sequence[Any], sign: int
+) -> tuple[Vector, dict[str, Any]]:
+    """`d(w A v)` by the bounces and by each parameter, `A` the linearised rules on vectors that come back times `sign`.
+
+    With `v` and `w` those of an elimination this is the derivative of the bordering function.
+    """
+    n, close = len(v), sign * closure.turn
+    by_bounce: Vector = [0] * n
+    by_parameter: dict[str, Any] = dict.fromkeys(terms.slope_by, 0)
+    entries = [[terms.bend.get((min(j, k), max(j, k))) for k in range(3)] for j in range(3)]
+    for i in range(n):
+        near = v[i - 1] if i else close * v[n - 1], v[i], v[i + 1] if i < n - 1 else close * v[0]
+        turns = 1 if i else closure.turn, 1, 1 if i < n - 1 else closure.turn
+        for j, turn in enumerate(turns):
+            total: Any = 0
+            for entry, x in zip(entries[j], near, strict=True):
+                if entry is not None:
+                    total = total + entry[i] * x
+            at = (i + j - 1) % n
+            by_bounce[at] = by_bounce[at] + w[i] * total * turn
+        for name, slopes in terms.slope_by.items():
+            by_parameter[name] = by_parameter[name] + w[i] * dot([slope[i] for slope in slopes], near)
+    return by_bounce, by_parameter
 
 
 @dataclass(frozen=True)
 class NormalForm:
     """`turn`, `speed` and `bend` as above; `determinant` is that of the monodromy matrix."""
 
+    kind: BifurcationKind
     turn: Any
     speed: Any
     bend: Any
@@ -239,46 +224,66 @@ class NormalForm:
 
     @property
     def branch(self) -> Any:
-        """`letter = critical + branch*amplitude**2`."""
+        """`parameter = critical + branch*amplitude**2`."""
         return -self.bend / self.speed
 
     @property
-    def multiplier_speed(self) -> Any:
-        """The derivative of the critical multiplier by the letter, at a flip."""
-        return -self.speed / self.turn
+    def supercritical(self) -> bool | None:
+        """True when a flip bears a cycle that is stable, next to the unstable one; None when that is not decided.
+
+        The cycle that is born lies on the side `branch`. The multiplier moves with `-speed/turn` and passes -1 on the
+        side where the old cycle is unstable: the two sides agree at a supercritical flip.
+        """
+        if self.kind is not BifurcationKind.FLIP:
+            return None
+        side = self.bend * self.turn
+        return True if side < 0 else False if side > 0 else None
 
 
-def normal_form(at: Linearised, arithmetic: Arithmetic) -> NormalForm:
-    """The normal form where the equations of a fold or a flip hold."""
-    chain, v, w = at.critical.chain, at.critical.right, at.critical.left
-    turn = at.problem.closure.turn * (w[-1] * chain.upper[-1] * v[0] - w[0] * chain.lower[0] * v[-1])
-    _, determinant = trace_and_determinant(chain.rows)
-    second = along(at, jets(arithmetic), [v])
-    if at.problem.kind is BifurcationKind.FOLD:
-        return NormalForm(turn, dot(w, at.by_letter[0]), dot(w, [r.c[2] for r in second]), determinant)
-    bent = at.cycle.solve([-r.c[2] for r in second])
-    third = along(at, jets(arithmetic), [v, bent])
-    motion = at.cycle.solve([-r for r in at.by_letter[0]])
-    return NormalForm(turn, at.corner + dot(at.row, motion), dot(w, [r.c[3] for r in third]), determinant)
+Series = Callable[[list[Any]], Sequence[Jet]]
 
 
-def along(at: Linearised, arithmetic: Arithmetic, directions: list[Vector]) -> list[Jet]:
-    """The collision rule on the curve `theta + directions[0]*e + directions[1]*e**2`.
+def bend_of(kind: BifurcationKind, w: Sequence[Any], v: Any, series: Series, solve: Solve) -> Any:
+    """`[e**2] w.F` at a fold; at a flip `[e**3] w.F` on the curve whose second order is solved for."""
+    second = [rule.c[2] for rule in series([v])]
+    if kind is BifurcationKind.FOLD:
+        return dot(w, second)
+    return dot(w, [rule.c[3] for rule in series([v, solve([-x for x in second])])])
 
-    Around the end of a flip the odd powers of `e` come back negated, with a mirror all of them. One
-    order more than there are directions is kept.
+
+def normal_form(
+    kind: BifurcationKind,
+    parameter: str,
+    terms: Terms[Any],
+    closure: Closure,
+    v: Sequence[Any],
+    w: Sequence[Any],
+    series: Series,
+    solve: Solve,
+) -> NormalForm:
+    """The normal form of a cycle that folds or flips, from its singular vectors.
+
+    `series` expands the rules along curves as `expanded` does, and `solve` inverts the linearised rules.
     """
-    problem, z = at.problem, at.z
-    n, order = problem.period, len(directions) + 1
-    rows = Rows(problem, arithmetic)
-    own = [Jet(z[i], *(d[i] for d in directions), *([0] * (order - len(directions)))) for i in range(n)]
-    sign = problem.kind.multiplier if problem.kind else 0
-    first, last = (Jet(*(c * problem.closure.turn * sign**k for k, c in enumerate(x.c))) for x in (own[0], own[-1]))
-    ring = [last, *own, first]
-    parts, shape = problem.components, (z[n],) if rows.shape else ()
-    found = []
-    for i in range(n):
-        f = rows.kernel(parts[i], parts[(i + 1) % n], 0)(ring[i + 1], ring[i + 2], *shape)[0]
-        b = rows.kernel(parts[i], parts[i - 1], 0)(ring[i + 1], ring[i], *shape)[0]
-        found.append(f + at.lam * b)
-    return found
+    lower, _, upper = terms.slope
+    turn = closure.turn * (w[-1] * upper[-1] * v[0] - w[0] * lower[0] * v[-1])
+    _, determinant = trace_and_determinant(terms.rows)
+    speed, bend = dot(w, terms.by[parameter]), bend_of(kind, w, v, series, solve)
+    if kind is not BifurcationKind.FOLD:
+        by_bounce, by = bordering_slopes(terms, closure, v, w, kind.multiplier)
+        speed = by[parameter] + dot(by_bounce, solve([-x for x in terms.by[parameter]]))
+    return NormalForm(kind, turn, speed, bend, determinant)
+
+
+def expanded(
+    ring: Recurrence, arithmetic: Arithmetic, x: Sequence[Any], at: Mapping[str, Any], sign: int, directions: list[Any]
+) -> list[Jet]:
+    """The rules on the curve `x + directions[0]*e + directions[1]*e**2`, to one order more than there are directions.
+
+    Around the end the odd powers of `e` come back times `sign`; with a mirror all of them are negated as well.
+    """
+    own = [Jet(*coefficients, 0) for coefficients in zip(x, *directions, strict=True)]
+    padded = ring.closure.padded(own, ring.closure.angle(arithmetic))
+    padded[0], padded[-1] = (Jet(*(c * sign**k for k, c in enumerate(y.c))) for y in (padded[0], padded[-1]))
+    rule = ring.over(jets(arithmetic))
+    return [rule(i, padded[i : i + 3], at, 0).value for i in range(len(own))]

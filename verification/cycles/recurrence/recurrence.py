@@ -31,7 +31,7 @@ from enum import Enum
 from functools import cache
 from itertools import combinations_with_replacement
 from math import pi
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,7 @@ class BifurcationKind(Enum):
             ((before, here, after),) = rows
             return sign * before + here + sign * after
         lower, diagonal, upper = zip(*rows, strict=True)
-        return Elimination(Chain(lower, diagonal, upper, sign)).rest
+        return Elimination(Chain(lower, diagonal, upper, sign)).bordering
 
 
 SOLVED = {
@@ -146,18 +146,42 @@ IDENTITY, MIRROR = Closure(), Closure(-1)
 Array = NDArray[np.float64]
 Letters = Mapping[str, float]
 Pair = tuple[int, int]
-Slopes = tuple[Any, Any, Any]
+X = TypeVar("X")
 
 
 @dataclass(frozen=True)
-class Terms:
-    """The rule along a ring, an entry for each bounce; derivatives by (before, here, after) and by letters."""
+class Terms(Generic[X]):
+    """The rule and its derivatives by (before, here, after) and by the parameters: numbers at one bounce, or rows of
+    them along a ring; `bend` and `slope_by` are the second derivatives, where they were asked for.
+    """
 
-    value: Array
-    slope: tuple[Array, Array, Array]
-    by: dict[str, Array]
-    bend: dict[Pair, Array]
-    slope_by: dict[str, tuple[Array, Array, Array]]
+    value: X
+    slope: tuple[X, X, X]
+    by: dict[str, X]
+    bend: dict[Pair, X]
+    slope_by: dict[str, tuple[X, X, X]]
+
+    @property
+    def rows(self) -> list[tuple[Any, Any, Any]]:
+        """Along a ring, the derivatives at each bounce."""
+        return list(zip(*self.slope, strict=True))  # type: ignore[call-overload]  # rows of numbers
+
+    @staticmethod
+    def along(bounces: "Sequence[Terms[Any]]") -> "Terms[list[Any]]":
+        """The terms of single bounces as those of their ring."""
+        first = bounces[0]
+        return Terms(
+            [terms.value for terms in bounces],
+            _columns([terms.slope for terms in bounces]),
+            {name: [terms.by[name] for terms in bounces] for name in first.by},
+            {pair: [terms.bend[pair] for terms in bounces] for pair in first.bend},
+            {name: _columns([terms.slope_by[name] for terms in bounces]) for name in first.slope_by},
+        )
+
+
+def _columns(rows: Sequence[tuple[Any, Any, Any]]) -> tuple[list[Any], list[Any], list[Any]]:
+    before, here, after = (list(column) for column in zip(*rows, strict=True))
+    return before, here, after
 
 
 def around(closure: Closure, x: Array) -> Array:
@@ -166,14 +190,14 @@ def around(closure: Closure, x: Array) -> Array:
 
 
 class Rule(Protocol):
-    """The rule at single bounces, over one kind of number."""
+    """The rule at single bounces, over one kind of number, or arrays of one bounce of many rings."""
 
-    def __call__(self, i: int, near: Sequence[Any], at: Mapping[str, Any]) -> tuple[Any, Slopes]:
-        """At bounce `i` with its neighbours, the value and its derivatives by `(before, here, after)`."""
+    def __call__(self, i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
+        """At bounce `i` with its neighbours, the value and its derivatives up to `order`, at most 2."""
 
 
 class Recurrence(Protocol):
-    """A ring of rules: `terms` in float64 with further derivatives, `over` any kind of number."""
+    """A ring of rules: `over` any kind of number, bounce by bounce, and `terms` in float64, all bounces at once."""
 
     @property
     def label(self) -> str:
@@ -191,11 +215,8 @@ class Recurrence(Protocol):
     def letters(self) -> tuple[str, ...]:
         """The letters that it can be followed in."""
 
-    def terms(self, x: Array, at: Letters, order: int) -> Terms:
+    def terms(self, x: Array, at: Letters, order: int) -> Terms[Array]:
         """The rule and its derivatives up to `order`."""
-
-    def rule(self, arithmetic: Arithmetic, ring: tuple[Any, Any, Any], at: Letters) -> Any:
-        """The rule at `(before, here, after)`, arrays of all bounces or series of such arrays."""
 
     def over(self, arithmetic: Arithmetic) -> Rule:
         """The rule at one bounce at a time, over any kind of number."""
@@ -230,36 +251,34 @@ class Explicit:
         """The parameters' names."""
         return tuple(p.name for p in self.parameters)
 
-    def terms(self, x: Array, at: Letters, order: int) -> Terms:
-        """The rule and its derivatives up to second order, whatever `order` is."""
-        ring, values = around(self.closure, x), [at[name] for name in self.letters]
-        made = load(_explicit(self.residual, self.parameters), ARRAYS)(ring[:-2], ring[1:-1], ring[2:], *values)
-        full = [np.broadcast_to(np.asarray(v, dtype=float), x.shape) for v in made]
-        n = len(self.parameters)
-        pairs = list(combinations_with_replacement(range(3), 2))
-        by = dict(zip(self.letters, full[4 : 4 + n], strict=True))
-        bend = dict(zip(pairs, full[4 + n : 10 + n], strict=True))
-        rest = full[10 + n :]
-        mixed = {name: (rest[3 * i], rest[3 * i + 1], rest[3 * i + 2]) for i, name in enumerate(self.letters)}
-        return Terms(full[0], (full[1], full[2], full[3]), by, bend, mixed)
-
-    def rule(self, arithmetic: Arithmetic, ring: tuple[Any, Any, Any], at: Letters) -> Any:
-        """The rule at `(before, here, after)`."""
-        return load(_plain(self.residual, self.parameters), arithmetic)(*ring, *(at[name] for name in self.letters))[0]
+    def terms(self, x: Array, at: Letters, order: int) -> Terms[Array]:
+        """The rule and its derivatives up to `order`."""
+        ring = around(self.closure, x)
+        return self.over(ARRAYS)(0, (ring[:-2], ring[1:-1], ring[2:]), at, order)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The rule at one bounce, the same at each.
+        """The rule at one bounce, the same at each; derivatives that are constant are numbers of the same kind.
 
         >>> from fractions import Fraction
-        >>> henon(1).over({"q": Fraction})(0, (1, 2, 3), {"a": 1, "b": 5})
+        >>> found = henon(1).over({"q": Fraction})(0, (1, 2, 3), {"a": 1, "b": 5})
+        >>> found.value, found.slope
         (1, (-5, 4, 1))
         """
-        residual = load(_sloped(self.residual, self.parameters), arithmetic)
 
-        def rule(i: int, near: Sequence[Any], at: Mapping[str, Any]) -> tuple[Any, Slopes]:
-            value, *slopes = residual(*near, *(at[name] for name in self.letters))
-            before, here, after = slopes
-            return value, (before, here, after)
+        def rule(i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
+            values = [at[name] for name in self.letters]
+            zero = 0 * near[1]
+            found = [x + zero for x in load(_kernel(self.residual, self.parameters, order), arithmetic)(*near, *values)]
+            value, *first = found[: 4 + len(values)]
+            second = found[4 + len(values) :]
+            bend, mixed = second[:6], iter(second[6:])
+            return Terms(
+                value,
+                (first[0], first[1], first[2]) if first else (zero, zero, zero),
+                dict(zip(self.letters, first[3:], strict=bool(first))),
+                dict(zip(combinations_with_replacement(range(3), 2), bend, strict=bool(bend))),
+                dict(zip(self.letters, zip(mixed, mixed, mixed, strict=True), strict=bool(bend))),
+            )
 
         return rule
 
@@ -273,23 +292,14 @@ class Explicit:
 
 
 @cache
-def _plain(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
-    return kernel("rule", [BEFORE, HERE, AFTER, *parameters], {"residual": residual})
-
-
-@cache
-def _sloped(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
-    slopes = {f"d_{s}": diff(residual, s) for s in (BEFORE, HERE, AFTER)}
-    return kernel("rule_and_slopes", [BEFORE, HERE, AFTER, *parameters], {"residual": residual} | slopes)
-
-
-@cache
-def _explicit(residual: Expr, parameters: tuple[Symbol, ...]) -> Kernel:
-    ring = (BEFORE, HERE, AFTER)
-    values = {"residual": residual} | {f"d_{s}": diff(residual, s) for s in (*ring, *parameters)}
-    values |= {f"d_{r}_{s}": diff(residual, r, s) for r, s in combinations_with_replacement(ring, 2)}
-    values |= {f"d_{p}_{s}": diff(residual, p, s) for p in parameters for s in ring}
-    return kernel("rule_and_derivatives", [BEFORE, HERE, AFTER, *parameters], values)
+def _kernel(residual: Expr, parameters: tuple[Symbol, ...], order: int) -> Kernel:
+    ring, values = (BEFORE, HERE, AFTER), {"residual": residual}
+    if order > 0:
+        values |= {f"d_{s}": diff(residual, s) for s in (*ring, *parameters)}
+    if order > 1:
+        values |= {f"d_{r}_{s}": diff(residual, r, s) for r, s in combinations_with_replacement(ring, 2)}
+        values |= {f"d_{p}_{s}": diff(residual, p, s) for p in parameters for s in ring}
+    return kernel(f"rule_to_order_{order}", [*ring, *parameters], values)
 
 
 r, a, b = (Symbol(name, real=True) for name in "rab")

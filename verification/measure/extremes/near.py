@@ -15,6 +15,7 @@ multiplier is `1 + d` it is of the size of `1/d`. The truth is the solution with
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 from math import inf, isfinite, log10, ulp
 from typing import Any
 
@@ -27,7 +28,8 @@ from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
 from verification.arithmetic.balls import bits_of, multiprecision
-from verification.cycles.recurrence.cascade import doubled, rung
+from verification.arithmetic.iteration import Stop, iterated
+from verification.cycles.recurrence.cascade import doubled, doubling
 from verification.cycles.recurrence.newton import (
     ROUNDINGS,
     Conditioning,
@@ -168,10 +170,10 @@ def touching(gap: Expr) -> Sought:
     return Problem(tables.egg(3).at(alpha=shape), (0, 0, 0), lam=lam), start
 
 
-def laddered(power: int) -> Sought:
+def in_the_cascade(power: int) -> Sought:
     """A cycle of period `2**power` of the egg, a third of the way from its birth to its own doubling."""
-    below = rung(Rational(2, 25), power)
-    gap = (rung(Rational(2, 25), power + 1).lam - below.lam) / 3
+    below = doubling(Rational(2, 25), power)
+    gap = (doubling(Rational(2, 25), power + 1).lam - below.lam) / 3
     theta, lam = doubled(below.problem, below.start, gap)
     return Problem(below.problem.table, (0,) * 2**power, lam=Rational(lam)), theta
 
@@ -218,17 +220,9 @@ def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
     """Newton's method in mpmath, by default with the bits of a float64, until the corrections shrink no more."""
     context = mpmath.MPContext()
     context.prec = bits
-    arithmetic, z, last = multiprecision(context), [context.mpf(x) for x in start], context.inf
-    for _ in range(60):
-        try:
-            correction = problem.newton(arithmetic, z)
-        except ZeroDivisionError:
-            break
-        size = max(abs(x) for x in correction)
-        if size < 1e-6 and size >= last:  # at a fold they halve, which is still shrinking
-            break
-        z, last = [x - d for x, d in zip(z, correction, strict=True)], size
-    return Solution(problem, z, int((bits - 1) * log10(2)), ())
+    newton = partial(problem.newton, multiprecision(context))
+    found = iterated(newton, [context.mpf(x) for x in start], Stop(small=1e-6, steps=60))
+    return Solution(problem, found.x, int((bits - 1) * log10(2)), ())
 
 
 ONE, MINUS, LONG = "Multipliers next to +1", "Multipliers next to -1", "Long cycles"
@@ -245,9 +239,9 @@ CYCLES = (
         "egg's diameter, alpha 1e-14 from its flip: 8e-13 from -1", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=False)
     ),
     Cycle("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True)),
-    Cycle("period 2^4 of the egg's ladder", LONG, lambda: laddered(4)),
+    Cycle("period 2^4 of the egg's cascade", LONG, lambda: in_the_cascade(4)),
 )
 LONGER = (
-    Cycle("period 2^8 of the egg's ladder", LONG, lambda: laddered(8)),
-    Cycle("period 2^12 of the egg's ladder", LONG, lambda: laddered(12)),
+    Cycle("period 2^8 of the egg's cascade", LONG, lambda: in_the_cascade(8)),
+    Cycle("period 2^12 of the egg's cascade", LONG, lambda: in_the_cascade(12)),
 )

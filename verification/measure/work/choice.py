@@ -32,6 +32,7 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.pinball.sampling import Growth
+from symbolic.tables import cardioid
 from verification.measure.work.question import Question
 from verification.measure.work.row import Row, duration, short, timed
 
@@ -260,8 +261,6 @@ def _known(question: str) -> tuple[Entry, ...]:
 
 
 WAYS = ("compiled kernel", "arb, certified")  # that say how many digits an orbit has left: mpmath's does not
-LIKE = {"cardioid": "step-cardioid", "cuspless": "step-cardioid"}  # the measured bounce that a table's is most like
-OTHERS = "step-egg"
 LOOKS = 1000  # at an orbit
 MOST_DIGITS = 10_000
 HOPELESS = 400.0  # digits: an orbit that loses more is not followed to say how many
@@ -278,7 +277,8 @@ def for_orbit(
     """
     if bounces < 1:
         raise ValueError(f"bounces = {bounces} is out of range; accepted: at least 1")
-    name = LIKE.get(map.family.name, OTHERS)
+    arc = cardioid.components[0].point
+    name = "step-cardioid" if any(part.point == arc for part in map.table.components) else "step-egg"  # the most alike
     lost = digits_lost(map, start, bounces)
     known = [entry for entry in table()[name] if entry.method in WAYS]
     if math.isinf(lost):

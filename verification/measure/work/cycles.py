@@ -7,6 +7,7 @@ from functools import cache, partial
 from itertools import islice
 from typing import Any
 
+import numpy as np
 from flint import arb
 from sympy import N, Rational, acos
 
@@ -15,7 +16,8 @@ from symbolic import tables
 from symbolic.cycles import polygons
 from symbolic.tables.table import Table, lam
 from symbolic.tables.table import alpha as alpha_letter
-from verification.cycles.recurrence.cascade import Rung, cycle_at, doubled, ladder
+from verification.cycles.recurrence.cascade import Doubling, cascade, cycle_at, doubled
+from verification.cycles.recurrence.newton import floats
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.measure.work.bench import module
@@ -28,7 +30,7 @@ ALPHA = Rational(2, 25)
 HALF = Rational(1, 2)
 EGG = tables.egg(3).at(alpha=ALPHA)
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
-FIRST, HIGHEST = 3, 6  # rungs of the ladder, as in section 6.6
+FIRST, HIGHEST = 3, 6  # the n of the doublings, as in section 6.6
 FAR = Rational(41, 100)  # a contraction at which the cycle of period 64 has multipliers of some 10**5
 STRIDE = 0.2  # of the way back to its birth, in the contraction
 
@@ -64,12 +66,8 @@ def whole(proof: Proof) -> Proof:
 
 def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
     """The exit angle at the first bounce, to three decimals."""
-    from verification.arithmetic.balls import FLOAT64
-    from verification.cycles.recurrence.newton import floats
-    from verification.cycles.recurrence.problem import Rows
-
-    out, _ = Rows(problem, FLOAT64).angles(floats(problem, start), 1)
-    return round(float(out[0][0]), 3 if problem.period < 10 else 9)
+    out, _ = problem.ring.angles(np.array(floats(problem, start)), {"lam": float(problem.lam)})
+    return round(float(out[0]), 3 if problem.period < 10 else 9)
 
 
 def textbook_cycle(map: PinballMap, ball: tuple[float, float], period: int, settles: bool) -> list[Method]:
@@ -114,21 +112,21 @@ def triangle_start() -> tuple[float, ...]:
 
 
 def period_64() -> Question:
-    """The cycle of period 64 that the ladder bears, far from where it is born: strongly unstable."""
+    """The cycle of period 64 of the cascade, far from where it is born: strongly unstable."""
     own = PinballMap("egg", lam=str(FAR), alpha="2/25")
     return cycle("cycle-64", "A cycle of period 64, egg", EGG, FAR, far_cycle(), own, False)
 
 
 @cache
-def rungs() -> tuple[Rung, ...]:
-    """The rungs of the ladder in float64."""
-    return tuple(islice(ladder(ALPHA), HIGHEST - FIRST + 1))
+def members() -> tuple[Doubling, ...]:
+    """`lambda_3` to `lambda_6` in float64."""
+    return tuple(islice(cascade(ALPHA), HIGHEST - FIRST + 1))
 
 
 @cache
 def far_cycle() -> tuple[float, ...]:
     """The cycle of period 64, followed in the contraction from its birth, to six decimals."""
-    birth, below = rungs()[-1], rungs()[-2]
+    birth, below = members()[-1], members()[-2]
     here, lam = doubled(birth.problem, birth.start, 0.06 * (birth.lam - below.lam))
     before, last_step = here, 1.0
     while lam < float(FAR):
@@ -179,23 +177,23 @@ def textbook_fold() -> list[Method]:
 
 
 def doublings() -> Question:
-    """The rungs `lambda_3` to `lambda_6` of the egg's ladder. Paper: section 6.6."""
-    starts = [tuple(round(x, 5 if rung.n < HIGHEST else 6) for x in rung.start) for rung in rungs()]
+    """The doublings `lambda_3` to `lambda_6` of the egg's cascade. Paper: section 6.6."""
+    starts = [tuple(round(x, 5 if each.n < HIGHEST else 6) for x in each.start) for each in members()]
 
     def certified(problem: Problem, start: tuple[float, ...], digits: int) -> list[arb]:
         return [whole(certify(problem, list(start), digits)).value]
 
-    each = [
-        Sought(rung.problem, start, last).methods(partial(certified, rung.problem, start))
-        for rung, start in zip(rungs(), starts, strict=True)
+    singly = [
+        Sought(each.problem, start, last).methods(partial(certified, each.problem, start))
+        for each, start in zip(members(), starts, strict=True)
     ]
-    together = tuple(_together(methods) for methods in zip(*each, strict=True))
+    together = tuple(_together(methods) for methods in zip(*singly, strict=True))
     return Question(
         "doubling",
         "The doubling ladder, egg",
         f"lambda_{FIRST} to lambda_{HIGHEST}, where periods 4 to 32 double, alpha = {ALPHA}",
         "in lam",
-        lambda d: [whole(certify(r.problem, list(s), d)).value for r, s in zip(rungs(), starts, strict=True)],
+        lambda d: [whole(certify(r.problem, list(s), d)).value for r, s in zip(members(), starts, strict=True)],
         (*together, *textbook_doublings()),
     )
 
@@ -219,19 +217,19 @@ def textbook_doublings() -> list[Method]:
     if book is None:
         return []
     map = PinballMap("egg", lam=1, alpha="2/25")
-    found = rungs()
+    found = members()
 
     def map_at(lam: float) -> PinballMap:
         return map.at(lam)
 
     def brackets() -> list[tuple[int, tuple[float, float], float, float]]:
         made = []
-        for rung in found:
-            period = 2 ** (rung.n - 1)
-            gap = 0.002 / 4.67 ** (rung.n - FIRST)
-            theta = rung.start[0]
-            phi = first_exit(Problem(EGG, (0,) * period, lam=Rational(rung.lam)), tuple(rung.start[:-1]))
-            made.append((period, (theta, phi), rung.lam - gap, rung.lam + 0.7 * gap))
+        for each in found:
+            period = 2 ** (each.n - 1)
+            gap = 0.002 / 4.67 ** (each.n - FIRST)
+            theta = each.start[0]
+            phi = first_exit(Problem(EGG, (0,) * period, lam=Rational(each.lam)), tuple(each.start[:-1]))
+            made.append((period, (theta, phi), each.lam - gap, each.lam + 0.7 * gap))
         return made
 
     def flips(xtol: float) -> list[float]:

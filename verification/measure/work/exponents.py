@@ -22,8 +22,9 @@ from symbolic.expressions.text import Kernel, kernel, load
 from symbolic.tables.geometry import speed
 from symbolic.tables.table import theta
 from verification.arithmetic.balls import FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
-from verification.cycles.recurrence.chain import Vector, trace_and_determinant
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.arithmetic.iteration import Vector
+from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.measure.work.bench import module
 from verification.measure.work.cycles import EGG, HALF, first_exit, triangle_start, whole
 from verification.measure.work.question import Claimed, Method, Question, available
@@ -47,14 +48,14 @@ def of_a_cycle() -> Question:
     ball = start[0], first_exit(problem, start)
 
     def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
-        trace, determinant = trace_and_determinant(Linearised(Rows(problem, arithmetic), z).plain.rows)
+        trace, determinant = trace_and_determinant(Linearised(problem, arithmetic, z).terms.rows)
         return [larger(arithmetic, trace, determinant, 3)]
 
     def certified(digits: int) -> list[arb]:
         proof = whole(certify(problem, list(start), digits + 5))
         bits = bits_of(digits, 64)
         with working(bits):
-            pair = trace_and_determinant(Linearised(Rows(problem, balls(bits)), proof.enclosure.zero).plain.rows)
+            pair = trace_and_determinant(Linearised(problem, balls(bits), proof.enclosure.zero).terms.rows)
             return [enclosed_exponents(*pair, 3)[0]]
 
     def counted(bounces: int) -> list[float]:

@@ -21,7 +21,7 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.geometry import curvature, speed, velocity
 from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, working
-from verification.cycles.recurrence.chain import Vector
+from verification.arithmetic.iteration import Vector
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.maps.exact import ExactMap
 from verification.measure.work.bench import module

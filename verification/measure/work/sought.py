@@ -6,10 +6,10 @@ at each step, in the midpoints of balls, and in balls with a proof. All start fr
 Two values that are no fold and no flip: `lambda*` of the cuspless cardioid, the least expansion of the slap map.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from decimal import Decimal
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import mpmath
@@ -21,9 +21,19 @@ from numeric import PinballMap
 from symbolic.cycles.cardioid_slap import LAUNCH_Q2, q, slope_squared
 from symbolic.expressions.text import Kernel, kernel, load
 from verification.arithmetic.balls import FLOAT64, FUNCTIONS, Arithmetic, balls, bits_of, multiprecision, working
-from verification.cycles.recurrence.chain import Vector
+from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import ATTEMPTS, GUARD, System, floats, levels, refined
+from verification.cycles.recurrence.newton import (
+    ATTEMPTS,
+    GUARD,
+    System,
+    enough_digits,
+    floats,
+    levels,
+    norm_of_inverse,
+    refined,
+    settled,
+)
 from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question, available, power
 from verification.named.locate import lambda_star
@@ -38,8 +48,6 @@ LONG: Arithmetic = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for wo
     "pi": LONG_PI,
 }
 ROUNDINGS = 16  # of a residual and of what is read, in units of the last place
-STEPS = 40
-SLACK = 8  # digits of the last step that may be rounding
 
 
 def unknowns(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
@@ -82,7 +90,10 @@ class Sought:
 
     def in_long(self, setting: Any = None) -> list[Any]:
         """In NumPy's long doubles."""
-        return self.read(LONG, settled(self.system, LONG, [np.longdouble(x) for x in self.start]))
+        found = settled(self.system, LONG, [np.longdouble(x) for x in self.start])
+        if not found.settled:
+            raise ValueError(f"{self.system.label}: Newton's method in {_width()} did not settle")
+        return self.read(LONG, found.x)
 
     def in_mpmath(self, digits: int) -> list[Any]:
         """In mpmath, from float64 on."""
@@ -101,13 +112,9 @@ class Sought:
         z = [arb(x) for x in floats(self.system, self.start)]
         for level in levels(digits):
             bits = bits_of(level, 8)
-            enough = (digits - SLACK) / 2 if level == digits else 0.35 * level  # convergence is quadratic
             with working(bits):
-                for _ in range(ATTEMPTS):
-                    correction = self.system.newton(balls(bits), z)
-                    z = [(x - d).mid() for x, d in zip(z, correction, strict=True)]
-                    if all(abs(d) < arb(10) ** -int(enough) for d in correction):
-                        break
+                stop = Stop(enough=arb(10) ** -int(enough_digits(level, digits)), steps=ATTEMPTS)
+                z = iterated(partial(self.system.newton, balls(bits)), z, stop, kept=arb.mid).x
         return z
 
     def enclosed(self, digits: int) -> list[arb]:
@@ -122,13 +129,8 @@ class Sought:
             return self.read(balls(bits), found.zero)
 
     def condition(self) -> float:
-        """How far the solution moves at most for a residual of one: the largest row sum of the inverse matrix."""
-        z = floats(self.system, self.start)
-        total = np.zeros(len(z))
-        for i in range(len(z)):
-            unit = [1.0 if j == i else 0.0 for j in range(len(z))]
-            total += np.abs(np.array(self.system.solved(FLOAT64, z, unit), dtype=float))
-        return float(np.max(total))
+        """How far the solution moves at most for a residual of one."""
+        return norm_of_inverse(self.system, FLOAT64, floats(self.system, self.start))
 
     def rounding(self, setting: Any = None) -> Decimal:
         """What float64 promises: the condition number and a few roundings."""
@@ -137,24 +139,6 @@ class Sought:
     def long_rounding(self, setting: Any = None) -> Decimal:
         """What a long double promises."""
         return Decimal(f"{ROUNDINGS * float(np.finfo(np.longdouble).eps) * (1 + self.condition()):.3g}")
-
-
-def settled(system: System, arithmetic: Arithmetic, start: Sequence[Any]) -> list[Any]:
-    """Newton's steps, damped far away, as long as they shorten."""
-    z, before = list(start), None
-    for _ in range(STEPS):
-        correction = system.newton(arithmetic, z)
-        size = max(abs(d) for d in correction)
-        if not np.isfinite(size):
-            break
-        if before is not None and size < 1e-9 and size >= before:
-            return z
-        reach = min(1.0, float(0.3 / size)) if size else 1.0
-        z = [x - reach * d for x, d in zip(z, correction, strict=True)]
-        before = size
-    if before is not None and before < 1e-9:
-        return z
-    raise ValueError(f"{system.label}: Newton's method in {_width()} did not settle")
 
 
 def to_digits(digits: int) -> Decimal:

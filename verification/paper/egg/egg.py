@@ -4,6 +4,7 @@ A caption is judged from the data behind its figure. The ranges that claims on t
 """
 
 from functools import cache
+from itertools import islice
 
 import numpy as np
 from sympy import (
@@ -40,9 +41,7 @@ from symbolic.motion.chords import convexity
 from symbolic.motion.flight import flight
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam, phi, theta
-from verification.cycles.recurrence.cascade import FEIGENBAUM, doubled, next_critical
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.recurrence.cascade import doublings
 from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement
@@ -217,7 +216,7 @@ def at(numeral: str) -> Rational:
 SHAPE = Rational(2, 25)
 SEED = 1
 SIDE = {12: (0.3725, (-1.544175, -0.015589)), 8: (0.379, (-2.258379, -0.040530))}  # lam, and theta, phi on a cycle
-RUNGS, STARTS = 2, 8000
+MEMBERS, STARTS = 2, 8000
 
 
 @judges("egg.period3_direction")
@@ -247,23 +246,16 @@ def stays_long(claim: Claim) -> Judgement:
 
 @cache
 def side_cascade(period: int) -> tuple[Proof, ...]:
-    """The first rungs of a cascade beside the ladder, each flip certified."""
+    """The first doublings of a cascade beside the paper's, each flip certified."""
     table, (lam_at, (theta, phi)) = tables.egg(3).at(alpha=SHAPE), SIDE[period]
     settled = PinballMap("egg", lam=lam_at, alpha=str(SHAPE)).orbit(theta, phi, 4000)
-    critical = next_critical(table, settled.theta[-period:].tolist(), lam_at, 2e-4, BifurcationKind.FLIP)
-    proofs, gap = [], 4e-5
-    for rung in range(RUNGS):
-        problem = Problem(table, (0,) * (period * 2**rung), BifurcationKind.FLIP, "lam")
-        proofs.append(certify(problem, critical, 10))
-        if rung < RUNGS - 1:
-            following = next_critical(table, *doubled(problem, critical, gap), gap / 2, BifurcationKind.FLIP)
-            gap, critical = (following[-1] - critical[-1]) / FEIGENBAUM / 3, following
-    return tuple(proofs)
+    found = doublings(table, settled.theta[-period:].tolist(), lam_at, 2e-4)
+    return tuple(certify(each.problem, each.start, 10) for each in islice(found, MEMBERS))
 
 
 @judges("egg.noise")
 def noise(claim: Claim) -> Judgement:
-    """Two cascades of cycles that are not on the ladder: first rungs proved, chaos and its end sampled."""
+    """Two cascades of cycles beside the paper's: first doublings proved, chaos and its end sampled."""
     sentences, holds = [], True
     for period, chaotic, gone in ((12, "0.375", "0.3765"), (8, "0.382", "0.3835")):
         proofs = side_cascade(period)

@@ -25,8 +25,7 @@ from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam
 from verification.arithmetic.progress import telling
-from verification.cycles.recurrence import cascade as ladder
-from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled
+from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled, doubling
 from verification.named.attractors import certificate
 from verification.named.branches import cascade
 from verification.named.feigenbaum import accumulation
@@ -100,7 +99,7 @@ def period3_found(claim: Claim) -> Judgement:
 @cache
 def eight_at(contraction: Rational) -> list[float]:
     """The cycle of period 8 of the cascade, followed from its birth to a contraction, in float64."""
-    critical = ladder.rung(SHAPE, 3)
+    critical = doubling(SHAPE, 3)
     theta, lam = doubled(critical.problem, critical.start, 1e-4)
     while lam < contraction:
         lam = min(lam + 1e-3, float(contraction))

@@ -23,7 +23,7 @@ from symbolic.expressions.signs import Finding, Outcome
 from symbolic.motion.collision import area_factor, steepening, weak_dissipation
 from symbolic.tables.table import a, alpha, eta, lam
 from verification.arithmetic.balls import enclose, working
-from verification.cycles.recurrence.cascade import cycle_at, doubled, ladder
+from verification.cycles.recurrence.cascade import cascade, cycle_at, doubled
 from verification.named.attractors import Certificate, certificate, exponents
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, rounded, zero
@@ -161,7 +161,7 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
 @cache
 def rungs() -> list:  # type: ignore[type-arg]
     """`lambda_3` to `lambda_6` in float64."""
-    return list(islice(ladder(SHAPE), 4))
+    return list(islice(cascade(SHAPE), 4))
 
 
 @judges("egg.exponent_period32")

@@ -26,8 +26,9 @@ from symbolic.tables import cuspless
 from verification.arithmetic.balls import balls, real_ball, working
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.recurrence.chords import Chords, chord_angles
 from verification.cycles.recurrence.critical import Small, corner, corner_angle, focus
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import MIRROR
 from verification.maps.first_hit import convex, inside
 from verification.proofs.corner.border_collision import homoclinic
@@ -182,7 +183,7 @@ def slope_at_zero() -> arb:
 
 def linearised(w: arb, v: arb, lam: arb) -> Linearised:
     """The two collision rules at half an orbit, with their derivatives."""
-    return Linearised(Rows(Problem(cuspless, PARTS, lam=lam, closure=MIRROR), balls(BITS)), [w, v])
+    return Linearised(Problem(cuspless, PARTS, lam=lam, closure=MIRROR), balls(BITS), [w, v])
 
 
 def step(e: arb, middle: list[arb], box: list[arb]) -> tuple[list[arb], arb_mat] | None:
@@ -209,7 +210,7 @@ def hull_from_zero(e: arb, m: arb) -> tuple[arb, arb]:
 def divided(e: arb, m: arb, lam: arb) -> list[arb]:
     """`H = G/e`; by the mean value theorem where `e` may be 0."""
     if not e.contains(0):
-        return [rule / e for rule in linearised(e, e * m, lam).rule]
+        return [rule / e for rule in linearised(e, e * m, lam).value]
     a = dense(linearised(*hull_from_zero(e, m), lam).plain)
     return [a[i, 0] + a[i, 1] * m for i in range(2)]
 
@@ -218,8 +219,9 @@ def derivatives(e: arb, m: arb, lam: arb) -> arb_mat:
     """The columns `H_m` and `H_lam`."""
     at = dense(linearised(e, e * m, lam).plain)
     w, v = hull_from_zero(e, m)
-    into = linearised(w, v, lam).into
+    angles = chord_angles(cuspless, balls(BITS))
     # of the rule at the wall the bounce before is -v, of the rule on the arc it is w
+    into = [angles(PARTS[i], PARTS[1 - i], 1)(*ends) for i, ends in enumerate(((w, -v), (v, w)))]
     by_lam = [into[0][1] - into[0][2] * m, into[1][1] * m + into[1][2]]
     return arb_mat([[at[i, 1], by_lam[i]] for i in range(2)])
 
@@ -228,15 +230,9 @@ def third_order(e: arb, m: arb, lam: arb) -> list[arb]:
     """`H_e/e`: twice the third Taylor coefficient of `G` along `(1, m)`, over the hull."""
     w, v = hull_from_zero(e, m)
     zero = arb(0)
-    rows = Rows(Problem(cuspless, PARTS, lam=lam, closure=MIRROR), jets(balls(BITS)))
-    wall, arc = Jet(w, arb(1), zero, zero), Jet(v, m, zero, zero)
-    ring = ((wall, arc, -1 * arc), (arc, -1 * wall, wall))  # here, after, before
-    found = []
-    for i, (here, after, before) in enumerate(ring):
-        out = rows.kernel(PARTS[i], PARTS[1 - i], 0)(here, after)[0]
-        into = rows.kernel(PARTS[i], PARTS[1 - i], 0)(here, before)[0]
-        found.append(2 * (out + lam * into).c[3])
-    return found
+    rule = Chords(cuspless, PARTS, MIRROR).over(jets(balls(BITS)))
+    ring = MIRROR.padded([Jet(w, arb(1), zero, zero), Jet(v, m, zero, zero)], 0)
+    return [2 * rule(i, ring[i : i + 3], {"lam": lam}, 0).value.c[3] for i in range(2)]
 
 
 def half(e: arb, m: arb, lam: arb) -> tuple[arb, arb]:

@@ -34,6 +34,7 @@ from typing import Any
 from flint import acb, acb_mat, arb, ctx, fmpq
 
 from verification.arithmetic.balls import FUNCTIONS, Arithmetic
+from verification.arithmetic.iteration import Stop, iterated
 from verification.arithmetic.series import Jet
 from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.proofs.manifolds.plane_map import PlaneMap
@@ -48,6 +49,7 @@ from verification.proofs.manifolds.saddle import (
     padded,
     slopes,
 )
+from verification.proofs.periodic.interval_newton import Status, stepped
 
 NEWTON = 12
 Rows = list[list[Any]]
@@ -92,7 +94,7 @@ def around_zero(radius: arb) -> acb:
 
 def size(x: Any) -> arb:
     """An upper bound of the absolute value."""
-    return arb(abs(arb(x) if isinstance(x, int) else x).abs_upper())
+    return arb(abs(x).abs_upper())
 
 
 def enclosed_saddle(orbit: Orbit, map: PlaneMap, letter: acb) -> Saddle:
@@ -120,16 +122,14 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
             raise TooWideError("saddle", "the linearised rules may be singular") from why
         return [found[i, 0] for i in range(len(values))]
 
-    middle = list(start)
-    for _ in range(NEWTON):
-        middle = [(x - d).mid() for x, d in zip(middle, step(*rule(middle)), strict=True)]
+    middle = iterated(lambda x: step(*rule(x)), start, Stop(steps=NEWTON), kept=acb.mid).x
     values, rows = rule(middle)
     least = arb(2) ** (-ctx.prec + 8)
     box = [x + around_zero(4 * size(d) + least) for x, d in zip(middle, step(values, rows), strict=True)]
-    found = [x - d for x, d in zip(middle, step(values, rule(box)[1]), strict=True)]
-    if not all(b.contains(x) for b, x in zip(box, found, strict=True)):
+    found = stepped(middle, box, lambda: step(values, rule(box)[1]))
+    if found.status is not Status.UNIQUE:
         raise TooWideError("saddle", "an interval Newton step did not contract; the balls are too wide")
-    return found
+    return found.zero
 
 
 def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], letter: acb) -> tuple[acb, acb]:

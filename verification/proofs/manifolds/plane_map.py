@@ -6,7 +6,6 @@ varies: the contraction of the pinball map, `a` of the Henon map. A map is bound
 kind of number: floats, arrays, mpmath or balls, or jets of these.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -16,14 +15,13 @@ import numpy as np
 from sympy import Expr
 
 from symbolic.tables.table import Table
-from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
+from verification.arithmetic.balls import ARRAYS, Arithmetic
+from verification.arithmetic.iteration import Stop, Vector, iterated, largest
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chords import Chords, chord_angles
+from verification.cycles.recurrence.chords import Chords, chord_angles, landing
 from verification.cycles.recurrence.recurrence import Recurrence, Rule, henon
 
-SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found in float64
-NEWTON = 60  # steps at most after that, in other numbers and order by order in jets
-CLOSE = 1e-13
+NEWTON = Stop(small=1e-13, steps=60)  # after a landing in float64, in other numbers and order by order in jets
 
 
 class PlaneMap(Protocol):
@@ -91,10 +89,10 @@ class _Bound:
         return self.ring.over(self.words)
 
     def rule(self, near: Sequence[Any], letter: Any) -> Any:
-        return self._rule(0, near, self.at(letter))[0]
+        return self._rule(0, near, self.at(letter), 0).value
 
     def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
-        return self._rule(0, near, self.at(letter))[1]
+        return self._rule(0, near, self.at(letter)).slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,53 +168,15 @@ class Pinball(_Bound):
         start = landing(self.table, floating(here), floating(phi), turns)
         if self.words is ARRAYS:
             return start
-        x = here * 0 + (start if np.ndim(start) else float(start))
-        before = np.inf
-        for _ in range(NEWTON):
-            found = self.angle(here, x)
-            correction = (found[0] - phi) / found[2]
-            x = x - correction
-            size = largest(correction)
-            if not size < before / 2 and before < CLOSE:
-                break
-            before = size
-        return x
 
+        def correction(x: Vector) -> Vector:
+            value, _, slope, *_ = self.angle(here, x[0])
+            return [(value - phi) / slope]
 
-def landing(table: Table, here: Any, phi: Any, turns: int) -> Any:
-    """Newton's method between bounds: the angle falls from pi/2 to -pi/2 on the way round."""
-    arrays = bool(np.ndim(here) or np.ndim(phi))
-    angle = chord_angles(table, ARRAYS if arrays else FLOAT64)(0, 0, 1)
-    pick: Callable[[Any, Any, Any], Any] = np.where if arrays else _either
-    if not arrays and not abs(phi) < math.pi / 2:
-        return math.nan
-    low = here + 2 * math.pi * turns
-    high = low + 2 * math.pi
-    x = low + math.pi - 2 * phi
-    with np.errstate(all="ignore"):
-        x = pick((x > low) & (x < high), x, low + math.pi)
-        for _ in range(SWEEPS):
-            value, _, slope = angle(here, x)[:3]
-            low, high = pick(value > phi, x, low), pick(value > phi, high, x)
-            better = x - (value - phi) / slope
-            better = pick((better > low) & (better < high), better, (low + high) / 2)
-            moved, x = abs(better - x), better
-            if np.max(moved, initial=0.0, where=np.isfinite(moved)) < CLOSE if arrays else moved < CLOSE:
-                break
-    return np.where(np.abs(phi) < math.pi / 2, x, math.nan) if arrays else x
-
-
-def _either(condition: Any, yes: Any, no: Any) -> Any:
-    return yes if condition else no
+        return iterated(correction, [here * 0 + (start if np.ndim(start) else float(start))], NEWTON, largest).x[0]
 
 
 def floating(x: Any) -> Any:
     """A number, or the constant term of a jet, in float64."""
     middle = x.c[0] if isinstance(x, Jet) else x
     return np.asarray(middle, dtype=float) if np.ndim(middle) else float(middle)
-
-
-def largest(x: Any) -> float:
-    """The largest of the numbers in a jet or an array."""
-    parts = x.c if isinstance(x, Jet) else (x,)
-    return max(float(np.max(np.abs(part), initial=0.0)) for part in parts)

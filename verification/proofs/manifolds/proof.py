@@ -23,6 +23,7 @@ from sympy import Expr
 from symbolic import tables
 from symbolic.tables.formula import number
 from verification.arithmetic.balls import working
+from verification.arithmetic.iteration import Stop, iterated
 from verification.cycles.recurrence.chain import dot
 from verification.cycles.recurrence.recurrence import Closure
 from verification.maps.first_hit import convex
@@ -32,7 +33,7 @@ from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 from verification.proofs.manifolds.touching import Linear, Point, Touching, Vector
-from verification.proofs.periodic.interval_newton import Status, compared, slope_bits
+from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
 
 LEAST_DIGITS = 24
 NEWTON = 12
@@ -93,9 +94,8 @@ def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
     with working(slope_bits(len(box.unknowns))):
         over = system.linear(box)
         step = over.step([*at.values, *at.along], "precond")
-    image = [x - d for x, d in zip(centre.unknowns, step, strict=True)]
-    status = compared(image, box.unknowns)
-    found = {Status.UNIQUE: True, Status.EMPTY: False, Status.UNKNOWN: None}[status]
+    proof = stepped(centre.unknowns, box.unknowns, lambda: step)
+    image, found = proof.zero, {Status.UNIQUE: True, Status.EMPTY: False, Status.UNKNOWN: None}[proof.status]
     checks: dict[str, bool | None] = {
         "saddle": True,
         "remainder": True,
@@ -131,14 +131,16 @@ def _nonzero(x: arb) -> bool | None:
 
 def settled(system: Touching, precision: Precision) -> Point:
     """The zero by Newton's method, with the manifolds taken as affine in the letter; not proved."""
-    at = system.start
-    for _ in range(NEWTON):
-        linear = system.linear(at)
-        step = linear.step([*linear.values, *linear.along], "approx")
-        at = Point.of([(x - d).mid() for x, d in zip(at.unknowns, step, strict=True)])
-        if all(abs(d) < precision.step * SMALL for d in step):
-            return at
-    raise TooWideError("exists", "Newton's method finds no contact near the start")
+
+    def correction(unknowns: Vector) -> Vector:
+        linear = system.linear(Point.of(unknowns))
+        return linear.step([*linear.values, *linear.along], "approx")
+
+    stop = Stop(enough=precision.step * SMALL, steps=NEWTON)
+    found = iterated(correction, system.start.unknowns, stop, kept=arb.mid)
+    if not found.settled:
+        raise TooWideError("exists", "Newton's method finds no contact near the start")
+    return Point.of(found.x)
 
 
 def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:

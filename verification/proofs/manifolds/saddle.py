@@ -18,13 +18,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.arithmetic.series import Jet
 from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.recurrence.critical import solved
 from verification.cycles.recurrence.recurrence import IDENTITY, Closure
-from verification.proofs.manifolds.plane_map import PlaneMap, largest
+from verification.proofs.manifolds.plane_map import PlaneMap
 
-STEPS = 60
+NEWTON = Stop(small=1e-10, steps=60)
 
 
 @dataclass(frozen=True)
@@ -83,22 +84,19 @@ def saddle(orbit: Orbit, map: PlaneMap, letter: Any) -> Saddle:
     >>> print(f"{found.unstable:.6f} {found.stable:.6f}")
     -1.923739 0.155946
     """
-    points = [letter * 0 + x for x in orbit.start]
-    before = float("inf")
-    for _ in range(STEPS):
+
+    def correction(points: Vector) -> Vector:
         ring = padded(orbit, map, points)
         rule = [map.rule(ring[i : i + 3], letter) for i in range(len(points))]
         rows = matrix(orbit, slopes(orbit, map, points, letter))
-        correction = solved([[*row, r] for row, r in zip(rows, rule, strict=True)])
-        points = [x - d for x, d in zip(points, correction, strict=True)]
-        size = max(largest(d) for d in correction)
-        if size == 0 or (not size < before / 2 and before < 1e-10):
-            stable, unstable = multipliers(orbit, map, points, letter)
-            return Saddle(orbit, map, letter, tuple(points), stable, unstable)
-        before = size
-    raise ValueError(
-        f"{map.label}: Newton's method did not find the {orbit.name} at {float(letter)} from {orbit.start}"
-    )
+        return solved([[*row, r] for row, r in zip(rows, rule, strict=True)])
+
+    found = iterated(correction, [letter * 0 + x for x in orbit.start], NEWTON)
+    if not found.settled:
+        at = f"at {float(letter)} from {orbit.start}"
+        raise ValueError(f"{map.label}: Newton's method did not find the {orbit.name} {at}")
+    stable, unstable = multipliers(orbit, map, found.x, letter)
+    return Saddle(orbit, map, letter, tuple(found.x), stable, unstable)
 
 
 def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], letter: Any) -> tuple[Any, Any]:
@@ -183,7 +181,7 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
     map = saddle.map.lifted
     triples = [ring[i : i + 3] for i in range(len(series))]
     rules = [map.rule(triple, saddle.letter) for triple in triples]
-    slopes_of = [[_coefficients(s, length) for s in map.slopes(triple, saddle.letter)] for triple in triples]
+    slopes_of = [[s.c for s in map.slopes(triple, saddle.letter)] for triple in triples]
     found: Series = [[*c] for c in series]
     zero = saddle.points[0] * 0
     steps: Series = [[zero] * known for _ in series]
@@ -255,7 +253,3 @@ def _powers(factor: Any, length: int) -> list[Any]:
     while len(found) < length:
         found.append(found[-1] * factor)
     return found
-
-
-def _coefficients(x: Any, length: int) -> list[Any]:
-    return list(x.c) if isinstance(x, Jet) else [x] + [0 * x] * (length - 1)

@@ -14,6 +14,7 @@ from typing import Any
 import mpmath
 
 from verification.arithmetic.balls import FLOAT64, multiprecision
+from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.arithmetic.series import Jet
 from verification.proofs.manifolds.plane_map import PlaneMap, floating
 from verification.proofs.manifolds.saddle import Local, Orbit, horner, local, saddle
@@ -96,29 +97,34 @@ class Gap:
         """The parameter on the stable manifold whose first point is `here`."""
         c = self.into.coefficients[0]
         slope = [k * x for k, x in enumerate(c)][1:]
-        z: Jet = Jet(*(here.c[0] * 0 + x for x in (self.end, 0, 0)))
-        before = math.inf
-        for _ in range(STEPS):
+        relative = 1.0
+
+        def correction(unknown: Vector) -> Vector:
+            nonlocal relative
+            (z,) = unknown
             step = (horner(c, z) - here) / horner(slope, z)
-            z = z - step
-            size = max(abs(float(x)) / (1 + abs(float(y))) for x, y in zip(step.c, z.c, strict=True))
-            if size == 0 or (before < 1e-6 and not size < before / 2):
-                return z
-            before = size
-        raise ValueError(f"tangency: at {float(self.letter)} the orbit misses the neighbourhood of the stable manifold")
+            relative = max(abs(float(x)) / (1 + abs(float(y))) for x, y in zip(step.c, z.c, strict=True))
+            return [step]
+
+        start = Jet(*(here.c[0] * 0 + x for x in (self.end, 0, 0)))
+        found = iterated(correction, [start], Stop(small=1e-6, steps=STEPS), lambda step: relative)
+        if not found.settled:
+            missed = "the orbit misses the neighbourhood of the stable manifold"
+            raise ValueError(f"tangency: at {float(self.letter)} {missed}")
+        end: Jet = found.x[0]
+        return end
 
     def extremum(self) -> tuple[Any, Jet, Jet]:
         """`z` where the gap is least, the gap there, and where it is."""
-        z = self.letter * 0 + self.start
-        before = math.inf
-        for _ in range(STEPS):
-            gap, end = self.at(z)
-            step = gap.c[1] / (2 * gap.c[2])
-            size = abs(float(step))
-            if size == 0 or (before < 1e-5 and not size < before / 2):
-                return z, gap, end
-            z, before = z - step, size
-        raise ValueError(f"tangency: at {float(self.letter)} the manifolds come nowhere closest near the start")
+
+        def correction(z: Vector) -> Vector:
+            gap, _ = self.at(*z)
+            return [gap.c[1] / (2 * gap.c[2])]
+
+        found = iterated(correction, [self.letter * 0 + self.start], Stop(small=1e-5, steps=STEPS))
+        if not found.settled:
+            raise ValueError(f"tangency: at {float(self.letter)} the manifolds come nowhere closest near the start")
+        return (*found.x, *self.at(*found.x))
 
     def contact(self) -> Contact:
         """The same contact with starts taken from here."""
@@ -170,20 +176,25 @@ def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
 def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
     """The letter where the extremum of the gap is 0, between secants."""
     a, b = letters
-    b = b + 0 * a
-    fa = Gap(contact, map, a, order, tail).extremum()[1].c[0]
-    before = math.inf
-    for _ in range(STEPS):
+    last = a, Gap(contact, map, a, order, tail).extremum()[1]
+    touch: Touch | None = None
+
+    def correction(letter: Vector) -> Vector:
+        nonlocal last, touch
+        (b,), (a, before) = letter, last
         gap = Gap(contact, map, b, order, tail)
         _, found, _ = gap.extremum()
-        fb = found.c[0]
-        speed = (fb - fa) / (b - a)
-        a, fa, b = b, fb, b - fb / speed
-        step = float(abs(b - a))
-        if step < goal or before / 2 <= step < NOISE * goal:  # many bounces leave the gap with noise
-            out, into = gap.out.saddle, gap.into.saddle
-            near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
-            residual = max(gap.out.residual, gap.into.residual)
-            return Touch(contact, b, step + goal, float(2 * found.c[2]), float(speed), near, residual)
-        before = step
-    raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last were {float(a)} and {float(b)}")
+        speed = (found.c[0] - before.c[0]) / (b - a)
+        step = found.c[0] / speed
+        out, into = gap.out.saddle, gap.into.saddle
+        near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
+        residual = max(gap.out.residual, gap.into.residual)
+        touch = Touch(contact, b, float(abs(step)) + goal, float(2 * found.c[2]), float(speed), near, residual)
+        last = b, found
+        return [step]
+
+    # many bounces leave the gap with noise
+    settled = iterated(correction, [b + 0 * a], Stop(small=NOISE * goal, enough=goal, steps=STEPS))
+    if touch is None or not settled.settled:
+        raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last was {float(settled.x[0])}")
+    return replace(touch, letter=settled.x[0])

@@ -195,7 +195,7 @@ class Touching:
         plain = map.rule(near, arb(0))
         moving = map.rule(near, arb(1)) - plain
         value = plain + at.letter * moving
-        slopes = [s if isinstance(s, Jet) else Jet(arb(0) + s, arb(0)) for s in map.slopes(near, at.letter)]
+        slopes = map.slopes(near, at.letter)
         m = len(at.orbit)
         rows = ([arb(0)] * k + [s.c[order] for s in slopes] + [arb(0)] * (m - k - 3) for order in (0, 1))
         _add(made, value.c, list(rows), moving.c)

@@ -30,8 +30,7 @@ from symbolic.cycles.normal_forms import QUARTIC, Map, bounce, chord, composed
 from symbolic.expressions.text import kernel, load
 from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import balls, working
-from verification.cycles.recurrence.problem import Linearised, NormalForm, Problem, Rows, normal_form
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.recurrence.problem import Linearised, NormalForm, Problem
 from verification.maps.first_hit import convex, first_hits, inside, minimal
 from verification.proofs.periodic.interval_newton import Enclosure, Status, contraction, slope_bits
 
@@ -66,19 +65,13 @@ class Proof:
     @property
     def value(self) -> arb:
         """The ball of the free letter."""
-        return self.enclosure.zero[-1]
+        value: arb = self.enclosure.zero[-1]
+        return value
 
     @property
     def supercritical(self) -> bool | None:
-        """True when a flip bears a cycle that is stable, next to the unstable one; None when not decided.
-
-        The cycle that is born lies on the side `branch`, and the old one is unstable where its
-        multiplier has passed -1: the two sides agree at a supercritical flip.
-        """
-        if self.form is None or self.claim.problem.kind is not BifurcationKind.FLIP:
-            return None
-        side = self.form.branch * self.form.multiplier_speed
-        return True if side < 0 else False if side > 0 else None
+        """True when a flip bears a cycle that is stable, next to the unstable one; None when not decided."""
+        return self.form.supercritical if self.form else None
 
 
 def proved(claim: Claim) -> Proof:
@@ -130,7 +123,7 @@ def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shap
 def _form(problem: Problem, zero: list[arb], bits: int) -> NormalForm | None:
     try:
         with working(bits):
-            return normal_form(Linearised(Rows(problem, balls(bits)), zero), balls(bits))
+            return Linearised(problem, balls(bits), zero).normal_form(balls(bits))
     except ZeroDivisionError:
         return None
 

@@ -13,15 +13,17 @@ may be wide, which elimination along the chain does not forgive. For a ball of c
 motion of the cycle with `lam` is kept in one piece, `Y dF/dlam (lam - middle)`.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
+from typing import Any
 
 from flint import arb, arb_mat
 
 from verification.arithmetic.balls import balls, working
 from verification.cycles.recurrence.chain import Chain
 from verification.cycles.recurrence.newton import System
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows
+from verification.cycles.recurrence.problem import Linearised, Problem
 
 
 class Status(Enum):
@@ -37,7 +39,7 @@ class Enclosure:
     """A status, and balls that contain every zero of the box that was examined."""
 
     status: Status
-    zero: list[arb]
+    zero: list[Any]
 
 
 def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> Enclosure:
@@ -64,6 +66,18 @@ def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> En
         return found
 
 
+def stepped(centre: Sequence[Any], box: Sequence[Any], correction: Callable[[], Sequence[Any]]) -> Enclosure:
+    """What an interval Newton step proves of a box, in real or complex balls.
+
+    `correction()` encloses `F'(box)^-1 F(centre)`; a division by 0 there proves nothing.
+    """
+    try:
+        image = [x - d for x, d in zip(centre, correction(), strict=True)]
+    except ZeroDivisionError:
+        return Enclosure(Status.UNKNOWN, list(box))
+    return Enclosure(compared(image, box), image)
+
+
 def slope_bits(unknowns: int) -> int:
     """Bits that the derivatives need: `F` at the midpoint is tiny, so theirs need not grow with the digits.
 
@@ -74,16 +88,14 @@ def slope_bits(unknowns: int) -> int:
 
 
 def _image(system: System, value: list[arb], centre: list[arb], box: list[arb], bits: int) -> Enclosure:
-    try:
+    def correction() -> list[arb]:
         with working(bits):
-            correction = system.solved(balls(bits), box, value)
-    except ZeroDivisionError:
-        return Enclosure(Status.UNKNOWN, box)
-    image = [x - d for x, d in zip(centre, correction, strict=True)]
-    return Enclosure(compared(image, box), image)
+            return system.solved(balls(bits), box, value)
+
+    return stepped(centre, box, correction)
 
 
-def compared(image: list[arb], box: list[arb]) -> Status:
+def compared(image: Sequence[Any], box: Sequence[Any]) -> Status:
     """The three answers to: does the image lie inside the box?"""
     if not all(y.is_finite() for y in image):
         return Status.UNKNOWN
@@ -105,17 +117,18 @@ def krawczyk(problem: Problem, centre: list[arb], radii: list[float], bits: int)
     with working(bits):
         box = [arb(x, r) for x, r in zip(centre, radii, strict=True)]
         try:
-            at = Linearised(Rows(problem, balls(bits)), centre, slope=False)
-            slope = dense(Linearised(Rows(problem, balls(bits)), box).plain)
+            lam = problem.at(balls(bits), centre)["lam"]
+            at = Linearised(replace(problem, lam=lam.mid()), balls(bits), centre).terms
+            slope = dense(Linearised(problem, balls(bits), box).plain)
             near = arb_mat([[x.mid() for x in row] for row in slope.tolist()]).inv()
         except ZeroDivisionError:
             return Enclosure(Status.UNKNOWN, box)
         inverse = arb_mat([[x.mid() for x in row] for row in near.tolist()])
-        step = inverse * arb_mat([[f[0] + at.lam.mid() * b[0]] for f, b in zip(at.out, at.into, strict=True)])
-        drift = inverse * arb_mat([[b[0]] for b in at.into])  # the rules are linear in lam
+        step = inverse * arb_mat([[x] for x in at.value])
+        drift = inverse * arb_mat([[x] for x in at.by["lam"]])  # the rules are linear in lam
         one = arb_mat([[int(i == j) for j in range(len(centre))] for i in range(len(centre))])
         spread = (one - inverse * slope) * arb_mat([[x - m] for x, m in zip(box, centre, strict=True)])
-        image = [m - step[i, 0] - drift[i, 0] * (at.lam - at.lam.mid()) + spread[i, 0] for i, m in enumerate(centre)]
+        image = [m - step[i, 0] - drift[i, 0] * (lam - lam.mid()) + spread[i, 0] for i, m in enumerate(centre)]
         return Enclosure(compared(image, box), image)
 
 

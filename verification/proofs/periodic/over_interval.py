@@ -29,7 +29,7 @@ from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Linearised, Problem, Rows, normal_form
+from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.proofs.periodic.interval_newton import Status, dense, krawczyk
@@ -70,8 +70,8 @@ def doubling_curve(K: int = 3, budget: int = 4000, tick: Tick = silent) -> Sign:
 def _supercritical(K: int, lam: arb, alpha: arb) -> bool:
     problem = Problem(egg(K), (0, 0), BifurcationKind.FLIP, "alpha", lam)
     try:
-        at = Linearised(Rows(problem, balls(BITS)), [arb(0), arb.pi(), alpha])
-        bend = normal_form(at, balls(BITS)).bend
+        at = Linearised(problem, balls(BITS), [arb(0), arb.pi(), alpha])
+        bend = at.normal_form(balls(BITS)).bend
     except ZeroDivisionError:
         return False
     chain = at.plain
@@ -154,7 +154,7 @@ def _proved(
             return Stability.UNKNOWN
         if not inside(table, components, over.zero) or not minimal(table, components, over.zero):
             return Stability.UNKNOWN
-        here = trace_and_determinant(Linearised(Rows(thin, balls(BITS_OF_INTERVAL)), at.zero).plain.rows)
+        here = trace_and_determinant(Linearised(thin, balls(BITS_OF_INTERVAL), at.zero).terms.rows)
         slopes = _slopes(wide, over.zero)
         if slopes is None:
             return Stability.UNKNOWN
@@ -163,14 +163,14 @@ def _proved(
 
 def _slopes(problem: Problem, zero: list[arb]) -> tuple[arb, arb] | None:
     """The derivatives by `lam` of trace and determinant along the cycle, over the ball of `lam`."""
-    at = Linearised(Rows(problem, balls(BITS_OF_INTERVAL)), zero)
+    at = Linearised(problem, balls(BITS_OF_INTERVAL), zero)
     try:
-        motion = dense(at.plain).solve(arb_mat([[-b[0]] for b in at.into]))
+        motion = dense(at.plain).solve(arb_mat([[-x] for x in at.terms.by["lam"]]))
     except ZeroDivisionError:
         return None
     moving = Problem(problem.table, problem.components, lam=Jet(problem.lam, 1))
     path = [Jet(x, motion[i, 0]) for i, x in enumerate(zero)]
-    trace, determinant = trace_and_determinant(Linearised(Rows(moving, jets(balls(BITS_OF_INTERVAL))), path).plain.rows)
+    trace, determinant = trace_and_determinant(Linearised(moving, jets(balls(BITS_OF_INTERVAL)), path).terms.rows)
     return trace.c[1], determinant.c[1]
 
 

@@ -93,7 +93,7 @@ class Chords:
 
     def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int) -> Terms[X]:
         """The rule from the angles of the chords ahead and back, with derivatives as the kernels return them."""
-        zero = 0 * f[0]  # type: ignore[operator]  # of the same kind
+        zero: Any = 0 * f[0]  # type: ignore[operator]  # of the same kind
         if not order:
             return Terms(f[0] + lam * b[0], (zero, zero, zero), {}, {}, {})
         k, shapes = _places(self.table, order), self.letters[1:]

@@ -1,12 +1,10 @@
-"""What the words of the generated kernels mean, for each kind of number.
+"""The arithmetics in which generated formulas are evaluated: float64, arrays, mpmath numbers and balls.
 
-`load(kernel, arithmetic)` binds them. Precision is an argument: mpmath comes in as a context object,
-balls with their number of bits. Ball operations between kernels round at the global `flint.ctx`, so
-whoever computes with balls does it inside `working(bits)`, which puts the old precision back.
+`load(kernel, arithmetic)` gives a formula's functions and constants their meaning. Precision is an argument: mpmath
+comes in as a context object, balls with their number of bits. Ball operations between formulas round at the global
+`flint.ctx`, so whoever computes with balls does it inside `working(bits)`, which puts the old precision back.
 
-Exact expressions to complex balls: enclosures that contain the true value, at a stated precision.
-
-Stretches of a line as balls: cut into touching pieces, halved, joined.
+With balls come the enclosure of an exact expression, decimals with a radius, and intervals cut into touching balls.
 """
 
 import math

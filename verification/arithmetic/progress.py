@@ -1,6 +1,6 @@
-"""How far a long proof has come, told to whoever listens: the bar of a command, or nobody.
+"""How far a long proof has come: shares of the work are reported to a progress bar, if there is one.
 
-A proof takes a `tick` and knows of no bar; `telling` makes one that adds its shares up.
+A proof calls its `tick` with each share that is done and knows of no bar; `telling` makes such a function.
 """
 
 from collections.abc import Callable, Iterator

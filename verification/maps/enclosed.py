@@ -2,14 +2,12 @@
 
 A float64 kernel, or mpmath where that fails, guesses a landing. Newton's method sharpens it; an interval
 Newton step then shows that near it every ball of the start lands exactly once; and the boundary is covered
-to show that no such flight meets it before (`maps.first_hit`), whatever the shape of the table.
+to show that no such flight meets it before (`verification.maps.first_hit`), whatever the shape of the table.
 What is proved rests on the balls alone, and not on where the guess came from.
 
-Orbits beyond float64: to a number of digits with mpmath, or enclosed in balls.
-
-A ball orbit is proved bounce by bounce, for every start in the ball before: each landing lies in its
-ball, and is the first hit (`EnclosedMap`). Where that cannot be proved the orbit ends with the status
-`unproved`. How an orbit ends (a join, a cusp, a tangency) is what mpmath finds, and is not proved.
+So an enclosed orbit is proved bounce by bounce, for every start in the ball before. Where a landing cannot be proved
+the orbit ends with the status `unproved`. How an orbit ends (a join, a cusp, a tangency) is what mpmath finds, and is
+not proved. Orbits in mpmath are here as well, to a number of digits, for comparison.
 """
 
 from collections.abc import Callable, Iterator, Sequence

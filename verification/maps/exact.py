@@ -3,9 +3,8 @@
 Flights are found by `numeric.flights.general` on mpmath numbers, that is on the flight function as
 the paper has it, with every zero bracketed and the first hit taken. Nothing is shared with the
 closed forms and the deflated polynomials of the kernels but the exact table itself. Beyond 50 digits
-the first hit is found with 50 and sharpened by Newton's method on the same flight function.
-
-How far a float64 step is from the exact map of the rounded state, in units of 2**-52.
+the first hit is found with 50 and sharpened by Newton's method on the same flight function. `errors` says how far a
+float64 step is from this map of the rounded state, in units of 2**-52.
 """
 
 from collections.abc import Sequence

@@ -1,14 +1,13 @@
-"""That a solution of the chord system is a cycle of the billiard: it is admissible, of minimal period.
+"""Is a solution of the chord system a cycle of the billiard? It must be admissible, and of minimal period.
 
 In a convex table the chord between two boundary points meets the boundary nowhere else, unless both
 lie on the same straight part; so there it is enough that consecutive bounces are different points
 and that a finite collision rule shows the chord is not tangent.
 
-That no chord meets the boundary on its way, in tables that need not be convex.
-
-Along a chord from `p` in direction `d` a boundary point `q` lies on the line when `d x (q - p) = 0`.
-The boundary is covered by balls: off the line, or on it but not between the ends, or next to an end,
-where `d x q'` keeps its sign so that the line is crossed there once, at the end itself.
+In other tables each chord is proved to meet nothing on its way. Along a chord from `p` in direction `d` a boundary
+point `q` lies on the line when `d x (q - p) = 0`. The boundary is covered by balls: off the line, or on it but not
+between the ends, or next to an end, where `d x q'` keeps its sign so that the line is crossed there once, at the end
+itself.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,15 +1,13 @@
-"""A proof that a cycle found in float64 exists, is admissible, of least period, and attracts: balls decide.
+"""Attractors: a proof that one exists, its proved exponents, and which of them coexist at each contraction.
 
-`lam` is the exact number given. A proof says nothing about other attractors, nor about the size of a basin.
+Of a cycle found in float64 balls prove that it exists, is admissible, of least period, and attracts; its exponents
+come from its certified multipliers. Such a proof says nothing about other attractors, nor about the size of a basin.
+Of chaotic attractors the exponent of the cardioid's slap map is proved.
 
-Lyapunov exponents, proved: of a cycle, from its certified multipliers; of the cardioid's chaotic slap map.
-
-Which attractors coexist at each contraction, from where to where each lives, and what begins and ends it.
-
-Two methods that check each other: random starts on a grid of contractions, and each cycle they find followed
-to both ends of its life, where its event is proved, and past them to the cycles born there. What is listed
-is proved to exist; that nothing else attracts is not, and cannot be by sampling: a basin below about
-`3/starts` of the table is likely to be missed at any one contraction.
+Which attractors coexist is found by two methods that check each other: random starts on a grid of contractions, and
+each cycle they find followed to both ends of its life, where its event is proved, and past them to the cycles born
+there. What is listed is proved to exist; that nothing else attracts is not, and cannot be by sampling: a basin below
+about `3/starts` of the table is likely to be missed at any one contraction.
 """
 
 from collections.abc import Iterator, Sequence

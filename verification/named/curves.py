@@ -4,9 +4,8 @@ For odd K the vertex-to-flat diameter doubles its period on `alpha-tilde`; the s
 that it bears breaks its symmetry (a pitchfork, on half the cycle), and what it bears doubles again and
 again, up to an accumulation curve. Every curve is followed in the two parameters from one start.
 
-Cycles that expand areas although `lam < 1`, and Neimark-Sacker bifurcations: proved, on the paper's own egg.
-
-The determinant of a cycle is not `lam**p` (`symbolic.cycles.thresholds`). Three facts, each in balls:
+A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and then
+Neimark-Sacker bifurcations are possible. Three facts about the paper's own egg, each proved in balls:
 
 - `contracting_up_to`: below a contraction no cycle of the egg expands, so none bifurcates that way;
 - `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1;

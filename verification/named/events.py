@@ -1,12 +1,12 @@
-"""Events with certified digits: the float64 event is the start, balls prove what is near it.
+"""Bifurcations met on a branch: each certified, and followed as a curve in two parameters.
 
-A fold and a period doubling are proved on the whole cycle, a pitchfork on the half that flips, turned
-so that the mirror is `theta -> -theta`. Other events have no certificate here.
+The event in float64 is the start, and balls prove what is near it. A fold and a period doubling are proved on the
+whole cycle, a pitchfork on the half that flips, turned so that the mirror is `theta -> -theta`. Other events have no
+certificate here.
 
-Every bifurcation curve that starts from the cycles of one scene, with its points of codimension two.
-
-All cycles up to a period are found, each is followed in `lam`, and every fold, doubling and pitchfork on
-the way is followed on as a curve in `(alpha, lam)`. Cycles that a symmetry maps to each other count once.
+`survey` finds all cycles of the egg up to a period and follows each in `lam`, and every fold, doubling and pitchfork
+on the way as a curve in `(alpha, lam)`, with its points of codimension two. Cycles that a symmetry maps to each other
+count once.
 """
 
 from collections.abc import Callable, Iterator

@@ -1,9 +1,8 @@
-"""What a figure shows, as data: panels of named point sequences, in the quantities of the paper's axes.
+"""A figure as data: panels of named point sequences, in the quantities of the paper's axes; and how it is drawn.
 
-The paper, axes and marks of every figure: quiet, and readable in black and white.
-
-Matplotlib is imported here, inside functions, and only when something is drawn. No pyplot, no global state: what the
-style sets holds while a figure is made and saved, and no longer.
+Every figure has the same paper, axes and marks, readable in black and white. Matplotlib is imported here, inside
+functions, and only when something is drawn. No pyplot, no global state: what the style sets holds while a figure is
+made and saved, and no longer.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,13 +1,12 @@
-"""Newton's method on thousands of closed chains of bounces at once, in float64.
+"""Many cycles at once in float64: Newton's method on thousands of closed chains, and a count of fixed points by cells.
 
-A seed is a row of bounce parameters, an orbit that almost closes. All rows that visit the same
-components are corrected together: one call of the chord kernel, one batch of small linear systems.
+A seed is a row of bounce parameters, an orbit that almost closes. All rows that visit the same components are
+corrected together: one call of the chord kernel, one batch of small linear systems.
 
-A second count of the fixed points of `T**n`: cells of phase space, quartered until the map is affine on them.
-
-The displacement `v = (sin(theta_n - theta), phi_n - phi)` is continuous on a smooth convex table. On a cell
-where its values at the corners and the centre are affine up to a small rest, the zero of the affine map is
-in the cell or is not; where the rest is too large the cell is quartered. The index is the sign of the
+The count by cells checks the search that is built on this. Cells of phase space are quartered until `T**n` is affine
+on them. The displacement `v = (sin(theta_n - theta), phi_n - phi)` is continuous on a smooth convex table. On a cell
+where its values at the corners and the centre are affine up to a small deviation, the zero of the affine map is
+in the cell or is not; where the deviation is too large the cell is quartered. The index is the sign of the
 determinant of the affine part. Sampled in float64, so no proof; but it has no seeds, no chord system and no
 symmetry in common with the search.
 """

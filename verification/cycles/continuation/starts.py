@@ -1,8 +1,7 @@
-"""Where a branch starts: a cycle of the paper by its name, or bounces that somebody typed.
+"""How a branch comes in and goes out: its starting cycle, by name or by bounces typed; its points as a labelled table.
 
-A branch as a labelled table: an xarray Dataset, a record for JSON, and lines for people.
-
-Points and events stand in one order, by arc length; `event` is empty at an ordinary point.
+The table is an xarray Dataset or a record for JSON. Points and events stand in one order, by arc length along the
+branch; `event` is empty at an ordinary point.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,12 +1,12 @@
-"""From an event onto the other branch that passes through it.
+"""What continues from a bifurcation: the other branch that passes through it, or its curve in two parameters.
 
-A fold is no crossroads: the branch itself goes on. At a period doubling and at a pitchfork the other
-branch leaves along the null vector: the next cycle is sought in the plane that lies a small amplitude
-away, which the old branch does not meet. At a border collision the bounce on the join is taken to lie
-on the neighbouring part of the boundary; whether a cycle is admissible there, and for which contractions,
-says whether the collision carries it on, ends it, or ends a pair.
+At a fold no other branch leaves: the branch itself goes on. At a period doubling and at a pitchfork the other branch
+leaves along the null vector: the next cycle is sought in the plane that lies a small amplitude away, which the old
+branch does not meet. At a border collision the bounce on the join is taken to lie on the neighbouring part of the
+boundary; whether a cycle is admissible there, and for which contractions, says whether the collision carries it on,
+ends it, or ends a pair.
 
-Curves of bifurcations in two letters, and the points of codimension two on them.
+On a curve of folds or flips in two parameters these points of codimension two are found:
 
     on a fold:   cusp                   the fold's own coefficient vanishes
                  1:1 resonance          the other multiplier is 1 too: Bogdanov-Takens
@@ -15,8 +15,8 @@ Curves of bifurcations in two letters, and the points of codimension two on them
                  1:2 resonance          the other multiplier is -1 too
                  fold-flip              the other multiplier is 1
 
-At `lam = 1` the map keeps an area, so every fold that gets there ends in a 1:1 resonance and every
-doubling in a 1:2 resonance, and the curve ends with it: contraction has no other side there.
+At `lam = 1` the map preserves an area, so a curve of folds that gets there ends in a 1:1 resonance, and one of flips
+in a 1:2 resonance.
 """
 
 from collections.abc import Callable

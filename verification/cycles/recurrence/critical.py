@@ -1,12 +1,8 @@
-"""Systems of a few equations, each written once, for what is no plain fold or flip.
+"""Cycles that bifurcate in any way, of any recurrence, in as many free parameters as there are conditions.
 
-The matrix of first derivatives comes from running the same equations on jets, in any number.
-
-Cycles that bifurcate, of any recurrence and in any way, in as many free parameters as there are conditions.
-
-A fold or a flip of a long cycle is a `Problem`, solved in linear time. What is here takes every bifurcation that
-`verification.cycles.recurrence.recurrence` defines, and several at once (points of codimension two), for cycles of a
-few dozen bounces.
+A fold or a flip of a long cycle of a billiard is a `Problem`, solved in linear time. What is here takes every
+bifurcation that `verification.cycles.recurrence.recurrence` defines, and several at once (points of codimension two),
+for cycles of a few dozen bounces. Equations are written once, and their derivatives come from evaluating them on jets.
 """
 
 from collections.abc import Callable, Mapping, Sequence

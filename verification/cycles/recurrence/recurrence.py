@@ -1,4 +1,4 @@
-"""The bifurcations of cycles: one list, and for each the equation that defines it.
+"""Periodic orbits as rings of three-term rules, over any numbers; their bifurcations, each with its equation.
 
     fold                 det(M - 1) = 0 and the branch turns in the parameter
     pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
@@ -11,18 +11,14 @@
 `M` is the monodromy matrix. A bifurcating cycle solves one equation more than it has bounces, for one parameter more:
 `bordering` is 0. `verification.cycles.recurrence.critical` solves for any of them, and for several at once.
 
-How a periodic orbit closes: by the identity, or by a symmetry of the table that carries a part of it to the next.
+A periodic orbit is a ring: at each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the ring
+closes by the identity or by a symmetry that carries a part of the orbit to the next. The derivatives of the rules by
+the three neighbours are the linearised map, so the multipliers come from three diagonals, and no derivative of the map
+itself is needed. Billiards are such rings (`verification.cycles.recurrence.chords`).
 
-A periodic orbit as a ring of three-term rules: what every question is asked of, a billiard's or any other map's.
-
-At each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the ring closes by a symmetry
-(`closure`). The derivatives of the rules by the three neighbours are the linearised map, so its multipliers come from
-three diagonals and no derivative of the map is needed.
-
-Maps whose bifurcations are published: the engine that follows billiards must find them too.
-
-Logistic, `x -> r*x*(1 - x)` [May1976]. Henon, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three
-successive `x` [Henon1976]. Delayed logistic, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
+So are maps whose bifurcations are published, with which the engine is tested: the logistic map, `x -> r*x*(1 - x)`
+[May1976]; Henon's, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three successive `x` [Henon1976]; and the delayed
+logistic map, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
 """
 
 from collections.abc import Mapping, Sequence

@@ -3,8 +3,7 @@
 A start is `(component, theta, phi)`. On a table with joins the parameter may be an `Ulps`: so many
 units in the last place inside the end of a component; and the angle an `Aim`: at a join, and then so many ulps off.
 
-Errors and condition of one bounce, against a proved enclosure of the truth with a hundred digits.
-
+Errors and condition number of one bounce are measured against a proved enclosure of the truth with a hundred digits.
 Data and result are `(theta, psi)`, the parameter and the direction of flight in the plane: turning with the boundary,
 which `phi` does, would count the curvature twice. A shape that no double is counts as rounded data too.
 """

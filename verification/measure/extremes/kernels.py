@@ -1,18 +1,17 @@
-"""The step of `numeric/flights` on 80-bit arrays: 64 bits of mantissa, a judge of doubles with 11 bits to spare.
+"""Kernels under test on extreme cases: one bounce on LLVM, NumPy, 80-bit floats and mpmath, and long products.
+
+On 80-bit arrays the step of `numeric/flights` has 64 bits of mantissa, 11 more than the doubles that it judges.
 
 What `numeric.backends.scalars` has for 53 bits is put aside here, word by word, as `numeric.backends.scalars` does it:
 sines and arctangents are the C library's, and a zero is sharpened until its correction is below the unit or ceases to
 shrink. Splitting for exact products, and the outcomes that stop a ball, remain as they are.
 
-The kernels that bounce one ball from one rounded state: LLVM, NumPy, 80-bit floats, mpmath with 16 digits.
+All four run the same step; `TEXTBOOK` is the quadratic formula that one would write first, kept to show that the
+measure tells it apart.
 
-All four run the step of `numeric/flights`; `TEXTBOOK` is the quadratic formula that one would write first, kept to
-show that the measure tells it apart.
-
-Products of many derivative matrices and the exponents they give: underflow, overflow, and sums of logarithms.
-
-The number asked for is the growth a bounce. Its condition number is the largest effect of rounding every bounce of the
-orbit at random, found by doing so a million times too strongly, and one for the rounding of the result.
+Products of many derivative matrices and the exponents they give are tested for underflow, overflow, and sums of
+logarithms. The number asked for is the growth a bounce. Its condition number is the largest effect of rounding every
+bounce of the orbit at random, found by doing so a million times too strongly, and one for the rounding of the result.
 """
 
 import math

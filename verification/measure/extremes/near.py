@@ -5,9 +5,8 @@ With data `x`, truth `f(x)` and answer `y`, the *forward error* is `|y - f(x)|`.
 answer to be right ([Higham2002], section 1.5, calls this the mixed error).
 The *condition number* is the largest factor between the two. Errors are absolute, in units of rounding of one.
 
-Cycles next to a bifurcation and very long ones: Newton's method on the chord system where it is nearly singular.
-
-The backward error is the residual of the collision rule, the largest of the angles at the bounces, as the forward error
+The cases are cycles next to a bifurcation and very long ones, where the chord system is nearly singular. The backward
+error is the residual of the collision rule, the largest of the angles at the bounces, as the forward error
 is the largest of the errors; the condition number is the one that a `Solution` has, taken at the truth. Where a
 multiplier is `1 + d` it is of the size of `1/d`. The truth is the solution with 100 digits.
 """

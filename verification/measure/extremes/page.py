@@ -1,8 +1,8 @@
-"""All extreme cases in their groups, run one by one, and what to do where a verdict is not `STABLE`.
+"""All extreme cases in their groups, run one by one; the record of what they gave, and the page made from it.
 
-The page `docs/extremes.md`, made from the record that the tests hold the kernels to.
-
-Nothing is measured here: the record has every number, verdict and reason, so the page can be written again at any time.
+The tests hold the kernels to the record, and `docs/extremes.md` is written from it, with what to do where a verdict
+is not `STABLE`. Writing the page measures nothing: the record has every number, verdict and reason, so the page can
+be written again at any time.
 """
 
 import json

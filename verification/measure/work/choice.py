@@ -1,20 +1,16 @@
-"""What moved between two runs, by ratios of times within each run, so that machines and their load cancel.
-
-How much longer a run took is the median over the rows of a question, and over the questions; what is told is what
-differs from that. Lower quartiles are compared, which other work on a machine disturbs least.
-
-The questions of the work-precision diagrams, by name; each is made when it is asked.
-
-The cheapest arithmetic for a number of digits, from a table that was measured, and why it was picked.
+"""What measured run times are used for: the cheapest arithmetic for a number of digits, and a comparison of two runs.
 
 The table is `measured.json` beside this file, written by `benchmarks/work_precision.py`. A way counts for as many
 digits as it promises, and only if it kept its promise where its answer was held against a certified ball. Seconds
 are those of one machine; what carries over to others are their ratios.
 
-The cheapest arithmetic for an orbit: float64 while enough of its digits survive, else what the table says.
-
-A bounce loses digits, as many as the decimal logarithm of what its derivative stretches by. The kernels say how many
+An orbit is followed in float64 while enough of its digits survive, and beyond that by what the table says. A bounce
+loses digits, as many as the decimal logarithm of what its derivative stretches by. The kernels say how many
 an orbit loses; float64 keeps the rest of what one bounce promises.
+
+Two runs are compared by ratios of times within each, so that machines and their load cancel. How much longer a run took
+is the median over the rows of a question, and over the questions; reported is what differs from that. Lower quartiles
+are compared, which other work on a machine disturbs least.
 """
 
 import json

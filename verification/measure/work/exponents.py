@@ -1,6 +1,6 @@
-"""A Lyapunov exponent, against collisions: of an attracting cycle, and of a chaotic attractor; both are proved.
+"""Benchmark problems on one number: Lyapunov exponents of a cycle and of a chaotic attractor, both proved; arc length.
 
-Arc length on the egg, and the parameter at a given arc length.
+Arc length is that of the egg, and its inverse: the parameter at a given arc length.
 """
 
 from dataclasses import dataclass, replace

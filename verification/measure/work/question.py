@@ -1,13 +1,10 @@
-"""What is asked and in how many ways it can be answered: questions, methods, and the distance of an answer.
+"""Benchmark problems: what is asked, the methods that answer it, and rows of error and time for each.
 
 An answer is a list of numbers of any kind. Its error is the largest distance of one of them from the reference,
-a list of balls; the radius of the reference counts, so no error is understated.
+a list of balls; the radius of the reference counts, so no error is understated. Times are processor time of one core,
+which other work on the machine disturbs least; of several runs the median counts.
 
-Runs the methods of a question and gives a row for each setting: errors against balls, medians of times.
-
-Times are processor time of one core, which other work on the machine disturbs least.
-
-mpmath without gmpy2, timed in a process of its own: the choice is made when mpmath is imported.
+mpmath without gmpy2 is timed in a process of its own, as that choice is made when mpmath is imported.
 
 `python -m verification.measure.work.question QUESTION METHOD RUNS SETTING...` prints what a method found and took,
 as JSON.

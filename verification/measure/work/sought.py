@@ -1,9 +1,8 @@
 """One system of equations, solved in every arithmetic: what most questions come to.
 
 Newton's method on the same generated formulas in float64, in NumPy's long doubles, in mpmath with digits that double
-at each step, in the midpoints of balls, and in balls with a proof. All start from the same few decimals.
-
-Two values that are no fold and no flip: `lambda*` of the cuspless cardioid, the least expansion of the slap map.
+at each step, in the midpoints of balls, and in balls with a proof. All start from the same few decimals. Two problems
+of this kind stand here: `lambda*` of the cuspless cardioid, and the least expansion of the cardioid's slap map.
 """
 
 from collections.abc import Callable

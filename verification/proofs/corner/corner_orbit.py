@@ -1,11 +1,11 @@
-"""Certificates of what is no fold and no flip: the corner orbit, and where multipliers turn complex.
+"""Certificates of what is no fold and no flip: the corner orbit, where multipliers turn complex, and a doubled branch.
 
-The unstable orbits of period 4 that leave the cuspless cardioid's horizontal orbit, up to the doubling itself.
-
-Near `lambda_c` they come as near to the horizontal orbit as wanted, and no box around them leaves it out; so the
-doubling is blown up. Half an orbit is `(w, v)`, on the wall and on the arc, and the other half its mirror image, so the
-two collision rules `G = f + lam*b` are odd in `(w, v)`. With `w = e`, `v = e*m` the equations `H = G/e = 0` for
-`(m, lam)` are regular at `e = 0`: there the horizontal orbit has the multiplier -1. By the mean value theorem
+The branch is that of the unstable orbits of period 4 which leave the cuspless cardioid's horizontal orbit at its
+doubling, and it is proved up to the doubling itself. Near `lambda_c` they come as near to the horizontal orbit as
+wanted, and no box around them leaves it out; so the doubling is blown up. Half an orbit is `(w, v)`, on the wall and
+on the arc, and the other half its mirror image, so the two collision rules `G = f + lam*b` are odd in `(w, v)`. With
+`w = e`, `v = e*m` the equations `H = G/e = 0` for `(m, lam)` are regular at `e = 0`: there the horizontal orbit has
+the multiplier -1. By the mean value theorem
 
     H     in  DG(hull) * (1, m)            H_m  =  G_v
     H_lam in  Db(hull) * (1, m)            H_e/e  in  (1/3) * D3G(hull)[(1, m), (1, m), (1, m)]

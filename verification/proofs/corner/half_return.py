@@ -19,14 +19,12 @@ Where the ball lands at the lower corner divides nothing: tangent and speed of t
 `H(e*base, 0, e)` has no part of either side in it, and as it is 0 at `e = 0`, divided by `e` it is a mean of
 `base*dH/dU + dH/de` at `(f*base, 0, f)` over all `f` from 0 to `e`, not over the stretch of `e` alone.
 
-A chaotic attractor for every contraction from `lambda-star` on: a trapping region whose directions expand.
-
-For `lambda-star < lam <= lambda-star + e` a convex polygon around the corner orbit, of a size
-proportional to `lam - lambda-star`, is thrown into its own interior by half the return (`half_return`),
-and there is a cone of directions that this map keeps and stretches by a factor above 1. So in the
-region no cycle is stable, and every orbit in it has a positive exponent. It is a proof about the map
-itself, in steps of `e`; that the attractor in the region is one piece is not proved.
-Paper: section 5.2. The two ideas are those of [GlendinningSimpson2021] for the piecewise linear map.
+This proves a chaotic attractor for every contraction from `lambda-star` on. For `lambda-star < lam <= lambda-star +
+e` a convex polygon around the corner orbit, of a size proportional to `lam - lambda-star`, is thrown into its own
+interior by half the return (`half_return`), and there is a cone of directions that this map keeps and stretches by a
+factor above 1. So in the region no cycle is stable, and every orbit in it has a positive exponent. It is a proof
+about the map itself, in steps of `e`; that the attractor in the region is one piece is not proved. Paper: section
+5.2. The two ideas are those of [GlendinningSimpson2021] for the piecewise linear map.
 """
 
 import math

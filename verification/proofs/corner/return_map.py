@@ -1,21 +1,18 @@
-"""Flights in the cuspless cardioid, in balls: where a piece of phase space lands.
+"""Where the fourth collision falls in the cuspless cardioid, for every angle and every contraction of a range.
 
-A landing is enclosed by an interval Newton step on the chord angle, from a guess in floats.
+Pieces of phase space are followed in balls; a landing is enclosed by an interval Newton step on the chord angle, from
+a guess in floats. Paper: section 5.2.
 
-Where the fourth collision falls, for every angle and every contraction of a range. Paper: section 5.2.
-
-A ball leaves the upper corner of the cuspless cardioid at an angle near 0. The paper's plot shows
+A particle leaves the upper corner of the cuspless cardioid at an angle near 0. The paper's plot shows
 that up to `lambda-star` the fourth collision lies beyond the corner, on the wall (`s_4 > s*`). Boxes of
 angle and contraction are followed in balls until every one has landed strictly inside the wall.
 
-The fourth collision near `lambda-star`: its least position is at a kink, and crosses the corner there.
-
-A ball leaves the upper corner of the cuspless cardioid towards `theta1` on the arc; its second bounce
-is near the lower corner, its fourth the distance `s4` beyond the upper one (on the wall when positive:
-the paper's `s_4 > s*`). Where the second bounce passes the corner, `s4` has a kink. Proved on boxes: `s4`
-falls with `theta1` while the second bounce is on the wall and grows when it is on the arc, so that its
-minimum is the kink; and the value there falls with `lam`. It is 0 at `lambda-star`, by the corner orbit.
-So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
+Near `lambda-star` the least position of the fourth collision crosses the corner. The particle that leaves the upper
+corner towards `theta1` on the arc has its second bounce near the lower corner and its fourth the distance `s4` beyond
+the upper one (on the wall when positive: the paper's `s_4 > s*`). Where the second bounce passes the corner, `s4` has
+a kink. Proved on boxes: `s4` falls with `theta1` while the second bounce is on the wall and grows when it is on the
+arc, so that its minimum is the kink; and the value there falls with `lam`. It is 0 at `lambda-star`, by the corner
+orbit. So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
 """
 
 from collections.abc import Callable

@@ -3,9 +3,7 @@
 A saddle of `p` bounces is the zero of its `p` rules, enclosed by an interval Newton step; the product of
 its bounces' derivatives gives the multipliers. With them in balls `doubled` encloses the coefficients of the
 series one after the other, since each order is a linear system whose right side has only lower orders.
-What the series leave out is bounded in `remainder`.
-
-A bound for all that the truncated series of a local manifold leave out, for saddles of any number of bounces.
+What the truncated series leave out is bounded in `remainder`, as follows.
 
 Let `P[i]`, `0 <= i < p`, be the polynomials of order `N`, continued to all `i` by
 `P[i+p](z) = sign*P[i](mu*z) + shift`. Sought are functions `h[i]`, analytic on the unit disc, without terms up

@@ -4,9 +4,8 @@ The parameter of the series is good for the whole branch: a point far out is one
 rounds of the map later (or earlier, on a stable manifold). So new points are put between neighbours
 that are too far apart, or between which the curve turns too much, and nothing is interpolated.
 
-Starts for `tangency`: where on an unstable manifold the gap to a stable one is least, near a given letter.
-
-A fundamental domain of the unstable branch, both sides of the saddle, is followed bounce by bounce. Wherever its points
+Starts for `tangency` are the places on an unstable manifold at which the gap to a stable one is least. A fundamental
+domain of the unstable branch, both sides of the saddle, is followed bounce by bounce. Wherever its points
 fall into the neighbourhood in which the local stable manifold is a graph, the gap is a function of the
 parameter; its local extrema near 0 are candidates, and `tangency` moves the letter until they are 0. What
 comes back are tangencies near the letter, the one that ends an attractor among others: which one it is,

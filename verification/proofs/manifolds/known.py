@@ -11,11 +11,10 @@ attractor, whose outermost fold it is, and touches the stable one. Merging crisi
 of period 8 that its mirror image repeats after 4 bounces. It is the cycle of the fractal basin boundary
 that can be reached from the attractor near a diameter. Other shapes follow by continuation.
 
-A crisis of the egg to many digits, by two methods that share nothing but the chord.
-
-The value comes from the fold of a long cycle that shadows the tangency (`shadows`): its distance to
-the tangency falls like `unstable**-rounds`, and a cycle with four rounds more tells how far the
-shorter one was. The tangency of the manifolds themselves (`tangency`) has to agree.
+To many digits a crisis is found by two methods that share nothing but the chord. The value comes from the fold of a
+long cycle that shadows the tangency (`shadows`): its distance to the tangency falls like `unstable**-rounds`, and a
+cycle with four rounds more tells how far the shorter one was. The tangency of the manifolds themselves (`tangency`)
+has to agree.
 """
 
 import math

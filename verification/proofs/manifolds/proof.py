@@ -9,7 +9,8 @@ all unknowns but `z`, is the gap between the manifolds, a function `g` of `z` an
 
 The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the letter varies.
 
-What a proof of a tangency claims, as a document: enough to work it through anew, with nothing of it believed.
+`TangencyClaim` is what a proof claims, as a document: enough to work the proof through anew, with nothing of it
+believed.
 """
 
 import re

@@ -1,16 +1,15 @@
-"""A saddle: a cycle modulo a symmetry of the table, with its two multipliers.
+"""Saddles, cycles modulo a symmetry of the table, and the Taylor series of their local invariant manifolds.
 
 After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = turn*x[i] + shift`: a
 triangle is one bounce and a turn by a third, a chord between two mirror images one bounce and a mirror.
 The multipliers are those of the map followed by that symmetry undone.
 
-Local invariant manifolds by the parameterisation method: Taylor series with the map acting as `z -> mu*z`.
-
-Each bounce of a saddle has a series `P[i](z)` with `P[i](0) = x[i]` and, around the end,
-`P[i+p](z) = sign*P[i](mu*z) + shift`. The rule at three neighbours, as a power series in `z`, has to
-vanish: order `k` is the linearised rule on displacements with the factor `mu**k`, singular at `k = 1`
-only, where it gives the direction. Newton's method on whole series doubles the orders that hold.
-With `mu` the unstable multiplier this is the unstable manifold, with the stable one the stable.
+The manifolds come from the parameterisation method, with the map acting as `z -> mu*z` on the series. Each bounce of
+a saddle has a series `P[i](z)` with `P[i](0) = x[i]` and, around the end, `P[i+p](z) = sign*P[i](mu*z) + shift`. The
+rule at three neighbours, as a power series in `z`, has to vanish: order `k` is the linearised rule on displacements
+with the factor `mu**k`, singular at `k = 1` only, where it gives the direction. Newton's method on whole series
+doubles the orders that hold. With `mu` the unstable multiplier this is the unstable manifold, with the stable one the
+stable.
 """
 
 import math

@@ -5,13 +5,12 @@ some rounds near the saddle in between. Each such family folds once, at a letter
 tangency like `unstable**-rounds`. A fold is a problem of the chord system, solved with as many digits
 as wanted, and provable; a long cycle gives the tangency itself.
 
-How long a ball stays above a homoclinic crisis, at a finite distance: one term for each passage of the saddle.
-
-[GrebogiOttRomeirasYorke1987] find the power that holds in the limit. Their argument, kept at a
-finite distance: the unstable manifold reaches beyond the stable one by `e`, the distance above the crisis, over a
-length `sqrt(e)`, and what lands there leaves. Followed back for `n` rounds along the saddle that region has become as
-high as the attractor is, `e*stable**-n = 1`, and as near to the stable manifold as `unstable**-n`. So a ball must first
-have come that near, where the manifolds touch, and then have hit a part `sqrt(e)` of it:
+The saddle also says how long a particle stays near an attractor just above a homoclinic crisis, with one term for
+each passage of the saddle. [GrebogiOttRomeirasYorke1987] find the power that holds in the limit. Their argument, kept
+at a finite distance: the unstable manifold reaches beyond the stable one by `e`, the distance above the crisis, over
+a length `sqrt(e)`, and what lands there leaves. Followed back for `n` rounds along the saddle that region has become
+as high as the attractor is, `e*stable**-n = 1`, and as near to the stable manifold as `unstable**-n`. So a particle
+must first have come that near, where the manifolds touch, and then have hit a part `sqrt(e)` of it:
 
     leaves(e) = sqrt(e) * leaves(unstable**-n),    n = floor(ln(e)/ln(stable)),
 

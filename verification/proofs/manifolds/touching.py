@@ -1,9 +1,4 @@
-"""The orbit of a contact in float64: from one local manifold to the other, far into both, with its tangent.
-
-Near the saddle the points come from the series, which costs no digit; only between the two neighbourhoods
-the map is followed.
-
-A tangency as one zero of one system: an orbit from the unstable to the stable manifold, and a vector along it.
+"""A tangency as one zero of one system: an orbit from the unstable to the stable manifold, and a vector along it.
 
 Unknown are the parameter `z` where the orbit leaves the unstable manifold, its bounces `y[0] ... y[n+1]`, and the
 parameter `w` where it arrives on the stable one:
@@ -14,6 +9,8 @@ up to turns of the table. At one letter the zeros are the points where the manif
 along a vector with `1` at `z`, carry the tangent of the one manifold to the other, and vanish exactly where the two
 touch. Both together, with the letter as the last unknown, are the system: as many equations as unknowns. Like the
 chord system of a cycle it has one equation for each bounce; no orbit is followed, and no ball grows along the way.
+The start is an orbit in float64, whose points come from the series near the saddles, which costs no digit, and from the
+map in between.
 """
 
 import math

@@ -10,8 +10,7 @@ else in the box. The items and what they rest on:
 - `simple_multiplier`, `transversal`, `nondegenerate`: the numbers of the normal form are not 0;
 - `other_multiplier_stable`: the other multiplier lies inside the unit circle.
 
-Islands: an elliptic cycle of the elastic map whose twist is proved not to vanish is surrounded by invariant curves.
-
+An elliptic cycle of the elastic map whose twist is proved not to vanish is surrounded by invariant curves: an island.
 Moser's twist theorem [Moser1962] [SiegelMoser1971] asks of an area-preserving analytic map: a multiplier on the unit
 circle whose first four powers are not 1, and a normal form `w -> mu*w*(1 + i*twist*|w|^2 + ...)` with `twist` not 0.
 Both are decided by balls on an enclosed cycle. The theorem itself is taken from the literature.

@@ -1,12 +1,11 @@
-"""One zero in a box, proved: the interval Newton operator, by elimination along the cycle.
+"""One zero in a box, proved: the interval Newton operator for long cycles, Krawczyk's for wide boxes around short ones.
 
 For a box `X` with midpoint `m`, every zero in `X` lies in `N = m - F'(X)^-1 F(m)`, and when `N` lies
 in the interior of `X` there is exactly one. `F'(X)^-1` is applied by elimination in balls, in linear
 time (see `verification.cycles.recurrence.chain`); it plays the part that a preconditioner has in Krawczyk's
 operator, and contracts at least as well.
 
-Krawczyk's operator [Krawczyk1969], for wide boxes around short cycles.
-
+Krawczyk's operator [Krawczyk1969] is
 `K = m - Y F(m) + (1 - Y F'(X)) (X - m)` with `Y` near the inverse of the middle of `F'(X)`. The
 preconditioner is a full matrix, so the cost is cubic in the period; in return the balls of `F'(X)`
 may be wide, which elimination along the chain does not forgive. For a ball of contractions the

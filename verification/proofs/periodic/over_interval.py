@@ -1,14 +1,14 @@
-"""The doubling of the egg's diameters, for every contraction: supercritical all along `alpha-tilde`.
+"""Statements about cycles for every contraction of an interval: the interval is covered by small balls.
 
-On the curve the multiplier is -1 by a closed form, so only signs are left, and balls decide them on a
-cover of `0 <= lam <= 1`. With the vertex first, `turn = -(1 - lam**2)*u0*u1/d0` exactly, where `u`, `d`
-are the entries of the chain: its zero at `lam = 1` is divided out. The flip is supercritical when
-`bend` and `turn` differ in sign; at `lam = 1` the second multiplier is -1 too and the word has no sense.
+Of a cycle near a given one it is proved that it exists and attracts, or is a saddle: with `lam` a ball the interval
+Newton operator proves one cycle for each `lam` of it, and balls for trace and determinant of the monodromy matrix
+decide stability.
 
-A cycle for every contraction of an interval, attracting or not: the interval in small balls.
-
-With `lam` a ball the interval Newton operator proves one cycle for each `lam` of it, and balls for
-trace and determinant of the monodromy matrix decide stability on it.
+Of the egg's diameters it is proved that they double supercritically all along `alpha-tilde`. On that curve the
+multiplier is -1 by a closed form, so only signs are left, and balls decide them on a cover of `0 <= lam <= 1`. With
+the vertex first, `turn = -(1 - lam**2)*u0*u1/d0` exactly, where `u`, `d` are the entries of the chain: its zero at
+`lam = 1` is divided out. The flip is supercritical when `bend` and `turn` differ in sign; at `lam = 1` the second
+multiplier is -1 too, and a flip has no side there.
 """
 
 import math

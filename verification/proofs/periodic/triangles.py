@@ -1,22 +1,19 @@
-"""The egg's triangles at the flat points: attracting for every contraction between the fold and 1.
+"""The egg's cycles of period 3: where they attract, and for which contractions there are none. Paper: section 6.4.
 
-On the branch (`symbolic.cycles.polygons`) the determinant of one bounce is `f(gamma - delta)/f(gamma + delta)`
-with `f(x) = x*cos(x)`, which is below 1 while `f` grows; `1 - trace + det` has the sign of
-`-(cos(3*theta) + alpha)` and is positive up to the fold. What is left, `1 + trace + det > 0`, balls
-decide on a cover of the closed branch. Paper: section 6.4.
+The triangles at the flat points attract for every contraction between the fold and 1. On the branch
+(`symbolic.cycles.polygons`) the determinant of one bounce is `f(gamma - delta)/f(gamma + delta)` with `f(x) =
+x*cos(x)`, which is below 1 while `f` grows; `1 - trace + det` has the sign of `-(cos(3*theta) + alpha)` and is
+positive up to the fold. What is left, `1 + trace + det > 0`, balls decide on a cover of the closed branch.
 
-The paper's argument against period 3 at small contractions, judged. Paper: section 6.4.
+The paper argues against period 3 at small contractions. Its argument follows the positions of three bounces from
+every position with *any* initial angle, and says that the third never is the first one again up to `lambda_c`. A
+witness refutes it: two collision rules, at the second and third bounce, with the first position given and returned
+to. The exit angle of the witness is free when any angle may be taken, and at most `lam*pi/2` when it must be one that
+a collision can produce (in a convex table every such angle is produced).
 
-It follows the positions of three bounces from every position with *any* initial angle, and says that
-the third never is the first one again up to `lambda_c`. A witness refutes it: two collision rules,
-at the second and third bounce, with the first position given and returned to. The exit angle of the
-witness is free when any angle may be taken, and at most `lam*pi/2` when it must be one that a
-collision can produce (in a convex table every such angle is produced).
-
-No cycle of period 3 in a set of contractions, by exclusion of every triangle. Paper: section 6.4.
-
-For a period-3 cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior
-angles `phi_i - eta_i`, which add up to `pi`, give (counterclockwise, the mirror image being the same)
+That there is no cycle of period 3 in a set of contractions is proved by excluding every triangle. For a period-3
+cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior angles `phi_i - eta_i`, which add up
+to `pi`, give (counterclockwise, the mirror image being the same)
 
     0 <= phi_i,    sum phi_i = lam*pi/(1 + lam),    phi_i*eta_j = phi_j*eta_i.
 

@@ -3,11 +3,9 @@
 The second branch of the transfer operator ends at `pi/4`, with a density that vanishes quadratically there; so the
 density bends at `pi/4` and, ever more weakly, at its images. Between them it is analytic. Collocation at
 Chebyshev's points is solved in floats and refined in balls whose radii are dropped: nothing here is proved, and
-nothing needs to be, for `verification.proofs.slap_map.candidate` judges the result as it is.
+nothing needs to be: what the transfer operator changes in the result, and its mean of `log F'`, are bounded in balls.
 
-What the transfer operator changes in a piecewise polynomial, and its mean of `log F'`: both bounded in balls.
-
-The half table is cut at the ends of pieces, at their images and at `pi/4`, each image between two exact points
+For this the half table is cut at the ends of pieces, at their images and at `pi/4`, each image between two exact points
 `2*margin` apart. A stretch whose launching points lie within one piece (that is tested in balls, so that a misplaced
 cut costs precision and no truth) has an analytic residual `r = L f - f`, bounded by Taylor's series at the middle
 with the last coefficient enclosed over the whole stretch; the same for `r'`. On any other stretch, all of them

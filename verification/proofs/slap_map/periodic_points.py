@@ -1,19 +1,18 @@
-"""How many critical points the egg's slap map has, for every shape: none, three or six. Paper: section 6.2.
+"""Critical points of the egg's slap map, and all cycles of a slap map up to a period, in balls.
 
-`T0' = 0` where the centre of curvature `e` lies on the boundary. With `C = cos(3*theta)` let `k` be its
-distance from the centre less that of the boundary in its direction: `T0'` has the sign of `-k`. Balls show on
-a cover of `-1 <= C <= 1`, `0 <= alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha`
-`k` has at most one zero, through which it falls: one where `k > 0` at the flat points (`C = -1`), none where
-`k < 0` there. A zero inside stands for six points, one at `C = -1` for the three flat points.
+The egg's slap map has no critical point, three or six, for every shape (paper: section 6.2). `T0' = 0` where the
+centre of curvature `e` lies on the boundary. With `C = cos(3*theta)` let `k` be its distance from the centre less
+that of the boundary in its direction: `T0'` has the sign of `-k`. Balls show on a cover of `-1 <= C <= 1`, `0 <=
+alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` `k` has at most one zero, through which
+it falls: one where `k > 0` at the flat points (`C = -1`), none where `k < 0` there. A zero inside stands for six
+points, one at `C = -1` for the three flat points.
 
-All cycles of a slap map up to a period, enclosed: the cuspless cardioid has none of period 4.
-
-The slap map is one-dimensional, so subdivision settles it: a piece of the boundary is followed in
-balls. A piece that does not meet its image holds no periodic point; where `(T0**n)' - 1` keeps its
-sign it holds at most one; and pieces that touch are joined where that sign is the same, so that what is
-left are as many periodic points as are known already. Where it changes from one piece to the next, as it
-may at a kink of the map, each piece can hold one.
-Paper: section 5.4 (`the graph of the 4th iterate confirms that there are no period-4 orbits`).
+The slap map of the cuspless cardioid has no cycle of period 4. A slap map is one-dimensional, so subdivision settles
+it: a piece of the boundary is followed in balls. A piece that does not meet its image holds no periodic point; where
+`(T0**n)' - 1` keeps its sign it holds at most one; and pieces that touch are joined where that sign is the same, so
+that what is left are as many periodic points as are known already. Where it changes from one piece to the next, as it
+may at a kink of the map, each piece can hold one. Paper: section 5.4 (`the graph of the 4th iterate confirms that
+there are no period-4 orbits`).
 """
 
 from dataclasses import dataclass

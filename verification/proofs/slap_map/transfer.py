@@ -19,11 +19,9 @@ below `y0`, the rate grows from 0 to `eta < SHRINKS/2`, which adds at most `eta*
 
     Var(L f) <= SHRINKS*Var f + B*||f||,      B = max(STEEP, eta/y0).
 
-How well the transfer operator, averaged over cells, can be inverted: Ulam's matrix [Ulam1960], with a proof.
-
-`N` equal cells, `P` the average over each, `Q = P L P`: a matrix of the shares of a cell that are carried to
-another. On vectors of sum 0, in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X` proves such a `K`: from
-`u = X(I - Q)u + (I - X(I - Q))u`,
+How well `1 - L`, averaged over cells, can be inverted is proved with Ulam's matrix [Ulam1960]: `N` equal cells, `P`
+the average over each, `Q = P L P`: a matrix of the shares of a cell that are carried to another. On vectors of sum 0,
+in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X` proves such a `K`: from `u = X(I - Q)u + (I - X(I - Q))u`,
 
     K = |X| / (1 - |I - X(I - Q)|),        |A| = max over columns of ||column - w||, for any vector w,
 

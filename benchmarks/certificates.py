@@ -30,8 +30,8 @@ from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.named.feigenbaum import limit, ratio
 from verification.named.files import checked, document
 from verification.named.locate import GMPY2, locate
-from verification.proofs.corner.corner_orbit import SpecialClaim, specially_proved
-from verification.proofs.corner.half_return import birth
+from verification.proofs.corner.corner_orbit import CornerClaim, corner_proved
+from verification.proofs.corner.half_return import trapping_region
 from verification.proofs.corner.return_map import kink_falls, minimum_at_kink
 from verification.proofs.periodic.bifurcation import Claim, proved
 from verification.proofs.periodic.triangles import no_triangles
@@ -70,7 +70,7 @@ def certificate(system: System, z: list[Any], digits: int) -> None:
     if isinstance(system, Problem):
         assert proved(Claim(system, tuple(exact_balls(z)), radius, bits, digits)).certified
     else:
-        assert specially_proved(SpecialClaim("lam", tuple(exact_balls(z)), radius, bits, digits)).certified
+        assert corner_proved(CornerClaim("lam", tuple(exact_balls(z)), radius, bits, digits)).certified
 
 
 def systems() -> dict[str, tuple[System, list[float]]]:
@@ -138,7 +138,7 @@ def sets_table(console: Console, full: bool) -> None:
         "s_4 has its minimum at a kink, 0.071 <= lam <= 0.0713": lambda: (minimum_at_kink(0.04, 0.071, 0.0713), 0),
         "and that falls": lambda: (kink_falls(0.071, 0.0713), 0),
         f"a chaotic attractor for lambda-star < lam <= {last}": lambda: (
-            (found := birth(last)).proved,
+            (found := trapping_region(last)).proved,
             len(found.steps),
         ),
     }

@@ -39,7 +39,7 @@ from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Closure
 from verification.named.feigenbaum import limit
 from verification.named.locate import certify
-from verification.proofs.periodic.interval_newton import Enclosure, contraction
+from verification.proofs.periodic.interval_newton import Enclosure, interval_newton
 
 TWO = ("alpha", "lam")
 SHARE = 0.96  # of the shape whose diameter doubles at lam = 0: there every doubling has its contraction
@@ -191,7 +191,7 @@ def double_one() -> Enclosure:
     solution = refined(system, list(LONG), 24)
     with working(256):
         radius = (arb(10) ** -22).mid()
-    return contraction(system, exact_balls(solution.z), radius, 256)
+    return interval_newton(system, exact_balls(solution.z), radius, 256)
 
 
 def contracting_up_to(alpha: Expr, K: int = 3) -> float:

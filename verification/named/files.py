@@ -25,7 +25,7 @@ from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind, Closure
 from verification.named.locate import closed_form
 from verification.proofs.corner.corner import NEAR
-from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
+from verification.proofs.corner.corner_orbit import CornerClaim, CornerProof, corner_proved
 from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 
 if TYPE_CHECKING:
@@ -35,11 +35,11 @@ SCHEMA = 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
 
 
-def document(proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
+def document(proof: "Proof | CornerProof | TangencyProof") -> dict[str, Any]:
     """A proof as a JSON document; its name is what its equations say, and nothing else."""
     claim = proof.claim
     name = name_of(claim)
-    if not isinstance(claim, Claim | SpecialClaim):
+    if not isinstance(claim, Claim | CornerClaim):
         return {"schema": SCHEMA, "name": name} | claim.to_dict() | {"checks": dict(proof.checks)}
     box = {
         "bits": claim.bits,
@@ -48,7 +48,7 @@ def document(proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
         "radius": _pair(claim.radius),
         "checks": proof.checks,
     }
-    if isinstance(claim, SpecialClaim):
+    if isinstance(claim, CornerClaim):
         lam = None if claim.lam is None else str(claim.lam)
         return {"schema": SCHEMA, "name": name, "kind": "special", "value": claim.value, "lam": lam} | box
     problem = claim.problem
@@ -66,13 +66,13 @@ def document(proof: "Proof | SpecialProof | TangencyProof") -> dict[str, Any]:
     } | box
 
 
-def name_of(claim: "Claim | SpecialClaim | TangencyClaim") -> str:
+def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
     """What a claim states; by its name where its box holds the one value that `locate` has a closed form for.
 
     A crisis has no name here, since a tangency is all that is proved of it; nor has a doubling, since other
     cycles of the same period double too.
     """
-    if isinstance(claim, SpecialClaim):
+    if isinstance(claim, CornerClaim):
         if claim.value != "alpha":
             near = all(abs(x - mid) < 0.001 for x, mid in zip(claim.centre, NEAR, strict=True))
             return {"lam": "lambda-star", "phi": "phi-star"}[claim.value] if near else "an orbit through both corners"
@@ -104,13 +104,13 @@ def name_of(claim: "Claim | SpecialClaim | TangencyClaim") -> str:
     return f"{kind} of {half} period {problem.period} in {problem.free}: {table.name}{shape}"
 
 
-def _in_box(claim: Claim | SpecialClaim, exact: Expr) -> bool:
+def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
     """Does the last unknown's ball hold a value that is known exactly?"""
     with working(claim.bits):
         return bool((claim.centre[-1] + arb(0, claim.radius)).overlaps(closed_form(exact, claim.digits + 5)))
 
 
-def claim_of(given: Mapping[str, Any]) -> Claim | SpecialClaim:
+def claim_of(given: Mapping[str, Any]) -> Claim | CornerClaim:
     """The claim of a document; `ValueError` with the entry that is wrong."""
     try:
         if given["schema"] != SCHEMA:
@@ -125,7 +125,7 @@ def claim_of(given: Mapping[str, Any]) -> Claim | SpecialClaim:
         if given["kind"] == "special":
             unknowns = 2 if lam is None else 3
             _sized(centre, unknowns, "unknowns")
-            return SpecialClaim(given["value"], centre, radius, bits, digits, lam)
+            return CornerClaim(given["value"], centre, radius, bits, digits, lam)
         problem = _problem(given, lam)
         _sized(centre, problem.period + bool(problem.free), "unknowns")
         return Claim(problem, centre, radius, bits, digits)
@@ -163,7 +163,7 @@ def read(path: Path) -> dict[str, Any]:
     return found
 
 
-def checked(given: Mapping[str, Any]) -> "Proof | SpecialProof | TangencyProof":
+def checked(given: Mapping[str, Any]) -> "Proof | CornerProof | TangencyProof":
     """The checklist of a document's claim, worked through anew; what the file says of it is not believed.
 
     The name is part of the statement: a file under another name than its equations have is refused.
@@ -176,15 +176,15 @@ def checked(given: Mapping[str, Any]) -> "Proof | SpecialProof | TangencyProof":
         return tangency.worked_through(contact)
     claim = claim_of(given)
     _rightly_named(given, claim)
-    return specially_proved(claim) if isinstance(claim, SpecialClaim) else proved(claim)
+    return corner_proved(claim) if isinstance(claim, CornerClaim) else proved(claim)
 
 
-def check(path: Path | str) -> "Proof | SpecialProof | TangencyProof":
+def check(path: Path | str) -> "Proof | CornerProof | TangencyProof":
     """The proof that a certificate file leads to, worked through anew; `certified` says whether every item holds."""
     return checked(read(Path(path)))
 
 
-def _rightly_named(given: Mapping[str, Any], claim: "Claim | SpecialClaim | TangencyClaim") -> None:
+def _rightly_named(given: Mapping[str, Any], claim: "Claim | CornerClaim | TangencyClaim") -> None:
     said, true = given.get("name"), name_of(claim)
     if said != true:
         raise ValueError(f"certificate: name = {ascii(said)[:80]} is not what it states, which is {true!r}")

@@ -27,7 +27,7 @@ from verification.cycles.recurrence.critical import corner, focus
 from verification.cycles.recurrence.newton import Step, refined
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
-from verification.proofs.corner.corner_orbit import SpecialClaim, SpecialProof, specially_proved
+from verification.proofs.corner.corner_orbit import CornerClaim, CornerProof, corner_proved
 from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
 from verification.proofs.periodic.interval_newton import Status
 
@@ -38,7 +38,7 @@ MOST_DIGITS = 20_000
 BUDGET = 4_000_000  # bounces times digits: some ten minutes
 MPMATH_SHARE = 0.7  # of the time that a proof and its approximation take
 Steps = tuple[Step, ...]
-Proved: TypeAlias = "Proof | SpecialProof | TangencyProof"
+Proved: TypeAlias = "Proof | CornerProof | TangencyProof"
 FOLD_DIGITS = 50  # at most, of the proof beside a crisis
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
 WORDS = {True: "proved", False: "refuted", None: "unknown"}  # the three answers of a checklist
@@ -165,7 +165,7 @@ def _direction(proof: Proof) -> dict[str, str]:
     return {"kind": f"{'super' if proof.supercritical else 'sub'}critical: {born} cycle of twice the period is born"}
 
 
-def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> tuple[SpecialProof, Steps]:
+def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> tuple[CornerProof, Steps]:
     """The proof of a small system's solution near `start`."""
     bits = bits_of(digits, 100)
     with working(bits):
@@ -173,8 +173,8 @@ def _special(value: str, start: list[float], digits: int, lam: Expr | None = Non
     tick = telling(f"{digits} digits")
     solution = refined(corner() if lam is None else focus(lam), start, digits + 5)
     tick(MPMATH_SHARE)
-    claim = SpecialClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam)
-    return specially_proved(claim), solution.steps
+    claim = CornerClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam)
+    return corner_proved(claim), solution.steps
 
 
 def lambda_star(digits: int) -> Found:

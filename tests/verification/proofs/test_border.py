@@ -15,7 +15,7 @@ from verification.named.locate import locate
 from verification.proofs.corner.border_collision import Kind, exponents, extent, fixed_point, kind, robust
 from verification.proofs.corner.corner import ARC, WALL, at_corner, enclosed
 from verification.proofs.corner.evidence import border, measured, saddles
-from verification.proofs.corner.half_return import birth, limit, pieces
+from verification.proofs.corner.half_return import limit, pieces, trapping_region
 from verification.proofs.corner.mean_value import BITS
 from verification.proofs.corner.polygon import Piece, expansion, grown, trapped
 from verification.proofs.corner.return_map import exit_angle, kink, kink_falls, minimum_at_kink
@@ -189,7 +189,7 @@ def test_the_attractor_grows_in_proportion_and_stays_thin():
 
 
 def test_a_region_traps_and_stretches_from_lambda_star_on():
-    found = birth(0.075)
+    found = trapping_region(0.075)
 
     assert found.proved
     assert found.steps[0].e[0] == 0
@@ -199,14 +199,14 @@ def test_a_region_traps_and_stretches_from_lambda_star_on():
 
 
 def test_a_small_budget_leaves_the_birth_unknown_and_says_how_far_it_came():
-    found = birth(0.08, budget=2)
+    found = trapping_region(0.08, budget=2)
 
     assert found.proved is None
     assert 0 < found.reached < 0.08 - STAR
 
 
 def test_orbits_stay_in_the_region_that_is_proved_to_trap_them():
-    step = birth(0.075).steps[-1]
+    step = trapping_region(0.075).steps[-1]
     e = step.e[1]
     (found,) = measured([e], 20_000)
     heights = [v for _, v in step.region]

@@ -19,7 +19,7 @@ from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Claim, proved
-from verification.proofs.periodic.interval_newton import Status, contraction
+from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 AXIS = Problem(ellipse.at(a=Rational(3, 2)), (0, 0), lam=Rational(1, 3))
 EGG = egg(3).at(alpha=Rational(2, 25))
@@ -86,7 +86,7 @@ def test_a_wrong_box_is_never_certified(distance, u, v, radius):
     with working(100):
         centre = [(x + u * scale).mid(), (-x + v * scale).mid()]
         holds = all(abs(c - e) < radius for c, e in zip(centre, (x, -x), strict=True))
-    found = contraction(AXIS, centre, arb(radius), 100)
+    found = interval_newton(AXIS, centre, arb(radius), 100)
 
     assert not holds
     if found.status is Status.UNIQUE:  # there is another zero: the other axis is one
@@ -104,7 +104,7 @@ def test_a_wrong_box_of_a_fold_is_never_certified(way, radius, distance):
         way, size = [1.0, 0.0, 0.0, 0.0], 1.0
     with working(160):
         off = [(x + w / size * distance * radius).mid() for x, w in zip(solution, way, strict=True)]
-        found = contraction(problem, off, arb(radius), 160)
+        found = interval_newton(problem, off, arb(radius), 160)
 
         assert found.status is not Status.UNIQUE or not all(
             z.overlaps(x) for z, x in zip(found.zero, solution, strict=True)
@@ -117,15 +117,15 @@ def test_the_three_answers_all_occur():
         centre = [x, (-x).mid()]
         off = [(x + 0.01).mid(), (-x).mid()]
 
-    assert contraction(AXIS, centre, arb("1e-3"), 100).status is Status.UNIQUE
-    assert contraction(AXIS, off, arb("1e-3"), 100).status is Status.EMPTY
-    assert contraction(AXIS, centre, arb(2), 100).status is Status.UNKNOWN
+    assert interval_newton(AXIS, centre, arb("1e-3"), 100).status is Status.UNIQUE
+    assert interval_newton(AXIS, off, arb("1e-3"), 100).status is Status.EMPTY
+    assert interval_newton(AXIS, centre, arb(2), 100).status is Status.UNKNOWN
 
 
 def test_the_enclosure_contains_the_exact_cycle():
     x = half_pi(200)
     with working(200):
-        found = contraction(AXIS, [x, (-x).mid()], arb("1e-9"), 200)
+        found = interval_newton(AXIS, [x, (-x).mid()], arb("1e-9"), 200)
         exact = arb.pi() / 2
 
         assert found.zero[0].overlaps(exact)
@@ -185,7 +185,7 @@ def test_a_fold_is_no_flip():
 def test_a_claim_with_too_few_bits_is_unknown_and_not_refuted():
     solution = refined(corner(), [0.25, 0.07], 30)
     centre = exact_balls(solution.z)
-    proof = contraction(corner(), centre, arb("1e-28"), 60)
+    proof = interval_newton(corner(), centre, arb("1e-28"), 60)
 
     assert proof.status is Status.UNKNOWN
 

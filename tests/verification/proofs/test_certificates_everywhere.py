@@ -15,7 +15,7 @@ from verification.cycles.recurrence.newton import floats
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.proofs.periodic.interval_newton import Status, krawczyk
-from verification.proofs.periodic.over_interval import Stability, everywhere, stability
+from verification.proofs.periodic.over_interval import Stability, over_interval, stability
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 FLAT = [math.pi / 3, math.pi, 5 * math.pi / 3]
@@ -24,7 +24,7 @@ VERTEX = [0.0, 2 * math.pi / 3, 4 * math.pi / 3]
 
 @pytest.mark.parametrize(("start", "wanted"), [(FLAT, Stability.ATTRACTING), (VERTEX, Stability.SADDLE)])
 def test_the_two_triangles_exist_from_the_elastic_end_to_the_fold(start, wanted):
-    assert everywhere(EGG, (0, 0, 0), start, (0.999, 0.379), wanted).proved
+    assert over_interval(EGG, (0, 0, 0), start, (0.999, 0.379), wanted).proved
 
 
 def test_the_triangles_meet_at_the_fold():
@@ -39,8 +39,8 @@ def test_the_triangles_meet_at_the_fold():
 def test_an_attracting_cycle_of_period_4_exists_for_every_small_contraction():
     start = attractor(EGG, 0.2, (0.05, 3.1))
 
-    assert everywhere(EGG, (0,) * 4, start, (0.2, 0.0), Stability.ATTRACTING).proved
-    assert everywhere(EGG, (0,) * 4, start, (0.2, 0.28), Stability.ATTRACTING).proved
+    assert over_interval(EGG, (0,) * 4, start, (0.2, 0.0), Stability.ATTRACTING).proved
+    assert over_interval(EGG, (0,) * 4, start, (0.2, 0.28), Stability.ATTRACTING).proved
 
 
 def test_the_unstable_cycle_born_at_lambda_c_lives_down_to_the_corners():
@@ -48,8 +48,8 @@ def test_the_unstable_cycle_born_at_lambda_c_lives_down_to_the_corners():
     start, lam = doubled(flip, floats(flip, [0.0, 0.0, 0.0934]), 0.002)
 
     assert lam < 0.0934  # subcritical: on the side where the period-2 orbit is stable
-    assert everywhere(cuspless, (1, 0, 1, 0), start, (lam, 0.0933), Stability.SADDLE).proved
-    assert everywhere(cuspless, (1, 0, 1, 0), start, (lam, 0.07122), Stability.SADDLE).proved
+    assert over_interval(cuspless, (1, 0, 1, 0), start, (lam, 0.0933), Stability.SADDLE).proved
+    assert over_interval(cuspless, (1, 0, 1, 0), start, (lam, 0.07122), Stability.SADDLE).proved
 
 
 def test_its_partner_on_the_arc_is_a_saddle_from_the_corners_on():
@@ -57,12 +57,12 @@ def test_its_partner_on_the_arc_is_a_saddle_from_the_corners_on():
     problem = Problem(cuspless, (0,) * 4, lam=Rational(7122, 10**5))
     start = floats(problem, corner)
 
-    assert everywhere(cuspless, (0,) * 4, start, (0.07122, 0.1), Stability.SADDLE).proved
+    assert over_interval(cuspless, (0,) * 4, start, (0.07122, 0.1), Stability.SADDLE).proved
 
 
 def test_what_is_not_so_is_not_proved():
     start = attractor(EGG, 0.36, (0.05, 3.1))
-    found = everywhere(EGG, (0,) * 4, start, (0.36, 0.38), Stability.ATTRACTING, budget=300)
+    found = over_interval(EGG, (0,) * 4, start, (0.36, 0.38), Stability.ATTRACTING, budget=300)
 
     assert not found.proved
     assert 0.371 < found.reached < 0.3712356  # lambda_3
@@ -97,5 +97,5 @@ def test_at_039_the_attractor_has_period_16_and_not_8_as_the_papers_figure_says(
         eight = cycle_at(EGG, eight, lam)
 
     assert len(sixteen) == 16
-    assert everywhere(EGG, (0,) * 16, sixteen, (0.39, 0.39001), Stability.ATTRACTING).proved
-    assert everywhere(EGG, (0,) * 8, eight, (0.39, 0.39001), Stability.SADDLE).proved
+    assert over_interval(EGG, (0,) * 16, sixteen, (0.39, 0.39001), Stability.ATTRACTING).proved
+    assert over_interval(EGG, (0,) * 8, eight, (0.39, 0.39001), Stability.SADDLE).proved

@@ -19,9 +19,9 @@ from verification.cycles.recurrence.newton import refined
 from verification.named.feigenbaum import DELTA, aitken, limit, ratio, wynn
 from verification.named.locate import closed_form
 from verification.paper.egg.basins import points_of_period_4, without_triangles
-from verification.proofs.corner.half_return import birth
+from verification.proofs.corner.half_return import trapping_region
 from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
-from verification.proofs.periodic.interval_newton import Status, contraction
+from verification.proofs.periodic.interval_newton import Status, interval_newton
 from verification.proofs.periodic.over_interval import doubling_curve
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
 from verification.proofs.slap_map import periodic_points as slap
@@ -83,7 +83,7 @@ def test_every_subdivision_whose_budget_ends_leaves_its_question_open():
         lambda tick: periodic_points(2, tick=tick),
         lambda tick: doubling_curve(tick=tick),
         lambda tick: fourth_on_wall(0.02, 0.0, 0.02, tick=tick),
-        lambda tick: birth(0.073, tick=tick),
+        lambda tick: trapping_region(0.073, tick=tick),
         lambda tick: minimum_at_kink(0.03, 0.0712, 0.0713, tick=tick),
     ],
 )
@@ -203,7 +203,7 @@ def test_the_fold_of_every_polygon_is_where_the_closed_form_says(K, p, q):
     where = -float(acos(-shape)) / K
     found = refined(polygon_fold(K, shape, p, q), [where, float(exact)], 30)
 
-    proof = contraction(polygon_fold(K, shape, p, q), exact_balls(found.z), arb("1e-25"), 200)
+    proof = interval_newton(polygon_fold(K, shape, p, q), exact_balls(found.z), arb("1e-25"), 200)
 
     assert proof.status is Status.UNIQUE
     assert proof.zero[1].overlaps(closed_form(exact, 30))

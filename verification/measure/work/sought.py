@@ -36,7 +36,7 @@ from verification.cycles.recurrence.newton import (
 from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question, available, power
 from verification.named.locate import lambda_star
-from verification.proofs.periodic.interval_newton import Status, contraction
+from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 Read = Callable[[Arithmetic, list[Any]], list[Any]]
 DIGITS = (16, 30, 100, 300, 1000)
@@ -121,7 +121,7 @@ class Sought:
         bits = bits_of(digits, 64 + 8 * len(self.start).bit_length())
         with working(bits):
             radius = (arb(10) ** -(digits + 5)).mid()
-        found = contraction(self.system, self.middle(digits + 8), radius, bits)
+        found = interval_newton(self.system, self.middle(digits + 8), radius, bits)
         if found.status is not Status.UNIQUE:
             raise ValueError(f"{self.system.label}: {found.status.value}")
         with working(bits):

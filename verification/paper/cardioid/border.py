@@ -22,7 +22,7 @@ from verification.paper.shared.located import certified, located, subcritical
 from verification.proofs.corner.border_collision import Kind
 from verification.proofs.corner.corner import ARC
 from verification.proofs.corner.evidence import Attractor, border, measured, saddles, strips_of_the_map
-from verification.proofs.corner.half_return import Birth, birth
+from verification.proofs.corner.half_return import TrappingRegion, trapping_region
 from verification.proofs.corner.return_map import fourth_on_wall, kink_falls, minimum_at_kink
 
 PROVED_TO, NEAR = 0.1, 1e-6  # a contraction, and a distance from lambda-star
@@ -41,9 +41,9 @@ def corner(check: str, reason: str) -> Finding:
 
 
 @cache
-def born() -> Birth:
+def born() -> TrappingRegion:
     """The trapping region and the expanding cone, from `lambda-star` on."""
-    return birth(PROVED_TO, tick=telling("trapping regions"))
+    return trapping_region(PROVED_TO, tick=telling("trapping regions"))
 
 
 def chaos() -> Finding:

@@ -24,7 +24,7 @@ from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.shared.attractors import STARTS, egg, proved_at, unsettled
 from verification.paper.shared.located import certified, located
 from verification.paper.shared.samples import sampled
-from verification.proofs.periodic.over_interval import Stability, everywhere
+from verification.proofs.periodic.over_interval import Stability, over_interval
 from verification.proofs.periodic.returning import returning
 
 SHAPE = Rational(2, 25)
@@ -160,7 +160,7 @@ def attracting_without_mirror() -> Finding:
     table, (lam, ends) = table_of(3).at(alpha=SHAPE), BETWEEN
     start = attractor(table, lam, (0.05, 3.1))
     away = abs(np.remainder(start[0] + start[2] + np.pi, 2 * np.pi) - np.pi) > 0.01
-    found = all(everywhere(table, (0,) * 4, start, (lam, end), Stability.ATTRACTING).proved for end in ends)
+    found = all(over_interval(table, (0,) * 4, start, (lam, end), Stability.ATTRACTING).proved for end in ends)
     low, high = ends
     return answer(bool(found and away), f"a period 4 without the mirror attracts for every {low} <= lam <= {high}")
 

@@ -33,7 +33,7 @@ from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, zero
 from verification.paper.egg.period3 import side_of_fold
 from verification.paper.shared.samples import sampled
-from verification.proofs.periodic.over_interval import Stability, doubling_curve, everywhere, stability
+from verification.proofs.periodic.over_interval import Stability, doubling_curve, over_interval, stability
 from verification.proofs.periodic.triangles import contracts, flips_nowhere
 
 SHAPE = Rational(2, 25)
@@ -64,7 +64,7 @@ def attracting_4() -> Finding:
     start = attractor(table, *PERIOD_4)
     at = PERIOD_4[0]
     found = [
-        everywhere(table, (0,) * 4, start, (at, end), Stability.ATTRACTING, tick=telling(f"lam up to {end}"))
+        over_interval(table, (0,) * 4, start, (at, end), Stability.ATTRACTING, tick=telling(f"lam up to {end}"))
         for end in (0.0, 0.28)
     ]
     return answer(all(f.proved for f in found), "proved for every lam in [0, 0.28], interval by interval")

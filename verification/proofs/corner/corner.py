@@ -21,7 +21,7 @@ from verification.cycles.recurrence.critical import corner
 from verification.cycles.recurrence.newton import refined
 from verification.proofs.corner.border_collision import robust
 from verification.proofs.corner.polygon import Piece
-from verification.proofs.periodic.interval_newton import Status, contraction
+from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 ARC, WALL = 0, 1
 NEAR = (0.2545, 0.0712)  # theta1 and lambda-star, from where Newton's method finds them
@@ -142,7 +142,7 @@ def enclosed(digits: int = 25) -> tuple[arb, arb]:
     """
     solution, bits = refined(corner(), NEAR, digits), bits_of(digits, 64)
     with working(bits):
-        found = contraction(corner(), exact_balls(solution.z), (arb(10) ** -(digits - 3)).mid(), bits)
+        found = interval_newton(corner(), exact_balls(solution.z), (arb(10) ** -(digits - 3)).mid(), bits)
     if found.status is not Status.UNIQUE:
         raise ArithmeticError(f"the orbit through both corners is not proved to {digits} digits")
     theta1, contracted = found.zero

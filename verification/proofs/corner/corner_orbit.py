@@ -34,11 +34,11 @@ from verification.maps.first_hit import convex, inside
 from verification.proofs.corner.border_collision import homoclinic
 from verification.proofs.corner.corner import at_corner
 from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.periodic.interval_newton import Enclosure, Status, compared, contraction, dense
+from verification.proofs.periodic.interval_newton import Enclosure, Status, compared, dense, interval_newton
 
 
 @dataclass(frozen=True)
-class SpecialClaim:
+class CornerClaim:
     """A box for the solution of a small system: `lam`, `phi` of the corner orbit, or `alpha` of the focus."""
 
     value: str
@@ -59,10 +59,10 @@ class SpecialClaim:
 
 
 @dataclass(frozen=True)
-class SpecialProof:
-    """What was proved of a special claim."""
+class CornerProof:
+    """What was proved of such a claim."""
 
-    claim: SpecialClaim
+    claim: CornerClaim
     checks: Checks
     enclosure: Enclosure
     value: arb
@@ -74,15 +74,15 @@ class SpecialProof:
         return all(value is True for value in self.checks.values())
 
 
-def specially_proved(claim: SpecialClaim) -> SpecialProof:
+def corner_proved(claim: CornerClaim) -> CornerProof:
     """The checklist of a special claim, worked through.
 
     >>> with working(80):
     ...     near = (arb("0.25452687132067834252").mid(), arb("0.0712172452489159804").mid())
-    >>> specially_proved(SpecialClaim("lam", near, arb(2) ** -40, 80, 10)).certified
+    >>> corner_proved(CornerClaim("lam", near, arb(2) ** -40, 80, 10)).certified
     True
     """
-    found = contraction(claim.system, list(claim.centre), claim.radius, claim.bits)
+    found = interval_newton(claim.system, list(claim.centre), claim.radius, claim.bits)
     unique = found.status is Status.UNIQUE
     said = False if found.status is Status.EMPTY else unique or None
     checks: Checks = {"exists": said, "unique": said}
@@ -92,10 +92,10 @@ def specially_proved(claim: SpecialClaim) -> SpecialProof:
         else:
             value, notes = _corner(claim, found, checks)
         checks["precise"] = (unique and bool(value.rad() < arb(10) ** -claim.digits)) or None
-    return SpecialProof(claim, checks, found, value, notes)
+    return CornerProof(claim, checks, found, value, notes)
 
 
-def _corner(claim: SpecialClaim, found: Enclosure, checks: Checks) -> tuple[arb, dict[str, str]]:
+def _corner(claim: CornerClaim, found: Enclosure, checks: Checks) -> tuple[arb, dict[str, str]]:
     theta1, lam = found.zero
     words = balls(claim.bits)
     apart = found.status is Status.UNIQUE and bool(theta1 > 0 and theta1 < 2)  # off corners and mirror image

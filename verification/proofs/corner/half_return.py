@@ -145,7 +145,7 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Birth:
+class TrappingRegion:
     """`reached`: how far from `lambda-star` the proof came; `proved`: as far as it was asked to."""
 
     proved: bool | None
@@ -160,10 +160,10 @@ class Birth:
         return math.log(least) / 2, math.log(most) / 2
 
 
-def birth(last: float, budget: int = 200, tick: Tick = silent) -> Birth:
+def trapping_region(last: float, budget: int = 200, tick: Tick = silent) -> TrappingRegion:
     """The proof for `lambda-star < lam <= last`; `proved` is None when the budget of steps ends first.
 
-    >>> birth(0.0725).proved, birth(0.0725, budget=1).proved
+    >>> trapping_region(0.0725).proved, trapping_region(0.0725, budget=1).proved
     (True, None)
     """
     steps: list[Step] = []
@@ -184,8 +184,8 @@ def birth(last: float, budget: int = 200, tick: Tick = silent) -> Birth:
             tick((e[1] - reached) / end)
             reached, length = e[1], min(length * 1.3, LONGEST)
             if reached >= end:
-                return Birth(True, reached, tuple(steps))
-    return Birth(None, reached, tuple(steps))
+                return TrappingRegion(True, reached, tuple(steps))
+    return TrappingRegion(None, reached, tuple(steps))
 
 
 def step(near: Pieces, e: tuple[float, float]) -> tuple[Pieces, Step] | None:

@@ -31,7 +31,7 @@ from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import balls, working
 from verification.cycles.recurrence.problem import Linearised, NormalForm, Problem
 from verification.maps.first_hit import convex, first_hits, inside, minimal
-from verification.proofs.periodic.interval_newton import Enclosure, Status, contraction, slope_bits
+from verification.proofs.periodic.interval_newton import Enclosure, Status, interval_newton, slope_bits
 
 Checks = dict[str, bool | None]
 
@@ -85,7 +85,7 @@ def proved(claim: Claim) -> Proof:
     (True, False)
     """
     problem = claim.problem
-    enclosure = contraction(problem, list(claim.centre), claim.radius, claim.bits)
+    enclosure = interval_newton(problem, list(claim.centre), claim.radius, claim.bits)
     found = enclosure.status is Status.UNIQUE
     checks: Checks = {"exists": True if found else None, "unique": True if found else None}
     if enclosure.status is Status.EMPTY:

@@ -41,7 +41,7 @@ class Enclosure:
     zero: list[Any]
 
 
-def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> Enclosure:
+def interval_newton(system: System, centre: list[arb], radius: arb, bits: int) -> Enclosure:
     """What the interval Newton operator proves about the box of `radius` around exact `centre`.
 
     >>> from symbolic.tables import ellipse
@@ -50,7 +50,7 @@ def contraction(system: System, centre: list[arb], radius: arb, bits: int) -> En
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> with working(100):
     ...     near, off = [arb("1.5707963268"), arb("-1.5707963268")], [arb("0.5"), arb("-1.5")]
-    >>> [contraction(axis, [x.mid() for x in c], arb("1e-9"), 100).status.name for c in (near, off)]
+    >>> [interval_newton(axis, [x.mid() for x in c], arb("1e-9"), 100).status.name for c in (near, off)]
     ['UNIQUE', 'EMPTY']
     """
     with working(bits):

@@ -91,7 +91,7 @@ class Stability(Enum):
 
 
 @dataclass(frozen=True)
-class Everywhere:
+class OverInterval:
     """`reached` is how far the proof came, from the first end; `proved` when that is the other end."""
 
     proved: bool
@@ -99,7 +99,7 @@ class Everywhere:
     balls: int
 
 
-def everywhere(
+def over_interval(
     table: Table,
     components: tuple[int, ...],
     start: Sequence[float],
@@ -107,12 +107,12 @@ def everywhere(
     wanted: Stability,
     budget: int = 2000,
     tick: Tick = silent,
-) -> Everywhere:
+) -> OverInterval:
     """Is there a cycle of the `wanted` stability for every `lam` between `ends`, near `start` at the first?
 
     >>> from symbolic.tables import egg
     >>> flat, tilted = [1.05, 3.14, 5.24], Rational(2, 25)
-    >>> everywhere(egg(3).at(alpha=tilted), (0, 0, 0), flat, (0.99, 0.9), Stability.ATTRACTING).proved
+    >>> over_interval(egg(3).at(alpha=tilted), (0, 0, 0), flat, (0.99, 0.9), Stability.ATTRACTING).proved
     True
     """
     lam, end = ends
@@ -123,7 +123,7 @@ def everywhere(
         step = math.copysign(min(abs(step), abs(end - lam)), step)
         spent += 1
         if spent > budget or abs(step) < 1e-9:
-            return Everywhere(False, lam, spent)
+            return OverInterval(False, lam, spent)
         middle = lam + step / 2
         try:
             moved = floats(Problem(table, components, lam=Rational(middle)), theta)
@@ -138,7 +138,7 @@ def everywhere(
             lam, at, theta, step = lam + step, middle, moved, step * 1.3
         else:
             step /= 2
-    return Everywhere(True, end, spent)
+    return OverInterval(True, end, spent)
 
 
 def _proved(

@@ -43,7 +43,7 @@ from verification.arithmetic.progress import Tick, silent
 from verification.cycles.recurrence.critical import Small
 from verification.cycles.recurrence.newton import refined
 from verification.maps.first_hit import convex
-from verification.proofs.periodic.interval_newton import Status, contraction
+from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 BITS = 80
 
@@ -140,7 +140,7 @@ def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float])
     bits = bits_of(DIGITS, 64)
     with working(bits):
         radius = (arb(10) ** -(DIGITS + 2)).mid()
-        found = contraction(system, exact_balls(solution.z), radius, bits)
+        found = interval_newton(system, exact_balls(solution.z), radius, bits)
         table = egg(3).at(alpha=alpha)
         angle = load(chord_kernel(table, 0, 0, 0), balls(bits))
         start, contracted = load(kernel("given", [], {"start": theta0, "lam": lam}), balls(bits))()

@@ -95,7 +95,7 @@ class EnclosedMap:
             return Ball(component, theta, phi, v, x, y)
 
     def bounce(self, ball: Ball) -> Ball | Refusal:
-        """One flight and one reflection, proved; a ball that stops by a named outcome has that outcome's `code`.
+        """One flight and one reflection, proved; a particle that stops by a named outcome has that outcome's `code`.
 
         An outcome is what mpmath finds for the middle of the ball, and is not proved.
         """

@@ -218,7 +218,7 @@ def _solved(
     return End(start[-1], event, decimal(proof.value, digits + 1)[0], proof.certified, cycle)
 
 
-DIGITS, BALLS, TRANSIENT, SEED = 15, 400, 40_000, 1
+DIGITS, PARTICLES, TRANSIENT, SEED = 15, 400, 40_000, 1
 RETURN = 1e-7  # of a ball on the cycle to where it was
 
 
@@ -258,15 +258,15 @@ def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int
 
 
 def reached(alpha: Rational, lam: Rational, period: int) -> list[float]:
-    """The bounces of a cycle of this period on which a random ball ends; `ValueError` when none does."""
+    """The bounces of a cycle of this period on which a random particle ends; `ValueError` when none does."""
     map = PinballMap("egg", lam=str(lam), alpha=str(alpha))
-    starts = interior_starts(map, BALLS, SEED)
+    starts = interior_starts(map, PARTICLES, SEED)
     end = map.exponents(starts.theta, starts.phi, 1, TRANSIENT, starts.component)
     orbit = map.orbit(end.theta, end.phi, period)
     gap = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0])
     there = (gap[-1] < RETURN) & np.all(gap[:-1] > RETURN, axis=0)
     if not np.any(there):
         raise ValueError(
-            f"egg: none of {BALLS} balls at alpha = {alpha}, lam = {lam} ends on a cycle of period {period}"
+            f"egg: none of {PARTICLES} particles at alpha = {alpha}, lam = {lam} ends on a cycle of period {period}"
         )
     return [float(x) for x in orbit.theta[:period, np.argmax(there)]]

@@ -1,14 +1,15 @@
 """The crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
 
-`verification.proofs.manifolds` has the same crises as tangencies, to many digits; this is what balls do.
+`verification.proofs.manifolds` has the same crises as tangencies, to many digits; this is what particles do.
 
-Below a crisis no ball leaves the attractor; above it each bounce has a chance to, which grows from 0
-like a power of the distance. So many balls are started on the attractor, and the contractions at
+Below a crisis no particle leaves the attractor; above it each bounce has a chance to, which grows from 0
+like a power of the distance. So many particles are started on the attractor, and the contractions at
 which some leave are bracketed. Just above a crisis a budget of bounces sees none leave; the error
 reaches up to the contraction at which it saw ten.
 
-A crisis that no ball leaves for good shows in how far the attractor extends: `extent` is its largest exit angle, its
-reach at either end of the diameter and its area, and `widenings` the steps of a scan in which a length grows at once.
+A crisis after which no particle leaves for good shows in how far the attractor extends: `extent` is its largest exit
+angle, its reach at either end of the diameter and its area, and `widenings` the steps of a scan in which a length grows
+at once.
 """
 
 from collections.abc import Callable
@@ -90,7 +91,7 @@ def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) 
 
 
 def stay(left: Left, alpha: str, lam: float, budget: int) -> float:
-    """The mean number of bounces on the attractor before a ball leaves; infinite when none did."""
+    """The mean number of bounces on the attractor before a particle leaves; infinite when none did."""
     map = PinballMap("egg", lam=lam, alpha=alpha)
     rng = np.random.default_rng(SEED)
     ball = map.exponents(rng.uniform(-0.05, 0.05, BALLS), rng.uniform(-0.05, 0.05, BALLS), TRANSIENT)

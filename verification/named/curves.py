@@ -25,7 +25,7 @@ from symbolic.cycles.polygons import largest_tilt
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.expressions.text import kernel, load
 from symbolic.tables import egg
-from symbolic.tables.table import alpha as letter
+from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam
 from verification.arithmetic.balls import balls, exact_balls, working
 from verification.cycles.continuation.arc import Steps
@@ -208,7 +208,9 @@ def contracting_up_to(alpha: Expr, K: int = 3) -> float:
     best = 0.0
     with working(BITS):
         tilt, ratio = load(
-            kernel("egg", [], {"tilt": atan(largest_tilt(K).subs(letter, alpha)), "ratio": (1 + alpha) / (1 - alpha)}),
+            kernel(
+                "egg", [], {"tilt": atan(largest_tilt(K).subs(alpha_symbol, alpha)), "ratio": (1 + alpha) / (1 - alpha)}
+            ),
             balls(BITS),
         )()
         for step in range(1, 64):

@@ -31,10 +31,10 @@ from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Proof
 
 
-def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fraction | None = None) -> Proof | None:
-    """The proof that the event happens at the enclosed `letter`; None where there is no certificate for its kind.
+def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Fraction | None = None) -> Proof | None:
+    """The proof that the event happens at the enclosed `parameter`; None where there is no certificate for its kind.
 
-    Where the letter is a shape, `lam` is the contraction.
+    Where the parameter is a shape, `lam` is the contraction.
 
     >>> from symbolic.tables import egg
     >>> from verification.cycles.continuation.branch import branch
@@ -54,7 +54,7 @@ def proof_of(event: Event, digits: int, letter: str = "lam", lam: Expr | Fractio
             return None
         x, closure = centred, MIRROR
     contraction = None if lam is None else S(lam)
-    problem = Problem(ring.table, ring.components, event.what.solved, letter, contraction, closure)
+    problem = Problem(ring.table, ring.components, event.what.solved, parameter, contraction, closure)
     return certify(problem, [*(float(v) for v in x), event.value], digits)
 
 

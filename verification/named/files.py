@@ -18,8 +18,8 @@ from symbolic.cycles import polygons, thresholds
 from symbolic.tables.formula import number
 from symbolic.tables.geometry import boundary_coefficients
 from symbolic.tables.table import Table
-from symbolic.tables.table import alpha as alpha_letter
-from symbolic.tables.table import lam as lam_letter
+from symbolic.tables.table import alpha as alpha_symbol
+from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import working
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind, Closure
@@ -57,7 +57,7 @@ def document(proof: "Proof | CornerProof | TangencyProof") -> dict[str, Any]:
         "name": name,
         "table": problem.table.name,
         "points": _points(problem.table),
-        "shape": {letter: str(value) for letter, value in problem.table.fixed},
+        "shape": {parameter: str(value) for parameter, value in problem.table.fixed},
         "kind": problem.kind.name.lower() if problem.kind else "cycle",
         "free": problem.free,
         "mirror": problem.mirror,
@@ -77,7 +77,7 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
             near = all(abs(x - mid) < 0.001 for x, mid in zip(claim.centre, NEAR, strict=True))
             return {"lam": "lambda-star", "phi": "phi-star"}[claim.value] if near else "an orbit through both corners"
         return (
-            "alpha-hat" if _in_box(claim, thresholds.alpha_hat().subs(lam_letter, claim.lam)) else "equal multipliers"
+            "alpha-hat" if _in_box(claim, thresholds.alpha_hat().subs(lam_symbol, claim.lam)) else "equal multipliers"
         )
     if not isinstance(claim, Claim):
         contact = claim.contact
@@ -91,11 +91,11 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
     if plain and _points(table) in (0, 3):
         lam, alpha = problem.lam, dict(table.fixed).get("alpha")
         if what == ("egg", 2, BifurcationKind.FLIP, "alpha") and _in_box(
-            claim, thresholds.alpha_tilde().subs(lam_letter, lam)
+            claim, thresholds.alpha_tilde().subs(lam_symbol, lam)
         ):
             return "alpha-tilde"
         if what == ("egg", 3, BifurcationKind.FOLD, "lam") and _in_box(
-            claim, polygons.saddle_node().subs(alpha_letter, alpha)
+            claim, polygons.saddle_node().subs(alpha_symbol, alpha)
         ):
             return "saddle-node"
     half = "half of a symmetric cycle, of" if problem.mirror else "a cycle of"
@@ -137,7 +137,7 @@ def _problem(given: Mapping[str, Any], lam: Any) -> Problem:
     components = tuple(int(i) for i in given["components"])
     if not 2 <= len(components) <= LARGEST_PERIOD:
         raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
-    shape = {letter: number(text, letter) for letter, text in given["shape"].items()}
+    shape = {parameter: number(text, parameter) for parameter, text in given["shape"].items()}
     table = tables.named(given["table"], int(given["points"])).at(**shape)
     if not set(components) <= set(range(len(table.components))):
         raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")

@@ -17,8 +17,8 @@ from sympy import Expr, Integer, N, S, acos
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
 from symbolic.expressions.text import kernel, load
-from symbolic.tables.table import alpha as alpha_letter
-from symbolic.tables.table import lam as lam_letter
+from symbolic.tables.table import alpha as alpha_symbol
+from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
 from verification.arithmetic.progress import telling
 from verification.cycles.recurrence.cascade import HIGHEST, critical_cycle
@@ -115,10 +115,10 @@ def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
         raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}")
     if not 1 <= digits <= MOST_DIGITS:
         raise ValueError(f"locate: digits = {digits} is out of range; accepted: 1 to {MOST_DIGITS}")
-    search, letters = NAMES[name]
+    search, parameters = NAMES[name]
     shape = dict(USUAL.get(name, {})) | shape
-    if set(shape) != set(letters):
-        raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(letters)}")
+    if set(shape) != set(parameters):
+        raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(parameters)}")
     started = time.perf_counter()
     found = search(digits, **shape)
     value, radius = decimal(found.ball, digits + 1)
@@ -198,14 +198,14 @@ def lambda_c(digits: int) -> Found:
 
 def alpha_tilde(digits: int, lam: Expr) -> Found:
     """The shape at which the egg's diameters double their period. Paper: section 6.3."""
-    exact = thresholds.alpha_tilde().subs(lam_letter, _unit("lam", lam))
+    exact = thresholds.alpha_tilde().subs(lam_symbol, _unit("lam", lam))
     problem = Problem(tables.egg(3), (0, 0), BifurcationKind.FLIP, "alpha", lam)
     return _agreeing(_searched(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
 
 
 def alpha_hat(digits: int, lam: Expr) -> Found:
     """The shape above which the multipliers of the egg's diameters are complex. Paper: section 6.3."""
-    exact = thresholds.alpha_hat().subs(lam_letter, _unit("lam", lam))
+    exact = thresholds.alpha_hat().subs(lam_symbol, _unit("lam", lam))
     ball = closed_form(exact, digits)
     if lam in (0, 1):
         why = {0: "the discriminant touches 0 there and does not cross it", 1: "the table is a circle there"}[lam]
@@ -222,7 +222,7 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
         raise ValueError(
             "locate saddle-node: alpha = 0 is a circle, with triangles at lam = 1 only; accepted: 0 < alpha <= 1/10"
         )
-    exact = polygons.saddle_node().subs(alpha_letter, alpha)
+    exact = polygons.saddle_node().subs(alpha_symbol, alpha)
     turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
     problem = Problem(table, (0, 0, 0), BifurcationKind.FOLD, "lam")
     start = [turn + float(N(2 * S.Pi / 3)) * k for k in range(3)]
@@ -307,26 +307,26 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str]) -> dic
     }
 
 
-def one_of(kind: str, letter: str, digits: int, alpha: Expr, **which: Expr) -> Found:
+def one_of(kind: str, parameter: str, digits: int, alpha: Expr, **which: Expr) -> Found:
     """Where a window or a small family of some period ends or its bands join, or the n-th interior crisis is."""
     from verification.proofs.manifolds.known import CONTACTS
 
-    name = f"{kind}-{which[letter]}"
+    name = f"{kind}-{which[parameter]}"
     if name not in CONTACTS:
         known = sorted(int(other.rpartition("-")[2]) for other in CONTACTS if other.rpartition("-")[0] == kind)
         listed = ", ".join(str(other) for other in known)
-        raise ValueError(f"locate {kind}: {letter} = {which[letter]} is not known; accepted: {listed}")
+        raise ValueError(f"locate {kind}: {parameter} = {which[parameter]} is not known; accepted: {listed}")
     return egg_crisis(name, digits, alpha)
 
 
-def _unit(letter: str, value: Expr) -> Expr:
+def _unit(parameter: str, value: Expr) -> Expr:
     if not 0 <= value <= 1:
-        raise ValueError(f"locate: {letter} = {value} is out of range; accepted: numbers from 0 to 1")
+        raise ValueError(f"locate: {parameter} = {value} is out of range; accepted: numbers from 0 to 1")
     return value
 
 
-def _listed(letters: Any) -> str:
-    return ", ".join(f"--{letter}" for letter in letters) or "no letter"
+def _listed(parameters: Any) -> str:
+    return ", ".join(f"--{parameter}" for parameter in parameters) or "no parameter"
 
 
 NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
@@ -348,7 +348,7 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "family-end": (partial(one_of, "family-end", "period"), ("alpha", "period")),
     "family-merging": (partial(one_of, "family-merging", "period"), ("alpha", "period")),
 }
-USUAL = {  # letters that need not be given
+USUAL = {  # parameters that need not be given
     "band-merging": {"period": Integer(4)},
     "interior-crisis": {"n": Integer(1)},
 }

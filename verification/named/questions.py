@@ -131,10 +131,10 @@ def _orbit(scene: Scene, cycle: "Found") -> PeriodicOrbit:
 
 @dataclass(frozen=True)
 class FollowedOrbit:
-    """A branch of cycles in one letter, with what happens on it; `.folds`, `.flips` and their like choose."""
+    """A branch of cycles in one parameter, with what happens on it; `.folds`, `.flips` and their like choose."""
 
     orbit: PeriodicOrbit
-    letter: str
+    parameter: str
     branch: "Branch" = field(repr=False)
 
     @property
@@ -144,7 +144,7 @@ class FollowedOrbit:
 
     @cached_property
     def _events(self) -> "tuple[BranchEvent, ...]":
-        return tuple(BranchEvent(self.orbit, self.letter, event) for event in self.branch.events)
+        return tuple(BranchEvent(self.orbit, self.parameter, event) for event in self.branch.events)
 
     @property
     def folds(self) -> "tuple[BranchEvent, ...]":
@@ -172,15 +172,15 @@ class FollowedOrbit:
     def __repr__(self) -> str:
         ends = f"{min(self.branch.values):.6g} to {max(self.branch.values):.6g}"
         events = ", ".join(f"{event.kind} at {event.value:.9g}" for event in self.events) or "no event"
-        return f"FollowedOrbit(period {self.orbit.period}, {self.letter} from {ends}: {events})"
+        return f"FollowedOrbit(period {self.orbit.period}, {self.parameter} from {ends}: {events})"
 
 
 @dataclass(frozen=True)
 class BranchEvent:
-    """What happens on a branch, at which value of its letter, in float64; `certify` gives digits and a proof."""
+    """What happens on a branch, at which value of its parameter, in float64; `certify` gives digits and a proof."""
 
     orbit: PeriodicOrbit
-    letter: str
+    parameter: str
     event: "Event" = field(repr=False)
 
     @property
@@ -190,7 +190,7 @@ class BranchEvent:
 
     @property
     def value(self) -> float:
-        """The letter there."""
+        """The parameter there."""
         return self.event.value
 
     @property
@@ -200,7 +200,7 @@ class BranchEvent:
 
 
 def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None, **interval: Any) -> FollowedOrbit:
-    """What becomes of a cycle as one letter changes: `lam=(low, high)`, or a shape such as `alpha=(low, high)`.
+    """What becomes of a cycle as one parameter changes: `lam=(low, high)`, or a shape such as `alpha=(low, high)`.
 
     The ends are exact numbers or text. The branch is followed both ways from the cycle, through folds.
     """
@@ -212,40 +212,46 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
     from verification.cycles.recurrence.chords import Chords
 
     if len(interval) != 1:
-        raise ValueError(f"follow: {', '.join(interval) or 'no letter'} given; one letter varies, as in lam=(0, 1)")
-    ((letter, ends),) = interval.items()
-    low, high = _ends(letter, ends)
+        raise ValueError(
+            f"follow: {', '.join(interval) or 'no parameter'} given; one parameter varies, as in lam=(0, 1)"
+        )
+    ((parameter, ends),) = interval.items()
+    low, high = _ends(parameter, ends)
     scene = orbit.scene
     ring, fixed = Chords(scene.table, orbit.components), None
     value = float(scene.lam)
-    if letter != "lam":
-        if "table" not in scene.document or letter not in scene.shape:
+    if parameter != "lam":
+        if "table" not in scene.document or parameter not in scene.shape:
             accepted = ", ".join(["lam", *(scene.shape if "table" in scene.document else ())])
-            raise ValueError(f"follow: {letter} is no letter that varies in {scene}; accepted: {accepted}")
+            raise ValueError(f"follow: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
         from sympy import S
 
-        ring = freed(ring, scene.K, letter, [S(exact(letter, end)) for end in ends])
-        value, fixed = float(scene.shape[letter]), {"lam": float(scene.lam)}
-    say = (lambda point: tick(f"{letter} = {point.z[-1]:.4f}")) if tick else None
+        ring = freed(ring, scene.K, parameter, [S(exact(parameter, end)) for end in ends])
+        value, fixed = float(scene.shape[parameter]), {"lam": float(scene.lam)}
+    say = (lambda point: tick(f"{parameter} = {point.z[-1]:.4f}")) if tick else None
     return FollowedOrbit(
-        orbit, letter, branch(ring, np.array(orbit.theta), letter, value, (low, high), fixed, Steps(most=points), say)
+        orbit,
+        parameter,
+        branch(ring, np.array(orbit.theta), parameter, value, (low, high), fixed, Steps(most=points), say),
     )
 
 
-def _ends(letter: str, given: Any) -> tuple[float, float]:
+def _ends(parameter: str, given: Any) -> tuple[float, float]:
     if not isinstance(given, tuple | list) or len(given) != 2:
-        raise ValueError(f"follow: {letter} = {given!r} is no interval; give two numbers, as in {letter}=('0.3', '1')")
-    low, high = (float(exact(letter, end)) for end in given)
-    if not low < high or (letter == "lam" and not 0 <= low < high <= 1):
-        within = ", both in [0, 1]" if letter == "lam" else ""
         raise ValueError(
-            f"follow: {letter} from {given[0]} to {given[1]} is no interval; the first must be the smaller{within}"
+            f"follow: {parameter} = {given!r} is no interval; give two numbers, as in {parameter}=('0.3', '1')"
+        )
+    low, high = (float(exact(parameter, end)) for end in given)
+    if not low < high or (parameter == "lam" and not 0 <= low < high <= 1):
+        within = ", both in [0, 1]" if parameter == "lam" else ""
+        raise ValueError(
+            f"follow: {parameter} from {given[0]} to {given[1]} is no interval; the first must be the smaller{within}"
         )
     return low, high
 
 
 def certify(event: BranchEvent, *, digits: int = 30) -> "Located":
-    """The value of the letter at an event to so many digits, with a proof in balls; its checklist says what holds.
+    """The value of the parameter at an event to so many digits, with a proof in balls; its checklist says what holds.
 
     Folds, period doublings and pitchforks have certificates.
     """
@@ -256,10 +262,10 @@ def certify(event: BranchEvent, *, digits: int = 30) -> "Located":
     from verification.named.locate import Located
 
     started = time.perf_counter()
-    lam = None if event.letter == "lam" else event.orbit.scene.lam
-    proof = proof_of(event.event, digits, event.letter, lam)
+    lam = None if event.parameter == "lam" else event.orbit.scene.lam
+    proof = proof_of(event.event, digits, event.parameter, lam)
     if proof is None:
         raise ValueError(f"certify: a {event.kind} has no certificate; accepted: fold, period doubling, pitchfork")
     value, radius = decimal(proof.value, digits + 1)
-    name = f"{event.kind} of period {event.orbit.period} in {event.letter}"
+    name = f"{event.kind} of period {event.orbit.period} in {event.parameter}"
     return Located(name, value, radius, digits, proof.checks, time.perf_counter() - started, proof.value, proof)

@@ -78,9 +78,9 @@ def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) ->
                     event.value, _wrapped(event.point.z[bounce]), marker, color=paint, ms=5, label=label, zorder=3
                 )
     axes.set_xlabel(
-        {"lam": r"$\lambda$", "alpha": r"$\alpha$"}.get(branches[0].system.letter, branches[0].system.letter)
+        {"lam": r"$\lambda$", "alpha": r"$\alpha$"}.get(branches[0].system.parameter, branches[0].system.parameter)
     )
-    axes.set_ylabel(r"$\theta$ of the bounces" if branches[0].system.letter in ("lam", "alpha", "a") else "$x$")
+    axes.set_ylabel(r"$\theta$ of the bounces" if branches[0].system.parameter in ("lam", "alpha", "a") else "$x$")
     axes.set_title(", ".join(dict.fromkeys(b.system.label for b in branches)) + "  (dashed: unstable)", fontsize=10)
     if seen:
         axes.legend(frameon=False, fontsize=9)

@@ -1,4 +1,4 @@
-"""Curves in two letters: against closed forms, against branches, and universal constants at their ends."""
+"""Curves in two parameters: against closed forms, against branches, and universal constants at their ends."""
 
 from itertools import pairwise
 
@@ -61,11 +61,11 @@ def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(rungs):
         (end,) = rung.special
 
         assert end.what is Special.ONE_TWO
-        assert end.letters[1] == 1.0
+        assert end.parameters[1] == 1.0
 
 
 def test_the_resonances_pile_up_as_in_area_preserving_maps(rungs):
-    ends = [rung.special[0].letters[0] for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
+    ends = [rung.special[0].parameters[0] for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
     gaps = [b - a for a, b in pairwise(ends)]
 
     assert gaps[-2] / gaps[-1] == pytest.approx(AREA_PRESERVING, abs=0.01)

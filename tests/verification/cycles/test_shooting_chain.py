@@ -132,7 +132,7 @@ def test_a_problem_that_is_not_square_is_refused():
         Problem(cuspless, (1, 0), None, "lam")
     with pytest.raises(ValueError, match="accepted: fold, flip"):
         Problem(cuspless, (1, 0), BifurcationKind.TORUS, "lam")
-    with pytest.raises(ValueError, match="free letters must be just lam; lam = None"):
+    with pytest.raises(ValueError, match="free parameters must be just lam; lam = None"):
         Problem(egg(3), (0, 0), BifurcationKind.FLIP, "lam")
     with pytest.raises(ValueError, match="theta -> -theta is no mirror image"):
         Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), closure=MIRROR)

@@ -44,7 +44,7 @@ def test_a_shape_is_a_letter_too():
     axis = find_cycles(Scene("ellipse", a="3/2", lam="1/2"), period=2).stable[0]
     branch = follow(axis, a=("1.2", "1.9"))
 
-    assert branch.letter == "a"
+    assert branch.parameter == "a"
     assert branch.events == ()  # its multipliers stay inside the unit circle for every a > 1; paper, section 3.3
 
 
@@ -53,7 +53,7 @@ def test_a_shape_is_a_letter_too():
     [
         (lambda: find_cycles(EGG), "give one of"),
         (lambda: find_cycles(EGG, period=1), "accepted: integers from 2"),
-        (lambda: follow(triangles()[0]), "one letter varies"),
+        (lambda: follow(triangles()[0]), "one parameter varies"),
         (lambda: follow(triangles()[0], beta=(0, 1)), "accepted: lam, alpha"),
         (lambda: follow(triangles()[0], lam=("0.5", "0.4")), "first must be the smaller"),
         (lambda: follow(triangles()[0], lam="0.4"), "is no interval"),

@@ -201,7 +201,7 @@ def curves_of(branches: list["Branch"], scene: Scene, output: Output) -> list[di
             tick(event.what.value)
             if found is not None:
                 special = [
-                    {"what": point.what.value, "alpha": point.letters[0], "lam": point.letters[1]}
+                    {"what": point.what.value, "alpha": point.parameters[0], "lam": point.parameters[1]}
                     for point in found.special
                 ]
                 plane = [[float(x) for x in row] for row in found.plane]
@@ -268,7 +268,7 @@ def told(console: "Console", branches: list["Branch"]) -> int:
         for point, (end, why) in zip((one.points[0], one.points[-1]), one.ends, strict=True):
             if end in (End.OBSTACLE, End.LOST, End.ENOUGH):
                 console.print(
-                    f"{one.system.label}: the branch stopped at {one.system.letter} = {point.z[-1]:.9g}: {why}"
+                    f"{one.system.label}: the branch stopped at {one.system.parameter} = {point.z[-1]:.9g}: {why}"
                 )
                 status = DONE if end is End.ENOUGH and status == DONE else FAILED
     return status

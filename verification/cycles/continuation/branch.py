@@ -1,4 +1,4 @@
-"""A branch of cycles in one letter: followed both ways from a start, with what happens on it.
+"""A branch of cycles in one parameter: followed both ways from a start, with what happens on it.
 
 Each event is a zero of a test function between two points, located on the curve
 (`verification.cycles.recurrence.recurrence` names them).
@@ -16,7 +16,7 @@ from verification.cycles.continuation.linear import Spectrum
 from verification.cycles.continuation.systems import Cycles, coefficients, parts, whole
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.problem import NormalForm
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Letters, Recurrence
+from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Parameters, Recurrence
 
 NOISE = 1e-9  # a test function that small has no sign
 NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
@@ -40,7 +40,7 @@ class Event:
 
     @property
     def value(self) -> float:
-        """The letter."""
+        """The parameter."""
         return float(self.point.z[-1])
 
 
@@ -59,7 +59,7 @@ class Branch:
 
     @property
     def values(self) -> Array:
-        """The letter along the branch."""
+        """The parameter along the branch."""
         return np.array([point.z[-1] for point in self.points])
 
     def at(self, value: float) -> list[Array]:
@@ -80,14 +80,14 @@ def _spectrum(point: Point) -> Spectrum:
 def branch(
     ring: Recurrence,
     x: Array,
-    letter: str,
+    parameter: str,
     value: float,
     interval: Interval,
-    fixed: Letters | None = None,
+    fixed: Parameters | None = None,
     steps: Steps | None = None,
     tick: Callable[[Point], None] | None = None,
 ) -> Branch:
-    """The branch through the cycle near `x` at `letter = value`, both ways, inside `interval`.
+    """The branch through the cycle near `x` at `parameter = value`, both ways, inside `interval`.
 
     >>> from sympy import Symbol
     >>> from verification.cycles.recurrence.recurrence import logistic
@@ -95,11 +95,11 @@ def branch(
     >>> [(event.what.value, round(event.value, 9)) for event in found.events]
     [('period doubling', 3.0)]
     """
-    system = Cycles(ring, letter, fixed or {})
+    system = Cycles(ring, parameter, fixed or {})
     if not interval[0] < interval[1]:
-        raise ValueError(f"{letter} = {interval[0]}:{interval[1]} is no interval; its first end must be the smaller")
+        raise ValueError(f"{parameter} = {interval[0]}:{interval[1]} is no interval; its first end must be the smaller")
     if not interval[0] <= value <= interval[1]:
-        raise ValueError(f"the start at {letter} = {value} lies outside the interval {interval[0]}:{interval[1]}")
+        raise ValueError(f"the start at {parameter} = {value} lies outside the interval {interval[0]}:{interval[1]}")
     z = np.append(np.asarray(x, dtype=float), value)
     row = np.append(np.zeros(len(z) - 1), 1.0)
     given = z
@@ -110,11 +110,11 @@ def branch(
     except LostError:
         if np.max(np.abs(system.linear(given)[0])) < 1e-6:
             why = "is a cycle with the multiplier 1, one of a family or at a bifurcation: no single branch leaves it"
-            raise ValueError(f"{ring.label}: the start at {letter} = {value} {why}") from None
-        raise ValueError(f"{ring.label}: the start is no cycle at {letter} = {value}, nor is one near it") from None
+            raise ValueError(f"{ring.label}: the start at {parameter} = {value} {why}") from None
+        raise ValueError(f"{ring.label}: the start is no cycle at {parameter} = {value}, nor is one near it") from None
     why = system.obstacle(z)
     if why:
-        raise ValueError(f"{ring.label}: the start is no cycle at {letter} = {value}: {why}")
+        raise ValueError(f"{ring.label}: the start is no cycle at {parameter} = {value}: {why}")
     return through(system, z, row, interval, steps, tick)
 
 
@@ -187,7 +187,7 @@ def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
     """
     ring = system.recurrence
     for part, _ in parts(ring, a.z[:-1]) if isinstance(ring, Chords) else []:
-        reduced = Cycles(part, system.letter, system.fixed)
+        reduced = Cycles(part, system.parameter, system.fixed)
         m = part.period
         row = np.append(np.zeros(m), 1.0)
         try:
@@ -200,7 +200,7 @@ def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
         except ValueError:
             continue
         _, x = whole(part, there.z[:-1], ring.period)
-        form = _form(part, there.z[:-1], reduced.at(there.z), BifurcationKind.FLIP, system.letter)
+        form = _form(part, there.z[:-1], reduced.at(there.z), BifurcationKind.FLIP, system.parameter)
         z = np.append(x, there.z[-1])
         share = (z[-1] - a.z[-1]) / (b.z[-1] - a.z[-1])
         point = Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z))
@@ -214,15 +214,15 @@ def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
         what = BifurcationKind.TORUS if abs(_spectrum(point).trace) < 2 else BifurcationKind.NEUTRAL_SADDLE
         return Event(what, point, ring, x)
     if name == "minus_one":
-        return Event(BifurcationKind.FLIP, point, ring, x, _form(ring, x, at, BifurcationKind.FLIP, system.letter))
+        return Event(BifurcationKind.FLIP, point, ring, x, _form(ring, x, at, BifurcationKind.FLIP, system.parameter))
     if turns:
-        return Event(BifurcationKind.FOLD, point, ring, x, _form(ring, x, at, BifurcationKind.FOLD, system.letter))
+        return Event(BifurcationKind.FOLD, point, ring, x, _form(ring, x, at, BifurcationKind.FOLD, system.parameter))
     return Event(BifurcationKind.BRANCH_POINT, point, ring, x)
 
 
-def _form(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> NormalForm | None:
+def _form(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, parameter: str) -> NormalForm | None:
     try:
-        return coefficients(ring, x, at, kind, letter)
+        return coefficients(ring, x, at, kind, parameter)
     except ValueError:
         return None
 

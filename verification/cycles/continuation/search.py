@@ -146,7 +146,7 @@ def _winding(table: Table, x: Array) -> int:
     return round(float(np.sum(np.mod(np.roll(x, -1) - x, 2 * pi))) / (2 * pi))
 
 
-BALLS = 4000  # starts of a round
+PARTICLES = 4000  # starts of a round
 NEAR = 1.2  # radians between a bounce and its return, at most, for a seed
 SEEDS = 1200  # of one period and round
 DEFLATED = 200  # known rows beyond which deflation costs more than further rounds
@@ -200,11 +200,11 @@ def all_cycles(table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick 
 
 
 def _orbits(map: PinballMap, rng: np.random.Generator, bounces: int) -> Orbits:
-    """Components, parameters and exit angles; bounces along the first axis, balls that stopped left out."""
+    """Components, parameters and exit angles; bounces along the first axis, particles that stopped left out."""
     ends = np.array(map.states.ends)
-    parts = rng.integers(0, len(ends), BALLS)
-    theta = ends[parts, 0] + (ends[parts, 1] - ends[parts, 0]) * rng.uniform(0, 1, BALLS)
-    phi = np.arcsin(rng.uniform(-0.999, 0.999, BALLS))
+    parts = rng.integers(0, len(ends), PARTICLES)
+    theta = ends[parts, 0] + (ends[parts, 1] - ends[parts, 0]) * rng.uniform(0, 1, PARTICLES)
+    phi = np.arcsin(rng.uniform(-0.999, 0.999, PARTICLES))
     orbit = map.orbit(theta, phi, bounces, parts)
     alive = np.all(orbit.code == 0, axis=0)
     return orbit.component[1:, alive], orbit.theta[1:, alive], orbit.phi[1:, alive]
@@ -224,12 +224,12 @@ def _harvest(
     starts = theta.shape[0] - n
     gap = np.abs(np.sin((theta[n:] - theta[:starts]) / 2)) * 2
     gap = gap + np.abs(phi[n:] - phi[:starts]) + 10.0 * (parts[n:] != parts[:starts])
-    begin, ball = np.nonzero(gap < NEAR)
+    begin, particle = np.nonzero(gap < NEAR)
     if len(begin) > SEEDS:
         chosen = rng.choice(len(begin), SEEDS, replace=False)
-        begin, ball = begin[chosen], ball[chosen]
+        begin, particle = begin[chosen], particle[chosen]
     rows = begin[:, None] + np.arange(n)
-    seeds, visited = theta[rows, ball[:, None]], parts[rows, ball[:, None]]
+    seeds, visited = theta[rows, particle[:, None]], parts[rows, particle[:, None]]
     before = len(catalogue.cycles)
     known = catalogue.rows(n) if deflated and len(catalogue.table.components) == 1 else None
     if known is not None and len(known) > DEFLATED:

@@ -82,12 +82,12 @@ def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
     return min(there, key=lambda point: abs(point.s)).z[:-1]
 
 
-def freed(ring: Chords, K: int, letter: str, interval: Sequence[Expr | Fraction]) -> Chords:
+def freed(ring: Chords, K: int, parameter: str, interval: Sequence[Expr | Fraction]) -> Chords:
     """The same ring on the table with its shape left free; refused when an end of the interval is no shape."""
     table = tables.named(ring.table.name, K)
     for value in interval:
         try:
-            table.at(**{letter: S(value)})
+            table.at(**{parameter: S(value)})
         except ValueError as why:
             raise ValueError(f"--shape: {why}") from None
     return Chords(table, ring.components, ring.closure)
@@ -106,7 +106,7 @@ def spectrum_of(point: Point) -> Spectrum:
 
 
 def dataset(branch: Branch) -> "xarray.Dataset":
-    """Dimensions `point`, `bounce` and `which` (multiplier); the letter and the event are coordinates.
+    """Dimensions `point`, `bounce` and `which` (multiplier); the parameter and the event are coordinates.
 
     >>> from verification.cycles.continuation.branch import branch as followed
     >>> from verification.cycles.recurrence.recurrence import logistic
@@ -117,7 +117,7 @@ def dataset(branch: Branch) -> "xarray.Dataset":
     import xarray
 
     listed = rows(branch)
-    letter, n = branch.system.letter, branch.system.recurrence.period
+    parameter, n = branch.system.parameter, branch.system.recurrence.period
     spectra = [spectrum_of(point) for point, _ in listed]
     multipliers = np.array([s.multipliers for s in spectra]).reshape(len(listed), 2)
     values = {
@@ -132,23 +132,23 @@ def dataset(branch: Branch) -> "xarray.Dataset":
         ),
     }
     coordinates = {
-        letter: ("point", np.array([point.z[-1] for point, _ in listed])),
+        parameter: ("point", np.array([point.z[-1] for point, _ in listed])),
         "arclength": ("point", np.array([point.s for point, _ in listed])),
         "event": ("point", np.array(["" if e is None else e.what.value for _, e in listed])),
     }
-    about = {"cycle": branch.system.label, "letter": letter, **_ended(branch)}
+    about = {"cycle": branch.system.label, "letter": parameter, **_ended(branch)}
     return xarray.Dataset(values, coordinates, attrs=about)
 
 
 def record(branch: Branch) -> dict[str, Any]:
     """The same for JSON."""
-    letter, points = branch.system.letter, []
+    parameter, points = branch.system.parameter, []
     for point, event in rows(branch):
         spectrum = spectrum_of(point)
         form = event.form if event is not None else None
         points.append(
             {
-                letter: float(point.z[-1]),
+                parameter: float(point.z[-1]),
                 "arclength": point.s,
                 "theta": [float(x) for x in point.z[:-1]],
                 "multipliers": [{"real": m.real, "imaginary": m.imag} for m in spectrum.multipliers],
@@ -159,7 +159,7 @@ def record(branch: Branch) -> dict[str, Any]:
                 "supercritical": form.supercritical if form is not None else None,
             }
         )
-    return {"cycle": branch.system.label, "letter": letter, **_ended(branch), "points": points}
+    return {"cycle": branch.system.label, "letter": parameter, **_ended(branch), "points": points}
 
 
 def _ended(branch: Branch) -> dict[str, str]:

@@ -32,7 +32,7 @@ from verification.cycles.continuation.branch import Branch, Event, Interval, thr
 from verification.cycles.continuation.linear import null_vectors, ring_matrix
 from verification.cycles.continuation.systems import Critical, Cycles, whole
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Letters, Recurrence
+from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Parameters, Recurrence
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
@@ -64,9 +64,9 @@ def switched(
 def _along_the_null_vector(
     branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None
 ) -> list[Branch]:
-    letter, fixed = branch.system.letter, branch.system.fixed
+    parameter, fixed = branch.system.parameter, branch.system.fixed
     part, x = event.ring, event.x
-    at = {**fixed, letter: event.value}
+    at = {**fixed, parameter: event.value}
     v, _ = null_vectors(ring_matrix(part.terms(x, at, 1), part.closure, -1))
     ring, image = part.doubled(), part.closure.carried(x, part.closure.radians, 1)
     both, away = np.concatenate([x, image]), np.concatenate([v, -part.closure.turn * v])
@@ -75,7 +75,7 @@ def _along_the_null_vector(
         ring, both = whole(replace(part, closure=part.closure), x, n)
         away = _repeated(part, v, n)
     ways = (1, -1) if event.what is BifurcationKind.PITCHFORK else (1,)
-    system = Cycles(ring, letter, fixed)
+    system = Cycles(ring, parameter, fixed)
     z = np.append(both, event.value)
     return [_leaving(system, z, np.append(way * away, 0.0), interval, steps, tick) for way in ways]
 
@@ -108,7 +108,7 @@ def _leaving(
         points = (crossing, *(replace(p, s=p.s + size) for p in found.points))
         events = tuple(replace(event, point=replace(event.point, s=event.point.s + size)) for event in found.events)
         return replace(found, points=points, events=events)
-    raise LostError(f"{system.label}: no branch was found that leaves at {system.letter} = {z[-1]:.9g}")
+    raise LostError(f"{system.label}: no branch was found that leaves at {system.parameter} = {z[-1]:.9g}")
 
 
 def _across(branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None) -> list[Branch]:
@@ -140,7 +140,7 @@ def _over_the_join(
             entered = ring.table.components[parts[bounce]]
             moved[bounce] = float(entered.start if after else entered.end)
             inwards[bounce] = 1.0 if after else -1.0  # parameters grow counterclockwise, from the join inwards
-        system = Cycles(replace(ring, components=tuple(parts)), branch.system.letter, branch.system.fixed)
+        system = Cycles(replace(ring, components=tuple(parts)), branch.system.parameter, branch.system.fixed)
         other = _inwards(system, np.append(moved, event.value), inwards, interval, steps, tick)
         found += [other] if other else []
     return found
@@ -195,8 +195,8 @@ class Degenerate:
     point: Point = field(repr=False)
 
     @property
-    def letters(self) -> tuple[float, float]:
-        """Where in the plane of the letters."""
+    def parameters(self) -> tuple[float, float]:
+        """Where in the plane of the parameters."""
         return float(self.point.z[-2]), float(self.point.z[-1])
 
 
@@ -211,11 +211,11 @@ class Curve:
 
     @property
     def plane(self) -> Array:
-        """The curve in the plane of the letters, a row for each point."""
+        """The curve in the plane of the parameters, a row for each point."""
         return np.array([point.z[-2:] for point in self.points])
 
     def crossing(self, value: float) -> list[Array]:
-        """The points of the curve whose first letter is `value`, each solved for."""
+        """The points of the curve whose first parameter is `value`, each solved for."""
         found = []
         for a, b in pairwise(self.points):
             if (a.z[-2] - value) * (b.z[-2] - value) < 0 or b.z[-2] == value:
@@ -233,11 +233,11 @@ def curve(
     two: tuple[str, str],
     near: tuple[float, float],
     box: Box,
-    fixed: Letters | None = None,
+    fixed: Parameters | None = None,
     steps: Steps | None = None,
     tick: Callable[[Point], None] | None = None,
 ) -> Curve:
-    """The curve of `kind` through the critical cycle near `x`, at letters near `near`, both ways inside `box`.
+    """The curve of `kind` through the critical cycle near `x`, at parameters near `near`, both ways inside `box`.
 
     >>> from verification.cycles.recurrence.recurrence import henon
     >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))

@@ -47,23 +47,23 @@ from verification.cycles.recurrence.recurrence import (
     Array,
     BifurcationKind,
     Closure,
-    Letters,
+    Parameters,
     Recurrence,
     Terms,
 )
 
 
-def series_of(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind) -> Series:
+def series_of(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind) -> Series:
     """The rules along curves through a cycle, as `expanded` gives them."""
     return lambda directions: expanded(ring, FLOAT64, [float(v) for v in x], at, kind.multiplier, directions)
 
 
-def coefficients(ring: Recurrence, x: Array, at: Letters, kind: BifurcationKind, letter: str) -> NormalForm:
-    """The normal form of a cycle where it folds or flips in `letter`; its vectors have the root mean square 1."""
+def coefficients(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, parameter: str) -> NormalForm:
+    """The normal form of a cycle where it folds or flips in `parameter`; its vectors have the root mean square 1."""
     terms = ring.terms(x, at, 2)
     v, w = (list(x) for x in null_vectors(ring_matrix(terms, ring.closure, kind.multiplier)))
     solve = inverse(terms, ring.closure)
-    return normal_form(kind, letter, terms, ring.closure, v, w, series_of(ring, x, at, kind), solve)
+    return normal_form(kind, parameter, terms, ring.closure, v, w, series_of(ring, x, at, kind), solve)
 
 
 def inverse(terms: Terms[Array], closure: Closure) -> Callable[[Any], Any]:
@@ -141,16 +141,16 @@ def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:
     return replace(part, components=part.components * len(pieces), closure=IDENTITY), np.concatenate(pieces)
 
 
-PARAMETER = 4.0  # a letter counts as much as an angle of this many radians moved by every bounce
+PARAMETER = 4.0  # a parameter counts as much as an angle of this many radians moved by every bounce
 
 
 @dataclass(frozen=True)
 class Cycles:
-    """Cycles of a recurrence in one free letter; unknowns are the bounces, then the letter."""
+    """Cycles of a recurrence in one free parameter; unknowns are the bounces, then the parameter."""
 
     recurrence: Recurrence
-    letter: str
-    fixed: Letters = field(default_factory=dict)
+    parameter: str
+    fixed: Parameters = field(default_factory=dict)
 
     @property
     def label(self) -> str:
@@ -159,23 +159,23 @@ class Cycles:
 
     @cached_property
     def weights(self) -> Array:
-        """The mean square of the bounces, and the letter."""
+        """The mean square of the bounces, and the parameter."""
         n = self.recurrence.period
         return np.append(np.full(n, 1.0 / n), PARAMETER**2)
 
     def at(self, z: Array) -> dict[str, float]:
-        """All letters."""
-        return {**self.fixed, self.letter: float(z[-1])}
+        """All parameters."""
+        return {**self.fixed, self.parameter: float(z[-1])}
 
     def terms(self, z: Array, order: int = 1) -> Terms[Array]:
         """The rule along the ring."""
         return self.recurrence.terms(z[:-1], self.at(z), order)
 
     def linear(self, z: Array) -> tuple[Array, Any]:
-        """The rules, and their derivatives by the bounces and the letter."""
+        """The rules, and their derivatives by the bounces and the parameter."""
         terms = self.terms(z)
         matrix = ring_matrix(terms, self.recurrence.closure)
-        return terms.value, beside(matrix, terms.by[self.letter])
+        return terms.value, beside(matrix, terms.by[self.parameter])
 
     def spectrum(self, z: Array) -> Spectrum:
         """The multipliers, as three numbers."""
@@ -197,17 +197,22 @@ class Cycles:
 
 @dataclass(frozen=True)
 class Critical:
-    """Cycles at a fold or a flip, in two letters; unknowns are the bounces, then the letters."""
+    """Cycles at a fold or a flip, in two parameters; unknowns are the bounces, then the parameters."""
 
     recurrence: Recurrence
     kind: BifurcationKind
     two: tuple[str, str]
     borders: tuple[Array, Array] = field(repr=False)
-    fixed: Letters = field(default_factory=dict)
+    fixed: Parameters = field(default_factory=dict)
 
     @classmethod
     def near(
-        cls, recurrence: Recurrence, kind: BifurcationKind, two: tuple[str, str], z: Array, fixed: Letters | None = None
+        cls,
+        recurrence: Recurrence,
+        kind: BifurcationKind,
+        two: tuple[str, str],
+        z: Array,
+        fixed: Parameters | None = None,
     ) -> "Critical":
         """The system whose borders fit a critical cycle near `z`."""
         none = np.zeros(recurrence.period)
@@ -228,13 +233,13 @@ class Critical:
 
     @cached_property
     def weights(self) -> Array:
-        """The mean square of the bounces, and the letters: a shape counts tenfold."""
+        """The mean square of the bounces, and the parameters: a shape counts tenfold."""
         n = self.recurrence.period
-        letters = [PARAMETER**2 * (1 if name == "lam" else 100) for name in self.two]
-        return np.append(np.full(n, 1.0 / n), letters)
+        parameters = [PARAMETER**2 * (1 if name == "lam" else 100) for name in self.two]
+        return np.append(np.full(n, 1.0 / n), parameters)
 
     def at(self, z: Array) -> dict[str, float]:
-        """All letters."""
+        """All parameters."""
         return {**self.fixed, self.two[0]: float(z[-2]), self.two[1]: float(z[-1])}
 
     def terms(self, z: Array, order: int = 2) -> Terms[Array]:
@@ -255,13 +260,15 @@ class Critical:
         """The rules and `g`, with their derivatives."""
         terms = self.terms(z)
         v, w, g = self.vectors(terms)
-        by_bounce, by_letter = bordering_slopes(terms, self.recurrence.closure, list(v), list(w), self.kind.multiplier)
+        by_bounce, by_parameter = bordering_slopes(
+            terms, self.recurrence.closure, list(v), list(w), self.kind.multiplier
+        )
         n = self.recurrence.period
         matrix = np.zeros((n + 1, n + 2))
         matrix[:n, :n] = dense(ring_matrix(terms, self.recurrence.closure))
         for j, name in enumerate(self.two):
             matrix[:n, n + j] = terms.by[name]
-            matrix[n, n + j] = -by_letter[name]
+            matrix[n, n + j] = -by_parameter[name]
         matrix[n, :n] = -np.asarray(by_bounce)
         return np.append(terms.value, g), matrix
 

@@ -16,7 +16,7 @@ from sympy import Expr, N, Rational
 from symbolic import tables
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import Table
-from symbolic.tables.table import lam as lam_letter
+from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.progress import telling
 from verification.cycles.recurrence.chords import chord_angles, landing
@@ -30,7 +30,7 @@ SAME = 1e-7  # radians: an orbit that returns this close is taken for a cycle
 
 
 def attractor(table: Table, lam: float, start: tuple[float, float], longest: int = 64) -> list[float]:
-    """The cycle that a ball settles on, as bounce parameters; empty when none of `longest` bounces.
+    """The cycle that a particle settles on, as bounce parameters; empty when none of `longest` bounces.
 
     For tables of one convex component; `start` are two successive bounces.
 
@@ -128,7 +128,7 @@ def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tup
 
 GRID = [k / 25 for k in range(20, -1, -1)]
 START = 0.05, 3.1  # two successive bounces near a diameter
-TRIED = f"a ball settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
+TRIED = f"a particle settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
 HIGHEST = 17  # the n of the doubling whose period, 2**16, still takes minutes
 
 
@@ -250,7 +250,7 @@ def _known(alpha: Expr) -> tuple[list[Doubling], Iterator[Doubling]]:
 
 
 def _second(alpha: Expr) -> tuple[Problem, list[float]]:
-    ends = [alpha_tilde().subs(lam_letter, k) for k in (1, 0)]
+    ends = [alpha_tilde().subs(lam_symbol, k) for k in (1, 0)]
     if not ends[0] < alpha < ends[1]:
         raise ValueError(
             f"locate doubling: alpha = {alpha} has no lambda_2; the diameter doubles for alpha "
@@ -259,5 +259,5 @@ def _second(alpha: Expr) -> tuple[Problem, list[float]]:
     low, high = 0.0, 1.0  # alpha-tilde falls as lam grows
     for _ in range(50):
         middle = (low + high) / 2
-        low, high = (middle, high) if float(alpha_tilde().subs(lam_letter, middle)) > alpha else (low, middle)
+        low, high = (middle, high) if float(alpha_tilde().subs(lam_symbol, middle)) > alpha else (low, middle)
     return Problem(tables.egg(3).at(alpha=alpha), (0, 0), BifurcationKind.FLIP, "lam"), [0.0, 3.14159265, low]

@@ -12,7 +12,7 @@ from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
-from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Letters, Pair, Rule, Terms, X, around
+from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
 from verification.maps.first_hit import convex
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
@@ -58,7 +58,7 @@ def _in_float64(table: Table, arrays: bool) -> ChordAngles:
 
 @dataclass(frozen=True)
 class Chords:
-    """Cycles of a billiard by the collision rule; letters are `lam` and the table's free shapes."""
+    """Cycles of a billiard by the collision rule; parameters are `lam` and the table's free shapes."""
 
     table: Table
     components: tuple[int, ...]
@@ -75,11 +75,11 @@ class Chords:
         return len(self.components)
 
     @property
-    def letters(self) -> tuple[str, ...]:
+    def parameters(self) -> tuple[str, ...]:
         """`lam` and the shapes."""
         return "lam", *(p.symbol.name for p in self.table.shapes)
 
-    def terms(self, x: Array, at: Letters, order: int) -> Terms[Array]:
+    def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
         """The collision rule and its derivatives.
 
         >>> from symbolic.tables import ellipse
@@ -87,7 +87,7 @@ class Chords:
         >>> bool(abs(axis.terms(np.array([np.pi / 2, -np.pi / 2]), {"lam": 0.5}, 1).value).max() < 1e-15)
         True
         """
-        ring, shape = around(self.closure, x), [at[name] for name in self.letters[1:]]
+        ring, shape = around(self.closure, x), [at[name] for name in self.parameters[1:]]
         ahead = self._angles(1, ring[1:-1], ring[2:], shape, order)
         return self._terms(ahead, self._angles(-1, ring[1:-1], ring[:-2], shape, order), at["lam"], order)
 
@@ -96,7 +96,7 @@ class Chords:
         zero: Any = 0 * f[0]  # type: ignore[operator]  # of the same kind
         if not order:
             return Terms(f[0] + lam * b[0], (zero, zero, zero), {}, {}, {})
-        k, shapes = _places(self.table, order), self.letters[1:]
+        k, shapes = _places(self.table, order), self.parameters[1:]
         by = {"lam": b[0]} | {s: f[k[f"angle_{s}"]] + lam * b[k[f"angle_{s}"]] for s in shapes}
         bend: dict[Pair, X] = {}
         slope_by: dict[str, tuple[X, X, X]] = {}
@@ -123,7 +123,7 @@ class Chords:
 
         def rule(i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
             before, here, after = near
-            shape = [at[name] for name in self.letters[1:]]
+            shape = [at[name] for name in self.parameters[1:]]
             f = angles(parts[i], parts[(i + 1) % len(parts)], order)(here, after, *shape)
             b = angles(parts[i], parts[i - 1], order)(here, before, *shape)
             return self._terms(f, b, at["lam"], order)
@@ -134,13 +134,13 @@ class Chords:
         """The ring run through twice."""
         return replace(self, components=self.components * 2, closure=self.closure.twice())
 
-    def angles(self, x: Array, at: Letters) -> tuple[Array, Array]:
+    def angles(self, x: Array, at: Parameters) -> tuple[Array, Array]:
         """Exit and incidence angles at each bounce, in radians."""
-        ring, shape = around(self.closure, x), [at[name] for name in self.letters[1:]]
+        ring, shape = around(self.closure, x), [at[name] for name in self.parameters[1:]]
         out, into = (self._angles(way, ring[1:-1], end, shape, 0) for way, end in ((1, ring[2:]), (-1, ring[:-2])))
         return out[0], into[0]
 
-    def obstacle(self, x: Array, at: Letters) -> str:
+    def obstacle(self, x: Array, at: Parameters) -> str:
         """A bounce beyond its component, or next to its neighbour."""
         if len(self.table.components) > 1:
             for i, (part, value) in enumerate(zip(self.components, x, strict=True)):
@@ -154,7 +154,7 @@ class Chords:
                 return f"bounces {i} and {i + 1} met at theta = {x[i]:.6g}, where no chord is left"
         return "" if self.table.shapes or convex(self.table) is True else self._obstructed(x, at)
 
-    def _obstructed(self, x: Array, at: Letters) -> str:
+    def _obstructed(self, x: Array, at: Parameters) -> str:
         """The first chord that meets the boundary on its way, in a table that need not be convex."""
         from numeric import PinballMap
 

@@ -53,12 +53,12 @@ class Problem:
     def __post_init__(self) -> None:
         shapes = {p.symbol.name for p in self.table.shapes}
         if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
-            raise ValueError(f"{self.table.name}: free letters must be just {self.free or 'none'}; lam = {self.lam}")
+            raise ValueError(f"{self.table.name}: free parameters must be just {self.free or 'none'}; lam = {self.lam}")
         if self.kind not in (None, BifurcationKind.FOLD, BifurcationKind.FLIP):
             raise ValueError(f"{self.table.name}: a {self.kind.value} is no problem of one cycle; accepted: fold, flip")
         if (self.kind is None) != (not self.free):
             kind = self.kind.name if self.kind else "CYCLE"
-            raise ValueError(f"{self.table.name}: {kind} with {self.free or 'no letter'} free is not square")
+            raise ValueError(f"{self.table.name}: {kind} with {self.free or 'no parameter'} free is not square")
         if self.mirror and not all(mirrored(component) for component in self.table.components):
             raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
 

@@ -140,7 +140,7 @@ IDENTITY, MIRROR = Closure(), Closure(-1)
 
 
 Array = NDArray[np.float64]
-Letters = Mapping[str, float]
+Parameters = Mapping[str, float]
 Pair = tuple[int, int]
 X = TypeVar("X")
 
@@ -208,10 +208,10 @@ class Recurrence(Protocol):
         """How it closes."""
 
     @property
-    def letters(self) -> tuple[str, ...]:
-        """The letters that it can be followed in."""
+    def parameters(self) -> tuple[str, ...]:
+        """The parameters that it can be followed in."""
 
-    def terms(self, x: Array, at: Letters, order: int) -> Terms[Array]:
+    def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
         """The rule and its derivatives up to `order`."""
 
     def over(self, arithmetic: Arithmetic) -> Rule:
@@ -220,7 +220,7 @@ class Recurrence(Protocol):
     def doubled(self) -> "Recurrence":
         """The ring run through twice."""
 
-    def obstacle(self, x: Array, at: Letters) -> str:
+    def obstacle(self, x: Array, at: Parameters) -> str:
         """Why `x` is no cycle although the rules hold; empty when nothing is in the way."""
 
 
@@ -229,11 +229,11 @@ BEFORE, HERE, AFTER = (Symbol(name, real=True) for name in ("before", "here", "a
 
 @dataclass(frozen=True)
 class Explicit:
-    """Cycles of a map given by a formula: `residual` in `BEFORE`, `HERE`, `AFTER` and `parameters`."""
+    """Cycles of a map given by a formula: `residual` in `BEFORE`, `HERE`, `AFTER` and the parameters' `symbols`."""
 
     name: str
     residual: Expr
-    parameters: tuple[Symbol, ...]
+    symbols: tuple[Symbol, ...]
     period: int
     closure: Closure = IDENTITY
 
@@ -243,11 +243,11 @@ class Explicit:
         return f"{self.name}, period {self.period}"
 
     @property
-    def letters(self) -> tuple[str, ...]:
+    def parameters(self) -> tuple[str, ...]:
         """The parameters' names."""
-        return tuple(p.name for p in self.parameters)
+        return tuple(p.name for p in self.symbols)
 
-    def terms(self, x: Array, at: Letters, order: int) -> Terms[Array]:
+    def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
         """The rule and its derivatives up to `order`."""
         ring = around(self.closure, x)
         return self.over(ARRAYS)(0, (ring[:-2], ring[1:-1], ring[2:]), at, order)
@@ -262,18 +262,18 @@ class Explicit:
         """
 
         def rule(i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
-            values = [at[name] for name in self.letters]
+            values = [at[name] for name in self.parameters]
             zero = 0 * near[1]
-            found = [x + zero for x in load(_kernel(self.residual, self.parameters, order), arithmetic)(*near, *values)]
+            found = [x + zero for x in load(_kernel(self.residual, self.symbols, order), arithmetic)(*near, *values)]
             value, *first = found[: 4 + len(values)]
             second = found[4 + len(values) :]
             bend, mixed = second[:6], iter(second[6:])
             return Terms(
                 value,
                 (first[0], first[1], first[2]) if first else (zero, zero, zero),
-                dict(zip(self.letters, first[3:], strict=bool(first))),
+                dict(zip(self.parameters, first[3:], strict=bool(first))),
                 dict(zip(combinations_with_replacement(range(3), 2), bend, strict=bool(bend))),
-                dict(zip(self.letters, zip(mixed, mixed, mixed, strict=True), strict=bool(bend))),
+                dict(zip(self.parameters, zip(mixed, mixed, mixed, strict=True), strict=bool(bend))),
             )
 
         return rule
@@ -282,40 +282,40 @@ class Explicit:
         """The ring run through twice."""
         return replace(self, period=2 * self.period, closure=self.closure.twice())
 
-    def obstacle(self, x: Array, at: Letters) -> str:
+    def obstacle(self, x: Array, at: Parameters) -> str:
         """Nothing is ever in the way of a formula."""
         return ""
 
 
 @cache
-def _kernel(residual: Expr, parameters: tuple[Symbol, ...], order: int) -> Kernel:
+def _kernel(residual: Expr, symbols: tuple[Symbol, ...], order: int) -> Kernel:
     ring, values = (BEFORE, HERE, AFTER), {"residual": residual}
     if order > 0:
-        values |= {f"d_{s}": diff(residual, s) for s in (*ring, *parameters)}
+        values |= {f"d_{s}": diff(residual, s) for s in (*ring, *symbols)}
     if order > 1:
         values |= {f"d_{r}_{s}": diff(residual, r, s) for r, s in combinations_with_replacement(ring, 2)}
-        values |= {f"d_{p}_{s}": diff(residual, p, s) for p in parameters for s in ring}
-    return kernel(f"rule_to_order_{order}", [*ring, *parameters], values)
+        values |= {f"d_{p}_{s}": diff(residual, p, s) for p in symbols for s in ring}
+    return kernel(f"rule_to_order_{order}", [*ring, *symbols], values)
 
 
 r, a, b = (Symbol(name, real=True) for name in "rab")
 
 
 def logistic(period: int) -> Explicit:
-    """Cycles of the logistic map; the letter is `r`."""
+    """Cycles of the logistic map; the parameter is `r`."""
     return Explicit("logistic", AFTER - r * HERE * (1 - HERE), (r,), period)
 
 
 def henon(period: int) -> Explicit:
-    """Cycles of the Henon map; the letters are `a` and `b`."""
+    """Cycles of the Henon map; the parameters are `a` and `b`."""
     return Explicit("Henon", AFTER - 1 + a * HERE**2 - b * BEFORE, (a, b), period)
 
 
 def delayed(period: int) -> Explicit:
-    """Cycles of the delayed logistic map; the letter is `r`."""
+    """Cycles of the delayed logistic map; the parameter is `r`."""
     return Explicit("delayed logistic", AFTER - r * HERE * (1 - BEFORE), (r,), period)
 
 
 def cubic(period: int) -> Explicit:
-    """Cycles of `x -> r*x - x**3`; the letter is `r`."""
+    """Cycles of `x -> r*x - x**3`; the parameter is `r`."""
     return Explicit("cubic", AFTER - r * HERE + HERE**3, (r,), period)

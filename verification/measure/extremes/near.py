@@ -24,8 +24,8 @@ from sympy import Expr, N, Rational, acos, pi, sqrt, tan
 from symbolic import tables
 from symbolic.cycles import polygons
 from symbolic.cycles.thresholds import alpha_tilde
-from symbolic.tables.table import alpha as alpha_letter
-from symbolic.tables.table import lam as lam_letter
+from symbolic.tables.table import alpha as alpha_symbol
+from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import bits_of, multiprecision
 from verification.arithmetic.iteration import Stop, iterated
 from verification.cycles.recurrence.cascade import doubled, doubling
@@ -139,7 +139,7 @@ def nearly_round(gap: Expr) -> Sought:
 
 def nearly_flipped(gap: Expr, twice: bool) -> Sought:
     """The egg's diameter next to where its multiplier is -1, as period 2, or run twice as period 4."""
-    shape = alpha_tilde().subs(lam_letter, Rational(1, 3)) + gap
+    shape = alpha_tilde().subs(lam_symbol, Rational(1, 3)) + gap
     table = tables.egg(3).at(alpha=Rational(float(N(shape, 30))))
     times = 2 if twice else 1
     return Problem(table, (0, 0) * times, lam=Rational(1, 3)), [1e-7, 3.1415926] * times
@@ -149,7 +149,7 @@ def folded(ulps: int | None) -> Sought:
     """The egg's triangle, `ulps` doubles above the contraction where it is born, or (None) that contraction itself."""
     shape = Rational(2, 25)
     table = tables.egg(3).at(alpha=shape)
-    exact = float(N(polygons.saddle_node().subs(alpha_letter, shape), 30))
+    exact = float(N(polygons.saddle_node().subs(alpha_symbol, shape), 30))
     turn = -float(N(acos(-shape))) / 3
     start = [turn + float(N(2 * pi / 3)) * k for k in range(3)]
     if ulps is None:
@@ -161,7 +161,7 @@ def folded(ulps: int | None) -> Sought:
 
 def touching(gap: Expr) -> Sought:
     """The egg's triangle at a contraction that is a double, the shape such that its fold lies `gap` below."""
-    lam = Rational(float(N(polygons.saddle_node().subs(alpha_letter, Rational(2, 25)), 30)))
+    lam = Rational(float(N(polygons.saddle_node().subs(alpha_symbol, Rational(2, 25)), 30)))
     tilt = pi / 6 * (1 - lam + gap) / (1 + lam - gap)  # the closed form of the fold, solved for the shape
     shape = Rational(str(N(tan(tilt) / sqrt(9 + tan(tilt) ** 2), 60)))
     turn = -acos(-shape) / 3

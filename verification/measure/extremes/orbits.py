@@ -69,7 +69,7 @@ def orbits(collisions: int = SHORT, balls: int = BALLS) -> tuple[Long, ...]:
 
 
 def starts(balls: int) -> tuple[Array, Array]:
-    """Parameters and exit angles of random balls."""
+    """Parameters and exit angles of random particles."""
     rng = np.random.default_rng(SEED)
     return rng.uniform(-np.pi, np.pi, balls), np.arcsin(rng.uniform(-1, 1, balls) * 0.999)
 

@@ -49,7 +49,7 @@ UNIT = "2**-52, largest of position and direction"
 
 @dataclass(frozen=True)
 class Row:
-    """One way to bounce one scene: its largest error over random balls, and its time for one bounce.
+    """One way to bounce one scene: its largest error over random particles, and its time for one bounce.
 
     Errors span a thousand decades, which no float does. `lam` is not among the data: `kernel` says it where it differs.
     """
@@ -187,7 +187,7 @@ def distance(found: Any, truth: Any, digits: int) -> Decimal:
 
 
 def attracted(map: PinballMap, balls: int, transient: int = 100) -> list[Array]:
-    """Fields of random balls after some bounces."""
+    """Fields of random particles after some bounces."""
     starts = phase_starts(map, balls, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
     rows = map.engine.run(KernelSpec(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows

@@ -15,7 +15,7 @@ from numeric import PinballMap
 from symbolic import tables
 from symbolic.cycles import polygons
 from symbolic.tables.table import Table, lam
-from symbolic.tables.table import alpha as alpha_letter
+from symbolic.tables.table import alpha as alpha_symbol
 from verification.cycles.recurrence.cascade import Doubling, cascade, cycle_at, doubled
 from verification.cycles.recurrence.newton import floats
 from verification.cycles.recurrence.problem import Problem
@@ -71,7 +71,7 @@ def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
 
 
 def textbook_cycle(map: PinballMap, ball: tuple[float, float], period: int, settles: bool) -> list[Method]:
-    """Single shooting on the compiled step, and for an attracting cycle a ball that settles on it."""
+    """Single shooting on the compiled step, and for an attracting cycle a particle that settles on it."""
     book = module("textbook")
     if book is None:
         return []
@@ -107,7 +107,7 @@ def period_3() -> Question:
 
 def triangle_start() -> tuple[float, ...]:
     """Its bounces at `lam = 1/2`, to three decimals."""
-    first = float(N(polygons.near_flat().subs({lam: HALF, alpha_letter: ALPHA})))
+    first = float(N(polygons.near_flat().subs({lam: HALF, alpha_symbol: ALPHA})))
     return tuple(round(math.remainder(first + k * math.tau / 3, math.tau), 3) for k in range(3))
 
 
@@ -139,7 +139,7 @@ def far_cycle() -> tuple[float, ...]:
 
 def fold() -> Question:
     """The fold at which the egg's triangles are born. Paper: section 6.4."""
-    exact = polygons.saddle_node().subs(alpha_letter, ALPHA)
+    exact = polygons.saddle_node().subs(alpha_symbol, ALPHA)
     turn = -float(N(acos(-ALPHA))) / 3
     start = (*(round(turn + math.tau / 3 * k, 3) for k in range(3)), round(float(N(exact)), 3))
     problem = Problem(EGG, (0, 0, 0), BifurcationKind.FOLD, "lam")
@@ -190,7 +190,7 @@ def doublings() -> Question:
     together = tuple(_together(methods) for methods in zip(*singly, strict=True))
     return Question(
         "doubling",
-        "The doubling ladder, egg",
+        "The doubling cascade, egg",
         f"lambda_{FIRST} to lambda_{HIGHEST}, where periods 4 to 32 double, alpha = {ALPHA}",
         "in lam",
         lambda d: [whole(certify(r.problem, list(s), d)).value for r, s in zip(members(), starts, strict=True)],
@@ -212,7 +212,7 @@ def _together(methods: tuple[Method, ...]) -> Method:
 
 
 def textbook_doublings() -> list[Method]:
-    """brentq on the multiplier of a cycle found by shooting, and periods read off settled balls."""
+    """brentq on the multiplier of a cycle found by shooting, and periods read off settled particles."""
     book = module("textbook")
     if book is None:
         return []
@@ -241,5 +241,5 @@ def textbook_doublings() -> list[Method]:
     kept = TOLERANCES
     return [
         Method("brentq, shooting", "float64", "xtol", kept, flips, lambda x: Decimal(f"{x:.3g}"), textbook=True),
-        Method("periods of settled balls", "float64", "bounces", (300, 3_000, 30_000), watched, textbook=True),
+        Method("periods of settled particles", "float64", "bounces", (300, 3_000, 30_000), watched, textbook=True),
     ]

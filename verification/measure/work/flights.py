@@ -29,7 +29,7 @@ from verification.measure.work.question import Method, Question
 from verification.measure.work.sought import DIGITS, Sought, to_digits
 
 LAM = Fraction(19, 20)
-BALLS = ((0.3, 0.2), (-2.0, 0.9), (1.25, -1.0), (2.75, 0.5))  # parameter and exit angle, doubles taken exactly
+PARTICLES = ((0.3, 0.2), (-2.0, 0.9), (1.25, -1.0), (2.75, 0.5))  # parameter and exit angle, doubles taken exactly
 COUNTS = (4, 64, 4096)  # balls to a call of the kernels; from the first few on they repeat
 EPS = 2.0**-52
 STEP = 8 * EPS  # the law that the kernels are held to, or 8 condition numbers
@@ -53,12 +53,12 @@ class Flights:
     def angles(self, arithmetic: Arithmetic, z: Vector) -> list[tuple[Any, ...]]:
         """The exit angles of the chords to `z`, with derivatives."""
         chord = load(chord_kernel(self.table, 0, 0, 1), arithmetic)
-        return [chord(exactly(arithmetic, ball[0]), x) for ball, x in zip(BALLS, z, strict=True)]
+        return [chord(exactly(arithmetic, ball[0]), x) for ball, x in zip(PARTICLES, z, strict=True)]
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """How far each exit angle is from what it should be."""
         found = self.angles(arithmetic, z)
-        return [a[0] - exactly(arithmetic, ball[1]) for a, ball in zip(found, BALLS, strict=True)]
+        return [a[0] - exactly(arithmetic, ball[1]) for a, ball in zip(found, PARTICLES, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
         """The corrections for a residual: each ball by itself."""
@@ -67,19 +67,19 @@ class Flights:
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """Newton's corrections."""
         found = self.angles(arithmetic, z)
-        return [(a[0] - exactly(arithmetic, ball[1])) / a[2] for a, ball in zip(found, BALLS, strict=True)]
+        return [(a[0] - exactly(arithmetic, ball[1])) / a[2] for a, ball in zip(found, PARTICLES, strict=True)]
 
     def landed(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """Parameter and next exit angle of each ball."""
         chord = load(chord_kernel(self.table, 0, 0, 0), arithmetic)
         lam = arithmetic["q"](LAM.numerator, LAM.denominator)
-        back = [-lam * chord(x, exactly(arithmetic, ball[0]))[0] for ball, x in zip(BALLS, z, strict=True)]
+        back = [-lam * chord(x, exactly(arithmetic, ball[0]))[0] for ball, x in zip(PARTICLES, z, strict=True)]
         return [value for pair in zip(z, back, strict=True) for value in pair]
 
     def turned(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """The four entries of each ball's derivative matrix."""
         matrix = load(matrix_kernel(self.table), arithmetic)
-        rows = [matrix(exactly(arithmetic, ball[0]), x) for ball, x in zip(BALLS, z, strict=True)]
+        rows = [matrix(exactly(arithmetic, ball[0]), x) for ball, x in zip(PARTICLES, z, strict=True)]
         return [entry for row in rows for entry in row]
 
 
@@ -118,14 +118,14 @@ def scene(name: str) -> tuple[Table, PinballMap, tuple[float, ...]]:
     shape: dict[str, Any] = {"alpha": "2/25"} if name == "egg" else {}
     map = PinballMap(name, lam=LAM, **shape)
     table = tables.named(name).at(**shape)
-    landed = map.step(*(np.array(column) for column in zip(*BALLS, strict=True)))
+    landed = map.step(*(np.array(column) for column in zip(*PARTICLES, strict=True)))
     return table, map, tuple(round(float(x), 3) for x in landed.theta)
 
 
 def steps(name: str) -> Question:
     """One bounce of a few balls: parameter and exit angle."""
     table, map, starts = scene(name)
-    sought = Sought(Flights(table), starts, Flights(table).landed, len(BALLS))
+    sought = Sought(Flights(table), starts, Flights(table).landed, len(PARTICLES))
     bound = STEP * (1 + sought.condition())
     own = (
         running(map, bound),
@@ -136,7 +136,7 @@ def steps(name: str) -> Question:
     return Question(
         f"step-{name}",
         f"One bounce, {name}",
-        f"parameter and exit angle after one bounce of {len(BALLS)} balls on the {name}, lam = {LAM}",
+        f"parameter and exit angle after one bounce of {len(PARTICLES)} balls on the {name}, lam = {LAM}",
         "radians",
         lambda digits: bounced(map, digits),
         (*own, *textbook_steps(map)),
@@ -147,7 +147,7 @@ def jacobians() -> Question:
     """The derivative of one bounce on the egg."""
     table, map, starts = scene("egg")
     system = Flights(table)
-    sought = Sought(system, starts, system.turned, len(BALLS))
+    sought = Sought(system, starts, system.turned, len(PARTICLES))
 
     def certified(digits: int) -> list[arb]:
         landings = bounced(map, digits)[::2]
@@ -157,7 +157,7 @@ def jacobians() -> Question:
     return Question(
         "jacobian",
         "The derivative of one bounce, egg",
-        f"d(s1, phi1)/d(s0, phi0) of {len(BALLS)} balls on the egg, lam = {LAM}",
+        f"d(s1, phi1)/d(s0, phi0) of {len(PARTICLES)} balls on the egg, lam = {LAM}",
         "of an entry",
         certified,
         (*kernels(map, turned, MATRIX), *sought.methods(certified), *textbook_jacobians(map, table)),
@@ -168,7 +168,7 @@ def bounced(map: PinballMap, digits: int) -> list[arb]:
     """The landings in balls, each proved to be the first hit."""
     enclosed = EnclosedMap(map, LAM, bits_of(digits + MARGIN, 64))
     found: list[arb] = []
-    for at, phi in BALLS:
+    for at, phi in PARTICLES:
         landed = enclosed.bounce(enclosed.ball(0, Fraction(at), Fraction(phi)))
         if isinstance(landed, Refusal):
             raise ValueError(f"bounce: {landed.value}")
@@ -181,10 +181,10 @@ def bracketing(map: PinballMap) -> Method:
 
     def call(digits: int) -> list[Any]:
         exact = ExactMap(map, digits, LAM)
-        landed = [exact.bounce(exact.ball(0, *ball)) for ball in BALLS]
+        landed = [exact.bounce(exact.ball(0, *ball)) for ball in PARTICLES]
         return [value for ball in landed for value in (ball.theta, ball.phi)]
 
-    return Method("mpmath, every zero", "mpmath", "digits", DIGITS[:3], call, to_digits, len(BALLS))
+    return Method("mpmath, every zero", "mpmath", "digits", DIGITS[:3], call, to_digits, len(PARTICLES))
 
 
 def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]], bound: float) -> list[Method]:
@@ -194,7 +194,7 @@ def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]]
     promise = Decimal(f"{bound:.3g}")
 
     def ran(own: PinballMap, count: int) -> list[float]:
-        theta, phi = np.tile(np.array(BALLS), (count // len(BALLS), 1)).T
+        theta, phi = np.tile(np.array(PARTICLES), (count // len(PARTICLES), 1)).T
         return call(own, theta, phi)
 
     return [
@@ -212,7 +212,7 @@ def running(map: PinballMap, bound: float) -> Method:
 
     def call(setting: Any) -> list[float]:
         map.engine.run(Run(map.law), own, lam, map.shape, bounces, threads=1)
-        return stepped(map, *np.array(BALLS).T)
+        return stepped(map, *np.array(PARTICLES).T)
 
     promise = Decimal(f"{bound:.3g}")
     label = (f"{count} balls, {bounces} bounces",)
@@ -222,12 +222,12 @@ def running(map: PinballMap, bound: float) -> Method:
 def stepped(map: PinballMap, theta: Any, phi: Any) -> list[float]:
     """Parameter and exit angle of the first few balls after a step of all."""
     landed = map.step(theta, phi)
-    return [float(x) for pair in zip(landed.theta[: len(BALLS)], landed.phi, strict=False) for x in pair]
+    return [float(x) for pair in zip(landed.theta[: len(PARTICLES)], landed.phi, strict=False) for x in pair]
 
 
 def turned(map: PinballMap, theta: Any, phi: Any) -> list[float]:
     """The matrices of the first few balls."""
-    return [float(x) for x in map.derivative(theta, phi)[: len(BALLS)].ravel()]
+    return [float(x) for x in map.derivative(theta, phi)[: len(PARTICLES)].ravel()]
 
 
 def textbook_steps(map: PinballMap) -> list[Method]:
@@ -238,7 +238,7 @@ def textbook_steps(map: PinballMap) -> list[Method]:
     lam, shape, name = float(LAM), map.shape, map.ir.table
 
     def followed(way: Callable[..., Any], *more: Any) -> list[float]:
-        landed = [way(0, at, phi, lam, *shape, *more)[1:] for at, phi in BALLS]
+        landed = [way(0, at, phi, lam, *shape, *more)[1:] for at, phi in PARTICLES]
         return [x for pair in landed for x in pair]
 
     paper = Method(
@@ -247,7 +247,7 @@ def textbook_steps(map: PinballMap) -> list[Method]:
         "",
         ("to rounding",),
         lambda _: followed(getattr(ways, name)),
-        per=len(BALLS),
+        per=len(PARTICLES),
         textbook=True,
     )
     if name != "egg":
@@ -267,7 +267,7 @@ def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
     lambdified = book.Lambdified([theta0, theta1], angle, list(matrix_expressions(table).values()))
 
     def differences(way: Any, h: float) -> list[float]:
-        return [float(x) for ball in BALLS for x in way(map.step, map.states.speed, ball, h)]
+        return [float(x) for ball in PARTICLES for x in way(map.step, map.states.speed, ball, h)]
 
     made = [
         Method(
@@ -276,7 +276,7 @@ def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
             "h",
             STEPS,
             partial(differences, way),
-            per=len(BALLS),
+            per=len(PARTICLES),
             textbook=True,
         )
         for kind, way in (("forward", book.forward), ("central", book.central))
@@ -286,8 +286,8 @@ def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
         "float64",
         "",
         ("to rounding",),
-        lambda _: [float(x) for ball in BALLS for x in lambdified(*ball)],
-        per=len(BALLS),
+        lambda _: [float(x) for ball in PARTICLES for x in lambdified(*ball)],
+        per=len(PARTICLES),
         textbook=True,
     )
     return [*made, formula]

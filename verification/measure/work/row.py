@@ -215,7 +215,7 @@ def magnitude(error: Decimal) -> float:
 
 
 def diagram(points: Sequence[Point], front: Collection[int] = ()) -> str:
-    """A letter at each time (to the right) and error (upwards), both logarithmic; capitals are on the front.
+    """A mark at each time (to the right) and error (upwards), both logarithmic; capitals are on the front.
 
     Where errors span hundreds of decades the upward scale is the logarithm of the number of digits that are right.
 

@@ -55,7 +55,7 @@ def unknowns(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
 
 
 def last(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
-    """The free letter alone."""
+    """The free parameter alone."""
     return z[-1:]
 
 

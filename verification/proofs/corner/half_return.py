@@ -1,6 +1,6 @@
 """Half the return of the cuspless cardioid near its corner orbit, as affine maps with balls for entries.
 
-A ball that comes from the arc at `-theta1 + e*u` and meets the boundary the distance `e*v` beyond the
+A particle that comes from the arc at `-theta1 + e*u` and meets the boundary the distance `e*v` beyond the
 upper corner flies to the arc again and to the lower corner; the mirror image of where it arrives is
 `(u1, v1)`. Here `e = lam - lambda-star > 0`. Let `H(U, V, e)` be this map between positions that are not
 divided by `e`, so that `(u1, v1) = H(e*u, e*v, e)/e`. By the mean value theorem on the straight way from a
@@ -14,7 +14,7 @@ lies in this family of piecewise affine maps. The boxes that are followed are th
 `(u, v)` times the ball of `e` that goes with it. The multiples of a region by a smaller `e` lie in its
 multiple by the largest one only where the region is star-shaped about the origin, and ours are not.
 
-Where the ball lands at the lower corner divides nothing: tangent and speed of the parameter agree there, so
+Where the particle lands at the lower corner divides nothing: tangent and speed of the parameter agree there, so
 `H` is continuously differentiable across it. On `v = 0` the bounce is at the corner for every `e`, so that
 `H(e*base, 0, e)` has no part of either side in it, and as it is 0 at `e = 0`, divided by `e` it is a mean of
 `base*dH/dU + dH/de` at `(f*base, 0, f)` over all `f` from 0 to `e`, not over the stretch of `e` alone.

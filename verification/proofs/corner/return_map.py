@@ -264,7 +264,7 @@ def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = sil
 
 
 def _towards(phi: float) -> float:
-    """About where a ball lands that leaves the upper corner at this exit angle, by halving."""
+    """About where a particle lands that leaves the upper corner at this exit angle, by halving."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = (low + high) / 2
@@ -288,7 +288,7 @@ def _turns(course: Course) -> bool:
 
 
 def exit_angle(theta1: arb) -> arb:
-    """The exit angle at the upper corner of a ball that flies to `theta1`; it falls as `theta1` grows."""
+    """The exit angle at the upper corner of a particle that flies to `theta1`; it falls as `theta1` grows."""
     return angle(Bounce(ARC, constant(corners()[ARC], ())), Bounce(ARC, constant(theta1, ())))[0]
 
 

@@ -133,7 +133,7 @@ class Henon(_Bound):
 class Pinball(_Bound):
     """The pinball map of a convex table of one component, on bounce parameters that count turns; the letter is `lam`.
 
-    Forwards a ball lands where the chord makes the angle `-lam*eta` with the normal; backwards it came
+    Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal; backwards it came
     from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`.
 
     >>> from symbolic.tables import circle

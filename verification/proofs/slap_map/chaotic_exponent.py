@@ -30,7 +30,7 @@ slap map itself has one invariant density, and it is its own mirror image.
 **The exponent.** `T0'(s)` and the slope `F'` in half angles differ by the factor `cos(theta/2)` at either end of a
 flight, whose logarithm is integrable; so the exponent of almost every start is the integral of `log F'` times `h`.
 That of `f` is enclosed, `abs(e) <= Var e`, and the integral of `log F' = -log(rate)` over all launches is that of
-`-rate*log(rate) <= 1/e` over all landings, at most `3*pi/(4*e)`. The other exponent is minus infinity: every ball
+`-rate*log(rate) <= 1/e` over all landings, at most `3*pi/(4*e)`. The other exponent is minus infinity: every particle
 leaves along the normal.
 
 Assumed: that python-flint's balls, doubles and the machine do what they say. Not proved: that the measure mixes,

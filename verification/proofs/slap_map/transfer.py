@@ -1,7 +1,7 @@
 """The cardioid's slap map on half the table, its transfer operator, and what the operator does to variation.
 
 The mirror image carries orbits to orbits, so the slap map acts on the half angle `y = abs(theta)/2` in
-`[0, pi/2]`; call that map `F`. A ball that lands at the half angle `b`, `-pi/2 < b < pi/4`, left at `g(b)`, which
+`[0, pi/2]`; call that map `F`. A particle that lands at the half angle `b`, `-pi/2 < b < pi/4`, left at `g(b)`, which
 grows from 0 to `pi/2`, with `rate = g'`: one over the slope of `F`. So `F(g(b)) = abs(b)`, and densities go to
 
     (L f)(x) = rate(-x)*f(g(-x)) + rate(x)*f(g(x)),       the second summand for x < pi/4 only.
@@ -124,7 +124,7 @@ class Branches:
         return found[0], found[1]
 
     def landing(self, launch: arb, bits: int) -> arb:
-        """About where a ball lands that left at an exact half angle: Newton's method, not enclosed."""
+        """About where a particle lands that left at an exact half angle: Newton's method, not enclosed."""
         point = arb(landed(float(launch)))
         for _ in range(2 + bits.bit_length()):
             found, rate = self(point)

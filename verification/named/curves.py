@@ -33,10 +33,10 @@ from verification.cycles.continuation.branch import branch
 from verification.cycles.continuation.switching import Curve, Degenerate, curve, switched
 from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.critical import Small, critical
+from verification.cycles.recurrence.critical import Small, critical, polygon
 from verification.cycles.recurrence.newton import refined
 from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Closure
+from verification.cycles.recurrence.recurrence import Array, BifurcationKind
 from verification.named.feigenbaum import limit
 from verification.named.locate import certify
 from verification.proofs.periodic.interval_newton import Enclosure, interval_newton
@@ -109,14 +109,6 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
     box = ((top / 200, top), (0.0, 1.0))
     found = curve(ring, BifurcationKind.FOLD, event.x, TWO, (at["alpha"], event.value), box, steps=Steps(largest=0.15))
     return BifurcationCurve(f"fold of {p}/{q}", q, BifurcationKind.FOLD, found)
-
-
-def polygon(K: int, p: int, q: int) -> Chords:
-    """One bounce of the cycle that turns by `2*pi*p/q` each time."""
-
-    if K * p % q:
-        raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
-    return Chords(egg(K), (0,), Closure(1, (p, q)))
 
 
 @dataclass(frozen=True)

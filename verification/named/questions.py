@@ -137,13 +137,9 @@ class FollowedOrbit:
     parameter: str
     branch: "Branch" = field(repr=False)
 
-    @property
+    @cached_property
     def events(self) -> "tuple[BranchEvent, ...]":
         """All events, in the order of the branch."""
-        return self._events
-
-    @cached_property
-    def _events(self) -> "tuple[BranchEvent, ...]":
         return tuple(BranchEvent(self.orbit, self.parameter, event) for event in self.branch.events)
 
     @property

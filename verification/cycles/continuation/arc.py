@@ -5,9 +5,10 @@ like any other point. The step grows where Newton's method is quick and shrinks 
 where the curve turns; it never leaves the box of `limits`, at whose sides the last point lies.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -181,6 +182,18 @@ def follow(
         system = system.renewed(z)
         step = min(steps.largest, step * (1.5 if count <= QUICK else 1.0 if count <= SLOW else 0.6))
     return Path(system, tuple(points), End.ENOUGH, f"{steps.most} points were asked for")
+
+
+def passing(system: System, points: Sequence[Point], index: int, value: float) -> list[Array]:
+    """The solutions between neighbours of a path where the unknown `index` passes `value`, each solved for."""
+    found = []
+    for a, b in pairwise(points):
+        if (a.z[index] - value) * (b.z[index] - value) < 0 or b.z[index] == value:
+            row = np.zeros(len(a.z))
+            row[index] = 1.0
+            share = (value - a.z[index]) / (b.z[index] - a.z[index])
+            found.append(corrected(system.renewed(a.z), a.z + share * (b.z - a.z), row, value)[0])
+    return found
 
 
 def zero(system: System, start: Point, end: Point, name: str) -> Point:

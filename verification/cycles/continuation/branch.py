@@ -55,7 +55,7 @@ class Branch:
 
     def spectra(self) -> list[Spectrum]:
         """The multipliers at each point."""
-        return [_spectrum(point) for point in self.points]
+        return [spectrum_of(point) for point in self.points]
 
     @property
     def values(self) -> Array:
@@ -64,16 +64,11 @@ class Branch:
 
     def at(self, value: float) -> list[Array]:
         """The cycles where the branch passes `value`, each solved for."""
-        found = []
-        for a, b in pairwise(self.points):
-            if (a.z[-1] - value) * (b.z[-1] - value) < 0 or b.z[-1] == value:
-                share = (value - a.z[-1]) / (b.z[-1] - a.z[-1])
-                row = np.append(np.zeros(len(a.z) - 1), 1.0)
-                found.append(arc.corrected(self.system, a.z + share * (b.z - a.z), row, value)[0])
-        return found
+        return arc.passing(self.system, self.points, -1, value)
 
 
-def _spectrum(point: Point) -> Spectrum:
+def spectrum_of(point: Point) -> Spectrum:
+    """The multipliers at a point of a branch."""
     return Spectrum(point.tests["one"], point.tests["minus_one"], point.tests["volume"] + 1)
 
 
@@ -211,7 +206,7 @@ def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
 def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
     ring, x, at = system.recurrence, point.z[:-1], system.at(point.z)
     if name == "volume":
-        what = BifurcationKind.TORUS if abs(_spectrum(point).trace) < 2 else BifurcationKind.NEUTRAL_SADDLE
+        what = BifurcationKind.TORUS if abs(spectrum_of(point).trace) < 2 else BifurcationKind.NEUTRAL_SADDLE
         return Event(what, point, ring, x)
     if name == "minus_one":
         return Event(BifurcationKind.FLIP, point, ring, x, _form(ring, x, at, BifurcationKind.FLIP, system.parameter))

@@ -16,8 +16,7 @@ from symbolic.cycles import cycle as named_cycles
 from symbolic.cycles.cycle import Cycle
 from symbolic.tables.table import Table
 from verification.cycles.continuation.arc import Point
-from verification.cycles.continuation.branch import Branch, Event, branch
-from verification.cycles.continuation.linear import Spectrum
+from verification.cycles.continuation.branch import Branch, Event, branch, spectrum_of
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.recurrence import Array
 
@@ -98,11 +97,6 @@ def rows(branch: Branch) -> list[tuple[Point, Event | None]]:
     both: list[tuple[Point, Event | None]] = [(point, None) for point in branch.points]
     both += [(event.point, event) for event in branch.events]
     return sorted(both, key=lambda row: (row[0].s, row[1] is not None))
-
-
-def spectrum_of(point: Point) -> Spectrum:
-    """The multipliers at a point."""
-    return Spectrum(point.tests["one"], point.tests["minus_one"], point.tests["volume"] + 1)
 
 
 def dataset(branch: Branch) -> "xarray.Dataset":

@@ -216,14 +216,7 @@ class Curve:
 
     def crossing(self, value: float) -> list[Array]:
         """The points of the curve whose first parameter is `value`, each solved for."""
-        found = []
-        for a, b in pairwise(self.points):
-            if (a.z[-2] - value) * (b.z[-2] - value) < 0 or b.z[-2] == value:
-                row = np.append(np.zeros(len(a.z) - 2), [1.0, 0.0])
-                share = (value - a.z[-2]) / (b.z[-2] - a.z[-2])
-                guess = a.z + share * (b.z - a.z)
-                found.append(arc.corrected(self.system.renewed(a.z), guess, row, value)[0])
-        return found
+        return arc.passing(self.system, self.points, -2, value)
 
 
 def curve(

@@ -6,7 +6,7 @@ for cycles of a few dozen bounces. Equations are written once, and their derivat
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sympy import Expr, pi
@@ -165,7 +165,12 @@ def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
     >>> mpmath.nstr(found.z[1], 15)
     '0.37812125259009'
     """
+    ring = polygon(K, p, q)
+    return critical(replace(ring, table=ring.table.at(alpha=alpha)), [BifurcationKind.FOLD], ["lam"])
+
+
+def polygon(K: int, p: int, q: int) -> Chords:
+    """One bounce of the egg's cycle that turns by `2*pi*p/q` each time."""
     if K * p % q:
         raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
-    one = Chords(egg(K).at(alpha=alpha), (0,), Closure(1, (p, q)))
-    return critical(one, [BifurcationKind.FOLD], ["lam"])
+    return Chords(egg(K), (0,), Closure(1, (p, q)))

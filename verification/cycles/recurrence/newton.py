@@ -37,13 +37,6 @@ class Conditioning(Enum):
     REPEATED = "a shorter cycle run through several times, as far as its digits tell; ask for the shorter one"
 
 
-class Solvable(Protocol):
-    """What can solve with its matrix of first derivatives."""
-
-    def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """`F'(z)^-1 r`."""
-
-
 @runtime_checkable
 class Cyclic(Protocol):
     """A system of any length, that can tell its cycle from a shorter one."""
@@ -55,7 +48,7 @@ class Cyclic(Protocol):
         """The bounces after which the cycle repeats itself, up to `within`; 0 for never."""
 
 
-def norm_of_inverse(system: Solvable, arithmetic: Arithmetic, z: Vector) -> float:
+def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> float:
     """The largest row sum of `F'(z)^-1`; infinite where the matrix is singular.
 
     >>> from sympy import Rational
@@ -149,13 +142,13 @@ class System(Protocol):
     def label(self) -> str:
         """What messages call it."""
 
-    def value(self, arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+    def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """`F(z)`."""
 
-    def solved(self, arithmetic: Arithmetic, z: list[Any], r: list[Any]) -> list[Any]:
+    def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
         """`F'(z)^-1 r`."""
 
-    def newton(self, arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
+    def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """`F'(z)^-1 F(z)`, Newton's correction."""
 
 
@@ -175,7 +168,7 @@ class Solution:
     """
 
     problem: System
-    z: list[Any]
+    z: Vector
     digits: int
     steps: tuple[Step, ...] = field(repr=False)
 

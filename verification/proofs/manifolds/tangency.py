@@ -177,24 +177,24 @@ def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tu
     """The letter where the extremum of the gap is 0, between secants."""
     a, b = letters
     last = a, Gap(contact, map, a, order, tail).extremum()[1]
-    touch: Touch | None = None
+    steps: list[Touch] = []
 
     def correction(letter: Vector) -> Vector:
-        nonlocal last, touch
+        nonlocal last
         (b,), (a, before) = letter, last
         gap = Gap(contact, map, b, order, tail)
         _, found, _ = gap.extremum()
         speed = (found.c[0] - before.c[0]) / (b - a)
-        step = found.c[0] / speed
+        step, last = found.c[0] / speed, (b, found)
         out, into = gap.out.saddle, gap.into.saddle
         near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
         residual = max(gap.out.residual, gap.into.residual)
-        touch = Touch(contact, b, float(abs(step)) + goal, float(2 * found.c[2]), float(speed), near, residual)
-        last = b, found
+        error, bend = float(abs(step)) + goal, float(2 * found.c[2])
+        steps.append(Touch(contact, b - step, error, bend, float(speed), near, residual))
         return [step]
 
     # many bounces leave the gap with noise
-    settled = iterated(correction, [b + 0 * a], Stop(small=NOISE * goal, enough=goal, steps=STEPS))
-    if touch is None or not settled.settled:
-        raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last was {float(settled.x[0])}")
-    return replace(touch, letter=settled.x[0])
+    found = iterated(correction, [b + 0 * a], Stop(small=NOISE * goal, enough=goal, steps=STEPS))
+    if not found.settled:
+        raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last was {float(found.x[0])}")
+    return steps[len(found.sizes) - 1]  # of the last step that was made; what follows it is noise

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verification.cycles.continuation.branch import Branch
-from verification.cycles.continuation.starts import spectrum_of
+from verification.cycles.continuation.branch import Branch, spectrum_of
 from verification.cycles.recurrence.recurrence import BifurcationKind
 
 if TYPE_CHECKING:

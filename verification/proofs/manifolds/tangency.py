@@ -20,7 +20,9 @@ from verification.proofs.manifolds.plane_map import PlaneMap, floating
 from verification.proofs.manifolds.saddle import Local, Orbit, horner, local, saddle
 
 STEPS = 30
-NOISE = 1e4  # times the goal: steps of secants that small and no longer shrinking are rounding
+NOISE = (
+    1e4  # times the goal: secants between values closer than that are rounding, and so are steps that shrink no more
+)
 
 
 @dataclass(frozen=True)
@@ -184,8 +186,9 @@ def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tu
         (b,), (a, before) = letter, last
         gap = Gap(contact, map, b, order, tail)
         _, found, _ = gap.extremum()
-        speed = (found.c[0] - before.c[0]) / (b - a)
-        step, last = found.c[0] / speed, (b, found)
+        slope = (found.c[0] - before.c[0]) / (b - a)
+        step, last = found.c[0] / slope, (b, found)
+        speed = slope if not steps or abs(b - a) > NOISE * goal else steps[-1].speed
         out, into = gap.out.saddle, gap.into.saddle
         near = float(out.stable), float(out.unstable), float(into.stable), float(into.unstable)
         residual = max(gap.out.residual, gap.into.residual)

@@ -176,7 +176,7 @@ def cascade(alpha: Expr) -> Iterator[Doubling]:
 
 
 def _back_after_four(table: Table) -> list[float]:
-    """The contractions of the grid at which a particle near a diameter is back after four bounces, in one float64 run."""
+    """Where on the grid a particle near a diameter is back after four bounces, in one float64 run."""
     from numeric import PinballMap
 
     theta = np.full(len(GRID), START[1])

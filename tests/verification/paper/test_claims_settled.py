@@ -9,7 +9,7 @@ from verification.paper.cardioid.border import born
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg.basins import without_triangles
 from verification.paper.report.verdicts import verify
-from verification.proofs.corner.half_return import Birth
+from verification.proofs.corner.half_return import TrappingRegion
 
 LOCATED = {
     "cuspless.lambda_star": (Verdict.CORRECTED, "0.07121724524891598"),
@@ -70,7 +70,7 @@ def test_what_happens_at_the_corner_orbit_is_proved_as_far_as_the_proof_goes(nam
 
 
 def test_a_proof_that_stops_early_leaves_its_claims_without_a_verdict(monkeypatch: pytest.MonkeyPatch):
-    stopped = Birth(None, 0.001, born().steps[:1])
+    stopped = TrappingRegion(None, 0.001, born().steps[:1])
     monkeypatch.setattr(on_border, "born", lambda: stopped)
     monkeypatch.setattr(on_border, "kink_falls", lambda lowest, highest: None)
     verdicts = {name: next(iter(verify(name))).verdict for name in CORNER_ORBIT}

@@ -44,7 +44,7 @@ FOUND = [
     "ellipse --a 1.5 --lam 0.9 --period 4",
 ]
 FLOATS = 1e-9
-LEFT_OUT = ("seconds", "newton", "gmpy2", "points")
+LEFT_OUT = ("seconds", "newton", "gmpy2", "points", "title", "resolution")  # the clock, the search, and words
 COMMANDS = [
     *(f"locate {text}" for text in LOCATED),
     *(f"follow {text}" for text in FOLLOWED),

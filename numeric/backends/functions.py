@@ -12,6 +12,7 @@ enters a loop that keeps a change of sign and cannot leave it. Lanes that are do
 so that no lane's result depends on its neighbours.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
@@ -77,6 +78,71 @@ def turn(ops: Backend[N, M], x: N, quarters: int = 2) -> Pair[N]:
     if quarters > 1:
         across = ops.select(ops.number(1.5) < j, -across, across)
     return along, ops.times_sign(across, x)
+
+
+EXP = tuple(1 / math.factorial(n) for n in range(3, 14))  # of exp(r) - 1 - r - r**2/2, over r**3, for |r| < log(2)/2
+LOG = tuple(2 / (2 * n + 3) for n in range(11))  # of log((1 + s)/(1 - s)) - 2*s, over s**3, for |s| < 0.172
+LOG_2, LOG_2_LOW = 0.6931471805599453, 2.3190468138462996e-17  # their sum is log(2) to 107 bits
+LARGEST = 708.0  # exp(LARGEST) is a double
+
+
+def exp_less_one(ops: Backend[N, M], x: N) -> Pair[N]:
+    """`(2**k, p)` with `exp(x) = 2**k*(1 + p)` and `|p| < 0.42`; relatively exact in `p` near 0, for `|x| <= 708`."""
+    k = ops.rounded(x * ops.number(1 / LOG_2))
+    r = ops.fma(-k, ops.number(LOG_2), x)
+    r = ops.fma(-k, ops.number(LOG_2_LOW), r)
+    w = r * r
+    return ops.two_to(k), w * r * horner(ops, EXP, r) + ops.number(0.5) * w + r
+
+
+def within(ops: Backend[N, M], x: N) -> N:
+    """`x`, cut off where its exponential is no double."""
+    return ops.maximum(-ops.maximum(-x, ops.number(-LARGEST)), ops.number(-LARGEST))
+
+
+def exponential(ops: Backend[N, M], x: N) -> N:
+    """`exp(x)`."""
+    scale, p = exp_less_one(ops, within(ops, x))
+    return scale * p + scale
+
+
+def hyperbolic(ops: Backend[N, M], x: N, word: str) -> N:
+    """`sinh`, `cosh` or `tanh` of `x`."""
+    one, half, size = ops.number(1.0), ops.number(0.5), within(ops, modulus(x))
+    if word == "cosh":
+        grown = exponential(ops, size)
+        return half * grown + half / grown
+    scale, p = exp_less_one(ops, size if word == "sinh" else within(ops, size + size))
+    more = scale * p + (scale - one)  # exp - 1
+    value = half * (more + more / (more + one)) if word == "sinh" else more / (more + ops.number(2.0))
+    return ops.times_sign(value, x)
+
+
+def logarithm(ops: Backend[N, M], x: N) -> N:
+    """The natural logarithm of a normal positive number; no number elsewhere."""
+    one = ops.number(1.0)
+    scale, k = ops.power_of_two(x)
+    m = x * scale
+    large = ops.number(2.0**0.5) < m
+    m, k = ops.select(large, ops.number(0.5) * m, m), ops.select(large, k + one, k)
+    f = m - one
+    s = f / (m + one)
+    w = s * s
+    square = ops.number(0.5) * f * f
+    rest = s * (square + w * horner(ops, LOG, w)) + k * ops.number(LOG_2_LOW)
+    value = k * ops.number(LOG_2) - ((square - rest) - f)
+    return ops.select(ops.number(0.0) < x, value, ops.number(math.nan))
+
+
+def root(ops: Backend[N, M], x: N, n: int) -> N:
+    """The positive `n`-th root of a positive number: a guess by logarithms, and Newton's step on `y**n = x`."""
+    positive = ops.number(0.0) < x
+    y = exponential(ops, logarithm(ops, x) * ops.number(1 / n))
+    power = y
+    for _ in range(n - 2):
+        power = power * y
+    y = y - (power * y - x) / (power * ops.number(float(n)))
+    return ops.select(positive, y, ops.select(ops.negated(x < ops.number(0.0)), x, ops.number(math.nan)))
 
 
 def times(z: Pair[N], w: Pair[N]) -> Pair[N]:

@@ -268,6 +268,39 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         """The cosine, of angles up to 2**30."""
         return self.turn(self._within_a_turn(x))[0]
 
+    def exp(self, x: LLVMVector) -> LLVMVector:
+        """The exponential."""
+        return functions.exponential(self, x)
+
+    def log(self, x: LLVMVector) -> LLVMVector:
+        """The natural logarithm."""
+        return functions.logarithm(self, x)
+
+    def atan(self, x: LLVMVector) -> LLVMVector:
+        """The arc tangent."""
+        return self.angle(x, self.number(1.0))
+
+    def sinh(self, x: LLVMVector) -> LLVMVector:
+        """The hyperbolic sine."""
+        return functions.hyperbolic(self, x, "sinh")
+
+    def cosh(self, x: LLVMVector) -> LLVMVector:
+        """The hyperbolic cosine."""
+        return functions.hyperbolic(self, x, "cosh")
+
+    def tanh(self, x: LLVMVector) -> LLVMVector:
+        """The hyperbolic tangent."""
+        return functions.hyperbolic(self, x, "tanh")
+
+    def root(self, x: LLVMVector, n: int) -> LLVMVector:
+        """The positive `n`-th root of a positive number."""
+        return functions.root(self, x, n)
+
+    def two_to(self, k: LLVMVector) -> LLVMVector:
+        """`2**k` for whole `k` from -1022 to 1023."""
+        shifted = self._integer(k + self.number(1.5 * 2.0**52 + 1023))
+        return self._double(self._bits("shl", shifted, "splat (i64 52)"))
+
     def _within_a_turn(self, x: LLVMVector) -> LLVMVector:
         """`x` less whole turns: the turn has 107 bits and each subtraction is rounded once, so nothing is lost."""
         turns = self.rounded(x * self.number(0.25 / functions.HALF_PI))

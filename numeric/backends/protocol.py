@@ -74,6 +74,10 @@ class Backend(NumberSystem[N], Protocol[N, M]):
         """`x` with its sign flipped where `y` is negative."""
         ...
 
+    def two_to(self, k: N, /) -> N:
+        """`2**k` for whole `k`."""
+        ...
+
     def power_of_two(self, x: N, /) -> Pair[N]:
         """`(2**-e, e)` with `2**e <= x < 2**(e + 1)`."""
         ...

@@ -47,6 +47,12 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
     atan2 = staticmethod(cast(Binary, np.arctan2))
     sin = staticmethod(cast(Unary, np.sin))
     cos = staticmethod(cast(Unary, np.cos))
+    exp = staticmethod(cast(Unary, np.exp))
+    log = staticmethod(cast(Unary, np.log))
+    atan = staticmethod(cast(Unary, np.arctan))
+    sinh = staticmethod(cast(Unary, np.sinh))
+    cosh = staticmethod(cast(Unary, np.cosh))
+    tanh = staticmethod(cast(Unary, np.tanh))
     select = staticmethod(cast(Callable[[Masks, Array, Array], Array], np.where))
     maximum = staticmethod(cast(Binary, np.maximum))
     rounded = staticmethod(cast(Unary, np.rint))
@@ -68,6 +74,14 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         back = total - product
         total_low = (product - (total - back)) + (z - back)
         return total + (product_low + total_low)
+
+    def root(self, x: Array, n: int) -> Array:
+        """The positive `n`-th root of a positive number."""
+        return functions.root(self, x, n)
+
+    def two_to(self, k: Array) -> Array:
+        """`2**k` for whole `k`."""
+        return np.ldexp(1.0, np.asarray(k).astype(np.int64))
 
     def product(self, x: Array, y: Array) -> Array:
         """`x*y`, rounded by itself."""
@@ -113,6 +127,13 @@ class Context(Protocol[N]):
     def sqrt(self, x: N, /) -> N: ...
     def sin(self, x: N, /) -> N: ...
     def cos(self, x: N, /) -> N: ...
+    def exp(self, x: N, /) -> N: ...
+    def log(self, x: N, /) -> N: ...
+    def atan(self, x: N, /) -> N: ...
+    def sinh(self, x: N, /) -> N: ...
+    def cosh(self, x: N, /) -> N: ...
+    def tanh(self, x: N, /) -> N: ...
+    def root(self, x: N, n: int, /) -> N: ...
     def atan2(self, y: N, x: N, /) -> N: ...
     def nint(self, x: N, /) -> N: ...
 
@@ -152,6 +173,38 @@ class ScalarBackend(Backend[N, bool]):
     def cos(self, x: N) -> N:
         """The cosine."""
         return self.context.cos(x)
+
+    def exp(self, x: N) -> N:
+        """The exponential."""
+        return self.context.exp(x)
+
+    def log(self, x: N) -> N:
+        """The natural logarithm."""
+        return self.context.log(x)
+
+    def atan(self, x: N) -> N:
+        """The arc tangent."""
+        return self.context.atan(x)
+
+    def sinh(self, x: N) -> N:
+        """The hyperbolic sine."""
+        return self.context.sinh(x)
+
+    def cosh(self, x: N) -> N:
+        """The hyperbolic cosine."""
+        return self.context.cosh(x)
+
+    def tanh(self, x: N) -> N:
+        """The hyperbolic tangent."""
+        return self.context.tanh(x)
+
+    def root(self, x: N, n: int) -> N:
+        """The positive `n`-th root of a positive number."""
+        return self.context.root(x, n)
+
+    def two_to(self, k: N) -> N:
+        """`2**k`."""
+        return self.context.exp(k * self.context.log(self.number(2.0)))
 
     def settle(self, *values: N) -> None:
         """Nothing to do: every value is computed where it stands."""

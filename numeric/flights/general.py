@@ -173,11 +173,8 @@ class General(Family):
 def pieces(boundary: Boundary) -> list[tuple[int, float, float]]:
     """Component and ends of the pieces on which the tangent turns by a quarter of a turn at most, and one way."""
     found: list[tuple[int, float, float]] = []
+    refuse_long(boundary)
     for index, (low, high) in enumerate(boundary.ends):
-        if max(abs(low), abs(high)) > LONG:
-            name, part = boundary.ir.table, boundary.ir.parts[index].name
-            runs = f"the parameter of {part} runs to {max(abs(low), abs(high)):.6g}"
-            raise ValueError(f"{name}: {runs}, where its rounding shows; start it within {LONG:.6g}")
         theta = np.linspace(low, high, GRID + 1)
         _, _, dx, dy, ax, ay = boundary.curve(np.full(theta.shape, index), theta)
         turning = dx * ay - dy * ax
@@ -191,6 +188,14 @@ def pieces(boundary: Boundary) -> list[tuple[int, float, float]]:
         cuts.append(high + OVERLAP if len(boundary.ends) == 1 else high)
         found += [(index, a, b) for a, b in itertools.pairwise(cuts)]
     return found
+
+
+def refuse_long(boundary: Boundary) -> None:
+    """`ValueError` where a parameter runs so far that its rounding moves the point."""
+    for part, (low, high) in zip(boundary.ir.parts, boundary.ends, strict=True):
+        if max(abs(low), abs(high)) > LONG:
+            runs = f"the parameter of {part.name} runs to {max(abs(low), abs(high)):.6g}"
+            raise ValueError(f"{boundary.ir.table}: {runs}, where its rounding shows; start it within {LONG:.6g}")
 
 
 def _inflection(boundary: Boundary, index: int, low: float, high: float) -> float:

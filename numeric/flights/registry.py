@@ -13,7 +13,7 @@ FAMILIES = (
     ("cuspless", "Cuspless"),
     ("harmonic", "Ellipse"),
     ("harmonic", "Fourier"),
-    ("polygon", "Polygon"),
+    ("pieces", "Pieces"),
     ("general", "General"),
 )
 

@@ -8,11 +8,34 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
-from sympy import Add, Dummy, Expr, Float, I, Mul, Pow, Symbol, cos, pi, sin
+from sympy import (
+    Add,
+    Dummy,
+    Expr,
+    Float,
+    I,
+    Mul,
+    Pow,
+    S,
+    Symbol,
+    atan,
+    cos,
+    cosh,
+    exp,
+    expand,
+    log,
+    pi,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 from sympy import sympify as exact
 
 from numeric.lowering.program import Builder, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
+from symbolic.expressions.signs import vanishes
 from symbolic.motion import flight
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
@@ -22,6 +45,9 @@ from symbolic.tables.waves import LONG, highest, size, waves
 
 DEEP = 12  # operations within each other, beyond which derivatives are not written out
 DEGREE = 16  # the highest harmonic of a chord polynomial: its text grows with the third power
+
+WORDS = (atan, exp, log, sinh, cosh, tanh)  # functions of one value that keep their names
+ROOT = 12  # the highest root
 
 
 def named(name: str, K: int = 3) -> TableIR:
@@ -39,7 +65,7 @@ def lower(table: Table) -> TableIR:
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols) for component in table.components)
     same = _same_as(table)
-    programs = {} if same else _fourier(table, symbols)
+    programs = {} if same else _fourier(table, symbols) or _pieces(table, symbols)
     index, start = table.origin
     return TableIR(
         table.name,
@@ -83,23 +109,33 @@ def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> 
         for value in values[1:]:
             product = product * value
         return product
-    if isinstance(expression, Pow) and (2 * expression.exp).is_Integer:
-        return _power(builder, converted(builder, expression.base, nodes), int(2 * expression.exp))
+    if isinstance(expression, Pow) and expression.exp.is_Rational and expression.exp.q <= ROOT:
+        return _power(builder, converted(builder, expression.base, nodes), expression.exp)
     if isinstance(expression, cos | sin):
         return _circular(builder, expression, nodes)
+    if isinstance(expression, tan):
+        return _circular(builder, sin(*expression.args), nodes) / _circular(builder, cos(*expression.args), nodes)
+    if expression is S.Exp1:
+        return builder.node("exp", builder.exact(1).number())
+    if isinstance(expression, WORDS):
+        return builder.node(expression.func.__name__, converted(builder, expression.args[0], nodes).number())
     raise ValueError(
-        f"{expression} is beyond the kernels' words: + - * /, whole powers, square roots, sin, cos, pi, rationals"
+        f"{expression} is beyond the kernels' words: + - * /, powers by rationals, pi, rationals, sin, cos, tan, "
+        "atan, exp, log, sinh, cosh, tanh"
     )
 
 
-def _power(builder: Builder, base: Node, halves: int) -> Node:
-    root = builder.node("sqrt", base.number()) if halves % 2 else None
-    n = abs(halves) // 2
-    result = flight.powers((base, 0), max(n, 1))[n][0] if n else builder.exact(1)
-    result = builder.exact(result)
-    if root is not None:
-        result = result * root
-    return builder.exact(1) / result if halves < 0 else result
+def _power(builder: Builder, base: Node, power: Expr) -> Node:
+    whole, part = divmod(abs(power), 1)
+    result = _whole_power(builder, base, int(whole))
+    if part:
+        root = builder.node("sqrt" if part.q == 2 else f"root{part.q}", base.number())
+        result = result * _whole_power(builder, root, int(part.p))
+    return builder.exact(1) / result if power < 0 else result
+
+
+def _whole_power(builder: Builder, base: Node, n: int) -> Node:
+    return builder.exact(flight.powers((base, 0), max(n, 1))[n][0] if n else 1)
 
 
 def _circular(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
@@ -255,6 +291,46 @@ def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
     programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
     return programs
+
+
+def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
+    """One program for each component, when all are straight sides or arcs of ellipses; none otherwise.
+
+    Its outputs: the point, which is `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or the
+    parameter and -1; the first corner; `A x B`; the radius; what tells the ends apart, as `numeric.flights.pieces`
+    has it.
+    """
+
+    def program(numbers: list[Expr]) -> Program:
+        return _program(symbols, lambda nodes: [nodes(x) for x in numbers])
+
+    found = [_piece(component) for component in table.components]
+    known = [piece for piece in found if piece is not None]
+    if len(known) < len(found):
+        return {}
+    return {f"{kind} {index}": program(numbers) for index, (kind, numbers) in enumerate(known)}
+
+
+def _piece(component: Component) -> tuple[str, list[Expr]] | None:
+    """A component's kind and its fourteen numbers, in the order in which the flight reads them."""
+    x, y = component.point
+    low, high = component.start, component.end
+    corner = component.at(low)
+    slope = [coordinate.diff(theta) for coordinate in (x, y)]
+    if not any(d.has(theta) for d in slope):
+        return "line", [*component.at(S.Zero), *slope, S.Zero, S.Zero, *corner, S.Zero, S.One, low, high, low, high]
+    centre = [expand(coordinate + coordinate.diff(theta, 2)) for coordinate in (x, y)]
+    if any(c.has(theta) for c in centre):
+        return None
+    A = [expand(start - c) for start, c in zip(component.at(S.Zero), centre, strict=True)]
+    B = [d.subs(theta, 0) for d in slope]
+    square, other = (expand(v[0] ** 2 + v[1] ** 2) for v in (A, B))
+    circular = vanishes(square - other) and vanishes(A[0] * B[0] + A[1] * B[1])
+    D = expand(A[0] * B[1] - A[1] * B[0])
+    middle, half = (low + high) / 2, (high - low) / 2
+    marks = [cos(middle), sin(middle), sin(half), cos(half)]
+    radius = sqrt(square) if circular else S.One
+    return "circle" if circular else "ellipse", [*centre, *A, *B, *corner, D, radius, *marks]
 
 
 def seen_ahead(

@@ -21,7 +21,8 @@ from symbolic.expressions.numbers import NumberSystem, R
 if TYPE_CHECKING:
     from symbolic.tables.table import Table
 
-UNARY = {"neg", "sqrt", "sin", "cos"}
+ROOTS = {f"root{n}": n for n in range(3, 13)}
+UNARY = {"neg", "sqrt", "sin", "cos", "exp", "log", "atan", "sinh", "cosh", "tanh", *ROOTS}
 BINARY = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
 VOCABULARY = {"q", "pi"} | UNARY | set(BINARY)
 Line = tuple[str, *tuple[int, ...]]  # a word of the vocabulary and the numbers of its operands
@@ -45,6 +46,8 @@ class Program(NamedTuple):
                 known.append(ops.q(*operands))
             elif word == "pi":
                 known.append(ops.pi)
+            elif word in ROOTS:
+                known.append(getattr(ops, "root")(known[operands[0]], ROOTS[word]))  # noqa: B009  (few number systems have it)
             else:
                 x = known[operands[0]]
                 known.append(-x if word == "neg" else getattr(ops, word)(x))

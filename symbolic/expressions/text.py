@@ -13,9 +13,9 @@ from typing import Any
 
 from sympy import Expr, S, Symbol, cse, numbered_symbols
 
-from symbolic.expressions.words import FUNCTIONS, Words, checked
+from symbolic.expressions.words import FUNCTIONS, ROOT, Words, checked
 
-VOCABULARY = ("q", "pi", *sorted(FUNCTIONS.values()))
+VOCABULARY = ("q", "pi", *sorted([*FUNCTIONS.values(), ROOT]))
 WIDTH = 99
 
 

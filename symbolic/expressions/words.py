@@ -1,9 +1,41 @@
 """One expression in words of the closed vocabulary, and the refusal of everything else."""
 
-from sympy import Add, Expr, Float, Integer, Mul, Pow, Rational, S, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
+from sympy import (
+    Add,
+    Expr,
+    Float,
+    Integer,
+    Mul,
+    Pow,
+    Rational,
+    S,
+    Symbol,
+    atan,
+    cos,
+    cosh,
+    exp,
+    log,
+    pi,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 from sympy.core.function import AppliedUndef
 
-FUNCTIONS = {sin: "sin", cos: "cos", atan: "atan", exp: "exp", log: "log", sqrt: "sqrt"}
+FUNCTIONS = {
+    sin: "sin",
+    cos: "cos",
+    atan: "atan",
+    exp: "exp",
+    log: "log",
+    sqrt: "sqrt",
+    sinh: "sinh",
+    cosh: "cosh",
+    tanh: "tanh",
+}
+ROOT = "root"  # root(x, n) is the positive n-th root of a positive x
 
 
 def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
@@ -25,7 +57,7 @@ def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
             kind = node.func.__name__ if not isinstance(node, AppliedUndef) else str(node.func)
             raise ValueError(
                 f"{label}: {kind} in {node} is outside the vocabulary; it has + - * /, rationals, pi, "
-                f"powers by integers and halves, tan, {', '.join(sorted(FUNCTIONS.values()))}"
+                f"powers by rationals, tan, {', '.join(sorted(FUNCTIONS.values()))}"
             )
 
 
@@ -42,7 +74,7 @@ def _in_vocabulary(e: Expr) -> bool:
     if isinstance(e, Rational) or e in (pi, S.Exp1) or isinstance(e, Symbol | Add | Mul | tan):
         return True
     if isinstance(e, Pow):
-        return isinstance(e.exp, Rational) and e.exp.q in (1, 2)
+        return isinstance(e.exp, Rational)
     return e.func in FUNCTIONS
 
 
@@ -139,12 +171,13 @@ class Words:
         return f"({text})" if enclosed or ("/" in text and not alone) else text
 
     def _power(self, base: Expr, power: Rational) -> str:
-        whole, half = divmod(power, 1)
+        whole, part = divmod(power, 1)
         parts = [self._whole_power(self._named(base), int(whole))] if whole else []
-        if half:
-            self.used.add("sqrt")
+        if part:
             inner = self._named(base) if whole else self._print(base)[0]
-            parts.append(f"sqrt({inner})")
+            root = f"sqrt({inner})" if part.q == 2 else f"{ROOT}({inner}, {part.q})"
+            self.used.add("sqrt" if part.q == 2 else ROOT)
+            parts.append(root if part.p == 1 else self._whole_power(self._kept(root), int(part.p)))
         return "*".join(parts)
 
     def _named(self, base: Expr) -> str:

@@ -1,8 +1,25 @@
+from .gallery import (
+    GALLERY,
+    diamond,
+    disc,
+    lemon,
+    mushroom,
+    polygon,
+    regular,
+    reuleaux,
+    round_arc,
+    semi_ellipse,
+    sinai,
+    square,
+    stadium,
+    triangle,
+)
 from .paper import arc, cardioid, circle, cuspless, egg, ellipse, named, parametric, piecewise, polar
 from .scene import Law, Scene
 from .table import Component, Mark, Shape, Table
 
 __all__ = [
+    "GALLERY",
     "Component",
     "Law",
     "Mark",
@@ -13,10 +30,23 @@ __all__ = [
     "cardioid",
     "circle",
     "cuspless",
+    "diamond",
+    "disc",
     "egg",
     "ellipse",
+    "lemon",
+    "mushroom",
     "named",
     "parametric",
     "piecewise",
     "polar",
+    "polygon",
+    "regular",
+    "reuleaux",
+    "round_arc",
+    "semi_ellipse",
+    "sinai",
+    "square",
+    "stadium",
+    "triangle",
 ]

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from symbolic.tables.table import Table
 
 PAPER = {"circle": (), "ellipse": ("a",), "cardioid": (), "cuspless": (), "egg": ("alpha",)}
+GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of their own
+    "square", "triangle", "stadium", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "diamond",
+)  # fmt: skip
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law
 PIECE = ("name", "x", "y", "from", "to")

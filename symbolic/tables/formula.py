@@ -21,7 +21,28 @@ from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
 
-from sympy import Abs, Add, E, Expr, Mul, Pow, Rational, S, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
+from sympy import (
+    Abs,
+    Add,
+    E,
+    Expr,
+    Mul,
+    Pow,
+    Rational,
+    S,
+    Symbol,
+    atan,
+    cos,
+    cosh,
+    exp,
+    log,
+    pi,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 from sympy.core.traversal import preorder_traversal
 
 from symbolic.tables.table import theta
@@ -40,9 +61,9 @@ def _tan(x: Expr) -> Expr:
     return value if value.func is tan or value.is_number else sin(x) / cos(x)
 
 
-STEEP = ("sin", "cos", "tan", "exp")  # costly to evaluate far from 0
+STEEP = ("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh")  # costly to evaluate far from 0
 FUNCTIONS: Mapping[str, Callable[[Expr], Expr]] = {
-    **{f.__name__: f for f in (sqrt, sin, cos, exp, log, atan, Abs)},
+    **{f.__name__: f for f in (sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh, Abs)},
     "abs": Abs,
     "tan": _tan,
 }
@@ -59,7 +80,7 @@ def parse(text: str, names: Mapping[str, Symbol] = NAMES) -> Expr:
     Traceback (most recent call last):
     ...
     ValueError: '.' at column 6 is no part of a formula; accepted: numbers, + - * / ** ( ), theta, pi, E, \
-sqrt, sin, cos, exp, log, atan, abs, tan
+sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh, abs, tan
     """
     if len(text) > LENGTH:
         raise ValueError(f"the formula has {len(text)} characters; at most {LENGTH} are accepted")
@@ -216,12 +237,13 @@ def _shown(text: str) -> str:
 
 
 EXPONENT = 64  # largest modulus of an exponent
+DENOMINATOR = 12  # and its largest denominator
 NODES = 1500  # largest number of operations, names and numbers
 LEVELS = 60  # deepest nesting of operations
 CONSTANT_LEVELS = 10  # the same inside an irrational constant
 BITS = 1400  # largest numerator or denominator; 400 decimal digits fit
 ARGUMENT = 10**6  # largest modulus of a constant inside a function
-VOCABULARY = (Add, Mul, Pow, Rational, Symbol, type(pi), type(E), Abs, atan, cos, exp, log, sin, tan)
+VOCABULARY = (Add, Mul, Pow, Rational, Symbol, type(pi), type(E), Abs, atan, cos, cosh, exp, log, sin, sinh, tan, tanh)
 
 
 def flaw(value: Expr) -> tuple[str, str] | None:
@@ -229,7 +251,7 @@ def flaw(value: Expr) -> tuple[str, str] | None:
 
     >>> from symbolic.tables.table import theta
     >>> flaw(theta**65)
-    ('the exponent 65 is not accepted', 'an integer or half-integer between -64 and 64')
+    ('the exponent 65 is not accepted', 'a number between -64 and 64 with a denominator of at most 12')
     >>> flaw(theta**64) is None
     True
     """
@@ -260,22 +282,22 @@ def _flaw_at(node: Expr) -> tuple[str, str] | None:
         return "the value is not real", "a formula with real values"
     if node.func is Pow and not is_exponent(node.exp):
         return f"the exponent {node.exp} is not accepted", EXPONENTS
-    if node.func is exp and is_huge(node.args[0]):
-        return "the argument of exp is too large", ARGUMENTS
+    if node.func in (exp, sinh, cosh) and is_huge(node.args[0]):
+        return f"the argument of {node.func.__name__} is too large", ARGUMENTS
     return None
 
 
-EXPONENTS = f"an integer or half-integer between -{EXPONENT} and {EXPONENT}"
+EXPONENTS = f"a number between -{EXPONENT} and {EXPONENT} with a denominator of at most {DENOMINATOR}"
 ARGUMENTS = f"a modulus of at most {ARGUMENT}"
 
 
 def is_exponent(value: Expr) -> bool:
     """Whether `value` may be an exponent.
 
-    >>> is_exponent(Rational(3, 2)), is_exponent(Rational(1, 3))
+    >>> is_exponent(Rational(3, 2)), is_exponent(Rational(1, 13))
     (True, False)
     """
-    return isinstance(value, Rational) and value.q <= 2 and abs(value) <= EXPONENT
+    return isinstance(value, Rational) and value.q <= DENOMINATOR and abs(value) <= EXPONENT
 
 
 def is_huge(argument: Expr) -> bool:

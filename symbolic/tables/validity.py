@@ -6,9 +6,6 @@ high degree, may be too hard for the last two; it is then accepted here and exam
 """
 
 from dataclasses import replace
-from fractions import Fraction
-from itertools import pairwise
-from math import atan2, fsum, tau
 
 from sympy import (
     Abs,
@@ -21,9 +18,6 @@ from sympy import (
     Rational,
     S,
     Symbol,
-    acos,
-    atan,
-    chebyshevu,
     cos,
     expand,
     factor_list,
@@ -31,7 +25,6 @@ from sympy import (
     nan,
     oo,
     pi,
-    sign,
     sin,
     sqrt,
     tan,
@@ -40,10 +33,11 @@ from sympy import (
 )
 
 from symbolic.expressions.enclosures import UnboundedError, pole, sign_on
-from symbolic.expressions.signs import Box, Outcome, bernstein, conjunction, positive, vanishes
+from symbolic.expressions.signs import Box, Outcome, conjunction, positive
+from symbolic.tables.curves import chord_of_length_zero, curves, polygon_crossing
 from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
 from symbolic.tables.table import Component, Table, lam, theta
-from symbolic.tables.waves import LONG, alone, is_periodic, size, waves
+from symbolic.tables.waves import LONG, alone, size, waves
 
 HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box, of a radius judged by Sturm's theorem
 TURN = Rational(7, 2)  # beyond pi: what holds from -TURN to TURN holds for every angle
@@ -153,23 +147,16 @@ def _finite(table: Table, component: Component) -> None:
 
 
 def _closed(table: Table) -> None:
-    only = table.components[0]
-    if len(table.components) == 1 and only.end - only.start == 2 * pi and all(map(is_periodic, only.point)):
-        return
-    ring = (*table.components, table.components[0])
-    for before, after in pairwise(ring):
-        leaves, arrives = before.at(before.end), after.at(after.start)
-        for p, q in zip(leaves, arrives, strict=True):
-            if not vanishes(p - q):
-                raise ValueError(
-                    f"{table.name}: the boundary is not closed: {before.name} ends at "
-                    f"({leaves[0]}, {leaves[1]}) and {after.name} starts at ({arrives[0]}, {arrives[1]})"
-                )
+    curves(table)
 
 
 def _counterclockwise(table: Table) -> None:
     area = enclosed_area(table)
     ranges = {p.symbol: p.range for p in table.shapes}
+    for hole in curves(table)[1:]:
+        inside = enclosed_area(replace(table, components=hole))
+        if inside is not None and not inside.free_symbols and not inside.is_negative:
+            raise ValueError(f"{table.name}: the hole that begins with {hole[0].name} must run clockwise")
     if area is None or any(r.free_symbols for r in ranges.values()):
         return
     if area.is_zero:
@@ -239,108 +226,6 @@ def _is_polar(x: Expr, y: Expr) -> bool:
 def _radius(x: Expr, y: Expr) -> Expr:
     radius = x * cos(theta) + y * sin(theta)
     return radius if waves(radius) is not None or size(radius) > LONG else trigonometric(radius)
-
-
-CORNERS = 96  # of the polygon, over all components
-Corner = tuple[Fraction, Fraction]
-
-
-def chord_of_length_zero(c: dict[int, Expr], scale: Expr = S.One) -> str | None:
-    """A sentence on where `sum c_k exp(i*k*theta)` meets itself or stops; None when it is proved simple.
-
-    The chord between `m + B` and `m - B` is `2*i*sin(B)` times `sum sgn(k) c_k U_(|k|-1)(cos B)
-    exp(i*k*m)`. A simple regular curve has no zero of that sum for `-1 <= cos B <= 1`; boxes of
-    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part. `scale` is theta in this angle.
-
-    >>> chord_of_length_zero({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
-    'the boundary meets itself, or stops, near theta = -89 and 90 degrees'
-    """
-    T, C = Dummy("T", real=True), Dummy("C", real=True)
-    n = max(abs(k) for k in c)
-    total = S.Zero
-    for k, value in c.items():
-        if k:
-            wave = (1 + sign(k) * I * T) ** (2 * abs(k)) * (1 + T**2) ** (n - abs(k))
-            total += sign(k) * value * chebyshevu(abs(k) - 1, C) * wave
-    parts = [expand(part) for part in expand(total).as_real_imag()]
-    box = _unexcluded([p for p in parts if p != 0], {T: Interval(-1, 1), C: Interval(-1, 1)}, 14)
-    if box is None:
-        return None
-    m = 2 * atan((box[T].start + box[T].end) / 2)
-    half = acos((box[C].start + box[C].end) / 2)
-    ends = sorted((scale * angle * 180 / pi).round() for angle in (m - half, m + half))
-    return f"the boundary meets itself, or stops, near theta = {ends[0]} and {ends[1]} degrees"
-
-
-def _unexcluded(parts: list[Expr], box: dict[Symbol, Interval], depth: int) -> dict[Symbol, Interval] | None:
-    """A box of the last generation in which no part keeps its sign; None when every box is excluded."""
-    for part in parts:
-        signs = {c.is_positive if c.is_nonzero else None for c in bernstein(part, box)}
-        if len(signs) == 1 and None not in signs:
-            return None
-    if depth == 0:
-        return box
-    x = max(box, key=lambda y: box[y].measure)
-    middle = (box[x].start + box[x].end) / 2
-    for half in (Interval(box[x].start, middle), Interval(middle, box[x].end)):
-        found = _unexcluded(parts, {**box, x: half}, depth - 1)
-        if found is not None:
-            return found
-    return None
-
-
-def polygon_crossing(table: Table) -> str | None:
-    """A sentence on where the polygon inscribed in the boundary crosses itself; None when it does not.
-
-    >>> from symbolic.tables import cuspless
-    >>> polygon_crossing(cuspless) is None
-    True
-    """
-    corners, names = _corners(table)
-    n = len(corners)
-    for i in range(n):
-        for j in range(i + 2, n if i else n - 1):
-            if _cross(corners[i], corners[i + 1 - n], corners[j], corners[j + 1 - n]):
-                return f"the boundary crosses itself, near {names[i]} and {names[j]}"
-    turns = _turns(corners)
-    return None if turns == 1 else f"the boundary turns round {turns} times before it closes, and should once"
-
-
-def _corners(table: Table) -> tuple[list[Corner], list[str]]:
-    count = CORNERS // len(table.components)  # off the ends, where curves of a symmetric table like to meet
-    corners, names = [], []
-    for component in table.components:
-        for k in range(count):
-            value = component.start + (component.end - component.start) * Rational(3 * k + 1, 3 * count)
-            x, y = (Rational(_evaluated(coordinate, value)) for coordinate in component.point)
-            corners.append((Fraction(x.p, x.q), Fraction(y.p, y.q)))
-            names.append(f"{component.name} at theta = {value}")
-    return corners, names
-
-
-def _evaluated(coordinate: Expr, value: Expr) -> Expr:
-    """A coordinate with 20 digits; a long one is evaluated as it stands, without exact values of its sines."""
-    if size(coordinate) > LONG:
-        return coordinate.evalf(20, subs={theta: value})
-    return coordinate.subs(theta, value).evalf(20)
-
-
-def _turns(corners: list[Corner]) -> int:
-    """How often the polygon's direction turns round, either way: once where it is simple (Hopf)."""
-    total = fsum(
-        atan2(_side(a, b, c), (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]))
-        for a, b, c in zip(corners[-2:] + corners[:-2], corners[-1:] + corners[:-1], corners, strict=True)
-    )
-    return round(abs(total) / tau)
-
-
-def _cross(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
-    """Do the open segments `ab` and `cd` cross?"""
-    return _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
-
-
-def _side(a: Corner, b: Corner, c: Corner) -> Fraction:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 UNIT = Interval(0, 1)

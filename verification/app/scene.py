@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import PAPER, POINTS, exact
+from symbolic.tables.definition import GALLERY, PAPER, POINTS, exact
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
@@ -40,6 +40,9 @@ def scene(
     parametric: tuple[str, str] | None,
     K: int | None,
     lam: str | None,
+    file: str | None = None,
+    given: tuple[str, ...] = (),
+    /,
     **shape: str | None,
 ) -> Scene:
     """The scene that the options describe; `ValueError` when they contradict each other.
@@ -47,23 +50,68 @@ def scene(
     >>> scene("ellipse", None, None, None, "0.5", a="sqrt(2)")
     Scene('ellipse', a='sqrt(2)', lam='1/2')
     """
-    named = [name for name, given in (("polar", polar), ("parametric", parametric), (table, table)) if given]
+    named = [n for n, said in (("polar", polar), ("parametric", parametric), (table, table), ("scene", file)) if said]
     if len(named) != 1 or named[0] is None:
-        given = " and ".join(str(name) for name in named) or "none"
-        raise ValueError(f"one table is needed, {given} given; accepted: {', '.join(PAPER)}, --polar or --parametric")
+        many = " and ".join(str(name) for name in named) or "none"
+        raise ValueError(
+            f"one table is needed, {many} given; accepted: {', '.join(PAPER)}, --polar or --parametric, "
+            f"{', '.join(GALLERY)}, --scene"
+        )
     name = named[0]
+    values = dict(map(_shape_value, given))
+    if file is not None:
+        return _from_file(file, lam, values, K, shape)
+    if name in PAPER:
+        shape = {**shape, **values}
     if K is not None and name != "egg":
         raise ValueError(f"{name}: --K = {K} is only for the egg; leave it out")
     numbers: dict[str, Any] = {
         key: exact(f"--{key}", text) for key, text in _fitting(name, PAPER.get(name, ()), shape).items()
     }
     value = _contraction(lam)
+    if table in GALLERY:
+        return Scene(_of_gallery(table, values), lam=value)
     if table:
         return Scene(table, lam=value, K=POINTS if K is None else K, **numbers)
     try:
-        return Scene.of({name: polar or list(parametric or ()), "lam": str(value)})
+        return Scene.of({name: polar or list(parametric or ()), "shape": values, "lam": str(value)})
     except ValueError as error:
         raise ValueError(f"--{error}") from None
+
+
+def _shape_value(text: str) -> tuple[str, str]:
+    """`NAME=VALUE` as a pair."""
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip().isidentifier():
+        raise ValueError(f"--shape {text!r} sets nothing; give NAME=VALUE such as b=1/10")
+    return name.strip(), value.strip()
+
+
+def _from_file(file: str, lam: str | None, values: dict[str, str], K: int | None, shape: dict[str, Any]) -> Scene:
+    """The scene of a file; a contraction and shape parameters on the command line come before its own."""
+    for key, text in {"K": K, **shape}.items():
+        if text is not None:
+            raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
+    try:
+        found = Scene.load(file)
+    except (OSError, UnicodeDecodeError) as reason:
+        raise ValueError(f"--scene {file!r} cannot be read: {reason}") from None
+    numbers = {name: exact(f"--shape {name}", text) for name, text in values.items()}
+    return found.at(lam=None if lam is None else _contraction(lam), **numbers)
+
+
+def _of_gallery(name: str, values: dict[str, str]) -> Any:
+    """One of the gallery's tables, with the lengths that were given."""
+    from inspect import signature
+
+    from symbolic.tables.gallery import GALLERY as MAKERS
+
+    make = MAKERS[name]
+    known = list(signature(make).parameters)
+    for key in values:
+        if key not in known:
+            raise ValueError(f"{name}: --shape {key} is none of its lengths; accepted: {', '.join(known) or 'none'}")
+    return make(**{key: exact(f"--shape {key}", text) for key, text in values.items()})
 
 
 def _fitting(name: str, known: tuple[str, ...], shape: dict[str, str | None]) -> dict[str, str]:
@@ -88,12 +136,16 @@ def _contraction(lam: str | None) -> Any:
 
 Command = Callable[..., Any]
 TABLE = (
-    click.argument("table", required=False, type=click.Choice(list(PAPER))),
+    click.argument("table", required=False, type=click.Choice([*PAPER, *GALLERY])),
     click.option("--a", metavar="NUMBER", help="Half the major axis of the ellipse, at least 1."),
     click.option("--alpha", metavar="NUMBER", help="Shape of the egg, from 0 to 1/(1 + K^2)."),
     click.option("--K", "K", type=click.IntRange(2), metavar="INTEGER", help="Points of the egg; the paper's has 3."),
     click.option("--polar", metavar="FORMULA", help="Your own table: the radius, a formula in theta."),
     click.option("--parametric", nargs=2, metavar="X Y", help="Your own table: a closed curve in theta on [-pi, pi)."),
+    click.option("--scene", "file", metavar="FILE", help="A scene file: any table, its shape and contraction."),
+)
+SHAPE = click.option(
+    "--shape", "given", multiple=True, metavar="NAME=VALUE", help="A shape parameter of your own table, or a length."
 )
 CONTRACTION = click.option("--lam", metavar="NUMBER", help="Contraction of the angle, from 0 to 1.")
 
@@ -109,10 +161,12 @@ def table_options(command: Command) -> Command:
         K: int | None,
         a: str | None,
         alpha: str | None,
+        file: str | None,
         lam: str | None = "0",
+        given: tuple[str, ...] = (),
         **others: Any,
     ) -> Any:
-        return command(scene=scene(table, polar, parametric, K, lam, a=a, alpha=alpha), **others)
+        return command(scene=scene(table, polar, parametric, K, lam, file, given, a=a, alpha=alpha), **others)
 
     for option in reversed(TABLE):
         called = option(called)
@@ -121,7 +175,7 @@ def table_options(command: Command) -> Command:
 
 def scene_options(command: Command) -> Command:
     """Gives `command` the arguments of a scene, as a keyword `scene`."""
-    return CONTRACTION(table_options(command))
+    return CONTRACTION(SHAPE(table_options(command)))
 
 
 def start_of(text: str) -> tuple[Any, Any]:

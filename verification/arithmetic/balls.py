@@ -30,18 +30,29 @@ from sympy import (
     asin,
     atan,
     cos,
+    cosh,
     exp,
     log,
     pi,
     sin,
+    sinh,
     tan,
+    tanh,
 )
 
 Arithmetic = Mapping[str, Any]
-FUNCTIONS = ("sqrt", "sin", "cos", "atan", "exp", "log")
+FUNCTIONS = ("sqrt", "sin", "cos", "atan", "exp", "log", "sinh", "cosh", "tanh")
 
-FLOAT64: dict[str, Any] = {word: getattr(math, word) for word in FUNCTIONS} | {"q": lambda p, n: p / n, "pi": math.pi}
-ARRAYS: Arithmetic = FLOAT64 | {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
+FLOAT64: dict[str, Any] = {word: getattr(math, word) for word in FUNCTIONS} | {
+    "q": lambda p, n: p / n,
+    "pi": math.pi,
+    "root": lambda x, n: math.pow(x, 1 / n),
+}
+ARRAYS: Arithmetic = (
+    FLOAT64
+    | {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
+    | {"root": lambda x, n: np.power(x, 1 / n)}
+)
 
 
 def multiprecision(context: Any) -> Arithmetic:
@@ -56,6 +67,7 @@ def multiprecision(context: Any) -> Arithmetic:
     return {word: getattr(context, word) for word in FUNCTIONS} | {
         "q": lambda p, n: context.mpf(p) / n,
         "pi": context.pi,
+        "root": context.root,
     }
 
 
@@ -74,7 +86,8 @@ def balls(bits: int) -> Arithmetic:
 
     with ctx.workprec(bits):
         pi = arb.pi()
-    return {word: _of_ball(word) for word in FUNCTIONS} | {"q": rational, "pi": pi}
+    words = {word: _of_ball(word) for word in FUNCTIONS}
+    return words | {"q": rational, "pi": pi, "root": lambda x, n: arb(x).root(n)}
 
 
 @contextmanager
@@ -119,6 +132,9 @@ BALL_FUNCTIONS: Mapping[type, Callable[[acb], acb]] = {
     acos: acb.acos,
     asin: acb.asin,
     exp: acb.exp,
+    sinh: acb.sinh,
+    cosh: acb.cosh,
+    tanh: acb.tanh,
     log: acb.log,
     Abs: lambda z: acb(abs(z)),
 }

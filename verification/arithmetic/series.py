@@ -146,7 +146,20 @@ def taylor(order: int) -> Iterator[None]:
 
 def series(bits: int) -> Arithmetic:
     """The words of a kernel for power series with balls for coefficients."""
-    return {**balls(bits), **{word: getattr(arb_series, word) for word in FUNCTIONS}}
+    own = {word: getattr(arb_series, word) for word in FUNCTIONS if hasattr(arb_series, word)}
+    return {**balls(bits), **own, "sinh": _sinh, "cosh": _cosh, "tanh": _tanh, "root": lambda x, n: (x.log() / n).exp()}
+
+
+def _sinh(x: arb_series) -> arb_series:
+    return (x.exp() - (-x).exp()) / 2
+
+
+def _cosh(x: arb_series) -> arb_series:
+    return (x.exp() + (-x).exp()) / 2
+
+
+def _tanh(x: arb_series) -> arb_series:
+    return _sinh(x) / _cosh(x)
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,34 @@ class Balls(ScalarBackend[Any]):
         """The cosine."""
         return x.cos()
 
+    def exp(self, x: Any) -> Any:
+        """The exponential."""
+        return x.exp()
+
+    def log(self, x: Any) -> Any:
+        """The natural logarithm."""
+        return x.log()
+
+    def atan(self, x: Any) -> Any:
+        """The arc tangent."""
+        return x.atan()
+
+    def sinh(self, x: Any) -> Any:
+        """The hyperbolic sine."""
+        return x.sinh()
+
+    def cosh(self, x: Any) -> Any:
+        """The hyperbolic cosine."""
+        return x.cosh()
+
+    def tanh(self, x: Any) -> Any:
+        """The hyperbolic tangent."""
+        return x.tanh()
+
+    def root(self, x: Any, n: int) -> Any:
+        """The positive `n`-th root."""
+        return x.root(n)
+
 
 class EnclosedMap:
     """The map of a `PinballMap`'s table in balls of `bits` bits.
@@ -286,6 +314,20 @@ def _enclosed_length(enclosed: EnclosedMap, component: int, theta: arb, digits: 
 
 
 class _Complex(Balls):
+    """The same on complex balls, with no value where a cut may pass through."""
+
+    def sqrt(self, x: Any) -> Any:
+        return x.sqrt(analytic=True)
+
+    def log(self, x: Any) -> Any:
+        return x.log(analytic=True)
+
+    def atan(self, x: Any) -> Any:
+        return x.atan() if abs(x.imag) < 1 else acb("nan")
+
+    def root(self, x: Any, n: int) -> Any:
+        return (x.log(analytic=True) / n).exp()
+
     def q(self, p: int, n: int) -> Any:
         return acb(fmpq(p, n))
 

@@ -3,6 +3,7 @@
 import math
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -286,3 +287,45 @@ def test_what_is_written_when_a_scope_is_closed_belongs_to_the_one_around_it():
     assert ops.scope == seen[0]
     ops.close()
     assert ops.scope == 0
+
+
+SPREAD = np.concatenate([np.linspace(-30, 30, 300), np.geomspace(1e-12, 600, 60), -np.geomspace(1e-12, 600, 60)])
+POSITIVE = np.concatenate(
+    [np.geomspace(1e-300, 1e300, 300), 1 + np.linspace(-0.3, 0.5, 101), 1 + np.geomspace(1e-15, 0.1, 40)]
+)
+ANALYTIC = {  # the word, what it is at 50 digits, where, and its largest relative error in units of 2**-52
+    "exp": (lambda o, x: o.exp(x), lambda mp, x: mp.exp(x), SPREAD, 1.2),
+    "log": (lambda o, x: o.log(x), lambda mp, x: mp.log(x), POSITIVE, 1.2),
+    "atan": (lambda o, x: o.atan(x), lambda mp, x: mp.atan(x), SPREAD, 1.5),
+    "sinh": (lambda o, x: o.sinh(x), lambda mp, x: mp.sinh(x), SPREAD, 3),
+    "cosh": (lambda o, x: o.cosh(x), lambda mp, x: mp.cosh(x), SPREAD, 2),
+    "tanh": (lambda o, x: o.tanh(x), lambda mp, x: mp.tanh(x), SPREAD, 3),
+    **{
+        f"root {n}": (lambda o, x, n=n: o.root(x, n), lambda mp, x, n=n: mp.root(x, n), POSITIVE, 2) for n in (3, 5, 12)
+    },
+}
+
+
+@pytest.mark.parametrize("kernels", [True, False], ids=["lanes", "arrays"])
+@pytest.mark.parametrize("word", ANALYTIC)
+def test_an_analytic_function_is_relatively_exact_wherever_it_is_a_double(word, kernels):
+    mp = mpmath.MPContext()
+    mp.dps = 50
+    formula, truth, x, bound = ANALYTIC[word]
+    found = valued(lambda o, x, y, z: formula(o, x), x, x, x, kernels)
+    errors = [abs(mp.mpf(a) / truth(mp, mp.mpf(float(b))) - 1) / EPS for a, b in zip(found, x, strict=True)]
+
+    assert max(errors) <= bound
+
+
+@pytest.mark.parametrize("kernels", [True, False], ids=["lanes", "arrays"])
+def test_a_logarithm_or_a_root_of_a_negative_number_is_no_number(kernels):
+    x = np.array([-1.0, -1e-300, -1e300, -2.5])
+    with np.errstate(invalid="ignore"):
+        logarithms, roots = (
+            valued(lambda o, x, y, z, f=f: f(o, x), x, x, x, kernels)
+            for f in (lambda o, x: o.log(x), lambda o, x: o.root(x, 3))
+        )
+
+    assert np.all(np.isnan(logarithms + roots))
+    assert valued(lambda o, x, y, z: o.root(x, 3), *[np.zeros(4)] * 3, kernels) == [0.0] * 4

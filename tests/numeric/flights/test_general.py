@@ -39,7 +39,13 @@ def generally(map):
 
 @pytest.mark.parametrize(
     ("table", "path"),
-    [(WAVY, "every zero"), (MILD, "chord polynomial"), (ROUNDED, "chord"), (ROOTED, "every zero"), (STADIUM, "every")],
+    [
+        (WAVY, "every zero"),
+        (MILD, "chord polynomial"),
+        (ROUNDED, "chord"),
+        (ROOTED, "every zero"),
+        (STADIUM, "closed form on every side and arc"),
+    ],
     ids=lambda value: getattr(value, "name", None),
 )
 def test_a_map_says_which_path_it_took(table, path):
@@ -148,10 +154,10 @@ def test_a_parameter_may_run_to_a_million_and_no_further(end, fine):
 
 
 def test_a_word_outside_the_vocabulary_is_an_error():
-    from sympy import exp
+    from sympy import erf
 
     with pytest.raises(ValueError, match="beyond the kernels' words"):
-        PinballMap(tables.polar(1 + exp(cos(theta)) / 20, name="exponential"), lam=1)
+        PinballMap(tables.polar(1 + erf(cos(theta)) / 20, name="bell"), lam=1)
 
 
 def test_landings_on_the_cut_between_two_pieces_are_found():

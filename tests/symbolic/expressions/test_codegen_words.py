@@ -1,7 +1,7 @@
 """One expression in words, as a careful hand would write it: few signs and parentheses, and nothing twice."""
 
 import pytest
-from sympy import Add, Float, Mul, Rational, S, cos, exp, pi, sin, sqrt, symbols, tan
+from sympy import Add, Float, Mul, Rational, S, cos, cosh, exp, pi, sin, sinh, sqrt, symbols, tan, tanh
 
 from symbolic.expressions.words import Words, checked
 
@@ -14,7 +14,8 @@ WRITTEN = [
     (1 / x, "1/x"), (-1 / x, "-1/x"), (1 / (x * y), "1/(x*y)"), ((x + 1) / (y + 2), "(x + 1)/(y + 2)"),
     ((x + 1) * (y - 2), "(x + 1)*(y - 2)"), (x * (1 - y * (x + 1)), "x*(1 - y*(x + 1))"),
     (sqrt(x), "sqrt(x)"), (x ** Rational(3, 2), "x*sqrt(x)"), (1 / sqrt(x), "1/sqrt(x)"),
-    (sqrt(2) / 2, "q(1, 2)*sqrt(2)"),
+    (sqrt(2) / 2, "q(1, 2)*sqrt(2)"), (x ** Rational(1, 3), "root(x, 3)"), (x ** Rational(-4, 3), "1/(x*root(x, 3))"),
+    (sinh(x) - cosh(x), "sinh(x) - cosh(x)"), (tanh(x / 2), "tanh(q(1, 2)*x)"),
     (S.Exp1, "exp(1)"), (exp(x) / y, "exp(x)/y"), (tan(x), "sin(x)/cos(x)"), (sin(x) * cos(y) + 1, "sin(x)*cos(y) + 1"),
     (1 / (sin(x) * cos(x)), "1/(sin(x)*cos(x))"), (1 / sin(x + y), "1/sin(x + y)"), (x / (sin(x) + 1) + pi,
     "x/(sin(x) + 1) + pi"), (x**2, "x*x"), (x**3, "x*x*x"), (x**-2, "1/(x*x)"), (x**2 * y, "x*x*y"), (-(x**2), "-x*x"),
@@ -33,6 +34,7 @@ KEPT = [
     (x**9, [("c0", "x*x"), ("c1", "c0*c0")], "c1*c1*x"),
     ((x + y) ** 4, [("c0", "x + y"), ("c1", "c0*c0")], "c1*c1"),
     ((x + y) ** Rational(3, 2), [("c0", "x + y")], "c0*sqrt(c0)"),
+    (x ** Rational(5, 3), [("c0", "root(x, 3)")], "x*c0*c0"),
     ((x + y) ** -2, [("c0", "x + y")], "1/(c0*c0)"),
 ]
 

@@ -3,9 +3,9 @@
 import pytest
 from sympy import I, Rational, S, conjugate
 
-from symbolic.tables import validity as crossing
+from symbolic.tables import curves as crossing
+from symbolic.tables.curves import chord_of_length_zero, polygon_crossing
 from symbolic.tables.table import Component, Table, theta
-from symbolic.tables.validity import chord_of_length_zero, polygon_crossing
 
 LEFT, RIGHT = (3 + 4 * I) / 5, (3 - 4 * I) / 5  # exp(i*beta), beta = 53.13 and -53.13 degrees
 

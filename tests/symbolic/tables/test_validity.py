@@ -11,9 +11,10 @@ from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan,
 
 from symbolic.expressions.signs import Outcome
 from symbolic.tables import arc, cardioid, cuspless, egg, ellipse, named, parametric, piecewise, polar
+from symbolic.tables.curves import chord_of_length_zero
 from symbolic.tables.geometry import boundary_coefficients, perimeter
 from symbolic.tables.table import Component, Shape, Table, a, theta
-from symbolic.tables.validity import chord_of_length_zero, enclosed_area, radius_sign, validated
+from symbolic.tables.validity import enclosed_area, radius_sign, validated
 
 b = Symbol("b")
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from enum import Enum
+from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,7 +16,7 @@ from sympy import Expr, Rational, cos, sqrt
 
 import verification.paper.report
 from symbolic import tables
-from symbolic.tables.definition import PAPER
+from symbolic.tables.definition import GALLERY, PAPER
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import theta
 from verification.app import cli
@@ -191,7 +192,7 @@ def test_the_traceback_is_there_for_who_asks(engine, capsys, monkeypatch):
 
 
 def test_an_unknown_table_is_told_which_are_known(scenes, capsys):
-    assert "'circle', 'ellipse', 'cardioid', 'cuspless', 'egg'" in refusal(capsys, "show", "square", "--lam", "1")
+    assert "'circle', 'ellipse', 'cardioid', 'cuspless', 'egg'" in refusal(capsys, "show", "cube", "--lam", "1")
 
 
 @pytest.mark.parametrize(
@@ -209,6 +210,25 @@ def test_a_scene_is_exact(scenes, arguments, scene):
     assert main(["show", *arguments.split()]) == 0
 
     assert [seen for seen, _ in scenes] == [scene]
+
+
+def test_a_table_of_the_gallery_and_a_shape_of_ones_own_are_typed_like_the_papers(scenes):
+    assert main(["show", "stadium", "--lam", "9/10", "--shape", "straight=1/2"]) == 0
+    assert main(["show", "--polar", "1 + b*cos(5*theta)", "--shape", "b=1/40", "--lam", "1"]) == 0
+
+    (stadium, _), (star, _) = scenes
+    assert stadium == Scene(tables.stadium(Rational(1, 2)), lam="9/10")
+    assert star.shape == {"b": Fraction(1, 40)}
+    assert set(GALLERY) == set(tables.GALLERY)
+
+
+def test_a_scene_file_is_taken_by_a_command_and_its_contraction_may_be_changed(scenes, tmp_path):
+    path = tmp_path / "sinai.toml"
+    path.write_text(Scene(tables.sinai("1/5"), lam="1/2").text)
+    assert main(["show", "--scene", str(path)]) == 0
+    assert main(["show", "--scene", str(path), "--lam", "3/4"]) == 0
+
+    assert [seen for seen, _ in scenes] == [Scene(tables.sinai("1/5"), lam=lam) for lam in ("1/2", "3/4")]
 
 
 def test_a_scene_builds_the_table_it_names(scenes):
@@ -231,6 +251,9 @@ def test_the_shapes_known_here_are_those_of_the_tables():
     ("arguments", "sentence"),
     [
         ("--lam 1", "one table is needed, none given; accepted: circle, ellipse, cardioid, cuspless, egg, --polar or"),
+        ("stadium --shape b=1 --lam 1", "stadium: --shape b is none of its lengths; accepted: straight, radius"),
+        ("stadium --shape straight --lam 1", "--shape 'straight' sets nothing; give NAME=VALUE such as b=1/10"),
+        ("--scene nowhere.toml", "--scene 'nowhere.toml' cannot be read"),
         ("circle --polar 1 --lam 1", "one table is needed, polar and circle given"),
         ("circle", "--lam = missing is no contraction; accepted: numbers in [0, 1]"),
         ("circle --lam 1.0001", "--lam = 10001/10000 is no contraction; accepted: numbers in [0, 1]"),

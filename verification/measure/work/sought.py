@@ -45,6 +45,7 @@ LONG_PI = np.longdouble("3.14159265358979323846264338327950288")
 LONG: Arithmetic = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS} | {
     "q": lambda p, n: np.longdouble(p) / np.longdouble(n),
     "pi": LONG_PI,
+    "root": lambda x, n: x ** (np.longdouble(1) / n),
 }
 ROUNDINGS = 16  # of a residual and of what is read, in units of the last place
 

@@ -71,7 +71,8 @@ def complex_balls(bits: int) -> Arithmetic:
     with ctx.workprec(bits):
         pi = acb.pi()
     cut = {"atan": lambda x: abs(x.imag) < 1, "sqrt": lambda x: x.real > 0, "log": lambda x: x.real > 0}
-    return {word: _analytic(word, cut.get(word)) for word in FUNCTIONS} | {"q": rational, "pi": pi}
+    words = {word: _analytic(word, cut.get(word)) for word in FUNCTIONS}
+    return words | {"q": rational, "pi": pi, "root": lambda x, n: (words["log"](x) / n).exp()}
 
 
 def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any], acb]:

@@ -1,0 +1,166 @@
+"""The closed curves of a boundary, and where they cross: excluded for finite Fourier sums, else sought on polygons."""
+
+from dataclasses import replace
+from math import atan2, fsum, tau
+
+from sympy import Dummy, Expr, I, Interval, Rational, S, Symbol, acos, atan, chebyshevu, expand, pi, sign
+
+from symbolic.expressions.signs import bernstein, vanishes
+from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.waves import LONG, is_periodic, size
+
+CORNERS = 96  # of the polygon, over all components
+FINE = 2**80  # of the lattice on which its corners lie
+Corner = tuple[int, int]
+
+
+def curves(table: Table) -> list[tuple[Component, ...]]:
+    """The closed curves of a boundary, each as its components in order: the outer one first, then the holes.
+
+    A curve is complete where it comes back to its first point; a chain that does not is refused.
+
+    >>> from symbolic.tables import cuspless
+    >>> [[component.name for component in curve] for curve in curves(cuspless)]
+    [['arc', 'wall']]
+    """
+    only = table.components[0]
+    if len(table.components) == 1 and only.end - only.start == 2 * pi and all(map(is_periodic, only.point)):
+        return [table.components]
+    found, curve = [], list[Component]()
+    for index, before in enumerate(table.components):
+        curve.append(before)
+        last = index + 1 == len(table.components)
+        after = curve[0] if last else table.components[index + 1]
+        if not last and _meet(before, after):
+            continue
+        if not _meet(before, curve[0]):
+            leaves, arrives = before.at(before.end), after.at(after.start)
+            raise ValueError(
+                f"{table.name}: the boundary is not closed: {before.name} ends at "
+                f"({leaves[0]}, {leaves[1]}) and {after.name} starts at ({arrives[0]}, {arrives[1]})"
+            )
+        found.append(tuple(curve))
+        curve = []
+    return found
+
+
+def _meet(before: Component, after: Component) -> bool:
+    return all(vanishes(p - q) for p, q in zip(before.at(before.end), after.at(after.start), strict=True))
+
+
+def chord_of_length_zero(c: dict[int, Expr], scale: Expr = S.One) -> str | None:
+    """A sentence on where `sum c_k exp(i*k*theta)` meets itself or stops; None when it is proved simple.
+
+    The chord between `m + B` and `m - B` is `2*i*sin(B)` times `sum sgn(k) c_k U_(|k|-1)(cos B)
+    exp(i*k*m)`. A simple regular curve has no zero of that sum for `-1 <= cos B <= 1`; boxes of
+    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part. `scale` is theta in this angle.
+
+    >>> chord_of_length_zero({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
+    'the boundary meets itself, or stops, near theta = -89 and 90 degrees'
+    """
+    T, C = Dummy("T", real=True), Dummy("C", real=True)
+    n = max(abs(k) for k in c)
+    total = S.Zero
+    for k, value in c.items():
+        if k:
+            wave = (1 + sign(k) * I * T) ** (2 * abs(k)) * (1 + T**2) ** (n - abs(k))
+            total += sign(k) * value * chebyshevu(abs(k) - 1, C) * wave
+    parts = [expand(part) for part in expand(total).as_real_imag()]
+    box = _unexcluded([p for p in parts if p != 0], {T: Interval(-1, 1), C: Interval(-1, 1)}, 14)
+    if box is None:
+        return None
+    m = 2 * atan((box[T].start + box[T].end) / 2)
+    half = acos((box[C].start + box[C].end) / 2)
+    ends = sorted((scale * angle * 180 / pi).round() for angle in (m - half, m + half))
+    return f"the boundary meets itself, or stops, near theta = {ends[0]} and {ends[1]} degrees"
+
+
+def _unexcluded(parts: list[Expr], box: dict[Symbol, Interval], depth: int) -> dict[Symbol, Interval] | None:
+    """A box of the last generation in which no part keeps its sign; None when every box is excluded."""
+    for part in parts:
+        signs = {c.is_positive if c.is_nonzero else None for c in bernstein(part, box)}
+        if len(signs) == 1 and None not in signs:
+            return None
+    if depth == 0:
+        return box
+    x = max(box, key=lambda y: box[y].measure)
+    middle = (box[x].start + box[x].end) / 2
+    for half in (Interval(box[x].start, middle), Interval(middle, box[x].end)):
+        found = _unexcluded(parts, {**box, x: half}, depth - 1)
+        if found is not None:
+            return found
+    return None
+
+
+def polygon_crossing(table: Table) -> str | None:
+    """A sentence on where the polygon inscribed in the boundary crosses itself; None when it does not.
+
+    >>> from symbolic.tables import cuspless
+    >>> polygon_crossing(cuspless) is None
+    True
+    """
+    polygons = [_corners(replace(table, components=curve), len(table.components)) for curve in curves(table)]
+    sides = [
+        (polygon[k], polygon[k + 1 - len(polygon)], names[k])
+        for polygon, names in polygons
+        for k in range(len(polygon))
+    ]
+    for i, (a, b, here) in enumerate(sides):
+        for c, d, there in sides[i + 1 :]:
+            if b != c and d != a and _cross(a, b, c, d):
+                return f"the boundary crosses itself, near {here} and {there}"
+    for polygon, _ in polygons:
+        if (turns := _turns(polygon)) != 1:
+            return f"the boundary turns round {turns} times before it closes, and should once"
+    (outer, _), *holes = polygons
+    for polygon, names in holes:
+        around = [other for other, _ in holes if other is not polygon and _surrounds(other, polygon[0])]
+        if around or not _surrounds(outer, polygon[0]):
+            return f"the hole near {names[0]} does not lie in the table"
+    return None
+
+
+def _surrounds(polygon: list[Corner], point: Corner) -> bool:
+    """Does the point lie inside the polygon? A ray to the right crosses it an odd number of times."""
+    inside = False
+    for a, b in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
+        if (a[1] > point[1]) != (b[1] > point[1]):
+            inside ^= (_side(a, b, point) > 0) == (b[1] > a[1])
+    return inside
+
+
+def _corners(table: Table, parts: int) -> tuple[list[Corner], list[str]]:
+    count = max(2, CORNERS // parts)  # off the ends, where curves of a symmetric table like to meet
+    corners, names = [], []
+    for component in table.components:
+        for k in range(count):
+            value = component.start + (component.end - component.start) * Rational(3 * k + 1, 3 * count)
+            x, y = (Rational(_evaluated(coordinate, value)) for coordinate in component.point)
+            corners.append((x.p * FINE // x.q, y.p * FINE // y.q))
+            names.append(f"{component.name} at theta = {value}")
+    return corners, names
+
+
+def _evaluated(coordinate: Expr, value: Expr) -> Expr:
+    """A coordinate with 20 digits; a long one is evaluated as it stands, without exact values of its sines."""
+    if size(coordinate) > LONG:
+        return coordinate.evalf(20, subs={theta: value})
+    return coordinate.subs(theta, value).evalf(20)
+
+
+def _turns(corners: list[Corner]) -> int:
+    """How often the polygon's direction turns round, either way: once where it is simple (Hopf)."""
+    total = fsum(
+        atan2(_side(a, b, c), (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]))
+        for a, b, c in zip(corners[-2:] + corners[:-2], corners[-1:] + corners[:-1], corners, strict=True)
+    )
+    return round(abs(total) / tau)
+
+
+def _cross(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
+    """Do the open segments `ab` and `cd` cross?"""
+    return _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
+
+
+def _side(a: Corner, b: Corner, c: Corner) -> int:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -6,7 +6,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test browser formal lint docs dist bench mutation clean
+.PHONY: verify test browser formal lint docs dist bench mutation torture clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -57,6 +57,10 @@ mutation: $(VENV)/test.stamp $(VENV)/mutation.stamp
 	  $(BIN)/python benchmarks/mutation.py run --only "$$storey/*" --again survived --budget 60 && \
 	  $(BIN)/python benchmarks/mutation.py page --only "$$storey/*" || exit 1; \
 	done
+
+# Half an hour of attacks on two free cores; see docs/reliability.md.
+torture: $(VENV)/test.stamp
+	$(BIN)/python benchmarks/torture.py
 
 clean:
 	rm -rf $(VENV) report dist docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

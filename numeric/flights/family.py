@@ -1,11 +1,8 @@
-"""How a trajectory ended, by name.
+"""What a family of tables is: which tables it serves, fields of state, a flight, a reflection, and the tangent map.
 
-The boundary of a table with its shape, in people's coordinates: ends of components, points, tangents, curvature.
-
-What a family of tables is: which tables it serves, fields of state, a flight, a reflection, and the tangent map.
-
-A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. What it must define are
-`matches`, `place`, `enter`, `fly`, `leave`, `slapped`, `departure` and `bend`; the rest has a general answer here.
+A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. What it must define is
+abstract there; the other methods have a general answer, from the table's `Boundary`. A `Status` says how a trajectory
+ended, by name.
 
 Everything here runs on any arithmetic of `numeric.backends`. A *law* is `slap` (lam = 0, the exit
 is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.

@@ -1,4 +1,6 @@
-"""Where orbits start: random points of phase space, random points of the table, and a grid for pictures.
+"""Where orbits start, and how a tangent vector and an area grow along them.
+
+Starts are random points of phase space, random points of the table, or a grid for pictures.
 
 A start in the interior is the paper's: a point uniform in the table with a uniform direction, mapped to the first
 collision, which is elastic. It needs no ray from an interior point. The elastic map's measure `ds d(sin(phi))` counts
@@ -8,28 +10,19 @@ Its other end is the first collision. This holds on every table, with the flight
 
 All draws come from one seeded generator in one order: they depend neither on threads nor on batches.
 
-How a tangent vector and an area grow along orbits, over as many bounces as wanted, and then over more.
-
 A `Growth` is a set of particles on their way, each with one tangent vector. Sums of logarithms are kept from the start,
 so differences between two moments are the growth between them, and nothing is lost by looking often.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-
-from numeric.pinball.states import counted
-
-if TYPE_CHECKING:
-    from numeric.pinball.map import PinballMap
-
-from collections.abc import Sequence
-
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from numeric.flights.family import SLAP
 from numeric.kernels.spec import TANGENT, KernelSpec, starting
+from numeric.pinball.states import counted
 
 if TYPE_CHECKING:
     from numeric.pinball.map import PinballMap
@@ -144,7 +137,7 @@ def longest(map: "PinballMap") -> float:
     return float(measured) + map.arclength.perimeter / RULER
 
 
-def _uniform(map: "PinballMap", count: int, rng: np.random.Generator) -> Starts:
+def _uniform(map: "PinballMap", count: int, rng: "np.random.Generator") -> Starts:
     low, high = _spans(map)
     component = rng.choice(np.arange(low.size), size=count, p=(high - low) / np.sum(high - low))
     s = low[component] + (high - low)[component] * rng.uniform(1 - INSIDE, INSIDE, count)

@@ -1,7 +1,5 @@
-"""What users type, checked: one sentence for each mistake.
-
-What `PinballMap` answers with: arrays under the paper's names, with units when they are labelled.
-"""
+"""What `PinballMap` is asked and what it answers: input checked, one sentence for each mistake; results by the paper's
+names, with units when they are labelled."""
 
 from collections.abc import Sequence
 from fractions import Fraction

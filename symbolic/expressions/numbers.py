@@ -5,9 +5,7 @@ Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.pro
 `N`: floats, arrays, LLVM vectors, mpmath numbers, balls, jets. Checked by mypy, never at run time; imports nothing.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Generic, Protocol, Self, TypeVar
+from typing import Any, Protocol, Self, TypeVar
 
 T = TypeVar("T")
 
@@ -50,22 +48,3 @@ class NumberSystem(Protocol[T]):
     def sqrt(self, x: T, /) -> T: ...
     def sin(self, x: T, /) -> T: ...
     def cos(self, x: T, /) -> T: ...
-
-
-@dataclass(frozen=True)
-class Words(Generic[T]):
-    """A number system written down word by word; one that a kernel does not use may be left out.
-
-    >>> from fractions import Fraction
-    >>> Words(Fraction).q(1, 3)
-    Fraction(1, 3)
-    """
-
-    q: Callable[[int, int], T]
-    pi: T
-    sqrt: Callable[[T], T]
-    sin: Callable[[T], T]
-    cos: Callable[[T], T]
-    atan: Callable[[T], T]
-    exp: Callable[[T], T]
-    log: Callable[[T], T]

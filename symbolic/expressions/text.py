@@ -13,6 +13,7 @@ from typing import Any
 
 from sympy import Expr, S, Symbol, cse, numbered_symbols
 
+from symbolic.expressions.numbers import NumberSystem, T
 from symbolic.expressions.words import FUNCTIONS, ROOT, Words, checked
 
 VOCABULARY = ("q", "pi", *sorted([*FUNCTIONS.values(), ROOT]))
@@ -79,8 +80,8 @@ def constant(value: Expr) -> Kernel:
     return kernel("constant", [], {"value": value})
 
 
-def load(kernel: Kernel, arithmetic: Mapping[str, Any]) -> Callable[..., Any]:
-    """The function of a kernel over one kind of number: `arithmetic` gives each word its meaning.
+def load(kernel: Kernel, arithmetic: Mapping[str, Any] | NumberSystem[T]) -> Callable[..., Any]:
+    """The function of a kernel over one kind of number: words or a number system give it its meaning.
 
     This is the only place where generated text is run; nothing else is in its reach.
 
@@ -89,10 +90,13 @@ def load(kernel: Kernel, arithmetic: Mapping[str, Any]) -> Callable[..., Any]:
     >>> third(Fraction(1, 2))
     (Fraction(1, 6),)
     """
-    missing = [word for word in kernel.words if word not in arithmetic]
+    known = arithmetic
+    if not isinstance(known, Mapping):
+        known = {word: getattr(arithmetic, word) for word in VOCABULARY if hasattr(arithmetic, word)}
+    missing = [word for word in kernel.words if word not in known]
     if missing:
-        raise ValueError(f"{kernel.name}: this arithmetic has no {', '.join(missing)}; it has {', '.join(arithmetic)}")
-    scope: dict[str, Any] = {"__builtins__": {}} | {word: arithmetic[word] for word in kernel.words}
+        raise ValueError(f"{kernel.name}: this arithmetic has no {', '.join(missing)}; it has {', '.join(known)}")
+    scope: dict[str, Any] = {"__builtins__": {}} | {word: known[word] for word in kernel.words}
     exec(compiled(kernel.text, kernel.name), scope)  # noqa: S102
     function: Callable[..., Any] = scope[kernel.name]
     return function

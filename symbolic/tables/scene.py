@@ -5,12 +5,10 @@ paper's tables is read, compared, hashed and sent to another machine without Sym
 table when somebody asks for it. Paper: section 2.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symbolic.tables.definition import (
@@ -36,6 +34,8 @@ from symbolic.tables.definition import (
 )
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from sympy import Expr
 
     from symbolic.tables.table import Table
@@ -119,6 +119,8 @@ class Scene:
     @cached_property
     def document(self) -> dict[str, Any]:
         """The scene as plain data, for JSON and for a scene file."""
+        import tomllib
+
         said: dict[str, Any] = tomllib.loads(self.text)["scene"]
         return said
 
@@ -173,6 +175,8 @@ class Scene:
         >>> Scene.parse('table = "ellipse"\\nlam = "0.9"\\n[shape]\\na = "sqrt(2)"')
         Scene('ellipse', a='sqrt(2)', lam='9/10')
         """
+        import tomllib
+
         try:
             said = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
@@ -205,8 +209,10 @@ class Scene:
         return other
 
     @classmethod
-    def load(cls, path: str | Path) -> "Scene":
+    def load(cls, path: "str | Path") -> "Scene":
         """The scene of a file."""
+        from pathlib import Path  # with tomllib a tenth of a warm start, which needs neither
+
         return cls.parse(Path(path).read_text(encoding="utf-8"))
 
     def __repr__(self) -> str:

@@ -1,10 +1,14 @@
 """Numbers of any precision as an arithmetic: mpmath's own functions, and zeros to the last digit."""
 
+from types import SimpleNamespace
+
 import mpmath
 import pytest
+from sympy import Symbol, cos, pi, sin, sqrt
 
 from numeric.backends.functions import value_and_slope
-from numeric.backends.scalars import ScalarBackend
+from numeric.backends.scalars import ArrayBackend, ScalarBackend
+from symbolic.expressions.text import kernel, load
 
 MP = mpmath.MPContext()
 MP.dps = 50
@@ -110,3 +114,15 @@ def test_a_step_is_taken_within_the_bracket_when_it_is_half_the_last_one_at_most
     assert scripted([1, 0.5], 1, 5, 4) == [4, 3, 2.5]
     assert scripted([1, 0.75], 1, 5, 4) == [4, 3, 2]
     assert scripted([1, -0.75], 1, 5, 4) == [4, 3, 3.5]
+
+
+@pytest.mark.parametrize(("ops", "eps"), [(OPS, MP.eps), (ArrayBackend(), 2.0**-52)], ids=["fifty digits", "arrays"])
+def test_generated_text_runs_on_a_backend_as_on_words(ops, eps):
+    """One protocol for programs and for text: what is a number system to the one is one to the other."""
+    x = Symbol("x")
+    made = kernel("swung", [x], {"swung": sqrt(x) / 3 + pi * sin(x) * cos(x)})
+    value = load(made, ops)(ops.number(2.0))[0]
+
+    assert abs(value - (MP.sqrt(2) / 3 + MP.pi * MP.sin(2) * MP.cos(2))) <= 4 * eps
+    with pytest.raises(ValueError, match="has no cos, sin; it has q, pi"):
+        load(kernel("wave", [x], {"wave": sin(x) * cos(x)}), SimpleNamespace(q=None, pi=None))

@@ -4,8 +4,9 @@ A program is a list of lines in a closed vocabulary, without names, branches or 
 (LLVM lanes, NumPy arrays, multiprecision numbers) runs it, and it is plain data: it can be
 hashed, and written to a file from which it is read back without importing SymPy.
 
-A table IR is what the kernels need to know of a table: programs and a few facts, as plain data. It is made once from the exact table, through `numeric.lowering.lower`, the only place where SymPy
-is imported. Those of the paper's tables are kept on disk, so that a warm run never imports it.
+A table IR is what the kernels need to know of a table: programs and a few facts, as plain data. It is made once from
+the exact table, through `numeric.lowering.lower`, the only place where SymPy is imported. Those of the paper's tables
+are kept on disk, so that a warm run never imports it.
 """
 
 import json

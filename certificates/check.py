@@ -539,7 +539,7 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
     if what in special and (turned if what[-1] == 3 else mirrored):
         return special[what]
     half = "half of a symmetric cycle," if sign < 0 else "a cycle"
-    return f"{kind} of {half} of period {len(parts)}{' in ' + free if free else ''}: {title}"
+    return f"{kind + ' of ' if free else ''}{half} of period {len(parts)}{' in ' + free if free else ''}: {title}"
 
 
 def checked(given):

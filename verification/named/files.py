@@ -1,8 +1,9 @@
 """Certificates as files: a claim with exact endpoints, written out and read back bit for bit.
 
 A ball is `[mantissa, exponent]` of its exact midpoint, in decimal text; the radius is one such pair.
-Reading builds the problem from the table's name and exact shape, so that a file can claim anything
-and prove nothing: `checked` works the whole checklist through again.
+Reading builds the problem from the scene, so that a file can claim anything and prove nothing: `checked` works the
+whole checklist through again. `docs/certificate_format.md` says what each entry means, so that others can read them;
+files of the first version, which had the scene in several entries and no statement in words, are read as well.
 """
 
 import json
@@ -15,9 +16,8 @@ from sympy import Expr
 
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
+from symbolic.tables.definition import KINDS, POINTS, boundary_of, built, known_entries, table_boundary
 from symbolic.tables.formula import number
-from symbolic.tables.geometry import boundary_coefficients
-from symbolic.tables.table import Table
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import working
@@ -31,39 +31,75 @@ from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 if TYPE_CHECKING:
     from verification.proofs.manifolds.proof import TangencyClaim, TangencyProof
 
-SCHEMA = 1
+SCHEMA, FIRST = 2, 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
+WORDS = {  # the statement of each kind, which docs/certificate_format.md spells out
+    "cycle": "{scene}: exactly one cycle has {n} in the box.",
+    "fold": "{scene}: exactly one cycle with {n} and {free} in the box has the multiplier 1: a fold.",
+    "flip": "{scene}: exactly one cycle with {n} and {free} in the box has the multiplier -1: a flip.",
+    "focus": "{scene}: exactly one cycle with {n} and {free} in the box has two equal multipliers.",
+    "corner": "{scene}: exactly one orbit with theta and lam in the box runs from the upper corner to theta, the lower "
+    "corner, -theta and back; it is unstable; as a function of the exit angle s_4 has a minimum at a kink there, which "
+    "falls as lam grows; the value is {free}.",
+    "tangency": "{scene}: manifolds of the two saddles touch at exactly one lam in the box, quadratically, and pass "
+    "through each other as lam varies.",
+}
 
 
 def document(proof: "Proof | CornerProof | TangencyProof") -> dict[str, Any]:
-    """A proof as a JSON document; its name is what its equations say, and nothing else."""
+    """A proof as a JSON document; its name and its statement are what its equations say, and nothing else."""
     claim = proof.claim
-    name = name_of(claim)
+    first = {"schema": SCHEMA, "name": name_of(claim)}
     if not isinstance(claim, Claim | CornerClaim):
-        return {"schema": SCHEMA, "name": name} | claim.to_dict() | {"checks": dict(proof.checks)}
-    box = {
-        "bits": claim.bits,
-        "digits": claim.digits,
-        "centre": [_pair(x) for x in claim.centre],
-        "radius": _pair(claim.radius),
-        "checks": proof.checks,
-    }
-    if isinstance(claim, CornerClaim):
-        lam = None if claim.lam is None else str(claim.lam)
-        return {"schema": SCHEMA, "name": name, "kind": "special", "value": claim.value, "lam": lam} | box
-    problem = claim.problem
-    return {
-        "schema": SCHEMA,
-        "name": name,
-        "table": problem.table.name,
-        "points": _points(problem.table),
-        "shape": {parameter: str(value) for parameter, value in problem.table.fixed},
-        "kind": problem.kind.name.lower() if problem.kind else "cycle",
-        "free": problem.free,
-        "mirror": problem.mirror,
-        "lam": None if problem.lam is None else str(problem.lam),
-        "components": list(problem.components),
-    } | box
+        said = claim.to_dict()
+        words = WORDS["tangency"].format(scene=f"egg, alpha = {claim.alpha}")
+        return first | {"statement": words} | said | {"checks": dict(proof.checks)}
+    what = _special(claim) if isinstance(claim, CornerClaim) else _problem_said(claim.problem)
+    return (
+        first
+        | {"statement": _words(what)}
+        | what
+        | {"bits": claim.bits, "digits": claim.digits, "centre": [_pair(x) for x in claim.centre]}
+        | {"radius": _pair(claim.radius), "checks": proof.checks}
+    )
+
+
+def _special(claim: CornerClaim) -> dict[str, Any]:
+    """What a special claim is about: kind, scene, free letter, bounces."""
+    corner = claim.lam is None
+    scene = {"table": "cuspless"} if corner else {"table": "egg", "lam": str(claim.lam)}
+    said = {"kind": "corner" if corner else "focus", "scene": scene, "free": claim.value}
+    return said | {"components": [0, 0], "mirror": corner}
+
+
+def _problem_said(problem: Problem) -> dict[str, Any]:
+    """What a problem is about: kind, scene, free letter, bounces."""
+    boundary, held = table_boundary(problem.table)
+    scene = {key: value for key, value in boundary.items() if key != "name"}
+    scene |= {"shape": {letter: str(value) for letter, value in held.items()}} if held else {}
+    scene |= {} if problem.lam is None else {"lam": str(problem.lam)}
+    said = {"kind": problem.kind.name.lower() if problem.kind else "cycle", "scene": scene, "free": problem.free}
+    return said | {"components": list(problem.components), "mirror": problem.mirror}
+
+
+def _words(said: Mapping[str, Any]) -> str:
+    """The statement of a document in words."""
+    count = len(said["components"])
+    n = f"{count} bounces, and then their mirror images," if said["mirror"] else f"its {count} bounces"
+    return WORDS[said["kind"]].format(scene=_title(said["scene"]), n=n, free=said["free"])
+
+
+def _title(scene: Mapping[str, Any]) -> str:
+    """A scene in words."""
+    formulas = "; ".join(str(scene[key]) for key in KINDS[1:] if key in scene)
+    kind = next(key for key in KINDS if key in scene)
+    title = scene["table"] if kind == "table" else f"{kind} {formulas}"
+    points = f" of {scene['K']} points" if "K" in scene else ""
+    return title + points + "".join(f", {k} = {v}" for k, v in [*scene.get("shape", {}).items(), *_lam(scene)])
+
+
+def _lam(scene: Mapping[str, Any]) -> list[tuple[str, str]]:
+    return [("lam", scene["lam"])] if "lam" in scene else []
 
 
 def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
@@ -88,7 +124,7 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
     what = table.name, problem.period, problem.kind, problem.free
     if plain and what == ("cuspless", 2, BifurcationKind.FLIP, "lam") and _in_box(claim, thresholds.lambda_c()):
         return "lambda-c"
-    if plain and _points(table) in (0, 3):
+    if plain and table_boundary(table)[0].get("K", POINTS) == POINTS:
         lam, alpha = problem.lam, dict(table.fixed).get("alpha")
         if what == ("egg", 2, BifurcationKind.FLIP, "alpha") and _in_box(
             claim, thresholds.alpha_tilde().subs(lam_symbol, lam)
@@ -98,10 +134,11 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
             claim, polygons.saddle_node().subs(alpha_symbol, alpha)
         ):
             return "saddle-node"
-    half = "half of a symmetric cycle, of" if problem.mirror else "a cycle of"
-    shape = "".join(f", {name} = {value}" for name, value in table.fixed)
-    kind = "cycle" if problem.kind is None else problem.kind.name.lower()
-    return f"{kind} of {half} period {problem.period} in {problem.free}: {table.name}{shape}"
+    said = _problem_said(problem)
+    half = "half of a symmetric cycle," if problem.mirror else "a cycle"
+    if problem.kind is None:
+        return f"{half} of period {problem.period}: {_title(said['scene'])}"
+    return f"{said['kind']} of {half} of period {problem.period} in {problem.free}: {_title(said['scene'])}"
 
 
 def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
@@ -113,36 +150,59 @@ def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
 def claim_of(given: Mapping[str, Any]) -> Claim | CornerClaim:
     """The claim of a document; `ValueError` with the entry that is wrong."""
     try:
-        if given["schema"] != SCHEMA:
-            raise ValueError(f"certificate: schema = {given['schema']} is unknown; this version reads {SCHEMA}")
+        if given["schema"] not in (FIRST, SCHEMA):
+            raise ValueError(
+                f"certificate: schema = {given['schema']} is unknown; this version reads {FIRST} and {SCHEMA}"
+            )
         bits, digits = int(given["bits"]), int(given["digits"])
         if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
             raise ValueError(f"certificate: bits = {bits} or digits = {digits} is out of range")
         centre, radius = tuple(_ball(pair) for pair in given["centre"]), _ball(given["radius"])
-        lam = None if given["lam"] is None else number(given["lam"], "lam")
+        said = given if given["schema"] == SCHEMA else _of_first(given)
+        lam = number(said["scene"]["lam"], "lam") if "lam" in said["scene"] else None
         if lam is not None and not 0 <= lam <= 1:
             raise ValueError(f"certificate: lam = {lam} is no contraction; accepted: numbers in [0, 1]")
-        if given["kind"] == "special":
-            unknowns = 2 if lam is None else 3
-            _sized(centre, unknowns, "unknowns")
-            return CornerClaim(given["value"], centre, radius, bits, digits, lam)
-        problem = _problem(given, lam)
+        if said["kind"] in ("corner", "focus"):
+            _sized(centre, 2 if lam is None else 3, "unknowns")
+            claim = CornerClaim(said["free"], centre, radius, bits, digits, lam)
+            if _special(claim) != {key: said[key] for key in ("kind", "scene", "free", "components", "mirror")}:
+                raise ValueError(f"certificate: scene, components or mirror is not that of a {said['kind']}")
+            return claim
+        problem = _problem(said, lam)
         _sized(centre, problem.period + bool(problem.free), "unknowns")
         return Claim(problem, centre, radius, bits, digits)
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
 
 
-def _problem(given: Mapping[str, Any], lam: Any) -> Problem:
-    components = tuple(int(i) for i in given["components"])
+def _of_first(given: Mapping[str, Any]) -> dict[str, Any]:
+    """What a document of the first version says, in the entries of this one."""
+    lam = {} if given["lam"] is None else {"lam": given["lam"]}
+    if given["kind"] == "special":
+        corner = given["value"] != "alpha"
+        scene = {"table": "cuspless" if corner else "egg"} | lam
+        said = {"kind": "corner" if corner else "focus", "free": given["value"], "mirror": corner}
+        return said | {"scene": scene, "components": [0, 0]}
+    points = {"K": given["points"]} if given["points"] not in (0, POINTS) else {}
+    shape = {"shape": given["shape"]} if given["shape"] else {}
+    return {**given, "scene": {"table": given["table"]} | points | shape | lam}
+
+
+def _problem(said: Mapping[str, Any], lam: Any) -> Problem:
+    components = tuple(int(i) for i in said["components"])
     if not 2 <= len(components) <= LARGEST_PERIOD:
         raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
-    shape = {parameter: number(text, parameter) for parameter, text in given["shape"].items()}
-    table = tables.named(given["table"], int(given["points"])).at(**shape)
+    scene = said["scene"]
+    known_entries("certificate: scene", scene, (*KINDS, "K", "undefined", "origin", "shape", "lam"))
+    if "table" in scene:
+        shape = {letter: number(text, letter) for letter, text in scene.get("shape", {}).items()}
+        table = tables.named(scene["table"], int(scene.get("K", POINTS))).at(**shape)
+    else:
+        table = built(boundary_of(scene, ()))
     if not set(components) <= set(range(len(table.components))):
         raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
-    kind = None if given["kind"] == "cycle" else BifurcationKind[given["kind"].upper()]
-    return Problem(table, components, kind, given["free"], lam, Closure(-1 if given["mirror"] else 1))
+    kind = None if said["kind"] == "cycle" else BifurcationKind[said["kind"].upper()]
+    return Problem(table, components, kind, said["free"], lam, Closure(-1 if said["mirror"] else 1))
 
 
 def _sized(centre: tuple[arb, ...], wanted: int, what: str) -> None:
@@ -166,17 +226,22 @@ def read(path: Path) -> dict[str, Any]:
 def checked(given: Mapping[str, Any]) -> "Proof | CornerProof | TangencyProof":
     """The checklist of a document's claim, worked through anew; what the file says of it is not believed.
 
-    The name is part of the statement: a file under another name than its equations have is refused.
+    Name and statement must be those that the equations have, and the list of checks must be whole.
     """
-    if given.get("kind") == "tangency" and given.get("schema") == SCHEMA:
+    proof: Proof | CornerProof | TangencyProof
+    if given.get("kind") == "tangency" and given.get("schema") in (FIRST, SCHEMA):
         from verification.proofs.manifolds import proof as tangency  # NumPy, which no other certificate needs
 
         contact = tangency.claim_of(given)
         _rightly_named(given, contact)
-        return tangency.worked_through(contact)
-    claim = claim_of(given)
-    _rightly_named(given, claim)
-    return corner_proved(claim) if isinstance(claim, CornerClaim) else proved(claim)
+        proof = tangency.worked_through(contact)
+    else:
+        claim = claim_of(given)
+        _rightly_named(given, claim)
+        proof = corner_proved(claim) if isinstance(claim, CornerClaim) else proved(claim)
+    if given["schema"] == SCHEMA:
+        _rightly_said(given, json.loads(json.dumps(document(proof))))
+    return proof
 
 
 def check(path: Path | str) -> "Proof | CornerProof | TangencyProof":
@@ -190,12 +255,16 @@ def _rightly_named(given: Mapping[str, Any], claim: "Claim | CornerClaim | Tange
         raise ValueError(f"certificate: name = {ascii(said)[:80]} is not what it states, which is {true!r}")
 
 
-def _points(table: Table) -> int:
-    """`K` of an egg: the boundary turns by `2*pi/K` into itself."""
-    if table.name != "egg":
-        return 0
-    waves = boundary_coefficients(table.components[0])
-    return max(waves) - 1 if waves else 0
+def _rightly_said(given: Mapping[str, Any], true: Mapping[str, Any]) -> None:
+    """Holds the entries of a file, and what they say in words and promise, to those that its proof has."""
+    wrong = [key for key in true if key != "checks" and given.get(key) != true[key]]
+    if wrong:
+        said, meant = (ascii(found)[:200] for found in (given.get(wrong[0]), true[wrong[0]]))
+        raise ValueError(f"certificate: {wrong[0]} = {said} is not what its equations say, which is {meant}")
+    if not isinstance(given.get("checks"), Mapping) or set(given["checks"]) != set(true["checks"]):
+        raise ValueError(f"certificate: checks must list just these: {', '.join(true['checks'])}")
+    if unknown := set(given) - set(true):
+        raise ValueError(f"certificate: the entry {ascii(min(unknown))[:60]} is unknown; accepted: {', '.join(true)}")
 
 
 def _pair(x: arb) -> list[str]:

@@ -6,8 +6,10 @@ import json
 import pytest
 from sympy import Rational, sqrt
 
+from symbolic import tables
+from verification.cycles.recurrence.problem import Problem
 from verification.named.files import checked, claim_of, document, read
-from verification.named.locate import locate
+from verification.named.locate import certify, locate
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +37,7 @@ def test_an_irrational_shape_is_kept_exactly():
     proof = locate("saddle-node", 20, alpha=sqrt(2) / 30).proof
     made = document(proof)
 
-    assert made["shape"] == {"alpha": "sqrt(2)/30"}
+    assert made["scene"]["shape"] == {"alpha": "sqrt(2)/30"}
     assert checked(made).certified
 
 
@@ -72,6 +74,9 @@ def test_a_spoiled_certificate_is_not_certified_whatever_it_says(fold, spoil):
     assert not checked(given).certified
 
 
+EGG = {"table": "egg", "shape": {"alpha": "2/25"}}
+
+
 @pytest.mark.parametrize(
     ("entry", "value"),
     [
@@ -79,7 +84,7 @@ def test_a_spoiled_certificate_is_not_certified_whatever_it_says(fold, spoil):
         ("name", "lambda-star = 0.5 +- 0 (certified)"),
         ("name", "\x1b[2Jsaddle-node"),
         ("name", None),
-        ("shape", {"alpha": "7/100"}),
+        ("scene", EGG | {"shape": {"alpha": "7/100"}}),
         ("kind", "flip"),
         ("mirror", True),
         ("radius", ["1", "-400"]),
@@ -90,27 +95,70 @@ def test_a_file_under_another_name_than_its_equations_have_is_refused(fold, entr
         checked(copy.deepcopy(fold) | {entry: value})
 
 
+@pytest.mark.parametrize(
+    ("entry", "value", "message"),
+    [
+        ("statement", "All cycles of the egg are stable.", "statement = .* is not what its equations say"),
+        ("checks", {"exists": True}, "checks must list just these"),
+        ("proved_by", "me", "'proved_by' is unknown"),
+        ("bits", 200.0 + 2**-20, "bits"),
+    ],
+)
+def test_what_a_file_says_besides_its_box_is_held_to_its_equations(fold, entry, value, message):
+    with pytest.raises(ValueError, match=message):
+        checked(copy.deepcopy(fold) | {entry: value})
+
+
+def test_files_of_the_first_version_are_read():
+    proof = locate("alpha-tilde", 20, lam=Rational(1, 3)).proof
+    new = document(proof)
+    box = {
+        key: new[key] for key in ("name", "kind", "free", "mirror", "components", "bits", "digits", "centre", "radius")
+    }
+    old = box | {"schema": 1, "table": "egg", "points": 3, "shape": {}, "lam": "1/3", "checks": new["checks"]}
+
+    assert document(checked(old)) == new
+
+
+def test_special_files_of_the_first_version_are_read():
+    new = document(locate("phi-star", 20).proof)
+    box = {key: new[key] for key in ("name", "bits", "digits", "centre", "radius", "checks")}
+
+    assert document(checked(box | {"schema": 1, "kind": "special", "value": "phi", "lam": None})) == new
+
+
+def test_a_cycle_of_a_table_given_by_a_formula_has_a_certificate():
+    table = tables.polar("1 + cos(5*theta)/40")
+    made = json.loads(json.dumps(document(certify(Problem(table, (0, 0), lam=Rational(1, 3)), [0.0, 3.14], 20))))
+
+    assert made["scene"] == {"polar": "cos(5*theta)/40 + 1", "lam": "1/3"}
+    assert made["name"] == "a cycle of period 2: polar cos(5*theta)/40 + 1, lam = 1/3"
+    assert document(checked(made)) == made
+
+
 def test_an_angle_is_not_told_under_the_name_of_a_contraction():
     made = document(locate("phi-star", 20).proof)
 
     with pytest.raises(ValueError, match="is not what it states, which is 'lambda-star'"):
-        checked(made | {"value": "lam"})
+        checked(made | {"free": "lam"})
 
 
 def test_a_contraction_beyond_one_is_refused():
     made = document(locate("alpha-tilde", 20, lam=Rational(1, 3)).proof)
 
     with pytest.raises(ValueError, match="lam = 2 is no contraction"):
-        checked(made | {"lam": "2"})
+        checked(made | {"scene": {"table": "egg", "lam": "2"}})
 
 
 @pytest.mark.parametrize(
     ("entry", "value", "message"),
     [
-        ("schema", 2, "schema = 2 is unknown"),
+        ("schema", 3, "schema = 3 is unknown"),
         ("bits", 10**9, "out of range"),
-        ("table", "egg; import os", "no table is called"),
-        ("shape", {"alpha": "__import__('os').system('true')"}, "."),
+        ("scene", EGG | {"table": "egg; import os"}, "no table is called"),
+        ("scene", EGG | {"shape": {"alpha": "__import__('os').system('true')"}}, "."),
+        ("scene", EGG | {"file": "/etc/passwd"}, "'file' is unknown"),
+        ("scene", None, "."),
         ("centre", [["1", "0"]], "1 entries for 4 unknowns"),
         ("centre", [["x", "0"]] * 4, "."),
         ("radius", ["1", "999999999999"], "out of range"),

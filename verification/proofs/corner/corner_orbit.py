@@ -22,7 +22,7 @@ from flint import arb, arb_mat
 from sympy import Expr
 
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.tables import cuspless
+from symbolic.tables import cuspless, egg
 from verification.arithmetic.balls import balls, real_ball, working
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.recurrence.chain import trace_and_determinant
@@ -89,6 +89,9 @@ def corner_proved(claim: CornerClaim) -> CornerProof:
     with working(claim.bits):
         if claim.value == "alpha":
             value, notes = found.zero[-1], dict[str, str]()
+            apart = unique and not ((found.zero[0] - found.zero[1]) / 2).sin().contains(0)
+            checks["admissible"] = (apart and convex(egg(3), (value,))) or None
+            checks["minimal_period"] = apart or None
         else:
             value, notes = _corner(claim, found, checks)
         checks["precise"] = (unique and bool(value.rad() < arb(10) ** -claim.digits)) or None

@@ -6,7 +6,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test browser formal lint docs dist bench mutation torture clean
+.PHONY: verify test browser check-all formal lint docs dist bench mutation torture clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -21,6 +21,10 @@ test: lint
 # The pages in a headless Chromium, which must be on the path or named by CHROMIUM.
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp
 	$(BIN)/python -m pytest -q tests/browser
+
+# The certificates of the report, by the second reader: Python alone, nothing of this package. A few minutes.
+check-all:
+	@$(PYTHON) -I -S certificates/check.py certificates/*.json
 
 # The theorems in Coq. Nothing is installed: where Coq is missing, one sentence says what is needed.
 formal:

@@ -31,9 +31,7 @@ def need(holds, why, error=Wrong):
         raise error(why)
 
 
-class Number:
-    """What follows from a sum, a product and a sign."""
-
+class Number:  # what follows from a sum, a product and a sign
     __radd__ = lambda self, o: self + o
     __rmul__ = lambda self, o: self * o
     __sub__ = lambda self, o: self + (-o)
@@ -400,8 +398,9 @@ class Cycle:
 
     def solved(self):
         """Exactly one solution in the boxes: enclosures of the three unknowns and of the bounces."""
-        here, there = ((self.parts[k], self.boxes[k]) for k in (0, 1))
-        psi = self.table.angle(here, there, self.names(self.box), self.p)  # whatever the solution in the boxes is
+        psi = self.table.angle(
+            *zip(self.parts[:2], self.boxes), self.names(self.box), self.p
+        )  # of all chains in the boxes
         image = newton(self.equations, [self.boxes[0], psi.wide(psi - psi.mid()), self.box], self.p)
         bounces = [value(theta) for theta, _ in self.round(image, 1)[: len(self.parts)]]
         need(all(map(I.inside, bounces, self.boxes)), "exists: the solution may lie outside the box", Unproved)
@@ -554,7 +553,7 @@ def checked(given):
     letters = {"cycle": [""], "corner": ["lam", "phi"], "focus": ["alpha"]}.get(kind, ["lam", "alpha", "a"])
     fit = fit and free in letters and radius > 0 and isinstance(parts, list) and 2 <= len(parts) <= 1024
     need(fit, "bits, digits, mirror, free, radius or components is out of range")
-    p = 4 * len(parts) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
+    p = 16 * len(parts) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
     fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts) and (not mirror or "table" in scene)
     fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and mirror))

@@ -1,0 +1,243 @@
+"""Damages certificates and asks the second reader: `python certificates/mutants.py [--each N] [--only NAME]`.
+
+Mutant `k` of a file depends on its name and on `k` alone. Where one changes what a file is about (scene, kind, letter,
+components, mirror), name and statement are written anew in half of the cases, so that only the mathematics can refuse
+it. What is proved all the same must be true: the value that it tells lies within its error of the undamaged one's, and
+the scene, the kind and the letter are the undamaged ones. Results are kept in `report/mutants.json`, and a second run
+goes on from there. Exit status 1 where something false was proved.
+"""
+
+import argparse
+import copy
+import json
+import random
+import re
+import sys
+from collections import Counter
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import check
+
+HERE = Path(__file__).parent
+KEPT = HERE.parent / "report" / "mutants.json"
+# short cycles: a thousand mutants of each are a matter of minutes
+SAMPLES = ("minor-axis", "five-waves", "saddle-node", "lambda-c", "alpha-tilde", "alpha-hat", "lambda-star", "phi-star")
+Document = dict[str, Any]
+NAMES = (
+    "lambda-star",
+    "phi-star",
+    "lambda-c",
+    "alpha-tilde",
+    "alpha-hat",
+    "saddle-node",
+    "an orbit through both corners",
+)
+ODD = (None, True, -1, 2**70, "", "x", "\x1b[2Jlambda-c", [], {}, [[]], 0.5)
+NUMBERS = (
+    "0",
+    "1",
+    "2",
+    "-1",
+    "1/3",
+    "0.34",
+    "2/25",
+    "0.09",
+    "1/10",
+    "3/10",
+    "sqrt(2)",
+    "1/0",
+    "pi",
+    "__import__('os')",
+    "1#2",
+)
+
+
+def digit(given: Document, dice: random.Random) -> None:
+    """One digit of one number of the box."""
+    pair = dice.choice([*given["centre"], given["radius"]])
+    place = dice.randrange(len(pair[0]))
+    pair[0] = pair[0][:place] + dice.choice("0123456789") + pair[0][place + 1 :]
+
+
+def exponent(given: Document, dice: random.Random) -> None:
+    pair = dice.choice([*given["centre"], given["radius"]])
+    pair[1] = str(int(pair[1]) + dice.choice((-40, -3, -1, 1, 3, 40, 10**5)))
+
+
+def bound(given: Document, dice: random.Random) -> None:
+    """A box a thousand times as wide, or as narrow, or more digits."""
+    if dice.random() < 0.5:
+        given["radius"][1] = str(int(given["radius"][1]) + dice.choice((-60, -10, -1, 1, 10, 40, 60)))
+    else:
+        given["digits"] += dice.choice((-25, -5, -1, 1, 3, 30))
+
+
+def moved(given: Document, dice: random.Random) -> None:
+    """The box by a few of its widths."""
+    pair, radius = dice.choice(given["centre"]), check.exact(given["radius"])
+    x = check.exact(pair) + radius * Fraction(dice.randrange(-300, 300), 100)
+    shift = max(0, x.denominator.bit_length() - 1)
+    pair[0], pair[1] = str(int(x * 2**shift)), str(-shift)
+
+
+def order(given: Document, dice: random.Random) -> None:
+    """Bounces swapped, repeated or left out."""
+    i, j = dice.randrange(len(given["centre"])), dice.randrange(len(given["centre"]))
+    what = dice.randrange(3)
+    if what == 0:
+        given["centre"][i], given["centre"][j] = given["centre"][j], given["centre"][i]
+    elif what == 1:
+        given["centre"][i] = copy.deepcopy(given["centre"][j])
+    else:
+        del given["centre"][i]
+
+
+def scene(given: Document, dice: random.Random) -> None:
+    """Another table, shape or contraction."""
+    said, what = given["scene"], dice.randrange(4)
+    if what == 0 and said.get("shape"):
+        said["shape"][next(iter(said["shape"]))] = dice.choice(NUMBERS)
+    elif what == 1:
+        said["table"] = dice.choice([*check.PAPER, "square"])
+    elif what == 2:
+        said["K"] = dice.choice((2, 4, 5, 0, "3"))
+    else:
+        said["lam"] = dice.choice(NUMBERS)
+
+
+def about(given: Document, dice: random.Random) -> None:
+    """Another kind, letter, component or mirror."""
+    key = dice.choice(("kind", "free", "components", "mirror"))
+    if key == "kind":
+        given["kind"] = dice.choice([*check.KINDS, "tangency"])
+    elif key == "free":
+        given["free"] = dice.choice(("", "lam", "alpha", "a", "phi"))
+    elif key == "mirror":
+        given["mirror"] = not given["mirror"]
+    else:
+        given["components"][dice.randrange(len(given["components"]))] += dice.choice((-1, 1))
+
+
+def item(given: Document, dice: random.Random) -> None:
+    """An item of the checklist left out, doubted or added."""
+    name = dice.choice(list(given["checks"]))
+    dice.choice((given["checks"].pop, lambda key: given["checks"].update({key: None})))(name)
+
+
+def words(given: Document, dice: random.Random) -> None:
+    """Another name, or a statement with one word less."""
+    if dice.random() < 0.5:
+        given["name"] = dice.choice([name for name in NAMES if name != given["name"]])
+    else:
+        said = given["statement"].split(" ")
+        del said[dice.randrange(len(said))]
+        given["statement"] = " ".join(said)
+
+
+def entry(given: Document, dice: random.Random) -> None:
+    """An entry of another type, or none."""
+    key = dice.choice(list(given))
+    if dice.random() < 0.3:
+        del given[key]
+    else:
+        given[key] = dice.choice(ODD)
+
+
+DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
+    digit, digit, exponent, bound, bound, moved, moved, order, scene, scene, scene,
+    about, about, about, item, words, entry,
+)  # fmt: skip
+
+
+def mutant(name: str, given: Document, k: int) -> Document:
+    """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
+    dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
+    damage = dice.choice(DAMAGE)
+    damage(found, dice)
+    return repaired(found) if damage in (scene, about) and dice.random() < 0.5 else found
+
+
+def repaired(given: Document) -> Document:
+    """The document with the name and the statement that its other entries ask for, where they make sense at all."""
+    for key in ("checks", "statement", "name"):
+        if key == "checks" and given["kind"] in check.KINDS:
+            given["checks"] = dict.fromkeys(check.KINDS[given["kind"]], True)
+        try:
+            check.checked(given)
+        except (check.Wrong, check.Unproved) as why:
+            asked = re.fullmatch(r"the (statement|name) must be:? (.*)", str(why))
+            if asked:
+                given[asked[1]] = asked[2][1:-1].replace("\\'", "'")
+        except Exception:  # the reader's own net for entries of the wrong kind
+            return given
+    return given
+
+
+def verdict(given: Document) -> tuple[str, str]:
+    """What the second reader says of a document: proved, not proved, or refused; and the line."""
+    try:
+        return "proved", check.checked(given).splitlines()[0]
+    except check.Unproved as why:
+        return "not proved", str(why)
+    except check.Wrong as why:
+        return "refused", str(why)
+    except Exception as why:  # as in `check.main`
+        return "refused", type(why).__name__
+
+
+def told(line: str) -> tuple[str, Fraction, Fraction]:
+    """Name, value and error of a line that says proved."""
+    match = re.fullmatch(r"proved: (.*?)(?: = |, last bounce at )(-?[\d.]+), within 1e-(\d+)", line)
+    if match is None:
+        raise ValueError(f"a line that is not understood: {line}")
+    return match[1], Fraction(match[2]), Fraction(1, 10 ** int(match[3]))
+
+
+def is_true(given: Document, line: str, original: Document, first: str) -> bool:
+    """Is what is proved of a mutant true, by what is known of the undamaged file?"""
+    (name, value, error), (known, true, small) = told(line), told(first)
+    same = all(given[key] == original[key] for key in ("kind", "scene", "free", "mirror"))
+    if not same:  # a cycle that the damaged file names rightly: of the same place in another scene
+        return given["kind"] == "cycle" and name != known
+    ends = [check.exact(pair) for pair in original["centre"]]  # an order of the same bounces is the same cycle
+    last = true if original["free"] else min(ends, key=lambda x: abs(x - value))
+    return name == known and abs(value - last) <= error + small
+
+
+def judged(name: str, k: int, original: Document, first: str) -> str:
+    """`refused`, `not proved`, `true` or `FALSE`."""
+    given = mutant(name, original, k)
+    if given == original:
+        return "true"
+    said, line = verdict(given)
+    return said if said != "proved" else "true" if is_true(given, line, original, first) else "FALSE"
+
+
+def main() -> int:
+    """Counts of each kind, kept on disk."""
+    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    asked.add_argument("--each", type=int, default=1000, help="mutants of each file")
+    asked.add_argument("--only", help="one file")
+    given = asked.parse_args()
+    kept: dict[str, list[str]] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+    false = 0
+    for name in [given.only] if given.only else SAMPLES:
+        original = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
+        first, found = check.checked(original).splitlines()[0], kept.setdefault(name, [])
+        for k in range(len(found), given.each):
+            found.append(judged(name, k, original, first))
+            if k % 20 == 19 or k + 1 == given.each:
+                KEPT.parent.mkdir(exist_ok=True)
+                KEPT.write_text(json.dumps(kept), encoding="utf-8")
+        counts = Counter(found)
+        false += counts["FALSE"]
+        sys.stdout.write(f"{name}: " + ", ".join(f"{said} {counts[said]}" for said in sorted(counts)) + "\n")
+        sys.stdout.flush()
+    return 1 if false else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

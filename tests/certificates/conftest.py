@@ -1,0 +1,34 @@
+"""The second reader, and the scripts beside it, loaded from their files: they belong to no package."""
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "certificates"
+
+
+def loaded(name: str) -> ModuleType:
+    """A script of the folder as a module, under its own name, once."""
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+        sys.modules[name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[name])
+    return sys.modules[name]
+
+
+@pytest.fixture(scope="session")
+def check() -> ModuleType:
+    return loaded("check")
+
+
+@pytest.fixture(scope="session")
+def mutants(check) -> ModuleType:
+    return loaded("mutants")
+
+
+@pytest.fixture(scope="session")
+def make() -> ModuleType:
+    return loaded("make")

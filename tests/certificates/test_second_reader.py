@@ -1,0 +1,248 @@
+"""The second reader proves the committed certificates, alone, and nothing that is not so."""
+
+import ast
+import copy
+import json
+import os
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import mpmath
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "certificates"
+QUICK = ("minor-axis", "five-waves", "saddle-node", "alpha-tilde", "alpha-hat", "lambda-star", "phi-star", "lambda-c")
+STANDARD = {"ast", "json", "re", "sys", "fractions", "functools", "itertools", "math", "pathlib"}
+OWN = ("symbolic", "numeric", "verification", "flint", "sympy", "mpmath", "numpy")
+
+
+def document(name: str) -> dict:
+    return json.loads((FOLDER / f"{name}.json").read_text())
+
+
+def said(check, given: dict) -> str:
+    """The verdict, as `main` prints it."""
+    try:
+        return check.checked(given)
+    except check.Unproved as why:
+        return f"not proved: {why}"
+    except check.Wrong as why:
+        return f"refused: {why}"
+
+
+def test_a_sample_of_every_kind_is_proved_by_python_alone_in_an_empty_folder(tmp_path):
+    reader = tmp_path / "check.py"
+    reader.write_bytes((FOLDER / "check.py").read_bytes())
+    watched = f"import runpy, sys\nsys.argv = {['check.py', *(str(FOLDER / f'{name}.json') for name in QUICK)]!r}\n"
+    watched += (
+        "try:\n    runpy.run_path('check.py', run_name='__main__')\nexcept SystemExit as end:\n    print(end.code)\n"
+    )
+    watched += f"print([name for name in {OWN!r} if name in sys.modules])\n"
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", watched], cwd=tmp_path, env={}, capture_output=True, text=True, timeout=600
+    )
+    lines = [line for line in done.stdout.splitlines() if not line.startswith("  ")]
+
+    assert done.stderr == ""
+    assert [line.split(": ")[1] for line in lines[:-2]] == ["proved"] * len(QUICK)
+    assert lines[-2:] == ["0", "[]"]
+
+
+def test_every_kind_is_in_the_sample(check):
+    assert {document(name)["kind"] for name in QUICK} == set(check.KINDS)
+
+
+def test_the_second_reader_is_one_short_file_of_the_standard_library():
+    text = (FOLDER / "check.py").read_text()
+    tree = ast.parse(text)
+    imported = {name.name for node in ast.walk(tree) if isinstance(node, ast.Import) for name in node.names}
+    imported |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+
+    assert len(text.splitlines()) <= 600
+    assert imported == STANDARD
+    assert not called & {"eval", "exec", "compile", "__import__", "open"}
+
+
+def test_the_second_reader_has_no_line_of_the_package():
+    """What is longer than a common phrase of Python would be a copy."""
+    package = FOLDER.parent
+    theirs = {
+        line.strip()
+        for room in ("symbolic", "numeric", "verification")
+        for path in (package / room).rglob("*.py")
+        for line in path.read_text().splitlines()
+    }
+    ours = {line.strip() for line in (FOLDER / "check.py").read_text().splitlines() if len(line.strip()) > 45}
+    words = '"corner": "{scene}', '"corner, -theta', '"falls as lam', '"cycle": "{scene}'  # the statement, of one text
+
+    assert {line for line in ours & theirs if not line.startswith(words)} == set()
+
+
+def test_the_same_files_are_made_again_byte_by_byte(make):
+    for name in ("minor-axis", "lambda-c", "lambda-star"):
+        assert make.text(name) == (FOLDER / f"{name}.json").read_text()
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"PYTHONHASHSEED": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+        {"PYTHONHASHSEED": "2", "OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": "AVX2 FMA3"},
+        {"LC_ALL": "C", "TZ": "Asia/Tokyo", "PYTHONOPTIMIZE": "1"},
+    ],
+    ids=["one thread", "no AVX2", "another place"],
+)
+def test_a_certificate_has_the_same_bytes_whatever_the_machine(tmp_path, environment):
+    names = ("saddle-node", "alpha-hat")
+    command = [sys.executable, str(FOLDER / "make.py"), "--into", str(tmp_path), *names]
+    around = {"PATH": os.environ["PATH"], "HOME": str(tmp_path), "PYTHONPATH": str(FOLDER.parent)}
+    subprocess.run(command, cwd=FOLDER.parent, env=around | environment, check=True, timeout=300)
+
+    for name in names:
+        assert (tmp_path / f"{name}.json").read_bytes() == (FOLDER / f"{name}.json").read_bytes()
+
+
+def test_two_dozen_mutants_are_refused_or_true(check, mutants):
+    counts = {"refused": 0, "not proved": 0, "true": 0, "FALSE": 0}
+    for name in ("minor-axis", "lambda-c", "alpha-hat"):
+        original = document(name)
+        first = check.checked(original).splitlines()[0]
+        for k in range(8):
+            counts[mutants.judged(name, k, original, first)] += 1
+
+    assert counts["FALSE"] == 0
+    assert min(counts["refused"], counts["not proved"], counts["true"]) > 0  # each answer is met
+
+
+def test_a_false_proof_would_be_seen(check, mutants):
+    """The judge of mutants is no rubber stamp: another value under the same name is called false."""
+    original = document("lambda-c")
+    first = check.checked(original).splitlines()[0]
+    wrong = first.replace("0.0934003", "0.0934004")
+
+    assert mutants.is_true(original, first, original, first)
+    assert not mutants.is_true(original, wrong, original, first)
+    assert not mutants.is_true(original, first.replace("lambda-c", "lambda-star"), original, first)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "answer"),
+    [
+        ("lambda-c", {"name": "lambda-star"}, "refused: the name must be 'lambda-c'"),
+        ("lambda-c", {"name": "\x1b[2Jlambda-c = 0.5"}, "refused: the name must be 'lambda-c'"),
+        ("lambda-star", {"free": "phi"}, "refused: the statement must be"),
+        ("lambda-c", {"statement": "All cycles are stable."}, "refused: the statement must be"),
+        ("lambda-c", {"checks": {"exists": True}}, "refused: checks must list these as true"),
+        ("lambda-c", {"digits": 90}, "not proved: precise"),
+        ("lambda-c", {"radius": ["0", "0"]}, "refused: bits, digits"),
+        ("lambda-c", {"radius": ["1", "0"]}, "not proved"),
+        ("lambda-c", {"radius": ["1", "99999999"]}, "refused: an exponent is out of range"),
+        ("lambda-c", {"components": [1, 1]}, "not proved"),
+        ("lambda-c", {"components": [0, 7]}, "refused: components"),
+        ("alpha-hat", {"scene": {"table": "egg", "lam": "2"}}, "refused: lam is out of range"),
+        ("alpha-hat", {"scene": {"table": "egg", "lam": "1/3 # or so"}}, "refused: a formula has characters"),
+        ("alpha-hat", {"scene": {"table": "egg", "lam": "9**9**9**9"}}, "refused: the formula has"),
+        ("alpha-hat", {"scene": {"table": "egg"}}, "refused: scene: lam has a value"),
+        ("minor-axis", {"kind": "tangency"}, "refused: this checker reads schema 2, and of its kinds"),
+        ("five-waves", {"scene": {"polar": "cos(5*theta)", "lam": "1/3"}}, "refused: scene: the radius may not be"),
+        ("five-waves", {"scene": {"polar": "2 + theta", "lam": "1/3"}}, "refused: scene: theta may stand only"),
+        ("five-waves", {"scene": {"polar": "2 + sin(theta/2)", "lam": "1/3"}}, "refused: scene: theta may stand only"),
+    ],
+)
+def test_a_damaged_certificate_is_refused_in_one_sentence(check, name, change, answer):
+    assert said(check, document(name) | change).startswith(answer)
+
+
+def cycle(scene: dict, theta: list[str], components: list[int], digits: int = 10) -> dict:
+    """A certificate of a cycle at these decimals, with the statement that its entries ask for."""
+    centre = [[str(round(Fraction(x) * 2**200)), "-200"] for x in theta]
+    box = {"bits": 160, "digits": digits, "centre": centre, "radius": ["1", str(-4 * digits)]}
+    title = scene.get("table") or f"polar {scene['polar']}"
+    title += "".join(f", {k} = {v}" for k, v in scene.get("shape", {}).items()) + f", lam = {scene['lam']}"
+    first = {
+        "schema": 2,
+        "name": f"a cycle of period {len(theta)}: {title}",
+        "kind": "cycle",
+        "scene": scene,
+        "free": "",
+    }
+    words = f"{title}: exactly one cycle has its {len(theta)} bounces in the box."
+    checks = dict.fromkeys(("exists", "unique", "precise", "admissible", "minimal_period"), True)
+    return first | {"statement": words, "components": components, "mirror": False, "checks": checks} | box
+
+
+HALF_PI = "1.57079632679489661923132169163975144209858469968755291048747229615390820314310449931401741267105853"
+PI = "3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211706"
+
+
+def test_an_axis_run_through_twice_is_no_cycle_of_period_four(check):
+    """At lam = 1/3 the short axis of the ellipse is a regular solution of the equations for four bounces too."""
+    ends = [HALF_PI, f"-{HALF_PI}"]
+    scene = {"table": "ellipse", "shape": {"a": "2"}, "lam": "1/3"}
+
+    assert said(check, cycle(scene, ends, [0, 0])).startswith("proved: a cycle of period 2")
+    assert said(check, cycle(scene, 2 * ends, [0] * 4)).startswith("not proved: minimal_period")
+
+
+def test_a_chord_across_a_bay_is_not_free(check):
+    """A flower of six petals: from the far side of one to that of the next the equations hold; a bay lies between."""
+    with mpmath.workdps(60):
+        side = mpmath.findroot(lambda t: mpmath.diff(lambda u: (1 + 0.45 * mpmath.cos(6 * u)) * mpmath.cos(u), t), 0.96)
+        apart = [mpmath.nstr(side, 50), mpmath.nstr(mpmath.pi - side, 50)]
+    flower = {"polar": "1 + cos(6*theta)*9/20", "lam": "1/3"}
+
+    assert said(check, cycle(flower, ["0", PI], [0, 0])).startswith("proved")  # petal to petal, through the middle
+    assert said(check, cycle(flower, apart, [0, 0])).startswith("not proved: admissible: a chord may meet the boundary")
+
+
+@pytest.mark.parametrize("lam", ["0", "1", "1/2"])
+def test_every_diameter_of_the_circle_is_a_cycle_and_none_is_alone(check, lam):
+    """A line of solutions: nothing may be called the only one."""
+    assert said(check, cycle({"table": "circle", "lam": lam}, ["0", PI], [0, 0])).startswith("not proved")
+
+
+def test_the_map_without_memory_and_the_elastic_one_are_in_range(check):
+    scene = {"table": "ellipse", "shape": {"a": "2"}}
+
+    assert said(check, cycle(scene | {"lam": "0"}, [HALF_PI, f"-{HALF_PI}"], [0, 0])).startswith("proved")
+    assert said(check, cycle(scene | {"lam": "1"}, [HALF_PI, f"-{HALF_PI}"], [0, 0])).startswith("proved")
+
+
+def test_a_bounce_at_a_cusp_or_at_a_join_proves_nothing(check):
+    cusp = cycle({"table": "cardioid", "lam": "1/3"}, ["0", PI], [0, 0])
+    join = cycle({"table": "cuspless", "lam": "1/3"}, ["2.0943951023931954923084", "-0.43301270189221932338"], [0, 1])
+
+    assert not said(check, cusp).startswith("proved")
+    assert not said(check, join).startswith("proved")
+
+
+def test_a_chain_that_runs_outside_the_table_is_no_cycle(check):
+    """Equations of lines, not of rays, would take a repeated bounce and the wrong end of a diameter."""
+    scene = {"table": "ellipse", "shape": {"a": "2"}, "lam": "1/3"}
+
+    assert not said(check, cycle(scene, [HALF_PI, HALF_PI], [0, 0])).startswith("proved")
+    assert not said(check, cycle(scene, [HALF_PI, f"-{HALF_PI}", f"-{HALF_PI}"], [0] * 3)).startswith("proved")
+
+
+def test_no_entry_leads_to_a_traceback(check, tmp_path, capsys):
+    """Each entry replaced by each of a dozen odd values."""
+    odd = (None, True, -1, 2**70, "", "x", [], {}, [[]], 0.5, "\x1b", {"table": []}, [["1", "2", "3"]])
+    given, paths = document("minor-axis"), []
+    for key in given:
+        for k, value in enumerate(value for value in odd if value != given[key] or isinstance(value, bool)):
+            path = tmp_path / f"{key}-{k}.json"
+            path.write_text(json.dumps(copy.deepcopy(given) | {key: value}))
+            paths.append(str(path))
+    (tmp_path / "text.json").write_text("no")
+    (tmp_path / "bytes.json").write_bytes(b"\xff\xfe")
+    (tmp_path / "deep.json").write_text("[" * 100_000)
+    paths += [str(tmp_path / name) for name in ("text.json", "bytes.json", "deep.json", "none.json")]
+
+    assert check.main(paths) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(paths)
+    assert not [line for line in lines if ": proved" in line]
+    assert all(line.isprintable() for line in lines)

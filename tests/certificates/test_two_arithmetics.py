@@ -1,0 +1,208 @@
+"""Two interval arithmetics, python-flint's balls and the second reader's integers, enclose the same numbers."""
+
+import math
+import random
+from fractions import Fraction
+
+import pytest
+from flint import arb
+from sympy import Rational, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
+
+from symbolic import tables
+from symbolic.expressions.text import kernel, load
+from verification.arithmetic.balls import balls, working
+from verification.cycles.recurrence.chords import chord_angles
+
+P = 200
+
+
+def as_fraction(x: arb) -> Fraction:
+    mantissa, exponent = x.man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def ends(x: arb) -> tuple[Fraction, Fraction]:
+    """The ends of a ball, which are no less than it."""
+    middle, radius = as_fraction(x.mid()), as_fraction(x.rad())
+    return middle - radius, middle + radius
+
+
+def overlap(x: arb, y) -> bool:
+    """Do a ball and an interval of integers meet? Both contain the true value, so they must."""
+    low, high = ends(x)
+    return low <= Fraction(y.hi, 1 << y.p) and Fraction(y.lo, 1 << y.p) <= high
+
+
+def exactly(x: Fraction) -> arb:
+    """A dyadic fraction as a ball without radius."""
+    return arb(x.numerator) / x.denominator
+
+
+def arguments() -> list[Fraction]:
+    """Small, large and huge dyadic numbers of both signs, and what lies near a multiple of a quarter turn."""
+    dice = random.Random(20)
+    found = [Fraction(0), Fraction(1), Fraction(-1), Fraction(2) ** -150, Fraction(2) ** 300, -(Fraction(2) ** 1000)]
+    for _ in range(60):
+        found.append(Fraction(dice.getrandbits(180) - 2**179, 2 ** dice.choice((0, 40, 120, 178, 182, 190))))
+    for k in (1, 2, 3, 7, 10**6, 10**20):
+        found.append(Fraction(round(math.pi * 2**60) * k, 2**61))
+    return found
+
+
+@pytest.mark.parametrize("word", ["sin", "cos", "atan"])
+def test_both_enclose_the_same_functions(check, word):
+    for x in arguments():
+        if word == "atan" and abs(x) > 2**40:
+            continue  # the second reader is never asked for an angle that near to a right one
+        exact = check.I.of(x, P + 200)
+        ours = check.function(word, exact, P + 200)
+        with working(P + 1200):
+            theirs = getattr(exactly(x), word)()
+
+        assert overlap(theirs, ours), x
+        assert ours.hi - ours.lo < 2**60, x  # and both closely: 2**-340
+
+
+@pytest.mark.parametrize("bits", [53, 64, 113, 300])
+def test_wide_intervals_hold_the_values_at_all_their_points(check, bits):
+    dice = random.Random(bits)
+    for _ in range(40):
+        low = Fraction(dice.getrandbits(80) - 2**79, 2**76)
+        high = low + Fraction(dice.getrandbits(80), 2 ** dice.choice((78, 90, 120)))
+        wide = check.I.of(low, bits).hull(check.I.of(high, bits))
+        for word in ("sin", "cos", "atan"):
+            ours = check.function(word, wide, bits)
+            for share in (Fraction(0), Fraction(1, 3), Fraction(1)):
+                with working(400):
+                    inner = getattr(exactly(low) + exactly(high - low) * share.numerator / share.denominator, word)()
+                assert overlap(inner, ours)
+
+
+@pytest.mark.parametrize("operation", ["+", "-", "*", "/", "neg", "mid", "hull"])
+def test_rounding_is_outwards(check, operation):
+    """At a coarse precision, where every operation rounds, exact fractions at the ends and inside stay inside."""
+    dice = random.Random(7)
+    for _ in range(300):
+        a, b, c, d = (Fraction(dice.getrandbits(40) - 2**39, dice.randrange(1, 2**20)) for _ in range(4))
+        x, y = (check.I.of(min(p), 20).hull(check.I.of(max(p), 20)) for p in ((a, b), (c, d)))
+        inner = [(s, t) for s in (a, b, (a + b) / 2) for t in (c, d, (c + d) / 2)]
+        made = {
+            "+": lambda x, y: x + y,
+            "-": lambda x, y: x - y,
+            "*": lambda x, y: x * y,
+            "/": lambda x, y: x / y,
+            "neg": lambda x, y: -x,
+            "mid": lambda x, y: x,
+            "hull": lambda x, y: x,
+        }[operation]
+        if operation == "/" and 0 in y:
+            with pytest.raises(check.Unproved):
+                made(x, y)
+            continue
+        box = x.mid().hull(x) if operation == "mid" else x.hull(y) if operation == "hull" else made(x, y)
+        for s, t in inner:
+            value = made(s, t)
+            assert Fraction(box.lo, 1 << box.p) <= value <= Fraction(box.hi, 1 << box.p)
+
+
+def test_pi_is_that_of_the_other_library(check):
+    for bits in (20, 64, 333, 4000):
+        with working(bits + 100):
+            assert overlap(arb.pi(), check.pi(bits))
+
+
+class Words:
+    """The vocabulary of the generated kernels in the second reader's numbers; what it lacks is made of what it has."""
+
+    def __init__(self, check, bits: int) -> None:
+        self.check, self.bits = check, bits
+
+    def words(self) -> dict:
+        check, bits = self.check, self.bits
+        number = lambda x: x if isinstance(x, check.I) else check.I.of(x, bits)  # noqa: E731
+        root = lambda x: check.evaluate(check.parse("sqrt(x)"), {"x": number(x)}, bits)[0]  # noqa: E731
+        return {
+            "sin": lambda x: check.function("sin", number(x), bits),
+            "cos": lambda x: check.function("cos", number(x), bits),
+            "atan": lambda x: check.function("atan", number(x), bits),
+            "sqrt": root,
+            "q": lambda p, n: check.I.of(Fraction(p, n), bits),
+            "pi": check.pi(bits),
+        }
+
+
+@pytest.fixture(scope="module")
+def ours(check) -> dict:
+    check.I.__rtruediv__ = lambda self, o: (
+        check.I.of(o, self.p) / self
+    )  # kernels divide whole numbers; the reader never
+    return Words(check, P).words()
+
+
+def same(words: dict, made, letters: list[Fraction], check) -> bool:
+    """Do both readers of one kernel overlap, entry by entry?"""
+    with working(P):
+        theirs = load(made, balls(P))(*(exactly(x) for x in letters))
+    mine = load(made, words)(*(check.I.of(x, P) for x in letters))
+    return all(
+        overlap(a + arb(0), b if isinstance(b, check.I) else check.I.of(b, P))
+        for a, b in zip(theirs, mine, strict=True)
+    )
+
+
+TABLES = [tables.circle, tables.ellipse.at(a=2), tables.cardioid, tables.cuspless, tables.egg(3).at(alpha="2/25")]
+
+
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.name)
+def test_the_generated_chords_are_read_alike(check, ours, table):
+    """Every chord of every table, with first and second derivatives, at random ends: the programs of all proofs."""
+    dice, count = random.Random(table.name), len(table.components)
+    for i in range(count):
+        for j in range(count):
+            for _ in range(6):
+                x, y = (Fraction(dice.randrange(-(2**20), 2**20), 2**21 if count > 1 else 2**19) for _ in range(2))
+                with working(P):
+                    theirs = chord_angles(table, balls(P))(i, j, 2)(exactly(x), exactly(y))
+                try:
+                    mine = chord_angles(table, ours)(i, j, 2)(check.I.of(x, P), check.I.of(y, P))
+                except check.Unproved:  # a chord of length 0
+                    assert not all(a.is_finite() for a in theirs)
+                    continue
+                assert all(
+                    overlap(a + arb(0), b if isinstance(b, check.I) else check.I.of(b, P)) for a, b in zip(theirs, mine)
+                )
+
+
+X = Symbol("x", real=True)
+EXPRESSIONS = {
+    "powers": (1 + X) ** 3 / (2 + X**2) ** 2,
+    "roots": sqrt(2 + X) * Rational(1, 3) / sqrt(3 - X) ** 3,
+    "angles": atan(X / (1 + X**2)) + pi / 7,
+    "waves": sin(3 * X) * cos(X) - tan(X / 4),
+}
+
+
+@pytest.mark.parametrize("name", EXPRESSIONS)
+def test_every_word_of_the_vocabulary_is_read_alike(check, ours, name):
+    made = kernel(name.replace(" ", "_"), [X], {"value": EXPRESSIONS[name]})
+    for k in range(-16, 17):
+        assert same(ours, made, [Fraction(k, 16)], check)
+
+
+@pytest.mark.parametrize("word", ["sin", "cos", "atan", "sqrt", "q", "pi"])
+def test_a_wrong_reader_of_the_vocabulary_is_caught(check, ours, word):
+    """One word off by a part in 10**40: two readers no longer overlap, which one alone would never show."""
+    off = check.I.of(1 + Fraction(1, 10**40), P)
+    wrong = ours[word] * off if word == "pi" else lambda *given: ours[word](*given) * off
+    made = [kernel(name, [X], {"value": e}) for name, e in EXPRESSIONS.items()]
+
+    assert all(same(ours, each, [Fraction(1, 3 * 2**40 // 2**40)], check) for each in made)
+    assert not all(same(ours | {word: wrong}, each, [Fraction(5, 16)], check) for each in made)
+
+
+def test_the_second_reader_refuses_what_it_has_no_word_for(check):
+    """exp and log are words of the kernels, and of no table of the paper."""
+    for text in ("exp(theta)", "log(2)", "theta**(1/2)", "abs(theta)"):
+        with pytest.raises(check.Wrong):
+            check.evaluate(check.parse(text), {"theta": check.I.of(1, 64)}, 64)
+    assert {exp, log}

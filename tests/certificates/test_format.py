@@ -1,0 +1,104 @@
+"""The format on paper, in the schema and in both readers is one and the same."""
+
+import copy
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from flint import arb
+from sympy import Rational
+
+from verification.named import files
+from verification.proofs.manifolds.known import CONTACTS
+from verification.proofs.manifolds.proof import ITEMS, Proof, TangencyClaim, TangencyProof
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "certificates"
+SCHEMA = json.loads((FOLDER / "schema" / "version_2.json").read_text())
+FILES = sorted(FOLDER.glob("*.json"))
+PAGE = (ROOT / "docs" / "certificate_format.md").read_text()
+
+
+def valid(given: object) -> bool:
+    return jsonschema.Draft202012Validator(SCHEMA).is_valid(given)
+
+
+def test_the_schema_is_one():
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_committed_files_are_of_the_format(path):
+    assert valid(json.loads(path.read_text()))
+
+
+def test_the_folder_has_the_certificates_that_its_script_writes(make):
+    assert [path.stem for path in FILES] == sorted(make.CERTIFICATES)
+
+
+@pytest.mark.parametrize("key", ["name", "statement", "scene", "radius", "checks", "kind"])
+def test_the_schema_asks_for_every_entry_and_for_no_other(key):
+    given = json.loads((FOLDER / "lambda-c.json").read_text())
+    without = copy.deepcopy(given)
+    del without[key]
+
+    assert not valid(without)
+    assert not valid(given | {"proved_by": "me"})
+    assert not valid(given | {"checks": given["checks"] | {"unique": None}})
+
+
+def test_a_tangency_is_of_the_format_and_the_second_reader_refuses_it_by_kind(check):
+    claim = TangencyClaim(CONTACTS["merging"], Rational(2, 25), "0.44343525", 20)
+    made = files.document(TangencyProof(claim, Proof(arb(0), dict.fromkeys(ITEMS, True))))
+    given = json.loads(json.dumps(made))
+
+    assert valid(given)
+    with pytest.raises(check.Wrong):
+        check.checked(given)
+
+
+def test_both_readers_have_the_same_sentences_and_the_page_has_them(check):
+    """Written down three times on purpose: a reader does not take its statement from another."""
+    marks = {"scene": "*scene*", "n": "*n*", "free": "*free*"}
+    what = {kind: words.format(scene="S", n="N", free="F") for kind, words in files.WORDS.items()}
+    read = {
+        kind: words.format(scene="S", n="N", free="F", what=check.WHAT.get(kind)) for kind, words in check.SAYS.items()
+    }
+
+    assert {kind: what[kind] for kind in read} == read
+    for words in files.WORDS.values():
+        assert words.format(**marks) in PAGE
+
+
+def test_the_page_names_every_kind_entry_and_item(check):
+    items = {item for kind in check.KINDS.values() for item in kind} | set(ITEMS)
+    entries = set(SCHEMA["$defs"]["zero"]["properties"])
+
+    assert all(f"`{word}`" in PAGE for word in items | entries | set(check.KINDS) | set(check.PAPER))
+
+
+def test_every_table_has_one_definition_in_both_readers(check):
+    """The five formulas of the second reader, at points, against the package's exact tables."""
+    from symbolic import tables
+
+    for name, (letter, _) in check.PAPER.items():
+        shape = {"a": "3/2", "alpha": "2/25"}.get(letter)
+        table = tables.named(name).at(**({letter: shape} if letter else {}))
+        _, _, title = check.read_scene(
+            {"table": name, "lam": "1"} | ({"shape": {letter: shape}} if letter else {}), "", 64
+        )
+        ours = check.read_scene({"table": name, "lam": "1"} | ({"shape": {letter: shape}} if letter else {}), "", 64)[0]
+
+        assert title.startswith(name)
+        for part, component in enumerate(table.components):
+            low, high = ours.ends(part, 64)
+            for given, true in ((low, component.start), (high, component.end)):
+                assert abs(given.real() - float(true)) < 1e-15
+            middle = (component.start * 3 + component.end) / 4
+            place = (low * 3 + high) / 4
+            x, y, *_ = ours.at(part, place, ours.letters, 64)
+            assert (
+                max(abs(check.I.of(a, 64).real() - float(b)) for a, b in zip((x, y), component.at(middle), strict=True))
+                < 1e-14
+            )

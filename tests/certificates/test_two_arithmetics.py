@@ -4,8 +4,10 @@ import math
 import random
 from fractions import Fraction
 
+import mpmath
 import pytest
 from flint import arb
+from mpmath.ctx_iv import MPIntervalContext
 from sympy import Rational, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
 
 from symbolic import tables
@@ -202,9 +204,25 @@ def test_a_wrong_reader_of_the_vocabulary_is_caught(check, ours, word):
     assert not all(same(ours | {word: wrong}, each, [Fraction(5, 16)], check) for each in made)
 
 
+@pytest.mark.parametrize("function", [exp, log])
+def test_exponentials_and_logarithms_are_read_alike_by_mpmath(function):
+    """Words of the kernels that the second reader has none for: mpmath's intervals stand in."""
+    intervals = MPIntervalContext()
+    intervals.prec = P
+    made = kernel("made", [X], {"value": function(X + 2)})
+    for k in range(-30, 300, 7):
+        with working(P):
+            (theirs,) = load(made, balls(P))(exactly(Fraction(k, 16)))
+        mine = getattr(intervals, str(function))(intervals.mpf(k) / 16 + 2)
+        low, high = ends(theirs)
+        a, b = (Fraction(*map(int, mpmath.libmp.to_rational(end._mpf_))) for end in (mine.a, mine.b))
+
+        assert low <= b
+        assert a <= high
+
+
 def test_the_second_reader_refuses_what_it_has_no_word_for(check):
     """exp and log are words of the kernels, and of no table of the paper."""
     for text in ("exp(theta)", "log(2)", "theta**(1/2)", "abs(theta)"):
         with pytest.raises(check.Wrong):
             check.evaluate(check.parse(text), {"theta": check.I.of(1, 64)}, 64)
-    assert {exp, log}

@@ -26,6 +26,11 @@ STADIUM = tables.piecewise(
     tables.arc("bottom", theta, -1, -1, 1),
     name="stadium",
 )
+LENS = tables.piecewise(  # of two parabolas, which have no closed form of their own
+    tables.arc("lower", theta, (theta**2 - 1) / 2, -1, 1),
+    tables.arc("upper", -theta, (1 - theta**2) / 2, -1, 1),
+    name="lens",
+)
 SCENES = {
     "circle": ("circle", {}),
     "ellipse": ("ellipse", {"a": "3/2"}),
@@ -34,6 +39,7 @@ SCENES = {
     "egg": ("egg", {"alpha": "2/25"}),
     "limacon, not convex": (tables.polar(1 + Rational(3, 5) * cos(theta), name="limacon"), {}),
     "stadium": (STADIUM, {}),
+    "lens, any boundary": (LENS, {}),
 }
 LAMS = {"slap": 0, "pinball": 0.7, "elastic": 1}
 COUNT, BOUNCES = 6, 40

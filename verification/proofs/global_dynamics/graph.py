@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from verification.proofs.global_dynamics.images import Boxes, BoxMap, Chart, Images
+from verification.proofs.global_dynamics.boxes import Boxes, BoxMap, Chart, Images
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -58,7 +58,7 @@ class Rectangles(NamedTuple):
 class Grid:
     """`columns` by `rows` cells in each chart of a map.
 
-    >>> from verification.proofs.global_dynamics.images import Chart
+    >>> from verification.proofs.global_dynamics.boxes import Chart
     >>> grid = Grid((Chart("plane", (0, 1), (0, 1)),), 4, 2)
     >>> [round(float(end[0]), 9) + 0.0 for end in grid.boxes(grid.whole(2)).x]
     [0.0, 0.5]

@@ -11,8 +11,9 @@ from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app.cli import main
 from verification.proofs.global_dynamics.arrays import ArrayOps, BallArray
+from verification.proofs.global_dynamics.boxes import Chart, PlaneImages
 from verification.proofs.global_dynamics.graph import Cells, Grid, inside, mapped, morse_graph, refined, transitions
-from verification.proofs.global_dynamics.images import Chart, PinballImages, PlaneImages
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import Region, checked, region, shares
 
 EGG = Scene("egg", alpha="0.08", lam="1/2")

@@ -9,7 +9,8 @@ from flint import arb
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.maps.enclosed import EnclosedMap, Refusal
-from verification.proofs.global_dynamics.images import Boxes, PinballImages
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.images import PinballImages
 
 FLOWER = Scene.of({"polar": "1 + cos(5*theta)/10", "lam": "3/5"})
 LIMACON = Scene.of({"parametric": ["(3+cos(theta))*cos(theta)", "(3+cos(theta))*sin(theta)"], "lam": "2/5"})

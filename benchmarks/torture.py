@@ -1,4 +1,4 @@
-"""Long attacks on what reads, keeps and proves: `torture.py [PART ...] [--scale SHARE]`; all parts take half an hour.
+"""Long attacks on what reads, keeps and proves, hours at full scale: `torture.py [PART ...] [--scale SHARE]`.
 
     images      object files and images of machine code with fields written over, read in children that may die
     restarts    sweeps that are killed, refused and damaged again and again, until they are done

@@ -215,7 +215,7 @@ def test_exponentials_and_logarithms_are_read_alike_by_mpmath(function):
             (theirs,) = load(made, balls(P))(exactly(Fraction(k, 16)))
         mine = getattr(intervals, str(function))(intervals.mpf(k) / 16 + 2)
         low, high = ends(theirs)
-        a, b = (Fraction(*map(int, mpmath.libmp.to_rational(end._mpf_))) for end in (mine.a, mine.b))
+        a, b = (Fraction(*map(int, mpmath.libmp.to_rational(end))) for end in mine._mpi_)
 
         assert low <= b
         assert a <= high

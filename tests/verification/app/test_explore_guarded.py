@@ -83,7 +83,6 @@ def test_other_addresses_of_this_machine_get_no_answer(served):
 
 
 def test_those_who_left_are_forgotten(served):
-    """A hundred take half a minute; these are eight."""
     port, process = served
     for _ in range(8):
         assert " 200 " in answer(port, f"GET / HTTP/1.1\nHost: 127.0.0.1:{port}\n\n")

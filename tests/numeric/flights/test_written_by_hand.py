@@ -16,7 +16,7 @@ from symbolic.tables.table import theta
 class Exact:
     """Expressions as a number system: what a flight computes, as a formula."""
 
-    constant = staticmethod(Rational)
+    q = staticmethod(Rational)
     sin = staticmethod(sympy.sin)
 
 

@@ -66,7 +66,7 @@ def test_henons_attractor_has_a_trapping_region_and_every_other_orbit_leaves():
     assert not graph.trapping(attractor)[-1]
     assert np.all(inside(grid, block, *mapped(map, grid, block)))
     picture, (x, y) = grid.painted(block, np.ones(block.chart.size, dtype=bool))[0], (0.1, 0.1)
-    for n in range(2000):
+    for n in range(2_000):
         x, y = 1 - 1.4 * x * x + y, 0.3 * x
         if n > 50:
             assert picture[int((x + 1.5) / 3 * 1024), int((y + 0.6) / 1.2 * 1024)]

@@ -18,24 +18,19 @@ from sympy import (
     Pow,
     S,
     Symbol,
-    atan,
     cos,
-    cosh,
-    exp,
     expand,
-    log,
     pi,
     sin,
-    sinh,
     sqrt,
     tan,
-    tanh,
 )
 from sympy import sympify as exact
 
 from numeric.lowering.program import Builder, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.expressions.signs import vanishes
+from symbolic.expressions.words import FUNCTIONS
 from symbolic.motion import flight
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
@@ -46,7 +41,10 @@ from symbolic.tables.waves import LONG, highest, size, waves
 DEEP = 12  # operations within each other, beyond which derivatives are not written out
 DEGREE = 16  # the highest harmonic of a chord polynomial: its text grows with the third power
 
-WORDS = (atan, exp, log, sinh, cosh, tanh)  # functions of one value that keep their names
+# Functions of one value that keep their names; the square root is a power.
+WORDS: tuple[type[Expr], ...] = tuple(
+    function for function in FUNCTIONS if isinstance(function, type) and function not in (sin, cos)
+)
 ROOT = 12  # the highest root
 
 
@@ -121,7 +119,7 @@ def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> 
         return builder.node(expression.func.__name__, converted(builder, expression.args[0], nodes).number())
     raise ValueError(
         f"{expression} is beyond the kernels' words: + - * /, powers by rationals, pi, rationals, sin, cos, tan, "
-        "atan, exp, log, sinh, cosh, tanh"
+        f"{', '.join(function.__name__ for function in WORDS)}"
     )
 
 

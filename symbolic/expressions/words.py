@@ -1,5 +1,7 @@
 """One expression in words of the closed vocabulary, and the refusal of everything else."""
 
+from typing import Any
+
 from sympy import (
     Add,
     Expr,
@@ -24,16 +26,9 @@ from sympy import (
 )
 from sympy.core.function import AppliedUndef
 
-FUNCTIONS = {
-    sin: "sin",
-    cos: "cos",
-    atan: "atan",
-    exp: "exp",
-    log: "log",
-    sqrt: "sqrt",
-    sinh: "sinh",
-    cosh: "cosh",
-    tanh: "tanh",
+# The functions of the vocabulary: whoever reads them for one kind of number takes their names from here.
+FUNCTIONS: dict[Any, str] = {
+    function: function.__name__ for function in (sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh)
 }
 ROOT = "root"  # root(x, n) is the positive n-th root of a positive x
 

@@ -31,20 +31,17 @@ from sympy import (
     Rational,
     S,
     Symbol,
-    atan,
     cos,
     cosh,
     exp,
-    log,
     pi,
     sin,
     sinh,
-    sqrt,
     tan,
-    tanh,
 )
 from sympy.core.traversal import preorder_traversal
 
+from symbolic.expressions import words as vocabulary
 from symbolic.tables.table import theta
 
 LENGTH, DIGITS = 2000, 400
@@ -63,7 +60,8 @@ def _tan(x: Expr) -> Expr:
 
 STEEP = ("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh")  # costly to evaluate far from 0
 FUNCTIONS: Mapping[str, Callable[[Expr], Expr]] = {
-    **{f.__name__: f for f in (sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh, Abs)},
+    **{name: function for function, name in vocabulary.FUNCTIONS.items()},
+    "Abs": Abs,
     "abs": Abs,
     "tan": _tan,
 }
@@ -243,7 +241,10 @@ LEVELS = 60  # deepest nesting of operations
 CONSTANT_LEVELS = 10  # the same inside an irrational constant
 BITS = 1400  # largest numerator or denominator; 400 decimal digits fit
 ARGUMENT = 10**6  # largest modulus of a constant inside a function
-VOCABULARY = (Add, Mul, Pow, Rational, Symbol, type(pi), type(E), Abs, atan, cos, cosh, exp, log, sin, sinh, tan, tanh)
+VOCABULARY = (
+    *(Add, Mul, Pow, Rational, Symbol, type(pi), type(E), Abs, tan),
+    *(function for function in vocabulary.FUNCTIONS if isinstance(function, type)),  # all but the square root, a power
+)
 
 
 def flaw(value: Expr) -> tuple[str, str] | None:

@@ -28,20 +28,14 @@ from sympy import (
     Symbol,
     acos,
     asin,
-    atan,
-    cos,
-    cosh,
-    exp,
-    log,
     pi,
-    sin,
-    sinh,
     tan,
-    tanh,
 )
 
+from symbolic.expressions import words as vocabulary
+
 Arithmetic = Mapping[str, Any]
-FUNCTIONS = ("sqrt", "sin", "cos", "atan", "exp", "log", "sinh", "cosh", "tanh")
+FUNCTIONS = tuple(vocabulary.FUNCTIONS.values())
 
 FLOAT64: dict[str, Any] = {word: getattr(math, word) for word in FUNCTIONS} | {
     "q": lambda p, n: p / n,
@@ -124,18 +118,12 @@ def _of_ball(word: str) -> Callable[[Any], arb]:
     return function
 
 
-BALL_FUNCTIONS: Mapping[type, Callable[[acb], acb]] = {
-    sin: acb.sin,
-    cos: acb.cos,
+BALL_FUNCTIONS: Mapping[Any, Callable[[acb], acb]] = {
+    function: getattr(acb, name) for function, name in vocabulary.FUNCTIONS.items()
+} | {
     tan: acb.tan,
-    atan: acb.atan,
     acos: acb.acos,
     asin: acb.asin,
-    exp: acb.exp,
-    sinh: acb.sinh,
-    cosh: acb.cosh,
-    tanh: acb.tanh,
-    log: acb.log,
     Abs: lambda z: acb(abs(z)),
 }
 

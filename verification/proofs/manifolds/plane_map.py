@@ -6,6 +6,7 @@ varies: the contraction of the pinball map, `a` of the Henon map. A map is bound
 kind of number: floats, arrays, mpmath or balls, or jets of these.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -63,7 +64,7 @@ class PlaneMap(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class _Bound:
+class _Bound(ABC):
     """The one rule of a recurrence of period 1, bound to a kind of number; `letter` is its parameter."""
 
     words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
@@ -76,9 +77,9 @@ class _Bound:
         return self.over(jets(self.words))
 
     @property
+    @abstractmethod
     def ring(self) -> Recurrence:
         """The recurrence."""
-        raise NotImplementedError
 
     def at(self, letter: Any) -> dict[str, Any]:
         """All parameters of the recurrence."""

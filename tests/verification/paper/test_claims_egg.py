@@ -62,12 +62,12 @@ def test_period_8_has_doubled_at_panel_b_and_would_not_have_a_little_below(monke
 def test_a_cascade_with_a_rung_that_bears_no_stable_cycle_is_not_supported(monkeypatch):
     found = judged.accumulation(Rational(2, 25), 6)
     monkeypatch.setattr(judged, "accumulation", lambda *_: found)
-    judgement = judged.cascade(CLAIMS["egg.cascade"])
+    judgement = judged.cascade_limit(CLAIMS["egg.cascade"])
     assert judgement.verdict is Verdict.SUPPORTED
     assert "+-" in judgement.derived
 
     monkeypatch.setattr(judged, "accumulation", lambda *_: replace(found, supercritical=False))
-    assert judged.cascade(CLAIMS["egg.cascade"]).verdict is Verdict.OPEN
+    assert judged.cascade_limit(CLAIMS["egg.cascade"]).verdict is Verdict.OPEN
 
 
 def test_beyond_the_crisis_a_third_attractor_leaves_it_open(monkeypatch):

@@ -126,7 +126,8 @@ def test_isolated_regions_end_cascades_of_higher_period():
 
 
 def test_a_cascade_needs_a_cycle_to_start_from():
-    with pytest.raises(ValueError, match="none of 400 balls at alpha = 2/25, lam = 3/10 ends on a cycle of period 7"):
+    said = "none of 400 particles at alpha = 2/25, lam = 3/10 ends on a cycle of period 7"
+    with pytest.raises(ValueError, match=said):
         cascade(Rational(2, 25), Rational(3, 10), 7, 1e-3)
 
 

@@ -16,7 +16,7 @@ import sys
 import numpy as np
 
 from verification.measure.extremes.kernels import Wide, made_unit
-from verification.measure.extremes.labelled import bounced, cases, conditions
+from verification.measure.extremes.orbits import bounced, cases, conditions
 
 EPS = 2.0**-52
 

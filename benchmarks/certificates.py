@@ -27,7 +27,7 @@ from verification.cycles.recurrence.critical import corner
 from verification.cycles.recurrence.newton import GUARD, System, floats, levels, refined
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
-from verification.named.feigenbaum import limit, ratio
+from verification.named.curves import limit, ratio
 from verification.named.files import checked, document
 from verification.named.locate import GMPY2, locate
 from verification.proofs.corner.corner_orbit import CornerClaim, corner_proved

@@ -17,10 +17,9 @@ from rich.table import Table as Shown
 
 from verification.cycles.recurrence.newton import refined
 from verification.named import crises
-from verification.proofs.manifolds import shadows as passages
-from verification.proofs.manifolds.known import SHAPE, contact, crisis, table
+from verification.proofs.manifolds import known as passages
+from verification.proofs.manifolds.known import SHAPE, contact, crisis, shadow, table
 from verification.proofs.manifolds.proof import sharpened, tangency_proved
-from verification.proofs.manifolds.shadows import shadow
 from verification.proofs.manifolds.tangency import tangency
 
 SHOWN = ("merging", "boundary", "band-merging", "symmetry-restoring", "window-end-15")

@@ -14,8 +14,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from verification.measure.extremes.labelled import SCENES
 from verification.measure.extremes.near import Stability
+from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.choice import crossovers, entries
 from verification.measure.work.figure import times
 from verification.measure.work.row import Row, duration, footer, front, short

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 
 BALLS = 2048
 

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.machine import KernelSpec, starting
 from verification.measure.work.bench import BALLS, LAWS, SCENES, attracted, best
 
 BOUNCES = 1000

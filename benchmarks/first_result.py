@@ -17,9 +17,9 @@ import time
 from pathlib import Path
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec, fields
+from numeric.kernels.machine import KernelSpec, fields
 from numeric.kernels.text import kernel_text, operations
-from verification.measure.extremes.labelled import SCENES
+from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.bench import LAWS
 
 ROOT = Path(__file__).resolve().parent.parent

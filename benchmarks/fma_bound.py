@@ -15,9 +15,9 @@ import llvmlite.binding as llvm
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.kernels.text import kernel_text, operations
-from verification.measure.extremes.labelled import SCENES
+from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.bench import BALLS, LAWS, attracted
 
 CHAINS, LANES, PASSES = 12, 8, 20_000

@@ -9,7 +9,7 @@ import time
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import phase_starts
 from verification.measure.work.bench import SCENES
 

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from numeric.dynamics.basins import starts_at
-from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.machine import KernelSpec, starting
 from numeric.sweeps.fields import basins, egg, parameter_space
 from numeric.sweeps.run import on_threads
 from numeric.sweeps.sweep import cores, map_of, spread, text_of

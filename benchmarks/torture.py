@@ -88,7 +88,7 @@ def images(executions: int, seed: int = 1, batch: int = 20_000) -> Outcome:
     """
     from numeric import PinballMap
     from numeric.kernels import machine
-    from numeric.kernels.spec import KernelSpec
+    from numeric.kernels.machine import KernelSpec
     from numeric.kernels.text import kernel_text
 
     map = PinballMap("cuspless", lam=0.5)

@@ -10,7 +10,7 @@ from itertools import pairwise
 from mpmath import nstr
 from sympy import Rational
 
-from verification.named.feigenbaum import accumulation
+from verification.named.curves import accumulation
 from verification.named.locate import locate
 
 SHAPE = Rational(2, 25)

@@ -12,7 +12,7 @@ from .named.questions import (
     find_cycles,
     follow,
 )
-from .paper.report.verdicts import verify
+from .paper.report.report import verify
 
 __all__ = [
     "BranchEvent",

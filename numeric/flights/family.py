@@ -298,7 +298,7 @@ class Family(ABC):
         tangent: Fields[N],
         kept: Fields[N],
     ) -> tuple[list[N], N | None, list[N], list[N]]:
-        """As `bounce`, with the rows `numeric.kernels.spec.TANGENT`, and what is kept for the next flight.
+        """As `bounce`, with the rows `numeric.kernels.machine.TANGENT`, and what is kept for the next flight.
 
         The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`.
         """

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family
 from numeric.kernels import machine
-from numeric.kernels.spec import KernelSpec, fields, rescaled
+from numeric.kernels.machine import KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
 PART = 1 << 17  # doubles recorded at a time: a page that stays in the cache

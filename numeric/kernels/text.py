@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from numeric.backends.llvm import LLVMBackend, LLVMVector
 from numeric.flights.family import ELASTIC, SLAP, Family
-from numeric.kernels.spec import TANGENT, KernelSpec, fields, rescaled
+from numeric.kernels.machine import TANGENT, KernelSpec, fields, rescaled
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
 HEAD = (

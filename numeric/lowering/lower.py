@@ -30,7 +30,7 @@ from sympy import sympify as exact
 from numeric.lowering.program import Builder, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.expressions.signs import vanishes
-from symbolic.expressions.words import FUNCTIONS
+from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity

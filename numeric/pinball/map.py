@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from numeric.flights.family import NEAR, PINBALL, SLAP, Boundary, law_of
 from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
-from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.machine import KernelSpec, starting
 from numeric.lowering.cache import key_of
 from numeric.lowering.program import TableIR, table_ir
 from numeric.pinball.coordinates import States

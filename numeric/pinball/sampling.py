@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric.flights.family import SLAP
-from numeric.kernels.spec import TANGENT, KernelSpec, starting
+from numeric.kernels.machine import TANGENT, KernelSpec, starting
 from numeric.pinball.states import counted
 
 if TYPE_CHECKING:

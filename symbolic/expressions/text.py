@@ -1,4 +1,6 @@
-"""Text of functions in a closed vocabulary, so that floats, mpmath and balls run the same formula.
+"""One expression in words of the closed vocabulary, and the refusal of everything else.
+
+Text of functions in a closed vocabulary, so that floats, mpmath and balls run the same formula.
 
 The vocabulary: `+ - * /`, integers, `q(p, n)` for every other rational, `pi`, and the functions of
 `VOCABULARY`. A rational is never written `1/3`: Python would divide it in double precision, and a
@@ -11,10 +13,219 @@ from functools import cache
 from types import CodeType
 from typing import Any
 
-from sympy import Expr, S, Symbol, cse, numbered_symbols
+from sympy import (
+    Add,
+    Expr,
+    Float,
+    Integer,
+    Mul,
+    Pow,
+    Rational,
+    S,
+    Symbol,
+    atan,
+    cos,
+    cosh,
+    cse,
+    exp,
+    log,
+    numbered_symbols,
+    pi,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
+from sympy.core.function import AppliedUndef
 
 from symbolic.expressions.numbers import NumberSystem, T
-from symbolic.expressions.words import FUNCTIONS, ROOT, Words, checked
+
+# The functions of the vocabulary: whoever reads them for one kind of number takes their names from here.
+FUNCTIONS: dict[Any, str] = {
+    function: function.__name__ for function in (sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh)
+}
+ROOT = "root"  # root(x, n) is the positive n-th root of a positive x
+
+
+def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
+    """`ValueError` when `expression` holds a float, an unknown parameter, or a word outside the vocabulary.
+
+    >>> checked("x", S(2) / 5, set())
+    >>> checked("x", Float("0.4"), set())
+    Traceback (most recent call last):
+    ...
+    ValueError: x: 0.400000000000000 is a rounded float; write it exactly, as Rational(2, 5)
+    """
+    for part in expression.atoms(Float):
+        near = Rational(str(part)).limit_denominator(1000)
+        raise ValueError(f"{label}: {part} is a rounded float; write it exactly, as Rational({near.p}, {near.q})")
+    for symbol in sorted(expression.free_symbols - known, key=str):
+        raise ValueError(f"{label}: {symbol} is neither an argument nor defined; known are {_listed(known)}")
+    for node in _nodes(expression):
+        if not _in_vocabulary(node):
+            kind = node.func.__name__ if not isinstance(node, AppliedUndef) else str(node.func)
+            raise ValueError(
+                f"{label}: {kind} in {node} is outside the vocabulary; it has + - * /, rationals, pi, "
+                f"powers by rationals, tan, {', '.join(sorted(FUNCTIONS.values()))}"
+            )
+
+
+def _nodes(e: Expr) -> list[Expr]:
+    found, queue = [], [e]
+    while queue:
+        node = queue.pop()
+        found.append(node)
+        queue.extend(node.args)
+    return found
+
+
+def _in_vocabulary(e: Expr) -> bool:
+    if isinstance(e, Rational) or e in (pi, S.Exp1) or isinstance(e, Symbol | Add | Mul | tan):
+        return True
+    if isinstance(e, Pow):
+        return isinstance(e.exp, Rational)
+    return e.func in FUNCTIONS
+
+
+def _listed(symbols: set[Symbol]) -> str:
+    return ", ".join(sorted(str(s) for s in symbols)) or "none"
+
+
+class Words:
+    """A printer that keeps the names it gave and the words it used."""
+
+    def __init__(self, taken: set[str]) -> None:
+        self.taken = taken
+        self.names: dict[Symbol, str] = {}
+        self.used: set[str] = set()
+        self.before: list[tuple[str, str]] = []
+        self.kept: dict[str, str] = {}
+        self.count = 0
+
+    def rename(self, symbol: Symbol) -> str:
+        """The next free temporary name, kept for `symbol`."""
+        self.names[symbol] = self._fresh()
+        return self.names[symbol]
+
+    def assignment(self, e: Expr) -> tuple[list[tuple[str, str]], list[str]]:
+        """Assignments needed first, and the terms of `e`, each with its sign."""
+        self.before = []
+        terms = [self._term(term, i > 0) for i, term in enumerate(_terms(e))]
+        return self.before, terms
+
+    def _fresh(self) -> str:
+        name = f"c{self.count}"
+        self.count += 1
+        return self._fresh() if name in self.taken else name
+
+    def _term(self, e: Expr, inner: bool) -> str:
+        text, _ = self._print(e)
+        if not inner:
+            return text
+        return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
+
+    def _print(self, e: Expr) -> tuple[str, bool]:
+        """The text, and whether it is a sum, or begins with a sign, so that a product has to enclose it."""
+        if isinstance(e, Symbol):
+            return self.names.get(e, e.name), False
+        if isinstance(e, Integer):
+            return str(e), e < 0
+        if isinstance(e, Rational):
+            self.used.add("q")
+            return f"q({e.p}, {e.q})" if e > 0 else f"-q({-e.p}, {e.q})", e < 0
+        if e == pi:
+            self.used.add("pi")
+            return "pi", False
+        if isinstance(e, Add):
+            return " ".join(self._term(term, i > 0) for i, term in enumerate(_terms(e))), True
+        if isinstance(e, Mul):
+            return self._product(e)
+        if isinstance(e, Pow) and e.exp.is_negative:
+            return self._product(e)
+        if isinstance(e, Pow):
+            return self._power(e.base, e.exp), False
+        return self._call(e), False
+
+    def _call(self, e: Expr) -> str:
+        if e == S.Exp1:
+            self.used.add("exp")
+            return "exp(1)"
+        (argument,) = e.args
+        if isinstance(e, tan):
+            return self._product(sin(argument) / cos(argument))[0]
+        word = FUNCTIONS[e.func]
+        self.used.add(word)
+        return f"{word}({self._print(argument)[0]})"
+
+    def _product(self, e: Expr) -> tuple[str, bool]:
+        coefficient, rest = e.as_coeff_Mul()
+        sign, coefficient = ("-", -coefficient) if coefficient.is_negative else ("", coefficient)
+        above, below = [], []
+        for factor in rest.as_ordered_factors():
+            if isinstance(factor, Pow) and factor.exp.is_negative:
+                below.append(Pow(factor.base, -factor.exp))
+            else:
+                above.append(factor)
+        if coefficient != 1 or not above:
+            above.insert(0, coefficient)
+        alone = len(above) == 1 and not below
+        text = sign + "*".join(self._factor(factor, alone) for factor in above)
+        if below:
+            product = "*".join(self._factor(factor, False) for factor in below)
+            text += "/" + (product if _closed(product) else f"({product})")
+        return text, bool(sign)
+
+    def _factor(self, e: Expr, alone: bool) -> str:
+        text, enclosed = self._print(e)
+        return f"({text})" if enclosed or ("/" in text and not alone) else text
+
+    def _power(self, base: Expr, power: Rational) -> str:
+        whole, part = divmod(power, 1)
+        parts = [self._whole_power(self._named(base), int(whole))] if whole else []
+        if part:
+            inner = self._named(base) if whole else self._print(base)[0]
+            root = f"sqrt({inner})" if part.q == 2 else f"{ROOT}({inner}, {part.q})"
+            self.used.add("sqrt" if part.q == 2 else ROOT)
+            parts.append(root if part.p == 1 else self._whole_power(self._kept(root), int(part.p)))
+        return "*".join(parts)
+
+    def _named(self, base: Expr) -> str:
+        text = self._print(base)[0]
+        return text if isinstance(base, Symbol) or base == pi else self._kept(text)
+
+    def _whole_power(self, name: str, n: int) -> str:
+        if n <= 3:
+            return "*".join([name] * n)
+        half = self._kept(self._whole_power(name, n // 2))
+        return "*".join([half, half] + [name] * (n % 2))
+
+    def _kept(self, text: str) -> str:
+        """The name under which a text is kept; it is written once."""
+        if text not in self.kept:
+            self.kept[text] = self._fresh()
+            self.before.append((self.kept[text], text))
+        return self.kept[text]
+
+
+def _closed(text: str) -> bool:
+    """True for a name, a number, or one call or one pair of parentheses around everything."""
+    depth = 0
+    for character in text:
+        depth += (character == "(") - (character == ")")
+        if depth == 0 and character in "*/+- ":
+            return False
+    return True
+
+
+def _terms(e: Expr) -> list[Expr]:
+    """The terms of a sum in SymPy's printing order, a positive one first where there is one."""
+    if not isinstance(e, Add):
+        return [e]
+    terms = list(e.as_ordered_terms())
+    first = next((t for t in terms if not t.could_extract_minus_sign()), terms[0])
+    return [first, *(t for t in terms if t is not first)]
+
 
 VOCABULARY = ("q", "pi", *sorted([*FUNCTIONS.values(), ROOT]))
 WIDTH = 99

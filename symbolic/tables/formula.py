@@ -41,7 +41,7 @@ from sympy import (
 )
 from sympy.core.traversal import preorder_traversal
 
-from symbolic.expressions import words as vocabulary
+from symbolic.expressions import text as vocabulary
 from symbolic.tables.table import theta
 
 LENGTH, DIGITS = 2000, 400

@@ -3,7 +3,7 @@
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from verification.paper.report import verdicts as claims
+from verification.paper.report import report as claims
 from verification.paper.report.page import Picture
 from verification.paper.report.page import page as html
 

@@ -13,7 +13,7 @@ os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
 from numeric.backends.scalars import ArrayBackend, ScalarBackend
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.kernels.text import kernel_text, operations
 
 SHAPES = {

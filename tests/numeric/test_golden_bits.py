@@ -13,7 +13,7 @@ import pytest
 from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.machine import KernelSpec, starting
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.tables.table import theta

@@ -32,7 +32,7 @@ from sympy import (
     tan,
 )
 
-from symbolic.expressions import words as vocabulary
+from symbolic.expressions import text as vocabulary
 
 Arithmetic = Mapping[str, Any]
 FUNCTIONS = tuple(vocabulary.FUNCTIONS.values())

@@ -131,7 +131,7 @@ def chaotic_exponents(table: Table, lam: Expr) -> dict[str, Any] | None:
     """
     if table != cardioid or lam != 0:
         return None
-    from verification.proofs.slap_map.chaotic_exponent import slap_exponent
+    from verification.proofs.slap_map.exponent import slap_exponent
 
     proof = slap_exponent()
     if not proof.certified:

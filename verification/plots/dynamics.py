@@ -24,7 +24,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from numeric import PinballMap
 from verification.cycles.continuation.cells import Array
-from verification.named.curves import Accumulation, BifurcationCurve, accumulation, cascade, fold, largest_shape
+from verification.named.curves import AccumulationCurve as Accumulation
+from verification.named.curves import BifurcationCurve, cascade, fold, largest_shape
+from verification.named.curves import accumulation_curve as accumulation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,7 +11,7 @@ from numeric.backends.llvm import LLVMBackend, LLVMVector
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family, Landing
 from numeric.kernels.engine import Engine
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 
 EPS = 2.0**-52
 RNG = np.random.default_rng(7)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from verification.maps.exact import ExactMap, errors
 
 EPS = 2.0**-52

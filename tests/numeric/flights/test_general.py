@@ -9,7 +9,7 @@ from sympy import Rational, cos, pi, sin, sqrt
 
 from numeric import PinballMap
 from numeric.flights.general import General
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from symbolic.tables.table import theta
 from verification.maps import strategies

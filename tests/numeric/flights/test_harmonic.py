@@ -5,7 +5,7 @@ import pytest
 from sympy import Rational, cos, sin
 
 from numeric import PinballMap, Status
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from symbolic.tables.table import theta as symbol
 

@@ -8,7 +8,7 @@ from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap, phase_starts
 from numeric.flights.pieces import CIRCLE, Pieces
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from symbolic.tables.gallery import GALLERY
 from symbolic.tables.table import theta

@@ -9,7 +9,7 @@ import pytest
 from numeric.flights.family import Family, Landing
 from numeric.kernels import engine as engines
 from numeric.kernels.engine import Engine, _pieces
-from numeric.kernels.spec import TANGENT, KernelSpec, starting
+from numeric.kernels.machine import TANGENT, KernelSpec, starting
 
 END = 4.0  # a particle beyond it is stopped with code 1
 

@@ -11,8 +11,7 @@ import pytest
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.machine import MAGIC, entered, image
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import MAGIC, KernelSpec, entered, image
 from numeric.kernels.text import kernel_text
 
 

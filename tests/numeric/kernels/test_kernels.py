@@ -6,7 +6,7 @@ import pytest
 from numeric import PinballMap
 from numeric.flights.family import SLAP
 from numeric.kernels.engine import Engine
-from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text
 
 LAMS = (0, 0.3, 1)

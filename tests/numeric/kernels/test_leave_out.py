@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec, fields
+from numeric.kernels.machine import KernelSpec, fields
 from numeric.kernels.text import alive, kernel_text, operations
 from verification.measure.work.bench import SCENES, operation_table
 

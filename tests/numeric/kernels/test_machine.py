@@ -7,7 +7,7 @@ import pytest
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.kernels.text import kernel_text
 
 MAP = PinballMap("circle", lam=0.5)

@@ -5,7 +5,7 @@ import pytest
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.kernels.text import kernel_text
 
 SCENES = {"circle": {}, "ellipse": {"a": "3/2"}, "cardioid": {}, "cuspless": {}, "egg": {"alpha": "0.08"}}

@@ -6,7 +6,7 @@ import pytest
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.circle import Circle
 from numeric.flights.harmonic import Harmonic
-from numeric.kernels.spec import FAR, TANGENT, KernelSpec, fields, rescaled, starting
+from numeric.kernels.machine import FAR, TANGENT, KernelSpec, fields, rescaled, starting
 
 SIZES = 2.0 ** np.array([-300, -101, -99, -1, 0, 1, 99, 101, 300])
 

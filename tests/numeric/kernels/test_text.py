@@ -3,7 +3,7 @@
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.kernels.text import alive, kernel_text, operations
 
 TEXT = """\

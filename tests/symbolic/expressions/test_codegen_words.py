@@ -3,7 +3,7 @@
 import pytest
 from sympy import Add, Float, Mul, Rational, S, cos, cosh, exp, pi, sin, sinh, sqrt, symbols, tan, tanh
 
-from symbolic.expressions.words import Words, checked
+from symbolic.expressions.text import Words, checked
 
 x, y = symbols("x y", real=True)
 

@@ -57,7 +57,7 @@ def engine(monkeypatch, tmp_path):
             Result(each, Verdict(verdict)) for each, verdict in verdicts.items() if only in ("*", each)
         ),
     )
-    monkeypatch.setitem(sys.modules, "verification.paper.report.verdicts", fake)
+    monkeypatch.setitem(sys.modules, "verification.paper.report.report", fake)
     monkeypatch.setattr(verification.paper.report, "verdicts", fake, raising=False)
     monkeypatch.chdir(tmp_path)
     return fake
@@ -311,7 +311,7 @@ def test_help_loads_no_mathematics():
 
 
 def test_the_catalogue_has_every_id_that_scripts_rely_on():
-    from verification.paper.report.verdicts import catalogue
+    from verification.paper.report.report import catalogue
 
     egg = "monodromy alpha_tilde alpha_hat period3_elliptic saddle_node merging_crisis boundary_crisis"
     ids = {

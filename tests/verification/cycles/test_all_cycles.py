@@ -12,8 +12,8 @@ from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.app.commands.orbit import cycles_command as cycles
 from verification.cycles.continuation.cells import Corrector, fixed_points
 from verification.cycles.continuation.search import Catalogue, all_cycles
-from verification.proofs.periodic.completeness import no_others
-from verification.proofs.slap_map.periodic_points import periodic_points
+from verification.proofs.periodic.interval_newton import no_others
+from verification.proofs.slap_map.exponent import periodic_points
 
 TABLE = egg(3).at(alpha="2/25")
 LAM = Rational(2, 5)

@@ -19,17 +19,10 @@ from verification.cycles.continuation.systems import Critical, coefficients
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, henon
-from verification.named.curves import (
-    accumulation,
-    cascade,
-    contracting_up_to,
-    double_one,
-    expanding_cycle,
-    fold,
-    largest_shape,
-)
+from verification.named.curves import accumulation_curve as accumulation
+from verification.named.curves import cascade, contracting_up_to, double_one, expanding_cycle, fold, largest_shape
 
-CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified rungs: `verification.named.feigenbaum.accumulation`
+CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified rungs: `verification.named.curves.accumulation`
 AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from verification.app.cli import main
-from verification.measure.extremes.labelled import cases
+from verification.measure.extremes.orbits import cases
 from verification.measure.work import bench as baselines
 from verification.measure.work.bench import LAWS, Row, frontier, multiprecision_rows
 from verification.measure.work.row import HEIGHT, WIDTH, diagram, magnitude

@@ -2,7 +2,7 @@
 
 import pytest
 
-from verification.measure.extremes.labelled import SCENES
+from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.bench import module
 
 PAGE = module("first_result")

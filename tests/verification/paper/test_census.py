@@ -15,8 +15,8 @@ from verification.named.attractors import branches, coexisting, row
 from verification.named.branches import Event
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import basins as on_basins
-from verification.paper.report.verdicts import catalogue
-from verification.paper.shared import attractors as on_attractors
+from verification.paper.judges import attractors as on_attractors
+from verification.paper.report.report import catalogue
 
 EGG = egg(3).at(alpha="0.08")
 CLAIMS = {claim.id: claim for claim in catalogue()}

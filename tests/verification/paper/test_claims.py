@@ -9,7 +9,7 @@ import pytest
 from symbolic.tables.formula import parse
 from verification.paper.claims.claim import LETTERS, Claim, Printed, Verdict
 from verification.paper.claims.judges import JUDGES
-from verification.paper.report.verdicts import Result, catalogue, judge, verify
+from verification.paper.report.report import Result, catalogue, judge, verify
 
 CONTRACT = {
     "map.derivative_matrix",

@@ -15,12 +15,12 @@ from verification.paper.egg import elastic as on_elastic
 from verification.paper.egg import period2 as on_egg_period2
 from verification.paper.egg import period3 as on_egg_period3
 from verification.paper.egg import stability as judged
-from verification.paper.ellipse import ellipse as on_circle
-from verification.paper.report.verdicts import catalogue
-from verification.paper.shared import attractors as on_attractors
-from verification.paper.shared import located as on_located
-from verification.proofs.slap_map import periodic_points as slap_critical
-from verification.proofs.slap_map.periodic_points import PeriodicPoints, one_zero
+from verification.paper.judges import attractors as on_attractors
+from verification.paper.judges import ellipse as on_circle
+from verification.paper.judges import located as on_located
+from verification.paper.report.report import catalogue
+from verification.proofs.slap_map import exponent as slap_critical
+from verification.proofs.slap_map.exponent import PeriodicPoints, one_zero
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNKNOWN = Finding(Outcome.UNKNOWN, "no proof")

@@ -8,12 +8,12 @@ import pytest
 
 from numeric import PinballMap
 from symbolic.expressions.signs import Finding, Outcome
-from verification.paper.cardioid.splitting import bounced
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import cascade as on_egg_cascade
 from verification.paper.egg import crises as on_egg_growth
 from verification.paper.egg.crises import Extent
-from verification.paper.report.verdicts import catalogue
+from verification.paper.judges.splitting import bounced
+from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNKNOWN = Finding(Outcome.UNKNOWN, "perhaps")

@@ -6,7 +6,7 @@ from sympy import Integer
 from symbolic.cycles.resonance import flat_triangle
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import elastic as on_elastic_cycles
-from verification.paper.report.verdicts import catalogue
+from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 TRACE, TWIST, DRIFT = flat_triangle()

@@ -9,7 +9,7 @@ from symbolic.cycles.polygons import required_tilt
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import egg as on_figures
 from verification.paper.egg.egg import side_cascade
-from verification.paper.report.verdicts import verify
+from verification.paper.report.report import verify
 
 
 def verdict(name: str) -> Verdict:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.paper.report import verdicts as claims
+from verification.paper.report import report as claims
 
 PAPER = Path(claims.__file__).parents[1]
 JUDGES = [path for room in claims.ROOMS for path in sorted((PAPER / room).glob("*.py"))]

@@ -11,7 +11,7 @@ from verification.named.crises import KINDS, crisis, extent, narrowed, power, sc
 from verification.named.locate import egg_crisis
 from verification.paper.claims.claim import Claim, Verdict
 from verification.paper.egg.crises import distance, sides
-from verification.paper.report.verdicts import judge
+from verification.paper.report.report import judge
 from verification.proofs.manifolds.known import SHAPE, contact
 
 

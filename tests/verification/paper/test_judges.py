@@ -5,7 +5,6 @@ from sympy import Interval, S, log, pi, sqrt, symbols
 
 from symbolic.expressions.signs import Finding, Outcome, positive
 from symbolic.tables.table import alpha, lam
-from verification.paper.cardioid import cardioid as on_cardioid
 from verification.paper.claims.claim import Claim, Judgement, Verdict
 from verification.paper.claims.judges import (
     answer,
@@ -20,10 +19,11 @@ from verification.paper.claims.judges import (
     rounded,
     zero,
 )
-from verification.paper.ellipse import appendix as on_appendix
-from verification.paper.ellipse import map as on_map
-from verification.paper.ellipse import stability as on_ellipse_stability
-from verification.paper.report.verdicts import catalogue
+from verification.paper.judges import appendix as on_appendix
+from verification.paper.judges import cardioid as on_cardioid
+from verification.paper.judges import ellipse_stability as on_ellipse_stability
+from verification.paper.judges import map as on_map
+from verification.paper.report.report import catalogue
 
 PROVED = Finding(Outcome.PROVED, "yes")
 REFUTED = Finding(Outcome.REFUTED, "no")

@@ -11,14 +11,14 @@ from sympy import Rational
 from symbolic.cycles.defocusing import away, least_stretch
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
-from verification.paper.cardioid import attractor as on_defocusing
 from verification.paper.claims.claim import Verdict
-from verification.paper.report.verdicts import catalogue
-from verification.paper.shared import attractors as on_attractors
-from verification.paper.shared import exponents as on_exponents
-from verification.paper.shared import located as on_contraction
-from verification.paper.shared.samples import Spectrum, spectrum, uneven, visited
-from verification.proofs.slap_map.chaotic_exponent import slap_exponent
+from verification.paper.judges import attractors as on_attractors
+from verification.paper.judges import cardioid_attractor as on_defocusing
+from verification.paper.judges import exponents as on_exponents
+from verification.paper.judges import located as on_contraction
+from verification.paper.judges.exponents import Spectrum, spectrum, uneven, visited
+from verification.paper.report.report import catalogue
+from verification.proofs.slap_map.exponent import slap_exponent
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 

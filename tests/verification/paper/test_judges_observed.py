@@ -5,12 +5,12 @@ import pytest
 from sympy import S
 
 from symbolic.expressions.signs import Finding, Outcome
-from verification.paper.cardioid import attractor as on_observed
-from verification.paper.cardioid import cuspless as on_domains
 from verification.paper.claims.claim import Verdict
-from verification.paper.ellipse import stability as on_ellipse_stability
-from verification.paper.report.verdicts import catalogue
-from verification.paper.shared.samples import Spectrum
+from verification.paper.judges import cardioid_attractor as on_observed
+from verification.paper.judges import cuspless as on_domains
+from verification.paper.judges import ellipse_stability as on_ellipse_stability
+from verification.paper.judges.exponents import Spectrum
+from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNPROVED = Finding(Outcome.UNKNOWN, "not proved")

@@ -7,9 +7,9 @@ from numeric import PinballMap
 from symbolic.cycles.splitting import least_rate
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
-from verification.paper.cardioid import splitting as on_splitting
 from verification.paper.claims.claim import Verdict
-from verification.paper.report.verdicts import catalogue
+from verification.paper.judges import splitting as on_splitting
+from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNPROVED = Finding(Outcome.UNKNOWN, "not proved")

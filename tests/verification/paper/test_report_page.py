@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.paper.report import verdicts as claims
+from verification.paper.report import report as claims
 from verification.paper.report.mathml import formula, mathml, prose, remark
 from verification.paper.report.page import FOLD, Picture, diagrams, page
 from verification.paper.report.report import escaped, tables

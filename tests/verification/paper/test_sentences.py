@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from verification.paper.claims.claim import Claim, Sentence, caption, defects, differences, digest, inventory, split
-from verification.paper.report.verdicts import catalogue
+from verification.paper.report.report import catalogue
 
 PAPER = os.environ.get("PINBALL_PAPER")
 

@@ -18,7 +18,7 @@ from verification.paper.claims.claim import Verdict
 from verification.paper.egg import elastic as on_elastic
 from verification.paper.egg.elastic import elastic_mixed, isosceles, no_full_chaos
 from verification.paper.egg.stability import CASCADES, chaotic_interval, isolated_regions, no_chaos_below, periods_at
-from verification.paper.report.verdicts import catalogue
+from verification.paper.report.report import catalogue
 from verification.proofs.periodic.bifurcation import Twist, twist
 
 CLAIMS = {claim.id: claim for claim in catalogue()}

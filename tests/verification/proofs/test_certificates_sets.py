@@ -16,7 +16,7 @@ from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.recurrence.critical import polygon_fold
 from verification.cycles.recurrence.newton import refined
-from verification.named.feigenbaum import DELTA, aitken, limit, ratio, wynn
+from verification.named.curves import DELTA, aitken, limit, ratio, wynn
 from verification.named.locate import closed_form
 from verification.paper.egg.basins import points_of_period_4, without_triangles
 from verification.proofs.corner.half_return import trapping_region
@@ -24,8 +24,8 @@ from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piec
 from verification.proofs.periodic.interval_newton import Status, interval_newton
 from verification.proofs.periodic.over_interval import doubling_curve
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
-from verification.proofs.slap_map import periodic_points as slap
-from verification.proofs.slap_map.periodic_points import periodic_points
+from verification.proofs.slap_map import exponent as slap
+from verification.proofs.slap_map.exponent import periodic_points
 
 ALPHA = Rational(2, 25)
 LADDER = [  # lambda_3 to lambda_12 at alpha = 2/25, each certified by `pinball locate doubling`

@@ -16,9 +16,9 @@ from symbolic.cycles.cardioid_slap import branch
 from symbolic.expressions.text import load
 from verification.arithmetic.balls import ARRAYS, bits_of, working
 from verification.arithmetic.series import expanded
-from verification.proofs.slap_map import chaotic_exponent
+from verification.proofs.slap_map import exponent as chaotic_exponent
 from verification.proofs.slap_map.candidate import Judge, Pieces, candidate
-from verification.proofs.slap_map.chaotic_exponent import judged, symmetric
+from verification.proofs.slap_map.exponent import judged, symmetric
 from verification.proofs.slap_map.transfer import Branches, inverted, spread, ulam, variation
 
 HALF = np.pi / 2

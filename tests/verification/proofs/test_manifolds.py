@@ -24,11 +24,11 @@ from verification.proofs.manifolds.known import (
     crisis,
     heteroclinic_exponent,
     homoclinic_exponent,
+    shadow,
     table,
 )
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.saddle import Orbit, local, saddle
-from verification.proofs.manifolds.shadows import shadow
 from verification.proofs.manifolds.tangency import Contact, Gap, tangency
 
 INNER, OUTER = Orbit("inner fixed point", (0.63,)), Orbit("outer fixed point", (-1.13,))

@@ -23,9 +23,9 @@ from verification.proofs.manifolds.enclosed import (
     vanishing,
 )
 from verification.proofs.manifolds.known import CONTACTS, MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
-from verification.proofs.manifolds.pair import Precision, one_cycle, pair, scale, smaller
 from verification.proofs.manifolds.plane_map import Henon
 from verification.proofs.manifolds.saddle import Orbit, horner, local, saddle
+from verification.proofs.manifolds.tangency import Precision, one_cycle, pair, scale, smaller
 
 EGG = table(SHAPE)
 OUTER = 1000

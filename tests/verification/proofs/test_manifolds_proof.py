@@ -14,11 +14,10 @@ from symbolic.tables import cardioid
 from verification.arithmetic.balls import FLOAT64, multiprecision, working
 from verification.cycles.recurrence.recurrence import Closure
 from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
-from verification.proofs.manifolds.pair import Precision
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
 from verification.proofs.manifolds.saddle import Orbit, local, saddle
-from verification.proofs.manifolds.tangency import Contact, Gap, tangency
+from verification.proofs.manifolds.tangency import Contact, Gap, Precision, tangency
 from verification.proofs.manifolds.touching import Point, Touching, flight
 
 EGG = table(SHAPE)

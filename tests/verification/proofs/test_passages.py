@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from verification.proofs.manifolds.known import homoclinic_exponent
-from verification.proofs.manifolds.shadows import exponent, log_stay, unit
+from verification.proofs.manifolds.known import exponent, homoclinic_exponent, log_stay, unit
 
 SADDLES = [(0.20493, 3.65592), (0.00431, 9.31356), (-0.02, -5.0)]
 

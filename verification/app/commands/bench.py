@@ -12,7 +12,7 @@ from verification.app.cli import DONE, FAILED, Output, json_option
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from verification.measure.extremes.labelled import Accuracy
+    from verification.measure.extremes.orbits import Accuracy
     from verification.measure.work.bench import Row
 
 from typing import TYPE_CHECKING
@@ -50,7 +50,7 @@ def command(
     Pareto front: no other way is both faster and more exact. With --compare the exit status is 1 when a time, beside
     the others of its run, changed by more than a factor 1.5, or an error grew tenfold.
     """
-    from verification.measure.extremes import labelled
+    from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
     from verification.measure.work.bench import MISSING, baseline_rows, is_checkout
     from verification.measure.work.choice import earlier, moved, of_bench
@@ -93,7 +93,7 @@ def command(
 
 def show(console: "Console", name: str, rows: "list[Row]") -> None:
     """A scene's rows, with ratios to the kernel and a mark on the Pareto front, and two diagrams."""
-    from verification.measure.extremes.labelled import SCENES
+    from verification.measure.extremes.orbits import SCENES
     from verification.measure.work.bench import frontier
     from verification.measure.work.row import diagram, duration
 

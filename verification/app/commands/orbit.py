@@ -313,7 +313,7 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
 
 def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, output: Output) -> list[dict[str, Any]]:
     """What balls prove, period by period."""
-    from verification.proofs.periodic.completeness import proofs
+    from verification.proofs.periodic.interval_newton import proofs
 
     with output.progress("Proving", highest - 1) as tick:
         return [

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.paper.report.page import Picture
-    from verification.paper.report.verdicts import Result
+    from verification.paper.report.report import Result
 
 
 @click.command(epilog="Example: pinball figure egg-slap --out egg-slap.pdf")
@@ -154,7 +154,7 @@ def _free(port: int) -> int:
 @json_option
 def command(only: str, digits: int, folder: str, figures: bool, work: str | None, output: Output) -> int:
     """Is each claim of the paper true? Exit status 1 when one is open."""
-    from verification.paper.report import verdicts as claims
+    from verification.paper.report import report as claims
     from verification.paper.report.page import diagrams
 
     wanted = matching(only, [claim.id for claim in claims.catalogue()])

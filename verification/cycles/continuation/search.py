@@ -5,7 +5,7 @@ are the seeds, those next to the start (where unstable cycles still show) as muc
 A round without news is followed by one with the known cycles deflated. Rounds go on until several in a row bring
 nothing new and, on a convex table, the index sums vanish.
 Each cycle found is listed once, whatever bounce it is begun with, and its images under the table's symmetries are
-added. A search finds cycles and does not prove that it found all; `verification.proofs.periodic.completeness` does.
+added. A search finds cycles and does not prove that it found all; `verification.proofs.periodic.interval_newton` does.
 """
 
 from collections.abc import Callable, Iterator

@@ -29,7 +29,7 @@ from numeric.backends import functions as roots
 from numeric.backends.scalars import ArrayBackend, ScalarBackend
 from numeric.flights.family import Family, Status
 from numeric.flights.harmonic import Ellipse
-from numeric.kernels.spec import KernelSpec
+from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import GENERIC, Growth
 from symbolic.cycles.cycle import minor_axis, trace_and_determinant
 from symbolic.expressions.text import kernel, load

@@ -28,13 +28,13 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.kernels import machine
-from numeric.kernels.spec import KernelSpec, starting
+from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text, operations
 from numeric.pinball.sampling import phase_starts
 from verification.arithmetic.balls import bits_of, working
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import ExactMap, errors
-from verification.measure.extremes.labelled import DIGITS, SCENES
+from verification.measure.extremes.orbits import DIGITS, SCENES
 
 Array = NDArray[np.float64]
 LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}

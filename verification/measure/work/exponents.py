@@ -31,7 +31,7 @@ from verification.measure.work.question import Claimed, Method, Question, availa
 from verification.measure.work.sought import DIGITS, WITHOUT, Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
 from verification.named.locate import certify
-from verification.proofs.slap_map.chaotic_exponent import slap_exponent
+from verification.proofs.slap_map.exponent import slap_exponent
 
 FEW, MANY = (30, 300, 3_000), (100, 10_000, 1_000_000)
 ORBITS = 64

@@ -12,7 +12,7 @@ from flint import arb
 from sympy import Expr, Rational, sqrt
 
 from numeric import PinballMap
-from numeric.kernels.spec import KernelSpec as Run
+from numeric.kernels.machine import KernelSpec as Run
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.expressions.text import Kernel, kernel, load

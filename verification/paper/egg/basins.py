@@ -25,10 +25,10 @@ from verification.arithmetic.progress import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, shown
-from verification.paper.shared.attractors import SHAPE, found, unsettled
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.attractors import SHAPE, found, unsettled
+from verification.paper.judges.exponents import sampled
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
-from verification.proofs.slap_map.periodic_points import PeriodicPoints, periodic_points
+from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_points
 
 SEED = 1
 PAIRS = 4000

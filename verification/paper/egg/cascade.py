@@ -16,14 +16,14 @@ from symbolic.tables.table import alpha
 from verification.arithmetic.progress import telling
 from verification.cycles.recurrence.cascade import attractor
 from verification.named.branches import cascade
-from verification.paper.cardioid.splitting import bounced, ends_of_period
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, shown
 from verification.paper.egg.egg import SHAPES
 from verification.paper.egg.stability import attracting_4, chaos_at
-from verification.paper.shared.attractors import STARTS, egg, proved_at, unsettled
-from verification.paper.shared.located import certified, located
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettled
+from verification.paper.judges.exponents import sampled
+from verification.paper.judges.located import certified, located
+from verification.paper.judges.splitting import bounced, ends_of_period
 from verification.proofs.periodic.over_interval import Stability, over_interval
 from verification.proofs.periodic.returning import returning
 

@@ -20,12 +20,12 @@ from symbolic.tables.table import alpha, lam
 from verification.named.attractors import certificate
 from verification.named.branches import Cascade, cascade
 from verification.named.curves import double_one, expanding_cycle
-from verification.paper.cardioid.border import chaos, corner
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, zero
-from verification.paper.ellipse.ellipse import LIMIT, lyapunov
-from verification.paper.shared.attractors import JOIN, SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.attractors import JOIN, SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
+from verification.paper.judges.border import chaos, corner
+from verification.paper.judges.ellipse import LIMIT, lyapunov
+from verification.paper.judges.exponents import sampled
 from verification.proofs.manifolds.known import CONTACTS
 from verification.proofs.periodic.interval_newton import Status
 from verification.proofs.periodic.over_interval import doubling_curve

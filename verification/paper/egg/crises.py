@@ -19,8 +19,8 @@ from verification.arithmetic.balls import FLOAT64
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import judges
-from verification.paper.shared.attractors import SHAPE, cycles, egg, proved_at, unsettled
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, unsettled
+from verification.paper.judges.exponents import sampled
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
 from verification.proofs.manifolds.saddle import local, saddle

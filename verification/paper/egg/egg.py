@@ -46,7 +46,7 @@ from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, identity, judges, zero
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.exponents import sampled
 from verification.proofs.periodic.bifurcation import Proof
 
 BOUNDARY = egg(3).components[0]

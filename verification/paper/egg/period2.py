@@ -39,7 +39,7 @@ from verification.paper.claims.judges import (
     zero,
 )
 from verification.paper.egg.egg import ROUND, SHAPES, at
-from verification.proofs.slap_map.periodic_points import OneZero, one_zero
+from verification.proofs.slap_map.exponent import OneZero, one_zero
 
 W2 = tilt() ** 2  # 1 - P on the diameters
 

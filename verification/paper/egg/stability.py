@@ -28,11 +28,11 @@ from verification.arithmetic.progress import telling
 from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled, doubling
 from verification.named.attractors import certificate
 from verification.named.branches import cascade
-from verification.named.feigenbaum import accumulation
+from verification.named.curves import accumulation
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, zero
 from verification.paper.egg.period3 import side_of_fold
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.exponents import sampled
 from verification.proofs.periodic.over_interval import Stability, doubling_curve, over_interval, stability
 from verification.proofs.periodic.triangles import contracts, flips_nowhere
 

@@ -11,8 +11,7 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.pinball.sampling import phase_starts
-from numeric.sweeps.run import on_threads
-from numeric.sweeps.store import Memory
+from numeric.sweeps.run import Memory, on_threads
 from numeric.sweeps.sweep import Array, Sweep, cores
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde

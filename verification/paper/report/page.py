@@ -21,7 +21,7 @@ from verification.paper.report.mathml import formula, prose, remark
 from verification.paper.report.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
-    from verification.paper.report.verdicts import Result
+    from verification.paper.report.report import Result
 
 
 FOLD = 48  # digits of a number before the rest is folded away

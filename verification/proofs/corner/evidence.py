@@ -29,9 +29,9 @@ from verification.proofs.corner.border_collision import (
     robust,
     strips,
 )
-from verification.proofs.corner.corner import ARC, WALL, enclosed
+from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, angle, constant, enclosed
+from verification.proofs.corner.corner import corner_parameters as corners
 from verification.proofs.corner.half_return import START, limit, pieces
-from verification.proofs.corner.mean_value import BITS, Bounce, angle, constant, corners
 from verification.proofs.corner.polygon import SIGNS, Pieces, Polygon, Row, grown, hull, part, sides, trapped
 
 Array = NDArray[np.float64]

@@ -34,8 +34,9 @@ from flint import arb
 
 from verification.arithmetic.balls import cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
-from verification.proofs.corner.corner import ARC, WALL, enclosed
-from verification.proofs.corner.mean_value import BITS, Bounce, Quantity, at_corner, beyond, corners, on_arc, parameter
+from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, Quantity, beyond, enclosed, on_arc, parameter
+from verification.proofs.corner.corner import after_corner as at_corner
+from verification.proofs.corner.corner import corner_parameters as corners
 from verification.proofs.corner.polygon import (
     Expansion,
     Piece,

@@ -29,19 +29,21 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
-from verification.proofs.corner.corner import ARC, WALL, enclosed
-from verification.proofs.corner.mean_value import (
+from verification.proofs.corner.corner import (
+    ARC,
     BITS,
+    WALL,
     Bounce,
     Quantity,
     angle,
-    at_corner,
     beyond,
     constant,
-    corners,
+    enclosed,
     on_arc,
     parameter,
 )
+from verification.proofs.corner.corner import after_corner as at_corner
+from verification.proofs.corner.corner import corner_parameters as corners
 
 Angles = dict[tuple[int, int], Callable[..., Any]]
 TURN = 6.283185307179586

@@ -29,10 +29,9 @@ from verification.cycles.recurrence.chain import dot
 from verification.cycles.recurrence.recurrence import Closure
 from verification.maps.first_hit import convex
 from verification.proofs.manifolds.enclosed import TooWideError
-from verification.proofs.manifolds.pair import Precision
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Orbit
-from verification.proofs.manifolds.tangency import Contact
+from verification.proofs.manifolds.tangency import Contact, Precision
 from verification.proofs.manifolds.touching import Linear, Point, Touching, Vector
 from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
 

@@ -23,10 +23,9 @@ from flint import arb, arb_mat
 from verification.arithmetic.balls import FLOAT64, balls
 from verification.arithmetic.series import Jet
 from verification.proofs.manifolds.enclosed import TooWideError
-from verification.proofs.manifolds.pair import Near, Pair, Precision, scale, smaller
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Local, horner
-from verification.proofs.manifolds.tangency import Contact, rounds
+from verification.proofs.manifolds.tangency import Contact, Near, Pair, Precision, rounds, scale, smaller
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,35 @@ Krawczyk's operator [Krawczyk1969] is
 preconditioner is a full matrix, so the cost is cubic in the period; in return the balls of `F'(X)`
 may be wide, which elimination along the chain does not forgive. For a ball of contractions the
 motion of the cycle with `lam` is kept in one piece, `Y dF/dlam (lam - middle)`.
+
+Are there no other cycles of a short period? A cover of all closed chains of bounces, in balls.
+
+Around each known cycle Krawczyk's operator proves a neighbourhood that holds no second one. Everything
+else is covered by boxes in the first bounce and the gaps between bounces; a box goes when one collision
+rule, by enclosure or by the mean value theorem, or Krawczyk's operator cannot hold in it, and is halved
+otherwise. On a convex table the chord's angle falls as its end moves on, so bounces that lie closer than
+the gap at which it exceeds `lam*pi/2` need not be looked at.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from math import pi
 from typing import Any
 
+import numpy as np
 from flint import arb, arb_mat
+from sympy import Expr
 
+from symbolic.expressions.text import kernel, load
+from symbolic.motion.chords import chord_kernel
 from verification.arithmetic.balls import balls, working
+from verification.cycles.continuation.search import Catalogue
+from verification.cycles.continuation.systems import rotations
 from verification.cycles.recurrence.chain import Chain
 from verification.cycles.recurrence.newton import System
 from verification.cycles.recurrence.problem import Linearised, Problem
+from verification.maps.first_hit import convex
 
 
 class Status(Enum):
@@ -140,3 +156,170 @@ def dense(chain: Chain) -> arb_mat:
         rows[i][i - 1] += lower * (chain.sign if i == 0 else 1)
         rows[i][(i + 1) % n] += upper * (chain.sign if i == n - 1 else 1)
     return arb_mat(rows)
+
+
+BITS = 64
+SMALLEST = 2.0**-30
+Box = tuple[tuple[float, float], ...]  # midpoint and half width of the first bounce and of the gaps
+Tick = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Completeness:
+    """`complete`: there is no cycle of this period but the known ones; None when the budget ended first."""
+
+    period: int
+    complete: bool | None
+    boxes: int
+    known: int
+
+
+def no_others(
+    catalogue: Catalogue, lam: Expr, n: int, budget: int = 40_000, tick: Tick = lambda said: None
+) -> Completeness:
+    """Is the catalogue complete for period `n`? For convex tables of one smooth component.
+
+    >>> from sympy import Rational
+    >>> from symbolic.tables import ellipse
+    >>> from verification.cycles.continuation.search import all_cycles
+    >>> found = all_cycles(ellipse.at(a="3/2"), Rational(1, 4), 2).catalogue
+    >>> no_others(found, Rational(1, 4), 2).complete
+    True
+    """
+    table, known = catalogue.table, catalogue.count(n)
+    if len(table.components) > 1 or convex(table) is not True:
+        return Completeness(n, None, 0, known)
+    with working(BITS):
+        angle = load(chord_kernel(table, 0, 0, 1), balls(BITS))
+        contraction = load(kernel("lam", [], {"lam": lam}), balls(BITS))()[0] + arb(0)
+        gap = least_gap(angle, contraction)
+        if gap == 0:
+            return Completeness(n, None, 0, known)
+        problem = Problem(table, (0,) * n, lam=contraction)
+        holds = neighbourhoods(catalogue, problem)
+        cover = Cover(problem, angle, contraction, gap, holds)
+        boxes = 0
+        for turns in range(1, n):
+            queue = [start(rotations(table), n, gap)]
+            while queue:
+                box = queue.pop()
+                boxes += 1
+                if boxes % 500 == 0:
+                    tick(f"{boxes} boxes")
+                if boxes > budget:
+                    return Completeness(n, None, boxes, known)
+                if cover.settled(box, turns):
+                    continue
+                widest = max(range(n), key=lambda i: box[i][1])
+                middle, half = box[widest]
+                if half < SMALLEST:
+                    return Completeness(n, None, boxes, known)
+                for side in (-half / 2, half / 2):
+                    queue.append(tuple((middle + side, half / 2) if i == widest else x for i, x in enumerate(box)))
+    return Completeness(n, True, boxes, known)
+
+
+def start(turn: int, n: int, gap: float) -> Box:
+    """All chains: the first bounce up to a rotation of the table, every gap from the least to the largest."""
+    reach = np.ceil(2**20 * pi / turn) / 2**20
+    middle, half = 3.141592653589793, np.ceil(2**20 * (pi - gap)) / 2**20
+    return ((0.0, float(reach)), *(((middle, float(half)),) * (n - 1)))
+
+
+def least_gap(angle: Any, contraction: arb) -> float:
+    """A gap at and below which a chord leaves more steeply than `lam*pi/2`, whichever way it goes; 0 if none."""
+    largest, pieces, gap = contraction * arb.pi() / 2, 256, 1.5
+    starts = [arb(2 * k + 1, 1) * arb.pi() / pieces for k in range(pieces)]
+    while gap > 0:
+        if all(angle(x, x + arb(gap))[0] > largest and angle(x, x - arb(gap))[0] < -largest for x in starts):
+            return gap
+        gap -= 1 / 16
+    return 0.0
+
+
+def neighbourhoods(catalogue: Catalogue, problem: Problem) -> list[tuple[list[float], float]]:
+    """Centres and radii of boxes that hold one cycle each, for all bounces a known cycle can be begun with."""
+    n, found = problem.period, []
+    for cycle in catalogue.of(n):
+        theta = np.unwrap(np.tile(cycle.theta, n // cycle.period))
+        radius = 0.2
+        while radius > 1e-7:
+            centre = [arb(float(x)) for x in theta]
+            if krawczyk(problem, centre, [radius] * n, BITS).status is Status.UNIQUE:
+                break
+            radius /= 1.5
+        else:
+            continue
+        found += [([float(x) for x in np.roll(theta, -k)], radius) for k in range(cycle.period)]
+    return found
+
+
+@dataclass(frozen=True)
+class Cover:
+    """What settles a box."""
+
+    problem: Problem
+    angle: Any
+    lam: arb
+    gap: float
+    holds: list[tuple[list[float], float]]
+
+    def settled(self, box: Box, turns: int) -> bool:
+        """True when the box holds no cycle, or lies in the neighbourhood of a known one."""
+        wide = [arb(m, r) for m, r in box]
+        last = 2 * turns * arb.pi() - sum(wide[1:], arb(0))
+        if last < self.gap or last > 2 * arb.pi() - self.gap or any(d > wide[1] for d in [*wide[2:], last]):
+            return True  # the first gap may be taken for the largest
+        middle, theta = [box[0][0]], [wide[0]]
+        for (m, _), d in zip(box[1:], wide[1:], strict=True):
+            middle.append(middle[-1] + m)
+            theta.append(theta[-1] + d)
+        if self._known(middle, [float(t.rad()) for t in theta]):
+            return True
+        return self._impossible(box, middle, theta)
+
+    def _known(self, middle: list[float], radii: list[float]) -> bool:
+        for centre, radius in self.holds:
+            if all(
+                abs((m - c + pi) % (2 * pi) - pi) + r < radius - 1e-9
+                for m, c, r in zip(middle, centre, radii, strict=True)
+            ):
+                return True
+        return False
+
+    def _impossible(self, box: Box, middle: list[float], theta: list[arb]) -> bool:
+        n, exact = len(box), [arb(m) for m in middle]
+        for i in range(n):
+            here, before, after = theta[i], theta[i - 1], theta[(i + 1) % n]
+            out, into = self.angle(here, after), self.angle(here, before)
+            value = out[0] + self.lam * into[0]
+            if not value.is_finite():
+                return False
+            if not value.contains(0):
+                return True
+            at = self.angle(exact[i], exact[(i + 1) % n])[0] + self.lam * self.angle(exact[i], exact[i - 1])[0]
+            slope = {i: out[1] + self.lam * into[1]}
+            for j, s in ((i - 1) % n, self.lam * into[2]), ((i + 1) % n, out[2]):
+                slope[j] = slope.get(j, arb(0)) + s
+            by_box = _by_gaps(slope, n)
+            if not (at + sum((s * arb(0, box[k][1]) for k, s in enumerate(by_box)), arb(0))).contains(0):
+                return True
+        if max(half for _, half in box) > 0.15:
+            return False
+        return krawczyk(self.problem, exact, [float(t.rad()) for t in theta], BITS).status is Status.EMPTY
+
+
+def _by_gaps(slope: dict[int, arb], n: int) -> list[arb]:
+    """Derivatives by the bounces as derivatives by the first bounce and the gaps."""
+    return [sum((s for j, s in slope.items() if j >= k), arb(0)) for k in range(n)]
+
+
+def proofs(
+    catalogue: Catalogue, lam: Expr, highest: int, budget: int, tick: Tick = lambda said: None
+) -> Iterator[Completeness]:
+    """The periods from 2 up to `highest`, until one stays open."""
+    for n in range(2, highest + 1):
+        found = no_others(catalogue, lam, n, budget, tick)
+        yield found
+        if found.complete is not True:
+            return

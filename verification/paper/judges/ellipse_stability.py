@@ -10,7 +10,7 @@ from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, p
 from symbolic.tables.table import a, lam
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, digits, equal, greater, identity, judges, zero
-from verification.paper.ellipse.ellipse import BEYOND, major, minor
+from verification.paper.judges.ellipse import BEYOND, major, minor
 
 SQRT2 = "at a = sqrt(2) the monodromy matrix is -lam times the identity"
 w = Symbol("w", positive=True)  # sqrt(a**2 - 1)

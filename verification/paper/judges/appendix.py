@@ -26,7 +26,7 @@ from symbolic.tables import ellipse
 from symbolic.tables.table import a, eta, lam, phi, s
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, greater, judges, zero
-from verification.paper.ellipse.ellipse import settles
+from verification.paper.judges.ellipse import settles
 
 omega = Symbol("omega", real=True)  # direction of the flight
 C = Symbol("C", real=True)  # cos(omega)

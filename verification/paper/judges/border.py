@@ -15,10 +15,10 @@ from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import enclose
 from verification.arithmetic.progress import telling
-from verification.paper.cardioid.cuspless import attracting_below
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges
-from verification.paper.shared.located import certified, located, subcritical
+from verification.paper.judges.cuspless import attracting_below
+from verification.paper.judges.located import certified, located, subcritical
 from verification.proofs.corner.border_collision import Kind
 from verification.proofs.corner.corner import ARC
 from verification.proofs.corner.evidence import Attractor, border, measured, saddles, strips_of_the_map

@@ -24,8 +24,8 @@ from symbolic.tables.table import lam, phi
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges
-from verification.paper.ellipse.ellipse import settles, two_cycles
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.ellipse import settles, two_cycles
+from verification.paper.judges.exponents import sampled
 
 SEED, STARTS, FEW = 1, 200, 40
 SHAPE = "0.08"

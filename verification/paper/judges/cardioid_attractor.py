@@ -25,9 +25,8 @@ from symbolic.tables.geometry import arc_length, curvature, velocity
 from symbolic.tables.table import theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, equal, greater, judges, shown, zero
-from verification.paper.shared.attractors import STARTS, chaotic, cycles, found, unsettled
-from verification.paper.shared.located import TENTHS, at_most_zero
-from verification.paper.shared.samples import (
+from verification.paper.judges.attractors import STARTS, chaotic, cycles, found, unsettled
+from verification.paper.judges.exponents import (
     BALLS,
     BOUNCES,
     CELLS,
@@ -39,7 +38,8 @@ from verification.paper.shared.samples import (
     uneven,
     visited,
 )
-from verification.proofs.slap_map.chaotic_exponent import ChaoticProof, slap_exponent
+from verification.paper.judges.located import TENTHS, at_most_zero
+from verification.proofs.slap_map.exponent import ChaoticProof, slap_exponent
 
 FIFTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
 LONG = 12_000  # bounces: 20 to a cell, if every cell is visited

@@ -18,9 +18,9 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, cos_eta1, cos_phi0, lam
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, zero
-from verification.paper.shared.attractors import STARTS, chaotic, found, unsettled
-from verification.paper.shared.samples import SPECTRA_SEED as SEED
-from verification.paper.shared.samples import sampled
+from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled
+from verification.paper.judges.exponents import SPECTRA_SEED as SEED
+from verification.paper.judges.exponents import sampled
 
 BALLS, BOUNCES, BLOCK, LAG = 64, 20_000, 500, 100
 Array = NDArray[np.float64]

@@ -1,1 +1,0 @@
-"""Judges of the cardioid and the cuspless table. Paper: sections 4 and 5."""

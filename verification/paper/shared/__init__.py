@@ -1,1 +1,0 @@
-"""Judges that more than one table needs."""

@@ -1,0 +1,251 @@
+"""The Lyapunov exponent of a chaotic attractor, proved: the cardioid at `lam = 0`, where the map is its slap map.
+
+Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `slap_map.transfer`, for functions on
+`[0, pi/2]` of bounded variation that end in 0; norms are in `L1`.
+
+**There is one invariant density.** The means of `L^n f`, for any such density `f`, are bounded in variation, so by
+Helly's theorem some of them converge, to a density `h = L h`; it ends in 0, because the rate is 0 at the cusp. Let
+`e` be another fixed point up to `r`: `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P e)
++ P r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
+
+    ||e|| <= (c/2)*(K + 1)*Var e + K*||r||,     Var e <= (adds*||e|| + Var r)/(1 - shrinks),
+
+so that `Var e <= (adds*K*||r|| + Var r)/((1 - shrinks)*gap)` where
+
+    gap = 1 - adds*(c/2)*(K + 1)/(1 - shrinks)  must be positive.
+
+For the difference of two invariant densities `r = 0`, and they are the same. Then the means of `L^n f` converge to
+`h` for these `f`, and, `L` being a contraction of `L1`, for every density: the invariant measure that is absolutely
+continuous is unique, and a set of starts that is invariant has measure 0 or carries `h`. With Birkhoff's theorem,
+time averages are those of `h` for almost every start: `h` is the natural measure.
+
+**On the whole boundary** a density is half a mirror-symmetric one, which is the above, and half one that the mirror
+image negates. The operator acts on these with its first summand negated, since such a flight changes halves; the
+inequality for variations is the same, and so is the argument, with a `K` for all vectors: a fixed one is 0. So the
+slap map itself has one invariant density, and it is its own mirror image.
+
+**The density is near `f`.** For any `f` with integral 1, here polynomials, `e = h - f` has `r = L f - f`, which
+`verification.proofs.slap_map.candidate` bounds.
+
+**The exponent.** `T0'(s)` and the slope `F'` in half angles differ by the factor `cos(theta/2)` at either end of a
+flight, whose logarithm is integrable; so the exponent of almost every start is the integral of `log F'` times `h`.
+That of `f` is enclosed, `abs(e) <= Var e`, and the integral of `log F' = -log(rate)` over all launches is that of
+`-rate*log(rate) <= 1/e` over all landings, at most `3*pi/(4*e)`. The other exponent is minus infinity: every particle
+leaves along the normal.
+
+Assumed: that python-flint's balls, doubles and the machine do what they say. Not proved: that the measure mixes,
+and anything for `lam > 0`. Not in the paper.
+
+Critical points of the egg's slap map, and all cycles of a slap map up to a period, in balls.
+
+The egg's slap map has no critical point, three or six, for every shape (paper: section 6.2). `T0' = 0` where the
+centre of curvature `e` lies on the boundary. With `C = cos(3*theta)` let `k` be its distance from the centre less
+that of the boundary in its direction: `T0'` has the sign of `-k`. Balls show on a cover of `-1 <= C <= 1`, `0 <=
+alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` `k` has at most one zero, through which
+it falls: one where `k > 0` at the flat points (`C = -1`), none where `k < 0` there. A zero inside stands for six
+points, one at `C = -1` for the three flat points.
+
+The slap map of the cuspless cardioid has no cycle of period 4. A slap map is one-dimensional, so subdivision settles
+it: a piece of the boundary is followed in balls. A piece that does not meet its image holds no periodic point; where
+`(T0**n)' - 1` keeps its sign it holds at most one; and pieces that touch are joined where that sign is the same, so
+that what is left are as many periodic points as are known already. Where it changes from one piece to the next, as it
+may at a kink of the map, each piece can hold one. Paper: section 5.4 (`the graph of the 4th iterate confirms that
+there are no period-4 orbits`).
+"""
+
+from dataclasses import dataclass, replace
+
+from flint import arb
+from sympy import Rational
+
+from symbolic.cycles.polygons import COSINE, centre_beyond_boundary, centre_far_inside
+from symbolic.expressions.text import kernel, load
+from symbolic.tables.table import alpha
+from verification.arithmetic.balls import balls, bits_of, working
+from verification.arithmetic.progress import Tick, silent
+from verification.proofs.corner.corner import ARC, BITS, WALL
+from verification.proofs.corner.return_map import Flights, Piece
+from verification.proofs.periodic.bifurcation import Checks
+from verification.proofs.slap_map.candidate import Judge, Pieces, candidate
+from verification.proofs.slap_map.transfer import Inverted, Variation, inverted, variation
+
+CELLS = 2048
+MIRRORED = 1024  # cells for densities that the mirror image negates
+DIGITS = 14
+
+
+@dataclass(frozen=True)
+class ChaoticProof:
+    """What was proved of the exponent; `value` is a ball that contains it if it is `certified`, else anything.
+
+    `distance` bounds the variation, and so the largest value, of the density less the candidate.
+    """
+
+    value: arb
+    checks: Checks
+    gap: float
+    inverse: float | None
+    distance: arb
+
+    @property
+    def certified(self) -> bool:
+        """True when every item of the checklist is proved."""
+        return all(value is True for value in self.checks.values())
+
+
+def slap_exponent(digits: int = DIGITS, cells: int = CELLS) -> ChaoticProof:
+    """The exponent per bounce of the cardioid at `lam = 0`, with a density of about `digits` digits.
+
+    >>> proof = slap_exponent(6)
+    >>> proof.certified, bool(abs(proof.value - arb("0.36834079947576")) < 1e-4)
+    (True, True)
+    """
+    proof = judged(candidate(digits), digits, inverted(cells))
+    return replace(proof, checks=proof.checks | {"symmetric": symmetric(inverted(MIRRORED, sign=-1), variation())})
+
+
+def symmetric(inverse: Inverted, known: Variation) -> bool | None:
+    """Is every invariant density of the slap map on the whole boundary its own mirror image?"""
+    if not known.proved or inverse.sign != -1 or inverse.bound is None:
+        return None
+    with working(64):
+        return bool(gap(inverse, known) > 0) or None
+
+
+def gap(inverse: Inverted, known: Variation) -> arb:
+    """What must be positive, in the ambient precision."""
+    return 1 - known.adds * arb.pi() / (4 * inverse.cells) * (arb(inverse.bound or 0) + 1) / (1 - known.shrinks)
+
+
+def judged(near: Pieces, digits: int, inverse: Inverted, known: Variation | None = None) -> ChaoticProof:
+    """The proof from any candidate for the density: a bad one makes it imprecise, and never wrong.
+
+    The items: the inequality for variations holds; the averaged operator is inverted; the gap is positive, so that
+    the natural measure exists and is unique; the candidate has a positive mass; two digits were lost at most.
+    """
+    known = known or variation()
+    bits = bits_of(digits, 64) + 2 * digits
+    with working(bits):
+        near = near.grounded()
+        judge = Judge(near, digits, bits)
+        mass = near.integral()
+        residual = judge.residual()
+        loss = 1 - known.shrinks
+        size = arb(inverse.bound or 0)
+        room = gap(inverse, known)
+        distance = (known.adds * size * residual.norm + residual.variation) / (loss * room * mass)
+        error = distance * 3 * arb.pi() / (4 * arb(1).exp())
+        value = judge.mean() / mass + error * arb(0, 1)
+        checks: Checks = {
+            "variation": known.proved or None,
+            "inverse": (inverse.sign == 1 and inverse.bound is not None) or None,
+            "gap": (inverse.bound is not None and bool(room > 0)) or None,
+            "mass": bool(mass > 0) or None,
+        }
+        checks["precise"] = (all(checks.values()) and bool(value.rad() < arb(10) ** (2 - digits))) or None
+        return ChaoticProof(value, checks, float(room.lower()), inverse.bound, arb(distance.abs_upper()))
+
+
+SMALLEST = 2.0**-30  # halves of halves must stay exact in floats
+Box = tuple[tuple[float, float], tuple[float, float]]  # middle and half width, of C and of alpha
+WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # a little more than the shapes up to 1/10, cut off at them
+
+
+@dataclass(frozen=True)
+class OneZero:
+    """`proved`: `k` has at most one zero for each shape, and falls there; None when the budget ended."""
+
+    proved: bool | None
+    boxes: int
+
+
+def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
+    """Does the centre of curvature cross the boundary at most once between a flat point and a vertex?
+
+    >>> one_zero().proved, one_zero(budget=10).proved
+    (True, None)
+    """
+    beyond = centre_beyond_boundary()
+    expressions = {"far": centre_far_inside(), "k": beyond, "slope": beyond.diff(COSINE)}
+    queue, boxes = [WHOLE], 0
+    with working(BITS):
+        at = load(kernel("centre", [COSINE, alpha], expressions), balls(BITS))
+        most = arb(Rational(1, 10).p) / 10
+        while queue:
+            (c, wide), (shape, high) = box = queue.pop()
+            boxes += 1
+            if boxes > budget or max(wide, high) < SMALLEST:
+                return OneZero(None, boxes)
+            if arb(shape - high) > most:
+                continue
+            far, k, slope = at(arb(c, wide), arb(shape, high))
+            if far > 0 or k > 0 or k < 0 or slope < 0:
+                tick(wide * high / (WHOLE[0][1] * WHOLE[1][1]))
+                continue
+            queue += halves(box)
+    return OneZero(True, boxes)
+
+
+def halves(box: Box) -> list[Box]:
+    """The two halves of a box, cut across its longer side; shapes are a tenth as long as cosines."""
+    (c, wide), (shape, high) = box
+    if wide > 10 * high:
+        return [((c + side * wide / 2, wide / 2), (shape, high)) for side in (-1, 1)]
+    return [((c, wide), (shape + side * high / 2, high / 2)) for side in (-1, 1)]
+
+
+@dataclass(frozen=True)
+class PeriodicPoints:
+    """Stretches that hold at most one solution of `T0**n(x) = x` each, and all of them; None when open."""
+
+    stretches: list[tuple[int, float, float]] | None
+    boxes: int
+
+
+def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> PeriodicPoints:
+    """Where `T0**n(x) = x` on the cuspless cardioid, in stretches of the arc and of the wall.
+
+    >>> [(c, round(a, 2), round(b, 2)) for c, a, b in periodic_points(2).stretches or []]
+    [(0, -1.12, -0.99), (0, -0.02, 0.02), (0, 0.99, 1.12), (1, -0.01, 0.01)]
+    """
+    with working(BITS):
+        slap = Flights()
+        found: list[tuple[int, float, float, int]] = []
+        queue = [(ARC, *_halves(slap.ends[ARC])), (WALL, *_halves(slap.ends[WALL]))]
+        boxes = 0
+        while queue:
+            component, middle, half = queue.pop()
+            boxes += 1
+            if boxes > budget or half < SMALLEST:
+                return PeriodicPoints(None, boxes)
+            box = arb(middle, half)
+            images = slap.iterated([Piece(component, box, arb(1), arb(0))], n)
+            apart = images is not None and not any(p.component == component and p.theta.overlaps(box) for p in images)
+            sign = _sign(images[0].slope - 1) if images is not None and len(images) == 1 and half < 1e-2 else 0
+            if sign and not apart:
+                found.append((component, middle - half, middle + half, sign))
+            if apart or sign:
+                tick(half / sum(_halves(end)[1] for end in slap.ends.values()))
+                continue
+            queue += [(component, middle - half / 2, half / 2), (component, middle + half / 2, half / 2)]
+        return PeriodicPoints(_joined(sorted(found)), boxes)
+
+
+def _halves(end: arb) -> tuple[float, float]:
+    return 0.0, float(end.upper()) * (1 + 2.0**-40)
+
+
+def _sign(x: arb) -> int:
+    """1 or -1 when it is proved, else 0."""
+    return 0 if not x.is_finite() else 1 if x > 0 else -1 if x < 0 else 0
+
+
+def _joined(stretches: list[tuple[int, float, float, int]]) -> list[tuple[int, float, float]]:
+    """Touching stretches as one, where `(T0**n)' - 1` has one sign on both."""
+    made: list[tuple[int, float, float, int]] = []
+    for component, low, high, sign in stretches:
+        if made and (made[-1][0], made[-1][3]) == (component, sign) and low <= made[-1][2] + 1e-12:
+            made[-1] = component, made[-1][1], max(high, made[-1][2]), sign
+        else:
+            made.append((component, low, high, sign))
+    return [(component, low, high) for component, low, high, _ in made]

@@ -3,10 +3,10 @@
 Coefficients are the nearest doubles to near-minimax polynomials; truncation stays below 2e-17, so
 what remains is rounding. tests/numeric/backends/test_functions.py holds them against 50 digits.
 
-Points and directions in the plane are pairs. The one zero of a function in an interval is found by unconditional steps
-of Newton's method, which cost no branch, and then with a bracket: a lane that has not converged inside its bracket by
-then enters a loop that keeps a change of sign and cannot leave it. Lanes that are done stay as they are, so that no
-lane's result depends on its neighbours.
+Points and directions in the plane are pairs. The one zero of a function in an interval is found by unconditional
+steps of Newton's method, which cost no branch, and then with a bracket: a lane that has not converged inside its
+bracket by then enters a loop that keeps a change of sign and cannot leave it. Lanes that are done stay as they are,
+so that no lane's result depends on its neighbours.
 """
 
 import math

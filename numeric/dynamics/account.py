@@ -1,6 +1,6 @@
-"""A survey of exponents as plain data: means, error bars and how they were made, for each attractor.
+"""A survey of exponents as plain data, for each attractor, with error bars and a check by the determinant.
 
-`nu_plus + nu_minus` along an orbit, from its angles alone: the check on what the tangent kernels multiply up.
+`nu_plus + nu_minus` along an orbit follows from its angles alone: the check on what the tangent kernels multiply up.
 
 `det DT = lam*cos(phi0)/cos(eta1)` in `(s, phi)`; along an orbit cosines of successive bounces pair up, and
 

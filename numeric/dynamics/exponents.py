@@ -1,9 +1,9 @@
 """Lyapunov exponents of many orbits, counted block by block, until their error is small enough.
 
-Particles first run until they are where they end: those that a cycle attracts within its reach. Then growth is counted
-in blocks. Particles are sorted by the attractor they reach, before the count and once more after it; nothing is
-averaged across attractors. A run can be interrupted: what was counted stays. The paper (appendix A.2) counts with two
-vectors, after [DellagoPoschHoover1996]; here one vector and the determinant do.
+Particles first run until they are where they end: those that a cycle attracts within its reach. Then growth is
+counted in blocks. Particles are sorted by the attractor they reach, before the count and once more after it; nothing
+is averaged across attractors. A run can be interrupted: what was counted stays. The paper (appendix A.2) counts with
+two vectors, after [DellagoPoschHoover1996]; here one vector and the determinant do.
 
 The angle between the two directions of an orbit: the one its past expands, the one its future contracts.
 

@@ -1,6 +1,4 @@
-"""Points of phase space by the hundred thousand: carried along orbits, and told apart by their distance.
-
-Chaotic sets as clouds of points: which particles are on the same one.
+"""Points of phase space by the hundred thousand: carried along orbits, told apart by distance, gathered to sets.
 
 Two particles are on the same set when their orbits meet in a cell, or through a chain of particles that do. The
 cells are fine, so sets that are near are not taken for one; the orbits are long, so that those that are

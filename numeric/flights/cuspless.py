@@ -6,9 +6,9 @@ arc or `(y, .)` on the wall, and `exp(i*phi)`. Paper: section 5 and the appendix
 
 Flights along the wall of the cuspless table, from next to one join to the wall or past the other.
 
-A rounding of the direction moves such a landing by the inverse of the angle, or of its square. So the angle is
-formed from the state with twice the digits, and distances from the wall from exact squares: the arc lies
-`(2*p**2 - 1/2)**2` from it, at the height `4*p**3*q`, where `p, q` is `sigma`, whose length is one up to rounding only.
+A rounding of the direction moves such a landing by the inverse of the angle, or of its square. So the angle is formed
+from the state with twice the digits, and distances from the wall from exact squares: the arc lies `(2*p**2 - 1/2)**2`
+from it, at the height `4*p**3*q`, where `p, q` is `sigma`, whose length is one up to rounding only.
 """
 
 import numpy as np

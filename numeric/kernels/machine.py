@@ -1,12 +1,10 @@
-"""What a kernel is asked, and the rows of state that the question needs.
+"""A kernel as machine code: what it is asked and its rows of state; compiled, kept on disk, called without the GIL.
 
-From a kernel's text to machine code: compiled by llvmlite, kept on disk, called through ctypes without the GIL.
-
-What is kept is a flat image: the sections of the object file laid out and joined once, so that a later process maps
-and calls it without importing LLVM (a process that asks for one orbit is ready in half the time). Only an
-object file in the ELF format of x86-64 becomes one; any other, and any whose fields do not fit
-together, is kept as it is and loaded by LLVM. Nothing that is read is believed: every offset, size, index and
-alignment is checked before it is used.
+llvmlite compiles the text, ctypes calls it. What is kept on disk is a flat image: the sections of the object file
+laid out and joined once, so that a later process maps and calls it without importing LLVM (a process that asks for
+one orbit is ready in half the time). Only an object file in the ELF format of x86-64 becomes one; any other, and any
+whose fields do not fit together, is kept as it is and loaded by LLVM. Nothing that is read is believed: every offset,
+size, index and alignment is checked before it is used.
 """
 
 import ctypes

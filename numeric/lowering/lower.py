@@ -32,11 +32,11 @@ from symbolic import tables
 from symbolic.expressions.signs import vanishes
 from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
+from symbolic.tables.curves import LONG, highest, size, waves
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
 from symbolic.tables.table import Component, Table, theta
 from symbolic.tables.validity import closed_and_finite
-from symbolic.tables.waves import LONG, highest, size, waves
 
 DEEP = 12  # operations within each other, beyond which derivatives are not written out
 DEGREE = 16  # the highest harmonic of a chord polynomial: its text grows with the third power

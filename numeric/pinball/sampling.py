@@ -10,8 +10,8 @@ Its other end is the first collision. This holds on every table, with the flight
 
 All draws come from one seeded generator in one order: they depend neither on threads nor on batches.
 
-A `Growth` is a set of particles on their way, each with one tangent vector. Sums of logarithms are kept from the start,
-so differences between two moments are the growth between them, and nothing is lost by looking often.
+A `Growth` is a set of particles on their way, each with one tangent vector. Sums of logarithms are kept from the
+start, so differences between two moments are the growth between them, and nothing is lost by looking often.
 """
 
 from collections.abc import Sequence

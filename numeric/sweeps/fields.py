@@ -1,7 +1,7 @@
 """Basins of attraction on a grid of phase space. Paper: appendix, figures of basins.
 
-The attractors are found once, from random starts; then each cell's centre is a particle, and its label is the number of
-the attractor that it reaches.
+The attractors are found once, from random starts; then each cell's centre is a particle, and its label is the number
+of the attractor that it reaches.
 
 Bifurcation diagrams: where random particles are after a long time, against the contraction. Paper: section 6.6.
 

@@ -1,275 +1,29 @@
-"""Where results go: a Zarr store that grows chunk by chunk and is whole at every moment, or plain memory.
-
-A part is done when the file of each of its fields is there and its checksum is right; a file appears at once or not
-at all. So there is no journal to lose, and whatever a killed sweep leaves behind is redone or overwritten. A part has
-the same bits whoever computes it: two drivers are kept apart where the system has locks, and only waste time elsewhere.
-
-Who does the tasks: the threads of this machine, or the workers of a Dask cluster.
+"""Who does the tasks: the threads of this machine, or the workers of a Dask cluster.
 
 Both hand back results as they come, and hold no more tasks at a time than keeps everyone busy.
 
 Doing a sweep: what is missing, by threads or by a cluster, into memory or into a store.
 """
 
-import itertools
-import json
-import os
-import re
-import shutil
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from importlib import import_module
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-
-from numeric.sweeps.sweep import Array, Field, Sweep, missing_value
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 import errno
 import logging
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from importlib import import_module
 from itertools import islice
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from numeric.sweeps.sweep import cores
+from numeric.sweeps.store import Memory, Stored, opened
+from numeric.sweeps.sweep import Array, Sweep, cores
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 Index = tuple[int, ...]
-PARTIAL = ".partial"  # at the end of the name of a file that is being written
-ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/")  # of an object store; a path made of it has lost a slash
-_written = itertools.count()
-
-
-class Memory:
-    """Results in memory, for a sweep that is small enough not to need a store."""
-
-    def __init__(self, sweep: Sweep) -> None:
-        self.sweep = sweep
-        self.arrays = {f.name: np.full(sweep.shape(f), missing_value(f.dtype), f.dtype) for f in sweep.fields}
-
-    def missing(self) -> list[Index]:
-        """Every part."""
-        return self.sweep.indices()
-
-    def write(self, index: Index, arrays: dict[str, Array]) -> None:
-        """Keeps the results of a part."""
-        for field in self.sweep.fields:
-            self.arrays[field.name][self.sweep.where(field, index)] = arrays[field.name]
-
-    def dataset(self) -> "xr.Dataset":
-        """All results, labelled."""
-        import xarray as xr
-
-        sweep = self.sweep
-        return xr.Dataset(
-            {f.name: (f.dims, self.arrays[f.name], {"units": f.units, "long_name": f.about}) for f in sweep.fields},
-            {a.name: (a.name, a.values, {"units": a.units, "long_name": a.about}) for a in sweep.axes},
-            sweep.attributes(),
-        )
-
-
-class Stored:
-    """Results in a Zarr store at `path`, which is made if there is none; `opened` makes sure of a single writer."""
-
-    def __init__(self, sweep: Sweep, path: Path) -> None:
-        import zarr
-
-        self.sweep, self.path = sweep, path
-        with zarr.config.set({"array.write_empty_chunks": True}):
-            group = zarr.open_group(_whole_files()(path), mode="r+")
-            self.arrays: dict[str, Any] = {field.name: group[field.name] for field in sweep.fields}
-
-    def missing(self) -> list[Index]:
-        """The parts that are not there, or not whole; a warning names files that are there and damaged."""
-        damaged: list[Path] = []
-        missing = []
-        for index in self.sweep.indices():
-            there = [self._has(field, index, damaged) for field in self.sweep.fields]
-            missing += [] if all(there) else [index]
-        if damaged:
-            first, count = damaged[0], len(damaged)
-            warnings.warn(f"{count} damaged files are computed again, {first} among them", stacklevel=3)
-        return missing
-
-    def write(self, index: Index, arrays: dict[str, Array]) -> None:
-        """Writes the results of a part; `OSError` when the disk is full, and then the part is still missing."""
-        for field in self.sweep.fields:
-            values = np.asarray(arrays[field.name], field.dtype)
-            self.arrays[field.name][self.sweep.where(field, index)] = values
-
-    def dataset(self) -> "xr.Dataset":
-        """All results, labelled, read when they are looked at."""
-        import xarray as xr
-
-        found: xr.Dataset = xr.open_zarr(self.path)
-        return found
-
-    def _has(self, field: Field, index: Index, damaged: list[Path]) -> bool:
-        at = dict(zip(self.sweep.axis, index, strict=True))
-        array = self.arrays[field.name]
-        key = array.metadata.encode_chunk_key(tuple(at[name] for name in field.dims))
-        file = self.path / field.name / key
-        if not file.is_file():
-            return False
-        try:
-            array[self.sweep.where(field, index)]
-        except Exception:  # whatever a codec says of a damaged file
-            damaged.append(file)
-            return False
-        return True
-
-
-@contextmanager
-def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
-    """The store of a sweep, new or to be resumed; `ValueError` for another's, or when another process writes to it."""
-    if ADDRESS.match(path.as_posix()):
-        raise ValueError(
-            f"--store {path}: an object store has no files that appear at once; accepted: a directory on a disk, which "
-            "may be copied to an object store when the sweep is done"
-        )
-    if not path.exists() or (path.is_dir() and not any(path.iterdir())):
-        _made(sweep, path)
-    _same(sweep, path)
-    with _alone(path):
-        for left in path.rglob(f".*{PARTIAL}"):  # of a driver that was killed
-            with suppress(OSError):
-                left.unlink()
-        yield Stored(sweep, path)
-
-
-@contextmanager
-def _alone(path: Path) -> Iterator[None]:
-    """Keeps a second driver out, where the system has locks that end with their process."""
-    try:
-        locks: Any = import_module("fcntl")
-    except ImportError:  # not a POSIX system: two drivers do everything twice, with the same bits
-        yield
-        return
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        with suppress(OSError):  # a file system without locks
-            try:
-                locks.flock(handle, locks.LOCK_EX | locks.LOCK_NB)
-            except BlockingIOError:
-                raise ValueError(f"--store {path}: another process is writing to it; wait for it or stop it") from None
-        yield
-    finally:
-        os.close(handle)
-
-
-def _made(sweep: Sweep, path: Path) -> None:
-    """An empty store, which appears at once."""
-    import zarr
-
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        draft = path.with_name(f".{path.name}.{os.getpid()}")
-        shutil.rmtree(draft, ignore_errors=True)
-        try:
-            group = zarr.create_group(_whole_files()(draft), zarr_format=3, attributes=sweep.attributes())
-            for axis in sweep.axes:
-                labels: dict[str, Any] = {"units": axis.units, "long_name": axis.about}
-                array = group.create_array(
-                    axis.name,
-                    shape=axis.values.shape,
-                    dtype=axis.values.dtype,
-                    chunks=(max(1, axis.size),),
-                    dimension_names=(axis.name,),
-                    attributes=labels,
-                )
-                array[:] = axis.values
-            for field in sweep.fields:
-                _field(group, sweep, field)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # Zarr's, that version 3 has no rule for it; xarray asks for it
-                zarr.consolidate_metadata(group.store)
-            draft.replace(path)
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
-    except OSError as error:
-        if path.is_dir() and any(path.iterdir()):
-            return  # another process was quicker
-        raise ValueError(f"--store {path} cannot be made: {error.strerror or error}") from None
-
-
-def _field(group: Any, sweep: Sweep, field: Field) -> None:
-    from zarr.codecs import Crc32cCodec, ZstdCodec
-
-    group.create_array(
-        field.name,
-        shape=sweep.shape(field),
-        dtype=field.dtype,
-        chunks=tuple(sweep.axis[name].length for name in field.dims),
-        dimension_names=field.dims,
-        fill_value=missing_value(field.dtype),
-        compressors=[ZstdCodec(), Crc32cCodec()],
-        attributes={"units": field.units, "long_name": field.about},
-    )
-
-
-def _same(sweep: Sweep, path: Path) -> None:
-    """Nothing when the store is this sweep's; `ValueError` that says what differs."""
-    try:
-        found = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
-        found["sweep"]
-    except (OSError, ValueError, KeyError, TypeError):
-        raise ValueError(
-            f"--store {path} is not a sweep of ours; accepted: a new directory, or one to be resumed"
-        ) from None
-    for key, value in sweep.attributes().items():
-        if key == "versions" and found.get(key) != value:
-            raise ValueError(
-                f"--store {path} was begun with {_listed(found.get(key))}, and here are {_listed(value)}, which may "
-                "differ in the last bits; install those versions to go on, or name another store"
-            )
-        if found.get(key) != value:
-            said = "another grid" if key == "grid" else f"{key} = {found.get(key)} and not {value}"
-            raise ValueError(f"--store {path} holds a sweep with {said}; resume it as it was begun, or name another")
-
-
-def _listed(versions: Any) -> str:
-    """Packages with their versions, in words."""
-    try:
-        return ", ".join(f"{name} {number}" for name, number in json.loads(versions).items())
-    except (TypeError, ValueError, AttributeError):
-        return "versions that it does not say"
-
-
-def _whole_files() -> Any:
-    """A Zarr store on disk in which a file appears at once or not at all, whatever version of Zarr it is."""
-    from zarr.storage import LocalStore
-
-    class WholeFiles(LocalStore):  # type: ignore[misc, unused-ignore]
-        """Each value goes to a temporary file beside its place, to the disk, and then to its place."""
-
-        async def set(self, key: str, value: Any) -> None:
-            place = Path(self.root) / key
-            place.parent.mkdir(parents=True, exist_ok=True)
-            partial = place.with_name(f".{place.name}.{os.getpid()}.{next(_written)}{PARTIAL}")  # this writer's own
-            try:
-                with partial.open("wb") as file:
-                    file.write(value.to_bytes())
-                    file.flush()
-                    os.fsync(file.fileno())
-                partial.replace(place)
-            except BaseException:
-                partial.unlink(missing_ok=True)
-                raise
-
-    return WholeFiles
-
-
 Results = Generator[tuple[Index, dict[str, Array]], None, None]
 AHEAD = 2  # parts handed out for each worker
 ANSWER = 10.0  # seconds for a scheduler to answer

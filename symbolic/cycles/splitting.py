@@ -7,7 +7,8 @@ curvature `1/(f + t1)`, and leaves with
     y1 = 1 + lam - lam*d1/(f + t1),    d1 = cos(eta1)/|K1|,
 
 where `f = -D0/y` and `t1 = t` for a chord from arc to arc, and `f = (cos(phi)/(lam*cos(eta)))*(t - D0/y)` when the
-particle has bounced off the wall in between (chord `t` to the wall, landing at `eta`, leaving at `phi`, chord `t1` on).
+particle has bounced off the wall in between (chord `t` to the wall, landing at `eta`, leaving at `phi`, chord `t1`
+on).
 
 *Chords of the arc.* `t - D0 >= gain*d1`, with a gain above 1 (`defocusing`), and `2*t >= 3*D0`, since
 
@@ -18,19 +19,19 @@ the wall,
 
     (t - D)*cos(eta) = (2*c - 1)**2*(4*c**2 + 4*c + 3)/12 + (2*c/3)*(1 - cos(tau + 2*eta)) >= 0:
 
-the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The angle of a particle at the
-arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so
-`tau < (1 + lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
+the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The angle of a particle at
+the arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so `tau < (1 +
+lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
 
 *So* `1 < y1 < 1 + lam`, strictly and uniformly: in the projective (Hilbert) metric of the cone the image has a
 diameter of at most `diameters(lam)`, hence every return to the arc, at most two bounces, contracts by
 `tanh(diameter/4) < 1` (Birkhoff). Directions of the cone pushed forward along a backward orbit converge to `F`,
-directions outside it pulled back along a forward orbit to `E`, and the rate of the one is that of `|DT^n e|/|DT^n f|`:
-the dominated splitting. The two keep apart: a direction that is outside the cone at the next arc has `0 < y < 1/gain`
-or, before the wall, `0 < y < D/t`, and `F` has `y > 1`, all bounded away from 1. On the cuspless cardioid curvature is
-bounded, and `C` and `nu` are the same for all orbits; on the cardioid they are when vectors are measured by `|K|*ds`
-and `dphi`, so on every compact set off the cusp. At `lam = 0` the cone is the horizontal direction `F`, `E` is the
-kernel, and `F` is not in it because `t > D0`.
+directions outside it pulled back along a forward orbit to `E`, and the rate of the one is that of `|DT^n e|/|DT^n
+f|`: the dominated splitting. The two keep apart: a direction that is outside the cone at the next arc has `0 < y <
+1/gain` or, before the wall, `0 < y < D/t`, and `F` has `y > 1`, all bounded away from 1. On the cuspless cardioid
+curvature is bounded, and `C` and `nu` are the same for all orbits; on the cardioid they are when vectors are measured
+by `|K|*ds` and `dphi`, so on every compact set off the cusp. At `lam = 0` the cone is the horizontal direction `F`,
+`E` is the kernel, and `F` is not in it because `t > D0`.
 
 *Widths.* By way of the wall the width of a beam of the cone, in units of `D`, grows at least by
 

@@ -24,9 +24,9 @@ of `x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles s
 every `lam < 1`: no Neimark-Sacker bifurcation. Beyond it factors exceed 1, and so may the product.
 
 A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta`
-(`symbolic.cycles.polygons`), with
-`gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts exactly when `gamma*tan(gamma) < 1`: the triangle (30 degrees) and
-the square (45) do, the pentagon (54) and all beyond do not, and are born expanding.
+(`symbolic.cycles.polygons`), with `gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts exactly when `gamma*tan(gamma)
+< 1`: the triangle (30 degrees) and the square (45) do, the pentagon (54) and all beyond do not, and are born
+expanding.
 """
 
 from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt

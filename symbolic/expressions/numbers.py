@@ -1,8 +1,9 @@
 """What a number system is: the meaning of the closed vocabulary for one kind of number.
 
-Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.program`) speak the same words: `+ - * /`,
-`q(p, n)` for a rational, `pi`, and elementary functions. A `NumberSystem[N]` gives them a meaning for numbers of type
-`N`: floats, arrays, LLVM vectors, mpmath numbers, balls, jets. Checked by mypy, never at run time; imports nothing.
+Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.program`) speak the same words: `+ - *
+/`, `q(p, n)` for a rational, `pi`, and elementary functions. A `NumberSystem[N]` gives them a meaning for numbers of
+type `N`: floats, arrays, LLVM vectors, mpmath numbers, balls, jets. Checked by mypy, never at run time; imports
+nothing.
 """
 
 from typing import Any, Protocol, Self, TypeVar

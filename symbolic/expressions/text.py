@@ -1,10 +1,8 @@
-"""One expression in words of the closed vocabulary, and the refusal of everything else.
+"""Expressions in words of a closed vocabulary, so that floats, mpmath and balls run the same formula.
 
-Text of functions in a closed vocabulary, so that floats, mpmath and balls run the same formula.
-
-The vocabulary: `+ - * /`, integers, `q(p, n)` for every other rational, `pi`, and the functions of
-`VOCABULARY`. A rational is never written `1/3`: Python would divide it in double precision, and a
-ball computed from it would not contain the true value. Integer powers become products.
+Everything outside the vocabulary is refused. The vocabulary: `+ - * /`, integers, `q(p, n)` for every other rational,
+`pi`, and the functions of `VOCABULARY`. A rational is never written `1/3`: Python would divide it in double
+precision, and a ball computed from it would not contain the true value. Integer powers become products.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence

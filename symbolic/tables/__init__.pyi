@@ -1,9 +1,19 @@
 from .gallery import (
     GALLERY,
+    arc,
+    cardioid,
+    circle,
+    cuspless,
     diamond,
     disc,
+    egg,
+    ellipse,
     lemon,
     mushroom,
+    named,
+    parametric,
+    piecewise,
+    polar,
     polygon,
     regular,
     reuleaux,
@@ -14,7 +24,6 @@ from .gallery import (
     stadium,
     triangle,
 )
-from .paper import arc, cardioid, circle, cuspless, egg, ellipse, named, parametric, piecewise, polar
 from .scene import Law, Scene
 from .table import Component, Mark, Shape, Table
 

@@ -1,7 +1,7 @@
 """What a scene says, as plain data: its boundary by a name, by formulas, or from an exact table; each number exact.
 
-Formulas and numbers are text here, read by `symbolic.tables.formula`, which executes nothing. One of the paper's tables
-with plain numbers is read without SymPy.
+Formulas and numbers are text here, read by `symbolic.tables.formula`, which executes nothing. One of the paper's
+tables with plain numbers is read without SymPy.
 """
 
 import json

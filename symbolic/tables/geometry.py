@@ -45,8 +45,8 @@ from sympy.polys.polyerrors import PolynomialError
 from sympy.simplify.fu import TR8
 
 from symbolic.expressions.signs import vanishes
+from symbolic.tables.curves import LONG, exactly, size, waves
 from symbolic.tables.table import Component, Table, theta
-from symbolic.tables.waves import LONG, exactly, size, waves
 
 HIGHEST = 24  # harmonic of what is written as a polynomial in the tangent of half the angle
 

@@ -1,8 +1,8 @@
 """What must hold before a table is one: exact, closed, counterclockwise, free of self-crossings.
 
-Every check is a proof on the ranges of the shape's parameters; that a closed curve does not cross itself is proved for
-finite Fourier sums, and looked for on a polygon otherwise. A boundary that is no trigonometric polynomial, or one of
-high degree, may be too hard for the last two; it is then accepted here and examined where kernels are built.
+Every check is a proof on the ranges of the shape's parameters; that a closed curve does not cross itself is proved
+for finite Fourier sums, and looked for on a polygon otherwise. A boundary that is no trigonometric polynomial, or one
+of high degree, may be too hard for the last two; it is then accepted here and examined where kernels are built.
 """
 
 from dataclasses import replace
@@ -34,10 +34,9 @@ from sympy import (
 
 from symbolic.expressions.enclosures import UnboundedError, pole, sign_on
 from symbolic.expressions.signs import Box, Outcome, conjunction, positive
-from symbolic.tables.curves import chord_of_length_zero, curves, polygon_crossing
+from symbolic.tables.curves import LONG, alone, chord_of_length_zero, curves, polygon_crossing, size, waves
 from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
 from symbolic.tables.table import Component, Table, lam, theta
-from symbolic.tables.waves import LONG, alone, size, waves
 
 HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box, of a radius judged by Sturm's theorem
 TURN = Rational(7, 2)  # beyond pi: what holds from -TURN to TURN holds for every angle

@@ -1,7 +1,7 @@
 """`pinball`: one command for each question, and what every command says.
 
-A command is imported when it is called, so `pinball --help` loads no mathematics. People read text and a bar, programs
-read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
+A command is imported when it is called, so `pinball --help` loads no mathematics. People read text and a bar,
+programs read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
 """
 
 import json

@@ -1,8 +1,8 @@
 """Newton's method, and every other iteration that ends in rounding: one loop and one rule for its end.
 
-The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square of
-the one before, until rounding takes over. So an iteration has settled when a correction is as small as is wanted, or
-when corrections that were small shrink no more. At a double zero they halve, which is still shrinking.
+The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square
+of the one before, until rounding takes over. So an iteration has settled when a correction is as small as is wanted,
+or when corrections that were small shrink no more. At a double zero they halve, which is still shrinking.
 """
 
 from collections.abc import Callable, Sequence

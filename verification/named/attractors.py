@@ -29,8 +29,7 @@ from verification.cycles.recurrence.chain import trace_and_determinant
 from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.named.branches import Branch, Event, alike, ends, own
 from verification.named.locate import certify
-from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.periodic.over_interval import Stability, stability
+from verification.proofs.periodic.bifurcation import Checks, Stability, stability
 
 DIGITS = 30
 

@@ -8,8 +8,8 @@ which some leave are bracketed. Just above a crisis a budget of bounces sees non
 reaches up to the contraction at which it saw ten.
 
 A crisis after which no particle leaves for good shows in how far the attractor extends: `extent` is its largest exit
-angle, its reach at either end of the diameter and its area, and `widenings` the steps of a scan in which a length grows
-at once.
+angle, its reach at either end of the diameter and its area, and `widenings` the steps of a scan in which a length
+grows at once.
 """
 
 from collections.abc import Callable

@@ -1,22 +1,21 @@
-"""The tongue of the K-pointed egg: the bifurcation curves that lead to its chaotic attractor.
+"""The bifurcation curves of the K-pointed egg that lead to its chaotic attractor, and where the cascade ends.
 
 For odd K the vertex-to-flat diameter doubles its period on `alpha-tilde`; the symmetric cycle of period 4
 that it bears breaks its symmetry (a pitchfork, on half the cycle), and what it bears doubles again and
 again, up to an accumulation curve. Every curve is followed in the two parameters from one start.
 
-A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and then
-Neimark-Sacker bifurcations are possible. Three facts about the paper's own egg, each proved in balls:
+A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and
+then Neimark-Sacker bifurcations are possible. Three facts about the paper's own egg, each proved in balls:
 
 - `contracting_up_to`: below a contraction no cycle of the egg expands, so none bifurcates that way;
 - `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1;
 - `double_one`: a cycle of period 17 with the double multiplier 1 at a `lam < 1`. The zero is regular, so
   along `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1.
 
-The end of a period-doubling cascade: `delta` and `lambda_infinity`, estimated and not certified.
-
-Two schemes that share no assumption but geometric convergence: Wynn's epsilon algorithm on the
-sequence itself, and Aitken's process on what is left after the leading term has been removed with
-the universal constant of [Feigenbaum1979]. Their difference is the error that is stated.
+The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified: two schemes that share no
+assumption but geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on what is
+left after the leading term has been removed with the universal constant of [Feigenbaum1979]. Their difference is the
+error that is stated.
 """
 
 from collections.abc import Callable, Iterator, Sequence

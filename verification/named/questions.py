@@ -203,8 +203,7 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
     import numpy as np
 
     from verification.cycles.continuation.arc import Steps
-    from verification.cycles.continuation.branch import branch
-    from verification.cycles.continuation.starts import freed
+    from verification.cycles.continuation.branch import branch, freed
     from verification.cycles.recurrence.chords import Chords
 
     if len(interval) != 1:

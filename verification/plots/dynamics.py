@@ -1,8 +1,8 @@
 """Pictures of dynamics: branches of cycles, the tongue of the egg, a crisis.
 
-A branch is drawn as a bounce against the parameter, solid where the cycle is stable, with its bifurcations marked; the
-tongue as the curves of the cascade over a sample of where attractors are chaotic; a crisis as the attractor with the
-manifolds, whole and close to where they touch (paper: section 6.7).
+A branch is drawn as a bounce against the parameter, solid where the cycle is stable, with its bifurcations marked;
+the tongue as the curves of the cascade over a sample of where attractors are chaotic; a crisis as the attractor with
+the manifolds, whole and close to where they touch (paper: section 6.7).
 """
 
 from collections.abc import Iterator, Sequence

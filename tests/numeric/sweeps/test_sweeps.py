@@ -8,7 +8,8 @@ import pytest
 import xarray as xr
 
 from numeric.sweeps.fields import bifurcation, parameter_space
-from numeric.sweeps.run import UnfinishedError, opened, run
+from numeric.sweeps.run import UnfinishedError, run
+from numeric.sweeps.store import opened
 from numeric.sweeps.sweep import Axis, Field, Sweep, cost, text_of
 from symbolic import Scene
 

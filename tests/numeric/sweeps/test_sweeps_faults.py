@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from numeric.sweeps import run as stores
-from numeric.sweeps.run import UnfinishedError, opened, run
+from numeric.sweeps import store as stores
+from numeric.sweeps.run import UnfinishedError, run
+from numeric.sweeps.store import opened
 from numeric.sweeps.sweep import Axis, Field, Sweep
 
 TORTURE = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "torture.py"))

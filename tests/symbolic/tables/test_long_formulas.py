@@ -8,10 +8,10 @@ from sympy import I, Rational, cos, expand, sin
 
 from symbolic import tables
 from symbolic.tables import geometry, validity
+from symbolic.tables.curves import is_periodic, waves
 from symbolic.tables.formula import parse
 from symbolic.tables.table import theta
 from symbolic.tables.validity import enclosed_area, radius_sign
-from symbolic.tables.waves import is_periodic, waves
 
 LONG = {
     "forty harmonics": "1+" + "+".join(f"cos({k}*theta)/{1000 * k * k}" for k in range(1, 41)),

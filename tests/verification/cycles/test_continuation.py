@@ -19,9 +19,8 @@ from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.cycles.continuation import linear
 from verification.cycles.continuation.arc import End, Steps
-from verification.cycles.continuation.branch import branch
+from verification.cycles.continuation.branch import branch, dataset, named
 from verification.cycles.continuation.linear import spectrum
-from verification.cycles.continuation.starts import dataset, named
 from verification.cycles.continuation.switching import switched
 from verification.cycles.recurrence.cascade import cascade as followed_in_lam
 from verification.cycles.recurrence.chords import Chords

@@ -8,7 +8,7 @@ from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import conclusions as on_conclusions
 from verification.paper.report.report import catalogue
-from verification.proofs.periodic.over_interval import Sign
+from verification.proofs.periodic.bifurcation import Sign
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 UNKNOWN = Finding(Outcome.UNKNOWN, "perhaps")

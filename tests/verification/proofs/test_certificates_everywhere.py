@@ -14,8 +14,8 @@ from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled
 from verification.cycles.recurrence.newton import floats
 from verification.cycles.recurrence.problem import Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.proofs.periodic.bifurcation import Stability, over_interval, stability
 from verification.proofs.periodic.interval_newton import Status, krawczyk
-from verification.proofs.periodic.over_interval import Stability, over_interval, stability
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 FLAT = [math.pi / 3, math.pi, 5 * math.pi / 3]

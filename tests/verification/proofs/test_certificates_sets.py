@@ -21,8 +21,8 @@ from verification.named.locate import closed_form
 from verification.paper.egg.basins import points_of_period_4, without_triangles
 from verification.proofs.corner.half_return import trapping_region
 from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
+from verification.proofs.periodic.bifurcation import doubling_curve
 from verification.proofs.periodic.interval_newton import Status, interval_newton
-from verification.proofs.periodic.over_interval import doubling_curve
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
 from verification.proofs.slap_map import exponent as slap
 from verification.proofs.slap_map.exponent import periodic_points

@@ -58,8 +58,7 @@ def command(
     a branch stops inside the interval; what was found is kept.
     """
     from verification.cycles.continuation.arc import Steps
-    from verification.cycles.continuation.branch import branch
-    from verification.cycles.continuation.starts import at_contraction, freed, named, record, typed
+    from verification.cycles.continuation.branch import at_contraction, branch, freed, named, record, typed
 
     if curves and (scene.name != "egg" or shape):
         given = "--shape" if shape else scene.name

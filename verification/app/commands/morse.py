@@ -125,7 +125,7 @@ def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, 
     """A lower bound for `nu_plus` in each trapping region, rounded down; None where no cones were found."""
     from math import floor, isfinite
 
-    from verification.proofs.global_dynamics.exponents import expansion
+    from verification.proofs.global_dynamics.regions import expansion
 
     found: dict[int, float | None] = {}
     for index in graph.attracting:

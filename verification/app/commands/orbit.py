@@ -1,6 +1,7 @@
 """Where does this particle go?
 
-`pinball orbit` follows it, `pinball slap` does so at contraction 0, and `pinball cycles` lists the orbits that return.
+`pinball orbit` follows it, `pinball slap` does so at contraction 0, and `pinball cycles` lists the orbits that
+return.
 """
 
 from typing import TYPE_CHECKING, Any

@@ -1,11 +1,11 @@
 """The search for all cycles up to a period: orbits that almost close are closed by Newton's method and listed once.
 
-Starts are spread over the phase space; segments of their orbits that come back near where they began
-are the seeds, those next to the start (where unstable cycles still show) as much as those on attractors.
-A round without news is followed by one with the known cycles deflated. Rounds go on until several in a row bring
-nothing new and, on a convex table, the index sums vanish.
-Each cycle found is listed once, whatever bounce it is begun with, and its images under the table's symmetries are
-added. A search finds cycles and does not prove that it found all; `verification.proofs.periodic.interval_newton` does.
+Starts are spread over the phase space; segments of their orbits that come back near where they began are the seeds,
+those next to the start (where unstable cycles still show) as much as those on attractors. A round without news is
+followed by one with the known cycles deflated. Rounds go on until several in a row bring nothing new and, on a convex
+table, the index sums vanish. Each cycle found is listed once, whatever bounce it is begun with, and its images under
+the table's symmetries are added. A search finds cycles and does not prove that it found all;
+`verification.proofs.periodic.interval_newton` does.
 """
 
 from collections.abc import Callable, Iterator

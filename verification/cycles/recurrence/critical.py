@@ -2,7 +2,8 @@
 
 A fold or a flip of a long cycle of a billiard is a `Problem`, solved in linear time. What is here takes every
 bifurcation that `verification.cycles.recurrence.recurrence` defines, and several at once (points of codimension two),
-for cycles of a few dozen bounces. Equations are written once, and their derivatives come from evaluating them on jets.
+for cycles of a few dozen bounces. Equations are written once, and their derivatives come from evaluating them on
+jets.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,13 +1,14 @@
-"""Very long orbits, each with a truth that exists, whatever chaos has done to the digits of the start.
+"""Extreme orbits, and where their truth comes from: very long ones, and particles that are hard on a map.
 
-An invariant of the elastic ellipse, to which each bounce adds one rounding: `n` of them that know nothing of one
-another amount to `sqrt(n)`, and a drift would be of order `n`. The elastic circle, where `theta` after `n` bounces is
-known, with the `2*n` roundings of `phi` that it adds up. A cycle that attracts, enclosed in balls. Chaotic orbits: two
-that start as mirror images and must stay so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to
-which time averages tend because the elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard
-errors. (That its exponents are not 0 was known before [Wojtkowski1986].)
+Of a very long orbit a truth must exist, whatever chaos has done to the digits of the start. An invariant of the
+elastic ellipse, to which each bounce adds one rounding: `n` of them that know nothing of one another amount to
+`sqrt(n)`, and a drift would be of order `n`. The elastic circle, where `theta` after `n` bounces is known, with the
+`2*n` roundings of `phi` that it adds up. A cycle that attracts, enclosed in balls. Chaotic orbits: two that start as
+mirror images and must stay so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to which time
+averages tend because the elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard errors. (That
+its exponents are not 0 was known before [Wojtkowski1986].)
 
-Balls that are hard on a map, under names: grazing, next to a cusp or a join, flat points, long tables.
+Particles that are hard on a map have names: grazing, next to a cusp or a join, flat points, long tables.
 
 `pinball bench` prints the errors of a few against 50 digits, `benchmarks/adversarial.py` those of millions against
 80-bit floats. Bounds are 4 units of 2**-52 for the position and 8 for the direction, or 8 condition numbers:

@@ -8,9 +8,9 @@ An orbit is followed in float64 while enough of its digits survive, and beyond t
 loses digits, as many as the decimal logarithm of what its derivative stretches by. The kernels say how many
 an orbit loses; float64 keeps the rest of what one bounce promises.
 
-Two runs are compared by ratios of times within each, so that machines and their load cancel. How much longer a run took
-is the median over the rows of a question, and over the questions; reported is what differs from that. Lower quartiles
-are compared, which other work on a machine disturbs least.
+Two runs are compared by ratios of times within each, so that machines and their load cancel. How much longer a run
+took is the median over the rows of a question, and over the questions; reported is what differs from that. Lower
+quartiles are compared, which other work on a machine disturbs least.
 """
 
 import json

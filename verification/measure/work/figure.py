@@ -1,8 +1,8 @@
 """The work-precision diagram of a question: error against seconds, one line for each method.
 
-Errors run from 1 down to 1e-1000 and beyond: where they do, the upward scale is the logarithm of the number of digits,
-so that float64 and a thousand digits are told apart on one page. Marks and dashes differ, not only colours. Sentences
-made from the same rows say which method wins where, what a proof costs, and what the usual methods lose.
+Errors run from 1 down to 1e-1000 and beyond: where they do, the upward scale is the logarithm of the number of
+digits, so that float64 and a thousand digits are told apart on one page. Marks and dashes differ, not only colours.
+Sentences made from the same rows say which method wins where, what a proof costs, and what the usual methods lose.
 """
 
 import io

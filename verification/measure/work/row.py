@@ -1,6 +1,7 @@
 """What a run leaves: rows of error, promise and time, and the front that no other row beats.
 
-Rows are shown as a table in text or Markdown with the facts of the run beneath, or as a diagram of error against time.
+Rows are shown as a table in text or Markdown with the facts of the run beneath, or as a diagram of error against
+time.
 """
 
 import os

@@ -1,7 +1,7 @@
 """Claims about sets of phase points: basins of attraction, sampled, and what exists nowhere, proved by exclusion.
 
-The basin of an attracting cycle is open, so no two such basins are intermingled at every point; what pictures show is a
-fractal boundary, and its dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
+The basin of an attracting cycle is open, so no two such basins are intermingled at every point; what pictures show is
+a fractal boundary, and its dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
 """
 
 from functools import cache

@@ -24,7 +24,7 @@ from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettl
 from verification.paper.judges.exponents import sampled
 from verification.paper.judges.located import certified, located
 from verification.paper.judges.splitting import bounced, ends_of_period
-from verification.proofs.periodic.over_interval import Stability, over_interval
+from verification.proofs.periodic.bifurcation import Stability, over_interval
 from verification.proofs.periodic.returning import returning
 
 SHAPE = Rational(2, 25)

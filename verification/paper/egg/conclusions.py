@@ -27,8 +27,8 @@ from verification.paper.judges.border import chaos, corner
 from verification.paper.judges.ellipse import LIMIT, lyapunov
 from verification.paper.judges.exponents import sampled
 from verification.proofs.manifolds.known import CONTACTS
+from verification.proofs.periodic.bifurcation import doubling_curve
 from verification.proofs.periodic.interval_newton import Status
-from verification.proofs.periodic.over_interval import doubling_curve
 
 MIXED = ("0.1", "0.43", "0.5", "0.6", "0.7", "0.83")  # contractions of the egg at alpha = 0.08
 DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # where orbits of these periods attract

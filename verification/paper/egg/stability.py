@@ -33,7 +33,7 @@ from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, zero
 from verification.paper.egg.period3 import side_of_fold
 from verification.paper.judges.exponents import sampled
-from verification.proofs.periodic.over_interval import Stability, doubling_curve, over_interval, stability
+from verification.proofs.periodic.bifurcation import Stability, doubling_curve, over_interval, stability
 from verification.proofs.periodic.triangles import contracts, flips_nowhere
 
 SHAPE = Rational(2, 25)

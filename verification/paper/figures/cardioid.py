@@ -1,7 +1,7 @@
 """The figures on the cardioid and the cuspless cardioid. Paper: sections 4 and 5, appendix A.2.
 
-Lyapunov exponents against the contraction, as the paper plots them; attractors as a figure shows them: cycles as closed
-polygons or a few marks, chaotic sets as one long orbit.
+Lyapunov exponents against the contraction, as the paper plots them; attractors as a figure shows them: cycles as
+closed polygons or a few marks, chaotic sets as one long orbit.
 """
 
 from typing import TYPE_CHECKING, Any

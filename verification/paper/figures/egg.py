@@ -1,7 +1,7 @@
 """The figures on the three-pointed egg. Paper: section 6.
 
-Elastic collisions, the slap map and cycles of period 3; the plane of parameters with chaos or none, from a small sweep
-on all cores; the attractors.
+Elastic collisions, the slap map and cycles of period 3; the plane of parameters with chaos or none, from a small
+sweep on all cores; the attractors.
 """
 
 from typing import TYPE_CHECKING
@@ -11,7 +11,8 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.pinball.sampling import phase_starts
-from numeric.sweeps.run import Memory, on_threads
+from numeric.sweeps.run import on_threads
+from numeric.sweeps.store import Memory
 from numeric.sweeps.sweep import Array, Sweep, cores
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde

@@ -1,8 +1,7 @@
-"""Orbits in the paper's coordinates, and what many orbits do in the long run. Paper: appendix.
+"""Orbits in the paper's coordinates, long-run behaviour, graphs of slap maps, and any scene in two panels.
 
-Graphs of the slap map, with gaps where it jumps. Paper: sections 2.2, 3.4, 4.2, 5.4 and 6.2.
-
-Any scene in two panels, for tables of one's own: where balls end, in the table and in phase space.
+The slap map's graph has gaps where it jumps (sections 2.2, 3.4, 4.2, 5.4 and 6.2). A scene of one's own is shown in
+two panels: where particles end, in the table and in phase space.
 """
 
 from collections.abc import Callable

@@ -1,8 +1,4 @@
-"""Claims supported by sampling, with its error: the sizes of basins. Paper: section 6.4.
-
-Many orbits at many contractions in one run: their exponents, and the cells of phase space they visit.
-
-Claims on Lyapunov exponents of the cuspless cardioid and the egg, and on what their signs mean.
+"""Claims on Lyapunov exponents and on sizes of basins: proved for cycles, else sampled with its error.
 
 Paper: sections 5.3, 6.4, 6.6 and the appendix. Exponents of cycles are proved from certified multipliers, those of
 chaotic orbits sampled with standard errors.

@@ -1,7 +1,7 @@
 """The report for people: one page of HTML that needs no network, and the same as Markdown.
 
-Formulas are MathML; figures and script are inside the page, and the work-precision diagrams from what
-`pinball work --json FILE` measured. The Markdown has the summary, the errata, then each claim by section of the paper.
+Formulas are MathML; figures and script are inside the page, and the work-precision diagrams from what `pinball work
+--json FILE` measured. The Markdown has the summary, the errata, then each claim by section of the paper.
 """
 
 import base64

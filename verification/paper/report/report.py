@@ -1,13 +1,11 @@
-r"""The claims of the paper, each with a judge: `catalogue()` lists them, `verify()` judges them.
+r"""The claims of the paper judged, and told: as a page, Markdown, JSON and LaTeX tables.
 
-What is printed lies in `printed/*.toml`, what is true is derived in `symbolic`, and the judges
-stand between the two; so a misprint cannot leak into the mathematics.
-
-The report on the paper: for people as a page and as Markdown, for programs as JSON, for LaTeX as tables.
+`catalogue()` lists the claims, `verify()` judges them. What is printed lies in `printed/*.toml`, what is true is
+derived in `symbolic`, and the judges stand between the two; so a misprint cannot leak into the mathematics.
 
 The page is one file that needs no network; a result is shown in each form from the same `Result`.
 
-The report as LaTeX tables, to be brought into a document by `\input`.
+The LaTeX tables are brought into a document by `\input`.
 """
 
 import platform

@@ -1,16 +1,15 @@
-"""The orbit through both corners of the cuspless cardioid: what happens at `lambda-star`.
+"""The orbit through both corners of the cuspless cardioid at `lambda-star`, and the bounces near it, enclosed.
 
 A bounce at a corner has a tangent (the joins are C1) and two curvatures, that of the arc and that of
 the wall. So the collision rules hold there, but the derivative of whatever passes the lower corner
 has two values. Both parameters run counterclockwise, and at a corner at the speed of arc length.
 Paper: section 5.2.
 
-Bounces of the cuspless cardioid that depend on a few parameters: enclosed, with their derivatives.
-
-A box of parameters is followed as a centre and the derivatives over the box (the mean value form), so
-that bounce after bounce keeps what ties it to the parameters. A plain ball would forget it and swell.
-Positions near a corner are told as the distance beyond it, `beyond`: on the arc negative, and there
-the arc's parameter differs from arc length by its square only; on the wall positive and arc length.
+Bounces that depend on a few parameters are enclosed with their derivatives: a box of parameters is followed as a
+centre and the derivatives over the box (the mean value form), so that bounce after bounce keeps what ties it to the
+parameters. A plain ball would forget it and swell. Positions near a corner are told as the distance beyond it,
+`beyond`: on the arc negative, and there the arc's parameter differs from arc length by its square only; on the wall
+positive and arc length.
 """
 
 from collections.abc import Callable

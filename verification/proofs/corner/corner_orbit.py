@@ -10,10 +10,11 @@ the multiplier -1. By the mean value theorem
     H     in  DG(hull) * (1, m)            H_m  =  G_v
     H_lam in  Db(hull) * (1, m)            H_e/e  in  (1/3) * D3G(hull)[(1, m), (1, m), (1, m)]
 
-with the hull of 0 and `(e, e*m)`; the last because second derivatives of odd functions are odd. So one interval Newton
-step proves an orbit for every `e` of `[0, MOST]`, of least period 4 where `w` and `-w` differ; and `d lam/d(e^2)`, when
-its ball excludes 0, says on which side of `lambda_c` it is. Then no multiplier is 1 on the way, because
-`det [G_w, G_v] = -(d lam/de)*e*det [H_lam, H_m]`, and what is a saddle at one end is one all along. Paper: section 5.1.
+with the hull of 0 and `(e, e*m)`; the last because second derivatives of odd functions are odd. So one interval
+Newton step proves an orbit for every `e` of `[0, MOST]`, of least period 4 where `w` and `-w` differ; and `d
+lam/d(e^2)`, when its ball excludes 0, says on which side of `lambda_c` it is. Then no multiplier is 1 on the way,
+because `det [G_w, G_v] = -(d lam/de)*e*det [H_lam, H_m]`, and what is a saddle at one end is one all along. Paper:
+section 5.1.
 """
 
 from dataclasses import dataclass, field

@@ -1,7 +1,7 @@
 """A grid of phase space, its transition graph, and what follows from that graph for every orbit.
 
-Each chart is cut into equal cells; a leaf is a square block of cells, finer where orbits return. A leaf has an edge to
-every leaf that its outer image meets. So every orbit walks along edges, and what no walk does no orbit does:
+Each chart is cut into equal cells; a leaf is a square block of cells, finer where orbits return. A leaf has an edge
+to every leaf that its outer image meets. So every orbit walks along edges, and what no walk does no orbit does:
 
 - A walk without end stays, from some step on, in one strongly connected component that has an edge within itself. Such
   components are the Morse sets; every orbit that goes on for ever is in one of them from some bounce on.

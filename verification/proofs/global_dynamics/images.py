@@ -1,10 +1,10 @@
 """Outer images of boxes: rectangles that hold every point to which the map takes a point of the box.
 
 In a convex table the line of a flight cuts the boundary in two arcs. Counterclockwise from the start, boundary points
-lie to the right of the line before the landing and to its left after it. So two points, guessed in float64, enclose the
-landings of a whole box as soon as one is proved to lie to the right of every flight of the box and the other to the
-left: two signs of a cross product, and no equation is solved. Within that arc the mean-value theorem encloses the image
-more closely. The exit angle needs no more than the angles `tau` of the tangents,
+lie to the right of the line before the landing and to its left after it. So two points, guessed in float64, enclose
+the landings of a whole box as soon as one is proved to lie to the right of every flight of the box and the other to
+the left: two signs of a cross product, and no equation is solved. Within that arc the mean-value theorem encloses the
+image more closely. The exit angle needs no more than the angles `tau` of the tangents,
 
     phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi.
 
@@ -20,8 +20,20 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.maps.first_hit import convex
-from verification.proofs.global_dynamics.arrays import ArrayOps, BallArray, direction, exactly, hull, turned
-from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, Row, centred, collected
+from verification.proofs.global_dynamics.boxes import (
+    ArrayOps,
+    BallArray,
+    Boxes,
+    Chart,
+    Images,
+    Row,
+    centred,
+    collected,
+    direction,
+    exactly,
+    hull,
+    turned,
+)
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

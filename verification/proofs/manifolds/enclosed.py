@@ -18,11 +18,11 @@ the unstable manifold, `1/mu` for the stable one. Going outwards, each rule is s
    `(defect + slope1*e1 + slope2*e2)/slope0`. The slopes are bounded over a convex tube around `P`, and `slope0`
    is not 0 there, so such a point exists and is the only one in the tube (an interval Newton step).
 
-So a round outwards takes bounds `e[0], ..., e[p-1]` to bounds `E(e)`, an affine and monotone map. It is checked
-that `E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are taken to functions bounded by `e`, and their
-distances, in the norm weighted by `e`, at least halved. The one fixed point is `h`. It is analytic in the letter,
-and real where the letter is, as all else is. Dividing `z` by `m` again and again leads along an orbit to the
-saddle: this is the manifold.
+So a round outwards takes bounds `e[0], ..., e[p-1]` to bounds `E(e)`, an affine and monotone map. It is checked that
+`E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are taken to functions bounded by `e`, and their
+distances, in the norm weighted by `e`, at least halved. The one fixed point is `h`. It is analytic in the letter, and
+real where the letter is, as all else is. Dividing `z` by `m` again and again leads along an orbit to the saddle: this
+is the manifold.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,9 +1,9 @@
-"""Cycles that shadow a homoclinic tangency: their folds converge to it, which locates it without any manifold.
+"""Homoclinic tangencies as limits of folds of cycles, and the crises of the egg: which saddle, and where to start.
 
-A cycle that leaves a saddle along its unstable manifold and comes back along the stable one stays
-some rounds near the saddle in between. Each such family folds once, at a letter that approaches the
-tangency like `unstable**-rounds`. A fold is a problem of the chord system, solved with as many digits
-as wanted, and provable; a long cycle gives the tangency itself.
+A cycle that shadows a homoclinic tangency leaves its saddle along its unstable manifold and comes back along the
+stable one stays some rounds near the saddle in between. Each such family folds once, at a parameter that approaches
+the tangency like `unstable**-rounds`. A fold is a problem of the chord system, solved with as many digits as wanted,
+and provable; a long cycle gives the tangency itself.
 
 The saddle also says how long a particle stays near an attractor just above a homoclinic crisis, with one term for
 each passage of the saddle. [GrebogiOttRomeirasYorke1987] find the power that holds in the limit. Their argument, kept
@@ -18,11 +18,9 @@ and `leaves(e) = sqrt(e)` when no round fits in. Were `n` no whole number, and l
 `ln|stable| / (2*ln|stable*unstable|)`. As it is, the slope of the logarithms is 1/2 and every further passage is a
 step: the wave that measured stays show about a power. Which distance counts as one is all that is left to fit.
 
-The crises of the three-pointed egg as tangencies: which saddle, and starts at `alpha = 0.08`.
-
-Two crises join what period doubling and symmetry breaking had split, each when the unstable manifold of
-the cycle that had split touches its own stable one: eight chaotic bands near one end of a diameter
-become four at the cycle of period 4, and the two mirror images become one attractor at the symmetric cycle
+Starts are given at `alpha = 0.08`. Two crises join what period doubling and symmetry breaking had split, each when
+the unstable manifold of the cycle that had split touches its own stable one: eight chaotic bands near one end of a
+diameter become four at the cycle of period 4, and the two mirror images become one attractor at the symmetric cycle
 of period 4 from which they had come.
 
 Boundary crisis: the saddle is the triangle of the vertices, born at the fold of period 3. Its stable
@@ -32,7 +30,7 @@ of period 8 that its mirror image repeats after 4 bounces. It is the cycle of th
 that can be reached from the attractor near a diameter. Other shapes follow by continuation.
 
 To many digits a crisis is found by two methods that share nothing but the chord. The value comes from the fold of a
-long cycle that shadows the tangency (`shadows`): its distance to the tangency falls like `unstable**-rounds`, and a
+long cycle that shadows the tangency: its distance to the tangency falls like `unstable**-rounds`, and a
 cycle with four rounds more tells how far the shorter one was. The tangency of the manifolds themselves (`tangency`)
 has to agree.
 """

@@ -1,9 +1,9 @@
 """A proof in balls that a saddle's manifolds touch at one letter of an interval, quadratically and with non-zero speed.
 
-An interval Newton step for the system of `touching` proves that it has one zero in a box: the manifolds touch at
-one letter of it. Let `A` be the derivative of the orbit's equations there, `v` the vector that it takes to 0, and
-`u` the vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for
-all unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the letter. At the tangency `g_z = 0`,
+An interval Newton step for the system of `touching` proves that it has one zero in a box: the manifolds touch at one
+letter of it. Let `A` be the derivative of the orbit's equations there, `v` the vector that it takes to 0, and `u` the
+vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for all
+unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the letter. At the tangency `g_z = 0`,
 
     g_zz = u.(A'v)v,    g_letter = u.(the equations' derivative by the letter).
 

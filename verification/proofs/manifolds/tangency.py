@@ -1,15 +1,14 @@
-"""Two neighbouring bounces on a local manifold, as functions of the parameter and the letter, in real balls.
+"""Where an unstable and a stable manifold touch: the contraction and the orbit, in mpmath and enclosed in balls.
 
-The polynomials are enclosed at one letter, at another a `step` away, and over a complex disc of letters. The
-derivative by the letter is the difference quotient of the first two, give or take what Cauchy's bound of the
-second derivative on the disc allows. The remainder is bounded over that disc, and over the unit disc of parameters;
-so its derivatives are bounded by Cauchy as well, on parameters up to 1/2.
-
-Where an unstable and a stable manifold touch: the contraction at which they do, and the orbit on which.
+The balls are those of two neighbouring bounces on a local manifold, as functions of its own parameter and of the
+contraction. The polynomials are enclosed at one contraction, at another a `step` away, and over a complex disc of
+them. The derivative by the contraction is the difference quotient of the first two, give or take what Cauchy's bound
+of the second derivative on the disc allows. The remainder is bounded over that disc, and over the unit disc of
+parameters; so its derivatives are bounded by Cauchy as well, on parameters up to 1/2.
 
 From `z` on the local unstable manifold the map is followed for some bounces, into the neighbourhood
 where the local stable manifold is a graph `following = S(here)`; the gap `following - S(here)` is a
-function of `z`, run on jets. At a fixed letter its extremum is found by Newton's method; the letter
+function of `z`, run on jets. At a fixed contraction its extremum is found by Newton's method; the tangency
 is where the extremum is 0, by secants. Quadratic contact is the second derivative, and transversal
 unfolding the speed of the extremum, both away from 0.
 """

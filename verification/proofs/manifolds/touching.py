@@ -9,8 +9,8 @@ up to turns of the table. At one letter the zeros are the points where the manif
 along a vector with `1` at `z`, carry the tangent of the one manifold to the other, and vanish exactly where the two
 touch. Both together, with the letter as the last unknown, are the system: as many equations as unknowns. Like the
 chord system of a cycle it has one equation for each bounce; no orbit is followed, and no ball grows along the way.
-The start is an orbit in float64, whose points come from the series near the saddles, which costs no digit, and from the
-map in between.
+The start is an orbit in float64, whose points come from the series near the saddles, which costs no digit, and from
+the map in between.
 """
 
 import math

@@ -1,9 +1,9 @@
-"""One zero in a box, proved: the interval Newton operator for long cycles, Krawczyk's for wide boxes around short ones.
+"""One zero in a box, by the interval Newton operator or Krawczyk's; no others, by a cover of all closed chains.
 
-For a box `X` with midpoint `m`, every zero in `X` lies in `N = m - F'(X)^-1 F(m)`, and when `N` lies
-in the interior of `X` there is exactly one. `F'(X)^-1` is applied by elimination in balls, in linear
-time (see `verification.cycles.recurrence.chain`); it plays the part that a preconditioner has in Krawczyk's
-operator, and contracts at least as well.
+The interval Newton operator serves long cycles, Krawczyk's wide boxes around short ones. For a box `X` with midpoint
+`m`, every zero in `X` lies in `N = m - F'(X)^-1 F(m)`, and when `N` lies in the interior of `X` there is exactly one.
+`F'(X)^-1` is applied by elimination in balls, in linear time (see `verification.cycles.recurrence.chain`); it plays
+the part that a preconditioner has in Krawczyk's operator, and contracts at least as well.
 
 Krawczyk's operator [Krawczyk1969] is
 `K = m - Y F(m) + (1 - Y F'(X)) (X - m)` with `Y` near the inverse of the middle of `F'(X)`. The
@@ -11,13 +11,11 @@ preconditioner is a full matrix, so the cost is cubic in the period; in return t
 may be wide, which elimination along the chain does not forgive. For a ball of contractions the
 motion of the cycle with `lam` is kept in one piece, `Y dF/dlam (lam - middle)`.
 
-Are there no other cycles of a short period? A cover of all closed chains of bounces, in balls.
-
-Around each known cycle Krawczyk's operator proves a neighbourhood that holds no second one. Everything
-else is covered by boxes in the first bounce and the gaps between bounces; a box goes when one collision
-rule, by enclosure or by the mean value theorem, or Krawczyk's operator cannot hold in it, and is halved
-otherwise. On a convex table the chord's angle falls as its end moves on, so bounces that lie closer than
-the gap at which it exceeds `lam*pi/2` need not be looked at.
+Are there other cycles of a short period? Around each known cycle Krawczyk's operator proves a neighbourhood that
+holds no second one. Everything else is covered by boxes in the first bounce and the gaps between bounces; a box goes
+when one collision rule, by enclosure or by the mean value theorem, or Krawczyk's operator cannot hold in it, and is
+halved otherwise. On a convex table the chord's angle falls as its end moves on, so bounces that lie closer than the
+gap at which it exceeds `lam*pi/2` need not be looked at.
 """
 
 from collections.abc import Callable, Iterator, Sequence

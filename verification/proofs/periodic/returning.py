@@ -10,8 +10,8 @@ other in no other way: a cycle lies within one of them.
 A part that leads through its pieces in turn is *repelling* when a cone of directions around that of the boundary is
 kept and stretched once round the pieces, which makes every cycle in it unstable; it is *contracting* when the norm of
 the derivative once round is below 1. Over the hull of all contracting parts it is below 1 too: the difference of two
-points of a piece is multiplied by a matrix within the bounds for its hull, so that there is one cycle at most in all of
-them, up to symmetry.
+points of a piece is multiplied by a matrix within the bounds for its hull, so that there is one cycle at most in all
+of them, up to symmetry.
 """
 
 import math

@@ -5,10 +5,10 @@ density bends at `pi/4` and, ever more weakly, at its images. Between them it is
 Chebyshev's points is solved in floats and refined in balls whose radii are dropped: nothing here is proved, and
 nothing needs to be: what the transfer operator changes in the result, and its mean of `log F'`, are bounded in balls.
 
-For this the half table is cut at the ends of pieces, at their images and at `pi/4`, each image between two exact points
-`2*margin` apart. A stretch whose launching points lie within one piece (that is tested in balls, so that a misplaced
-cut costs precision and no truth) has an analytic residual `r = L f - f`, bounded by Taylor's series at the middle
-with the last coefficient enclosed over the whole stretch; the same for `r'`. On any other stretch, all of them
+For this the half table is cut at the ends of pieces, at their images and at `pi/4`, each image between two exact
+points `2*margin` apart. A stretch whose launching points lie within one piece (that is tested in balls, so that a
+misplaced cut costs precision and no truth) has an analytic residual `r = L f - f`, bounded by Taylor's series at the
+middle with the last coefficient enclosed over the whole stretch; the same for `r'`. On any other stretch, all of them
 tiny, the parts of all pieces that it meets are bounded one by one. Where `f` jumps, `r` jumps by that, and by the
 rate times that at the image; at `pi/4` nothing jumps, since `f(pi/2) = 0`.
 """

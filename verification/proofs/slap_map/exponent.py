@@ -1,12 +1,12 @@
-"""The Lyapunov exponent of a chaotic attractor, proved: the cardioid at `lam = 0`, where the map is its slap map.
+"""Chaos of slap maps, proved: the exponent of the cardioid at `lam = 0`, critical points, all cycles up to a period.
 
 Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `slap_map.transfer`, for functions on
 `[0, pi/2]` of bounded variation that end in 0; norms are in `L1`.
 
 **There is one invariant density.** The means of `L^n f`, for any such density `f`, are bounded in variation, so by
 Helly's theorem some of them converge, to a density `h = L h`; it ends in 0, because the rate is 0 at the cusp. Let
-`e` be another fixed point up to `r`: `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P e)
-+ P r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
+`e` be another fixed point up to `r`: `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P
+e) + P r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
 
     ||e|| <= (c/2)*(K + 1)*Var e + K*||r||,     Var e <= (adds*||e|| + Var r)/(1 - shrinks),
 
@@ -36,14 +36,12 @@ leaves along the normal.
 Assumed: that python-flint's balls, doubles and the machine do what they say. Not proved: that the measure mixes,
 and anything for `lam > 0`. Not in the paper.
 
-Critical points of the egg's slap map, and all cycles of a slap map up to a period, in balls.
-
-The egg's slap map has no critical point, three or six, for every shape (paper: section 6.2). `T0' = 0` where the
-centre of curvature `e` lies on the boundary. With `C = cos(3*theta)` let `k` be its distance from the centre less
-that of the boundary in its direction: `T0'` has the sign of `-k`. Balls show on a cover of `-1 <= C <= 1`, `0 <=
-alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` `k` has at most one zero, through which
-it falls: one where `k > 0` at the flat points (`C = -1`), none where `k < 0` there. A zero inside stands for six
-points, one at `C = -1` for the three flat points.
+**Critical points and cycles.** The egg's slap map has no critical point, three or six, for every shape (paper:
+section 6.2). `T0' = 0` where the centre of curvature `e` lies on the boundary. With `C = cos(3*theta)` let `k` be its
+distance from the centre less that of the boundary in its direction: `T0'` has the sign of `-k`. Balls show on a cover
+of `-1 <= C <= 1`, `0 <= alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` `k` has at most
+one zero, through which it falls: one where `k > 0` at the flat points (`C = -1`), none where `k < 0` there. A zero
+inside stands for six points, one at `C = -1` for the three flat points.
 
 The slap map of the cuspless cardioid has no cycle of period 4. A slap map is one-dimensional, so subdivision settles
 it: a piece of the boundary is followed in balls. A piece that does not meet its image holds no periodic point; where

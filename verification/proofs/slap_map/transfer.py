@@ -28,7 +28,8 @@ in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X` proves such a `K`: from `u =
 because `A u` is the sum of `u_j*(column_j - w)` when the `u_j` sum to 0. `X` is an inverse in floats, and what
 rounding may have done to the products is bounded and added.
 
-For densities that the mirror image negates, the first summand of `L` is negated; then `w = 0`, and any vector is meant.
+For densities that the mirror image negates, the first summand of `L` is negated; then `w = 0`, and any vector is
+meant.
 
 The entries of `Q` are differences of launching points in units of a cell. Each is rounded to a multiple of
 `2**-40`, so that entries and sums of columns are exact in doubles, and a displaced point moves at most twice its

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from verification.arithmetic.balls import working
-from verification.proofs.global_dynamics.arrays import (
+from verification.proofs.global_dynamics.boxes import (
     HALF_PI,
     LARGEST,
     UNIT_ERROR,

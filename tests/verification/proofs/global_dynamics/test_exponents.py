@@ -8,9 +8,9 @@ import pytest
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.exponents import expansion
 from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.global_dynamics.regions import expansion
 
 
 def regions(scene, columns=512, rows=128, lam=None):

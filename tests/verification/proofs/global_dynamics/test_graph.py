@@ -10,8 +10,7 @@ import pytest
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app.cli import main
-from verification.proofs.global_dynamics.arrays import ArrayOps, BallArray
-from verification.proofs.global_dynamics.boxes import Chart, PlaneImages
+from verification.proofs.global_dynamics.boxes import ArrayOps, BallArray, Chart, PlaneImages
 from verification.proofs.global_dynamics.graph import Cells, Grid, inside, mapped, morse_graph, refined, transitions
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import Region, checked, region, shares

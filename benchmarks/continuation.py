@@ -120,7 +120,7 @@ def triangles(console: Console) -> None:
 
 def doublings() -> tuple[list[BifurcationCurve], Array]:
     """The curves, and for each doubling of period 4 to 64 its contractions on 50 shapes."""
-    curves = [each for each in cascade(3, 64) if each.what is BifurcationKind.FLIP and each.period >= 4]
+    curves = [each for each in cascade(3, 64) if each.kind is BifurcationKind.FLIP and each.period >= 4]
     return curves, np.array([[each.lam(float(alpha)) for alpha in SHAPES] for each in curves])
 
 

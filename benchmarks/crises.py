@@ -37,29 +37,31 @@ def by_cycle(kind: str, digits: int) -> Any:
     """The fold of a cycle long enough for `digits` digits."""
     where, map = contact(kind, SHAPE), table(SHAPE)
     unstable = abs(tangency(where, map, 8).multipliers[1])
-    cycle = shadow(where, map, where.letter, int((digits + 2) * np.log(10) / np.log(unstable)) + 1)
+    cycle = shadow(where, map, where.parameter, int((digits + 2) * np.log(10) / np.log(unstable)) + 1)
     return refined(cycle.problem, cycle.start, digits).z[-1]
 
 
 def by_proof(kind: str, digits: int) -> Any:
     """The tangency proved in balls, from a start of eight digits."""
     where, map = contact(kind, SHAPE), table(SHAPE)
-    found = tangency_proved(where, map, sharpened(where, map, str(where.letter), digits), digits)
+    found = tangency_proved(where, map, sharpened(where, map, str(where.parameter), digits), digits)
     assert found.holds
-    return found.letter.mid().str(2 * digits, radius=False)
+    return found.parameter.mid().str(2 * digits, radius=False)
 
 
 def values() -> Shown:
     """The table of methods."""
     shown = Shown("crisis", "method", "seconds", "error", "of the sampling's time")
     for kind in SHOWN:
-        true = crisis(kind, SHAPE, 60).letter
+        true = crisis(kind, SHAPE, 60).parameter
         rows: list[tuple[str, float, Any]] = []
         if kind in crises.KINDS:
             rows.append(("sampling", *timed(lambda k=kind: crises.crisis(k, "0.08", 2e-6, 10**7).lam)))
-        rows.append(("manifolds, float64", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 10).letter)))
         rows.append(
-            ("manifolds, 20 digits", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 20).letter))
+            ("manifolds, float64", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 10).parameter))
+        )
+        rows.append(
+            ("manifolds, 20 digits", *timed(lambda k=kind: tangency(contact(k, SHAPE), table(SHAPE), 20).parameter))
         )
         rows.append(("tangency, 24 digits, proved", *timed(lambda k=kind: by_proof(k, 24))))
         for digits in (20, 50, 200):
@@ -77,7 +79,7 @@ def scalings() -> Shown:
         "crisis", "distances", "fitted exponent", "by passages of the saddle", "left of ln(stay)", "in the limit"
     )
     for kind, distances in DISTANCES.items():
-        found = crises.scaling(kind, "0.08", contact(kind, SHAPE).letter, distances, 2 * 10**9)
+        found = crises.scaling(kind, "0.08", contact(kind, SHAPE).parameter, distances, 2 * 10**9)
         at = crisis(kind, SHAPE, 8)
         stable, unstable = at.touch.multipliers[:2]
         one, left = passages.unit(found.points, stable, unstable)

@@ -123,7 +123,7 @@ def broken(rows):
 
 
 def choice(document, rows):
-    """Which arithmetic is cheapest, by digits, for each question whose ladder is digits."""
+    """Which arithmetic is cheapest, by digits, for each question whose setting is digits."""
     lines = []
     for name in document["questions"]:
         known = entries([row for row in rows if row.question == name])

@@ -16,22 +16,22 @@ from verification.named.locate import locate
 SHAPE = Rational(2, 25)
 # -
 
-# ## Certified rungs
+# ## Certified doublings
 #
-# `doubling` with $n$ is the change from period $2^{n-1}$ to $2^n$. Every rung carries the whole checklist of a period
+# `doubling` with $n$ is the change from period $2^{n-1}$ to $2^n$. Each carries the whole checklist of a period
 # doubling: a cycle in the box, unique, admissible, of minimal period, one simple multiplier $-1$, crossed with
 # non-zero speed, and a normal-form coefficient of known sign.
 
-rungs = {n: locate("doubling", 20, alpha=SHAPE, n=Rational(n)) for n in (3, 4, 5, 6)}
+doublings = {n: locate("doubling", 20, alpha=SHAPE, n=Rational(n)) for n in (3, 4, 5, 6)}
 printed = {3: "0.372", 4: "0.389", 5: "0.393", 6: "0.3935"}
-for n, rung in rungs.items():
-    print(n, rung.value, "certified" if rung.certified else "not certified", "| printed", printed[n])
+for n, each in doublings.items():
+    print(n, each.value, "certified" if each.certified else "not certified", "| printed", printed[n])
 
 # $\lambda_3$ is 0.371 to three digits, not 0.372, and $\lambda_6$ is 0.3933, not 0.3935.
 #
 # ## The end of the cascade
 #
-# Two extrapolations that share nothing but the rungs (iterated Aitken and Wynn's epsilon) give $\lambda_\infty$ and
+# Two extrapolations that share nothing but the doublings (iterated Aitken and Wynn's epsilon) give $\lambda_\infty$ and
 # Feigenbaum's $\delta$; their difference is the error estimate. These two are *estimated*, not certified.
 
 end = accumulation(SHAPE, 8)
@@ -39,16 +39,16 @@ print("lambda_oo =", nstr(end.limit.value, 12), "+-", nstr(end.limit.error, 2))
 print("delta     =", nstr(end.ratio.value, 8), "+-", nstr(end.ratio.error, 2))
 
 # Work grows linearly with the period, because the chord system is cyclic and tridiagonal and is never written as a
-# dense matrix; the ladder goes on to period $2^{15}$ (`benchmarks/certificates.py`).
+# dense matrix; the cascade goes on to period $2^{15}$ (`benchmarks/certificates.py`).
 
 # ## A check that can fail
 #
 # The first ratios of the gaps approach $\delta = 4.669201609\ldots$ [Feigenbaum1979].
 
-values = [float(rungs[n].value) for n in (3, 4, 5, 6)]
+values = [float(doublings[n].value) for n in (3, 4, 5, 6)]
 gaps = [b - a for a, b in pairwise(values)]
 ratios = [a / b for a, b in pairwise(gaps)]
 print(ratios)
-assert all(rung.certified for rung in rungs.values())
+assert all(each.certified for each in doublings.values())
 assert abs(ratios[-1] - 4.669201609) < 0.15
 assert abs(end.ratio.value - 4.669201609) < 3 * end.ratio.error < 1e-2

@@ -39,7 +39,7 @@ from verification.proofs.manifolds.known import crisis
 boundary = crisis("boundary", SHAPE, 15)
 merging = crisis("merging", SHAPE, 12)
 for found in (merging, boundary):
-    print(f"{found.kind:9} {nstr(found.letter, 13)} +- {nstr(found.error, 2)}, methods apart {found.apart:.1e}")
+    print(f"{found.kind:9} {nstr(found.parameter, 13)} +- {nstr(found.error, 2)}, methods apart {found.apart:.1e}")
 # -
 
 # ## What sampling sees
@@ -72,7 +72,7 @@ assert unstable.residual < 1e-12
 assert stable.residual < 1e-12
 assert boundary.agrees
 assert merging.agrees
-assert abs(float(boundary.letter) - 0.66) < 0.005
-assert contact("boundary", SHAPE).letter < 0.67
+assert abs(float(boundary.parameter) - 0.66) < 0.005
+assert contact("boundary", SHAPE).parameter < 0.67
 assert shares[0.655] == 1
 assert shares[0.70] < 0.5

@@ -60,7 +60,7 @@ class BifurcationCurve:
 
     name: str
     period: int
-    what: BifurcationKind
+    kind: BifurcationKind
     curve: Curve = field(repr=False)
 
     @property
@@ -83,7 +83,7 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
     """The curves from the diameter's doubling up to the cycles of `highest` bounces; for odd K.
 
     >>> curves = cascade(3, 4)
-    >>> [(c.name, [d.what.value for d in c.special]) for c in curves]  # doctest: +NORMALIZE_WHITESPACE
+    >>> [(c.name, [d.kind.value for d in c.special]) for c in curves]  # doctest: +NORMALIZE_WHITESPACE
     [('doubling of 2', ['1:2 resonance']), ('symmetry breaking of 4', ['1:2 resonance']),
      ('doubling of 4', ['1:2 resonance'])]
     """
@@ -95,14 +95,14 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
     one = branch(Chords(table, (0, 0)), np.array([0.0, pi]), "lam", 0.0, (0.0, 1.0), at)
     period = 2
     while period <= highest:
-        event = next(e for e in one.events if e.what in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK))
+        event = next(e for e in one.events if e.kind in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK))
         period = one.system.recurrence.period
-        what = "doubling" if event.what is BifurcationKind.FLIP else "symmetry breaking"
+        what = "doubling" if event.kind is BifurcationKind.FLIP else "symmetry breaking"
         name = f"{what} of {period}"
         tick(name)
         found = curve(event.ring, BifurcationKind.FLIP, event.x, TWO, (at["alpha"], event.value), box, steps=steps)
-        yield BifurcationCurve(name, period, event.what, found)
-        if period >= highest and event.what is BifurcationKind.FLIP:
+        yield BifurcationCurve(name, period, event.kind, found)
+        if period >= highest and event.kind is BifurcationKind.FLIP:
             return
         one = switched(one, event, (0.0, 1.0))[0]
 
@@ -113,7 +113,7 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
     top = largest_shape(K)
     at = {"alpha": 0.8 * top}
     one = branch(ring, np.array([pi / K]), "lam", 1.0, (0.0, 1.0), at)
-    event = next(e for e in one.events if e.what is BifurcationKind.FOLD)
+    event = next(e for e in one.events if e.kind is BifurcationKind.FOLD)
     box = ((top / 200, top), (0.0, 1.0))
     found = curve(ring, BifurcationKind.FOLD, event.x, TWO, (at["alpha"], event.value), box, steps=Steps(largest=0.15))
     return BifurcationCurve(f"fold of {p}/{q}", q, BifurcationKind.FOLD, found)
@@ -133,7 +133,7 @@ def accumulation_curve(curves: list[BifurcationCurve], alphas: Array) -> Accumul
 
     The error is the difference to a second extrapolation, or to the same one without the last curve if that is larger.
     """
-    doublings = [c for c in curves if c.what is BifurcationKind.FLIP and c.period > 2]
+    doublings = [c for c in curves if c.kind is BifurcationKind.FLIP and c.period > 2]
     found = []
     for alpha in alphas:
         values = [c.lam(float(alpha)) for c in doublings]

@@ -45,16 +45,16 @@ def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Frac
     True
     """
     ring = event.ring
-    if not isinstance(ring, Chords) or event.what.solved is None:
+    if not isinstance(ring, Chords) or event.kind.solved is None:
         return None
     x, closure = event.x, IDENTITY
-    if event.what is BifurcationKind.PITCHFORK:
+    if event.kind is BifurcationKind.PITCHFORK:
         centred = _centred(ring, x)
         if centred is None:
             return None
         x, closure = centred, MIRROR
     contraction = None if lam is None else S(lam)
-    problem = Problem(ring.table, ring.components, event.what.solved, parameter, contraction, closure)
+    problem = Problem(ring.table, ring.components, event.kind.solved, parameter, contraction, closure)
     return certify(problem, [*(float(v) for v in x), event.value], digits)
 
 
@@ -87,7 +87,7 @@ def survey(
     """The curves of the egg with K points that the cycles at one shape and contraction lead to.
 
     >>> from sympy import Rational
-    >>> [(one.period, one.event.what.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
+    >>> [(one.period, one.event.kind.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
     [(2, 'period doubling')]
     """
     table = egg(K)
@@ -104,21 +104,21 @@ def survey(
         except ValueError:
             continue  # at a bifurcation to within rounding: its neighbours lead there too
         for event in one.events:
-            own = cycle.period, event.what, round(event.value, 7)
-            if event.what.solved and own not in seen:
+            own = cycle.period, event.kind, round(event.value, 7)
+            if event.kind.solved and own not in seen:
                 seen.add(own)
                 yield Surveyed(cycle.period, event, curve_of(event, at["alpha"], K, steps))
 
 
 def curve_of(event: Event, alpha: float, K: int = 3, steps: Steps | None = None) -> Curve | None:
     """The curve in `(alpha, lam)` through an event of the egg at shape `alpha`; None when it has none or is lost."""
-    if event.what.solved is None or not isinstance(event.ring, Chords):
+    if event.kind.solved is None or not isinstance(event.ring, Chords):
         return None
     top = largest_shape(K)
     box = ((top / 100, top), (0.0, 1.0))
     steps = steps or Steps(largest=0.3, most=150)
     ring = replace(event.ring, table=egg(K))
     try:
-        return curve(ring, event.what.solved, event.x, TWO, (alpha, event.value), box, steps=steps)
+        return curve(ring, event.kind.solved, event.x, TWO, (alpha, event.value), box, steps=steps)
     except ValueError:
         return None

@@ -262,7 +262,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     proved_fold = False
     if not found.cycle.problem.closure.shift[0]:  # of a cycle that closes with a turn there is no certificate
         fold = certify(found.cycle.problem, found.cycle.start, min(digits, FOLD_DIGITS))
-        near = bool(abs(fold.value - arb(str(found.letter))) < 1e-3)
+        near = bool(abs(fold.value - arb(str(found.parameter))) < 1e-3)
         proved_fold = all(value is True for value in fold.checks.values()) and near
     notes = {
         "mechanism": f"homoclinic tangency of the {orbit.name}, multipliers {unstable:.6g} and {stable:.6g}",
@@ -271,7 +271,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
         "transient": f"if an attractor ends here, lasts like (distance beyond)^-{found.exponent:.4f}, in the limit",
     }
     if alpha != SHAPE:
-        notes = _continued(kind, alpha, float(found.letter), notes)
+        notes = _continued(kind, alpha, float(found.parameter), notes)
     value, error = decimals(found)
     with working(bits_of(digits, 100)):
         ball = arb(value, error)

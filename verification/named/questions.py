@@ -182,7 +182,7 @@ class BranchEvent:
     @property
     def kind(self) -> str:
         """`fold`, `period doubling`, `pitchfork`, `branch point`, `border collision`, `Neimark-Sacker` or so."""
-        return self.event.what.value
+        return self.event.kind.value
 
     @property
     def value(self) -> float:

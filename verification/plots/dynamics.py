@@ -72,9 +72,9 @@ def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) ->
             for values, angles, stable in runs(followed, bounce):
                 axes.plot(values, angles, color=colour, lw=1.4 if stable else 0.9, ls="-" if stable else "--")
             for event in followed.events:
-                marker, paint = MARKS[event.what]
-                label = None if event.what in seen else event.what.value
-                seen.add(event.what)
+                marker, paint = MARKS[event.kind]
+                label = None if event.kind in seen else event.kind.value
+                seen.add(event.kind)
                 axes.plot(
                     event.value, _wrapped(event.point.z[bounce]), marker, color=paint, ms=5, label=label, zorder=3
                 )
@@ -185,7 +185,7 @@ def turns(K: int) -> list[tuple[int, int]]:
 
 def _line(axes: object, line: BifurcationCurve) -> None:
     plane = line.curve.plane
-    breaking = line.what is BifurcationKind.PITCHFORK
+    breaking = line.kind is BifurcationKind.PITCHFORK
     label = line.name if line.period <= 4 else "doublings of 8, 16, ..." if line.period == 8 else None
     colour = "tab:purple" if breaking else "black" if line.period == 2 else "tab:green"
     axes.plot(plane[:, 1], plane[:, 0], color=colour, lw=1.6 if line.period == 2 else 1.0, label=label)  # type: ignore[attr-defined]
@@ -212,7 +212,7 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
     from matplotlib.figure import Figure
 
     where = contact(kind, alpha)
-    map, lam = table(alpha).over(FLOAT64), where.letter - below
+    map, lam = table(alpha).over(FLOAT64), where.parameter - below
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     whole, close = figure.subplots(1, 2)
     found, arrays = saddle(where.unstable, map, lam), map.over(ARRAYS)
@@ -263,7 +263,7 @@ def attractor(kind: str, alpha: Expr, lam: float) -> tuple[Any, Any]:
 
 def _touching_point(where: Any, map: Any) -> tuple[float, float]:
     """The bounce of the tangency orbit that is farthest from the saddle, in the cell of the first panel."""
-    gap = Gap(where, map, where.letter, 28, 1e-16)
+    gap = Gap(where, map, where.parameter, 28, 1e-16)
     flight = [jet.c[0] for jet in gap.orbit(gap.extremum()[0])]
     moves = [abs(jet.c[1]) for jet in gap.orbit(gap.start)[:-1]]
     bent = int(np.argmax(moves)) if len(where.unstable.start) != 2 else len(moves) - 1

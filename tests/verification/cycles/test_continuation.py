@@ -41,7 +41,7 @@ def cascade(one, interval, count):
     """Each doubling, switched on to the next branch."""
     found = []
     for _ in range(count):
-        event = next(e for e in one.events if e.what is BifurcationKind.FLIP)
+        event = next(e for e in one.events if e.kind is BifurcationKind.FLIP)
         found.append(event)
         (one,) = switched(one, event, interval)
     return found
@@ -50,7 +50,7 @@ def cascade(one, interval, count):
 @pytest.mark.parametrize("alpha", ["1/50", "1/20", "2/25", "1/10"])
 def test_the_branch_of_triangles_passes_its_fold_where_the_closed_form_says(alpha):
     one = branch(Chords(egg(3).at(alpha=alpha), (0, 0, 0)), TRIANGLE, "lam", 1.0, (0.0, 1.0))
-    (fold,) = [event for event in one.events if event.what is BifurcationKind.FOLD]
+    (fold,) = [event for event in one.events if event.kind is BifurcationKind.FOLD]
 
     assert abs(fold.value - float(saddle_node().subs(letter, Rational(alpha)))) < 1e-12
     assert one.values[0] == one.values[-1] == 1.0
@@ -66,7 +66,7 @@ def test_the_events_of_the_cascade_are_the_located_ones():
     doublings = cascade(two, (0.0, 0.6), 4)
     members = [each.lam for each in islice(followed_in_lam(ALPHA), 4)]
 
-    assert pitchfork.what is BifurcationKind.PITCHFORK
+    assert pitchfork.kind is BifurcationKind.PITCHFORK
     assert abs(pitchfork.value - float(locate("symmetry-breaking", 15, alpha=ALPHA).value)) < 1e-12
     assert [event.value for event in doublings] == pytest.approx(members, abs=1e-12)
     assert all(event.form.supercritical for event in doublings)
@@ -100,7 +100,7 @@ def test_no_pitchfork_is_lost_where_the_whole_ring_is_singular():
     (pitchfork,) = four.events
     proof = proof_of(pitchfork, 20)
 
-    assert pitchfork.what is BifurcationKind.PITCHFORK
+    assert pitchfork.kind is BifurcationKind.PITCHFORK
     assert pitchfork.located
     assert proof.certified
     assert abs(float(proof.value.mid()) - pitchfork.value) < 1e-12
@@ -111,7 +111,7 @@ def test_henons_second_doubling_has_a_closed_form():
     for b in (0.0, 0.2, 0.3):
         one = branch(henon(1), np.array([1.0]), "a", 0.1, (-0.1, 1.4), {"b": b})
         (two,) = switched(one, one.events[-1], (-0.1, 1.4))
-        flip = next(e for e in two.events if e.what is BifurcationKind.FLIP)
+        flip = next(e for e in two.events if e.kind is BifurcationKind.FLIP)
 
         assert abs(flip.value - ((1 - b) ** 2 + (1 + b) ** 2 / 4)) < 1e-10
 
@@ -140,7 +140,7 @@ def test_henons_later_doublings_agree_with_single_shooting():
 def test_the_window_of_period_three_opens_where_it_is_published():
     """1 + sqrt(8) [Myrberg1958]."""
     one = branch(logistic(3), np.array([0.1494, 0.4880, 0.9594]), "r", 3.84, (3.5, 3.9))
-    fold = next(event for event in one.events if event.what is BifurcationKind.FOLD)
+    fold = next(event for event in one.events if event.kind is BifurcationKind.FOLD)
 
     assert abs(fold.value - (1 + 8**0.5)) < 1e-12
 
@@ -160,7 +160,7 @@ def test_a_neimark_sacker_bifurcation_is_named_where_there_is_one():
     one = branch(delayed(1), np.array([0.4]), "r", 1.7, (1.2, 2.2))
     (torus,) = one.events
 
-    assert torus.what is BifurcationKind.TORUS
+    assert torus.kind is BifurcationKind.TORUS
     assert abs(torus.value - 2) < 1e-12
     assert abs(np.angle(one.system.spectrum(torus.point.z).multipliers[0])) == pytest.approx(pi / 3, abs=1e-9)
 
@@ -171,7 +171,7 @@ def test_a_branch_point_without_a_fold_is_switched_at():
     (crossing,) = one.events
     both = switched(one, crossing, (0.2, 1.5))
 
-    assert crossing.what is BifurcationKind.BRANCH_POINT
+    assert crossing.kind is BifurcationKind.BRANCH_POINT
     assert abs(crossing.value - 1) < 1e-12
     for side in both:
         assert side.points[-1].z[0] ** 2 == pytest.approx(side.points[-1].z[1] - 1, abs=1e-10)
@@ -216,7 +216,7 @@ def test_the_cycle_born_at_the_cuspless_doubling_ends_on_the_corner_orbit():
 
     assert abs(doubling.value - float(lambda_c())) < 1e-12
     assert doubling.form.supercritical is False
-    assert collision.what is BifurcationKind.BORDER_COLLISION
+    assert collision.kind is BifurcationKind.BORDER_COLLISION
     assert abs(collision.value - float(locate("lambda-star", 15).value)) < 1e-12
     assert sorted(b.system.recurrence.components for b in beyond) == [(0, 0, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0)]
     assert all(b.values.min() > collision.value for b in beyond)  # all four exist on one side only

@@ -14,7 +14,7 @@ from symbolic.tables.table import lam as lam_letter
 from verification.arithmetic.balls import FLOAT64
 from verification.cycles.continuation.arc import Steps
 from verification.cycles.continuation.branch import branch
-from verification.cycles.continuation.switching import Special, curve
+from verification.cycles.continuation.switching import CodimensionTwo, curve
 from verification.cycles.continuation.systems import Critical, coefficients
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.problem import Linearised, Problem
@@ -22,12 +22,12 @@ from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, 
 from verification.named.curves import accumulation_curve as accumulation
 from verification.named.curves import cascade, contracting_up_to, double_one, expanding_cycle, fold, largest_shape
 
-CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified rungs: `verification.named.curves.accumulation`
+CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified doublings: `verification.named.curves.accumulation`
 AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]
 
 
 @pytest.fixture(scope="module")
-def rungs():
+def curves():
     return list(cascade(3, 32))
 
 
@@ -40,8 +40,8 @@ def test_the_fold_of_a_polygon_is_followed_along_its_closed_form(K, p, q):
     assert plane[-1, 0] == largest_shape(K)
 
 
-def test_the_first_doubling_is_followed_along_alpha_tilde(rungs):
-    plane = rungs[0].curve.plane
+def test_the_first_doubling_is_followed_along_alpha_tilde(curves):
+    plane = curves[0].curve.plane
     expected = lambdify(lam_letter, alpha_tilde())(plane[:, 1])
 
     assert np.max(np.abs(plane[:, 0] - expected)) < 1e-12
@@ -49,23 +49,23 @@ def test_the_first_doubling_is_followed_along_alpha_tilde(rungs):
     assert abs(plane[-1, 1]) < 1e-12
 
 
-def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(rungs):
-    for rung in rungs:
-        (end,) = rung.special
+def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(curves):
+    for each in curves:
+        (end,) = each.special
 
-        assert end.what is Special.ONE_TWO
+        assert end.kind is CodimensionTwo.ONE_TWO
         assert end.parameters[1] == 1.0
 
 
-def test_the_resonances_pile_up_as_in_area_preserving_maps(rungs):
-    ends = [rung.special[0].parameters[0] for rung in rungs if rung.what is BifurcationKind.FLIP and rung.period > 2]
+def test_the_resonances_pile_up_as_in_area_preserving_maps(curves):
+    ends = [c.special[0].parameters[0] for c in curves if c.kind is BifurcationKind.FLIP and c.period > 2]
     gaps = [b - a for a, b in pairwise(ends)]
 
     assert gaps[-2] / gaps[-1] == pytest.approx(AREA_PRESERVING, abs=0.01)
 
 
-def test_the_accumulation_is_that_of_the_certified_ladder(rungs):
-    found = accumulation(rungs, np.array([0.08]))
+def test_the_accumulation_is_that_of_the_certified_cascade(curves):
+    found = accumulation(curves, np.array([0.08]))
 
     assert abs(found.lam[0] - CERTIFIED_END) < found.error[0]
     assert 0 < found.error[0] < 1e-5
@@ -79,8 +79,8 @@ def test_henons_flip_and_fold_meet_nowhere_and_end_in_resonances():
 
     assert np.allclose(flips.plane[:, 1], 3 * (1 - flips.plane[:, 0]) ** 2 / 4, atol=1e-10)
     assert np.allclose(folds.plane[:, 1], -((1 - folds.plane[:, 0]) ** 2) / 4, atol=1e-10)
-    assert [d.what for d in flips.special] == [Special.ONE_TWO]
-    assert [d.what for d in folds.special] == [Special.ONE_ONE]
+    assert [d.kind for d in flips.special] == [CodimensionTwo.ONE_TWO]
+    assert [d.kind for d in folds.special] == [CodimensionTwo.ONE_ONE]
 
 
 def test_the_coefficients_are_those_of_the_certified_normal_form():

@@ -58,7 +58,7 @@ def finest(name, textbook):
     asked = question(name)
     methods = [m for m in asked.methods if m.textbook is textbook and not m.elsewhere]
     return replace(
-        asked, methods=tuple(m if m.unit == "h" else replace(m, ladder=m.within(DIGITS)[-1:]) for m in methods)
+        asked, methods=tuple(m if m.unit == "h" else replace(m, settings=m.within(DIGITS)[-1:]) for m in methods)
     )
 
 
@@ -103,8 +103,8 @@ def test_the_usual_ways_agree_with_the_reference_as_far_as_doubles_let_them(name
 
 def test_the_exponent_of_chaos_is_proved_to_more_digits_than_a_million_bounces_give():
     asked = question("exponent-chaos")
-    ladders = {"compiled kernel, error bar": (1_000_000,), "arb, certified": (4,)}
-    ways = tuple(replace(m, ladder=ladders[m.name]) for m in asked.methods if m.name in ladders)
+    settings = {"compiled kernel, error bar": (1_000_000,), "arb, certified": (4,)}
+    ways = tuple(replace(m, settings=settings[m.name]) for m in asked.methods if m.name in settings)
     bar, proof = measured(replace(asked, methods=ways, reference=lambda digits: [proved(10)]), runs=1, most_digits=16)
 
     assert asked.certified

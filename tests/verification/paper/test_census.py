@@ -38,8 +38,8 @@ def test_the_cycles_of_period_3_are_born_at_the_fold_in_closed_form(grown):
     assert (three.copies, three.symmetry, three.high.event) == (2, "C3", Event.EDGE)
 
 
-def test_the_ladder_is_found_rung_by_rung_from_one_contraction(grown):
-    """The rungs are those of `pinball locate doubling`, found there in another way."""
+def test_the_cascade_is_found_doubling_by_doubling_from_one_contraction(grown):
+    """The doublings are those of `pinball locate doubling`, found there in another way."""
     flips = {b.period: float(b.high.value) for b in grown if b.high.event is Event.FLIP}
 
     assert abs(flips[4] - 0.371235502527874) < 1e-12

@@ -43,9 +43,9 @@ def test_kinks_have_the_size_that_the_jump_of_the_curvature_gives(monkeypatch: p
 
 def test_cascades_start_from_several_periods_when_each_doubling_is_proved(monkeypatch: pytest.MonkeyPatch):
     judge, name = on_conclusions.different_periods, "map.cascades_of_different_periods"
-    rungs = on_conclusions.doublings()
+    found = on_conclusions.doublings()
     assert verdict(judge, name) is Verdict.SUPPORTED
-    monkeypatch.setattr(on_conclusions, "doublings", lambda: [replace(rungs[0], proved=False), *rungs[1:]])
+    monkeypatch.setattr(on_conclusions, "doublings", lambda: [replace(found[0], proved=False), *found[1:]])
 
     assert verdict(judge, name) is Verdict.OPEN
 

@@ -34,8 +34,8 @@ def test_a_long_stay_is_supported_and_a_short_one_is_not(monkeypatch, bounces, w
     assert verdict("egg.stays_long") is wanted
 
 
-def test_the_side_cascades_are_certified_and_lie_below_the_ladder():
-    """The ladder of the paper accumulates at 0.39352; a cascade's gaps shrink by Feigenbaum's ratio, 4.669."""
+def test_the_side_cascades_are_certified_and_lie_below_the_first():
+    """The cascade of the paper accumulates at 0.39352; a cascade's gaps shrink by Feigenbaum's ratio, 4.669."""
     for period, born in ((12, 0.3731216), (8, 0.3798749)):
         first, second = side_cascade(period)
 

@@ -42,7 +42,7 @@ def test_a_shape_without_the_crisis_is_one_sentence():
 
 def test_the_mean_stay_falls_like_a_power_of_the_distance():
     """Merging: the saddle's multipliers say 0.85 in the limit; over 61 distances the fit is 0.92 +- 0.11."""
-    found = scaling("merging", "0.08", contact("merging", SHAPE).letter, np.geomspace(1e-4, 3e-3, 12), 10**6)
+    found = scaling("merging", "0.08", contact("merging", SHAPE).parameter, np.geomspace(1e-4, 3e-3, 12), 10**6)
 
     assert 0.3 < found.exponent < 1.6
     assert found.error > 0
@@ -67,7 +67,7 @@ def asymmetry(lam, balls=24):
 
 def test_balls_see_the_symmetry_restored_where_the_tangency_is():
     """Sampled, no manifold: below, every orbit keeps to one mirror image; above, it visits both."""
-    at = contact("symmetry-restoring", SHAPE).letter
+    at = contact("symmetry-restoring", SHAPE).parameter
 
     assert asymmetry(at - 2e-4) > 0.05
     assert asymmetry(at + 2e-4) < 0.03
@@ -85,7 +85,7 @@ def bands_apart(lam):
 
 
 def test_balls_see_eight_bands_become_four_where_the_tangency_is():
-    at = contact("band-merging", SHAPE).letter
+    at = contact("band-merging", SHAPE).parameter
 
     assert np.min(bands_apart(at - 3e-4)) > 0.008
     assert np.median(bands_apart(at + 3e-4)) < 0.004
@@ -93,7 +93,7 @@ def test_balls_see_eight_bands_become_four_where_the_tangency_is():
 
 def test_a_scan_of_extents_finds_the_one_widening_and_the_tangency_lies_where_it_is():
     """Two methods that share only the map: farthest points of orbits, and manifolds that touch."""
-    at = contact("interior-crisis-1", SHAPE).letter
+    at = contact("interior-crisis-1", SHAPE).parameter
     (step,) = widenings("0.08", np.arange(0.4265, 0.4301, 5e-4))
     low, high = narrowed("0.08", step, 2e-6)
 
@@ -117,12 +117,12 @@ def test_a_scan_of_extents_finds_the_widenings_in_angle_alone_not_far_above_thei
     """Not at them: just above, 200,000 bounces see the new part or miss it."""
     (step,) = widenings("0.08", np.arange(low, low + 0.0031, 5e-4))
 
-    assert 0 < step[1].lam - contact(f"interior-crisis-{n}", SHAPE).letter < 5e-4
+    assert 0 < step[1].lam - contact(f"interior-crisis-{n}", SHAPE).parameter < 5e-4
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_the_largest_exit_angle_grows_at_once_across_an_interior_crisis_and_steadily_before_it(n):
-    at = contact(f"interior-crisis-{n}", SHAPE).letter
+    at = contact(f"interior-crisis-{n}", SHAPE).parameter
     lams = (at - 7e-4, at - 1e-4, at + 5e-4)
     first, below, above = (extent(PinballMap("egg", lam=lam, alpha="0.08")).angle for lam in lams)
 

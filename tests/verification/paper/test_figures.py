@@ -180,7 +180,7 @@ def test_below_lambda_star_nothing_is_chaotic_and_above_lambda_c_everything_is()
     assert np.all(np.isnan(panel.curves["nu_plus_chaotic"].y[lams < 0.0712]))
 
 
-def test_the_bifurcation_diagram_has_the_periods_of_the_certified_ladder():
+def test_the_bifurcation_diagram_has_the_periods_of_the_certified_cascade():
     (panel,) = egg.bifurcation(0.1)
     each = -1, panel.facts["orbits"], panel.facts["points"]
     theta, lams = (values.reshape(each) for values in panel.curves["attractors"])

@@ -1,4 +1,4 @@
-"""Proofs over sets: exclusion, periodic points of a slap map, the projection argument, the ladder's end."""
+"""Proofs over sets: exclusion, periodic points of a slap map, the projection argument, the end of the cascade."""
 
 import math
 from dataclasses import replace
@@ -173,13 +173,13 @@ def test_the_projection_meets_the_diagonal_where_the_paper_says_that_it_misses()
     assert produced.produced
 
 
-def test_the_ladder_ends_at_feigenbaums_constant():
+def test_the_cascade_ends_at_feigenbaums_constant():
     found = ratio(LADDER)
 
     assert abs(found.value - mpmath.mpf(DELTA)) < found.error < 1e-6
 
 
-def test_more_rungs_agree_with_the_stated_error():
+def test_more_doublings_agree_with_the_stated_error():
     short, long = limit(LADDER[:-2]), limit(LADDER)
 
     assert abs(short.value - long.value) < 10 * short.error

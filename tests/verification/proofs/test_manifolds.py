@@ -65,21 +65,21 @@ PUBLISHED = {
 
 
 @pytest.mark.parametrize("unstable", [True, False])
-@pytest.mark.parametrize(("map", "orbit", "letter"), CASES, ids=lambda case: getattr(case, "name", None))
-def test_a_series_leaves_a_residual_of_rounding_size(map, orbit, letter, unstable):
-    made = local(saddle(orbit, map.over(FLOAT64), letter), unstable)
+@pytest.mark.parametrize(("map", "orbit", "parameter"), CASES, ids=lambda case: getattr(case, "name", None))
+def test_a_series_leaves_a_residual_of_rounding_size(map, orbit, parameter, unstable):
+    made = local(saddle(orbit, map.over(FLOAT64), parameter), unstable)
 
     assert made.residual < 2e-14
 
 
-@pytest.mark.parametrize(("map", "orbit", "letter"), CASES, ids=lambda case: getattr(case, "name", None))
-def test_multipliers_are_those_of_the_derivative_matrix(map, orbit, letter):
+@pytest.mark.parametrize(("map", "orbit", "parameter"), CASES, ids=lambda case: getattr(case, "name", None))
+def test_multipliers_are_those_of_the_derivative_matrix(map, orbit, parameter):
     """For the egg: `PinballMap.derivative` along the cycle; for Henon: the matrix by hand."""
-    found = saddle(orbit, map.over(FLOAT64), letter)
+    found = saddle(orbit, map.over(FLOAT64), parameter)
     if isinstance(map, Pinball):
         from numeric import PinballMap
 
-        bounces = PinballMap("egg", lam=letter, alpha=SHAPE)
+        bounces = PinballMap("egg", lam=parameter, alpha=SHAPE)
         product = np.eye(2)
         ring = found.around()
         for here, following in pairwise(ring[1:]):
@@ -87,7 +87,7 @@ def test_multipliers_are_those_of_the_derivative_matrix(map, orbit, letter):
             product = bounces.derivative(math.remainder(here, 2 * math.pi), phi) @ product
         product *= orbit.closure.turn
     else:
-        product = np.array([[-2 * letter * found.points[0], 1], [0.3, 0]])
+        product = np.array([[-2 * parameter * found.points[0], 1], [0.3, 0]])
     expected = sorted(np.linalg.eigvals(product).real, key=abs)
 
     assert found.stable == pytest.approx(expected[0], rel=1e-8, abs=1e-12)
@@ -97,8 +97,8 @@ def test_multipliers_are_those_of_the_derivative_matrix(map, orbit, letter):
 @settings(max_examples=25, deadline=None)
 @given(st.floats(-0.9, 0.9), st.sampled_from(CASES), st.booleans())
 def test_the_map_acts_on_the_parameter_as_multiplication(z, case, unstable):
-    map, orbit, letter = case
-    made = local(saddle(orbit, map.over(FLOAT64), letter), unstable)
+    map, orbit, parameter = case
+    made = local(saddle(orbit, map.over(FLOAT64), parameter), unstable)
     z = np.array([z if unstable else z * float(made.factor)])
     there = z * float(made.factor) if unstable else z / float(made.factor)
 
@@ -127,7 +127,7 @@ def test_the_tangencies_of_the_henon_map_are_the_published_ones(name):
     where, b, (low, high) = PUBLISHED[name]
     found = tangency(where, Henon(b), 10)
 
-    assert low <= found.letter <= high
+    assert low <= found.parameter <= high
     assert abs(found.bend) > 1e-3
     assert abs(found.speed) > 1e-3
 
@@ -138,7 +138,7 @@ def test_two_methods_and_more_digits_agree_on_a_crisis(kind, digits):
 
     assert few.agrees
     assert many.agrees
-    assert abs(few.letter - many.letter) <= few.error
+    assert abs(few.parameter - many.parameter) <= few.error
     assert many.error < few.error / 100
 
 
@@ -150,8 +150,8 @@ def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_mul
     at = tangency(where, EGG, 8)
     gaps = []
     for rounds in (6, 8, 10):
-        cycle = shadow(where, EGG, float(at.letter), rounds)
-        gaps.append(float(floats(cycle.problem, cycle.start)[-1] - at.letter))
+        cycle = shadow(where, EGG, float(at.parameter), rounds)
+        gaps.append(float(floats(cycle.problem, cycle.start)[-1] - at.parameter))
 
     assert gaps[0] / gaps[1] == pytest.approx(at.multipliers[1] ** 3, rel=0.05)
     assert gaps[1] / gaps[2] == pytest.approx(at.multipliers[1] ** 3, rel=0.01)
@@ -168,8 +168,8 @@ def test_the_folds_of_shadowing_cycles_approach_the_ends_of_windows_at_the_rate_
     at = tangency(where, EGG, 8)
     gaps, periods = [], []
     for rounds in (4, 6):
-        cycle = shadow(where, EGG, float(at.letter), rounds)
-        gaps.append(floats(cycle.problem, cycle.start)[-1] - at.letter)
+        cycle = shadow(where, EGG, float(at.parameter), rounds)
+        gaps.append(floats(cycle.problem, cycle.start)[-1] - at.parameter)
         periods.append(cycle.problem.period)
     more = (periods[1] - periods[0]) // len(where.unstable.start)
 
@@ -181,7 +181,7 @@ def test_bands_merge_at_distances_from_the_end_of_the_cascade_that_fall_by_feige
     members = cascade(SHAPE)
     values = [next(members).lam for _ in range(8)]
     end = values[-1] + (values[-1] - values[-2]) / (4.669201609 - 1)
-    joined = [CONTACTS[f"band-merging-{period}"].letter - end for period in (4, 8, 16)]
+    joined = [CONTACTS[f"band-merging-{period}"].parameter - end for period in (4, 8, 16)]
     ratios = [far / near for far, near in pairwise(joined)]
 
     assert ratios == pytest.approx([4.669201609] * 2, rel=3e-3)
@@ -195,15 +195,15 @@ def test_a_small_attractor_joins_its_bands_before_it_ends(name):
     end = CONTACTS[name.replace("merging", "end")]
     merging = CONTACTS[name.replace("end", "merging")]
 
-    assert merging.letter < end.letter
+    assert merging.parameter < end.parameter
     assert len(merging.unstable.start) == len(end.unstable.start)
-    assert tangency(CONTACTS[name], EGG, 8).letter == pytest.approx(CONTACTS[name].letter, abs=1e-12)
+    assert tangency(CONTACTS[name], EGG, 8).parameter == pytest.approx(CONTACTS[name].parameter, abs=1e-12)
 
 
 def test_below_the_boundary_crisis_the_manifolds_are_apart_and_above_they_cross():
     where = contact("boundary", SHAPE)
     below, above = (
-        Gap(where, EGG.over(FLOAT64), where.letter + step, 24, 1e-16).extremum()[1].c for step in (-1e-5, 1e-5)
+        Gap(where, EGG.over(FLOAT64), where.parameter + step, 24, 1e-16).extremum()[1].c for step in (-1e-5, 1e-5)
     )
 
     assert below[0] > 0 > above[0]

@@ -31,9 +31,9 @@ EGG = table(SHAPE)
 OUTER = 1000
 
 
-def at(orbit, letter, width=0.0):
+def at(orbit, parameter, width=0.0):
     """The saddle in balls, for letters around one."""
-    return enclosed_saddle(orbit, EGG.over(complex_balls(300)), acb(arb(letter, width), arb(0, width)))
+    return enclosed_saddle(orbit, EGG.over(complex_balls(300)), acb(arb(parameter, width), arb(0, width)))
 
 
 CASES = [(TRIANGLE, 2 / 3), (SYMMETRIC, 0.41), (MIRRORED, 0.4434)]
@@ -42,10 +42,10 @@ CASES = [(TRIANGLE, 2 / 3), (SYMMETRIC, 0.41), (MIRRORED, 0.4434)]
 @cache
 def few_and_many(case, unstable):
     """The series to two orders, and the bound for what the shorter one leaves out."""
-    orbit, letter = CASES[case]
+    orbit, parameter = CASES[case]
     with working(300):
-        unit = scale(orbit, EGG, letter, unstable, OUTER)
-        few, many = (enclosed(at(orbit, letter), unstable, order, unit.unit, unit.chief) for order in (5, 20))
+        unit = scale(orbit, EGG, parameter, unstable, OUTER)
+        few, many = (enclosed(at(orbit, parameter), unstable, order, unit.unit, unit.chief) for order in (5, 20))
         return few, many, remainder(few, OUTER), remainder(many, OUTER)
 
 
@@ -61,10 +61,10 @@ def test_a_remainder_bounds_what_many_more_orders_add(z, case, unstable):
 
 def remainder_of(case, unstable, order, outer):
     """The bound with a working disc as large as `outer` leaves it."""
-    orbit, letter = CASES[case]
+    orbit, parameter = CASES[case]
     with working(300):
-        unit = scale(orbit, EGG, letter, unstable, outer)
-        return float(remainder(enclosed(at(orbit, letter), unstable, order, unit.unit, unit.chief), outer))
+        unit = scale(orbit, EGG, parameter, unstable, outer)
+        return float(remainder(enclosed(at(orbit, parameter), unstable, order, unit.unit, unit.chief), outer))
 
 
 @pytest.mark.parametrize("case", range(len(CASES)))
@@ -91,14 +91,14 @@ def test_the_outermost_point_is_off_by_as_much_as_the_slopes_say(case, unstable)
     made, inside = few_and_many(case, unstable)[0], -1 if unstable else 1
     off = acb(1e-9) * acb(0.6, 0.8)
     with working(300):
-        map, letter = made.saddle.map, made.saddle.letter
+        map, parameter = made.saddle.map, made.saddle.parameter
         for i, _, *slopes in round_outwards(made, OUTER):
             for moved, slope in zip((i + inside, i + 2 * inside), slopes, strict=True):
                 three = sorted((i, i + inside, i + 2 * inside))
                 near = [made.over(j, arb(0)) + (off if j == moved else 0) for j in three]
                 start, k = near[three.index(i)], three.index(i)
                 for _ in range(8):
-                    near[k] = (near[k] - map.rule(near, letter) / map.slopes(near, letter)[k]).mid()
+                    near[k] = (near[k] - map.rule(near, parameter) / map.slopes(near, parameter)[k]).mid()
                 share = float(abs(near[k] - start) / (slope * abs(off)))
 
                 assert 0.98 < share <= 1
@@ -110,7 +110,7 @@ def test_a_round_outwards_takes_points_no_farther_off_than_the_bounds_say(case, 
     """Two points before the round are moved, in 16 relative directions, and each rule is solved in turn."""
     made, inside = few_and_many(case, unstable)[0], -1 if unstable else 1
     with working(300):
-        map, letter, slopes = made.saddle.map, made.saddle.letter, round_outwards(made, OUTER)
+        map, parameter, slopes = made.saddle.map, made.saddle.parameter, round_outwards(made, OUTER)
         one_round = abs(made.factor) ** (-inside * (made.order + 1))
         allowed = bounds(made, slopes, [arb(1e-9) * one_round] * len(slopes))
         first = slopes[0][0]
@@ -123,7 +123,7 @@ def test_a_round_outwards_takes_points_no_farther_off_than_the_bounds_say(case, 
                 place = three.index(i)
                 start = near[place]
                 for _ in range(8):
-                    step = map.rule(near, letter) / map.slopes(near, letter)[place]
+                    step = map.rule(near, parameter) / map.slopes(near, parameter)[place]
                     near[place] = (near[place] - step).mid()
                 off[i] = near[place] - start
                 worst[i] = max(worst[i], float(abs(off[i]) / allowed[i]))
@@ -155,17 +155,22 @@ def test_a_disc_on_which_the_rule_is_not_finite_bounds_nothing():
 @pytest.mark.parametrize("case", range(len(CASES)))
 @pytest.mark.parametrize("unstable", [True, False])
 def test_derivatives_of_a_pair_are_those_of_series_in_mpmath(case, unstable):
-    """Places on the manifold, and difference quotients by `z` and by the letter, from the series of `local`."""
-    orbit, letter = CASES[case]
-    unit, precision = scale(orbit, EGG, letter, unstable, OUTER), Precision(20)
+    """Places on the manifold, and difference quotients by `z` and by the parameter, from the series of `local`."""
+    orbit, parameter = CASES[case]
+    unit, precision = scale(orbit, EGG, parameter, unstable, OUTER), Precision(20)
     with working(precision.bits):
-        made = pair(orbit, EGG, arb(letter), unit, precision)
+        made = pair(orbit, EGG, arb(parameter), unit, precision)
         found = made.at(1, (arb(3) / 10).mid(), arb(0))
         with pytest.raises(TooWideError, match="radius 1/2"):
             made.at(1, arb("0.4", "0.2"), arb(0))
     context = mpmath.MPContext()
     context.dps = 60
-    map, h, z, lam = EGG.over(multiprecision(context)), context.mpf(10) ** -15, context.mpf(3) / 10, context.mpf(letter)
+    map, h, z, lam = (
+        EGG.over(multiprecision(context)),
+        context.mpf(10) ** -15,
+        context.mpf(3) / 10,
+        context.mpf(parameter),
+    )
     series = [local(saddle(orbit, map, lam + k * h), unstable, 8, 1e-40) for k in (-1, 0, 1)]
 
     def place(z, k):
@@ -176,7 +181,7 @@ def test_derivatives_of_a_pair_are_those_of_series_in_mpmath(case, unstable):
     assert float(found.first) == pytest.approx(float((place(z + h, 0) - place(z - h, 0)) / (2 * h)), rel=1e-12)
     twice = (place(z + h, 0) - 2 * place(z, 0) + place(z - h, 0)) / h**2
     assert float(found.second) == pytest.approx(float(twice), rel=1e-8)
-    assert float(found.by_letter) == pytest.approx(float((place(z, 1) - place(z, -1)) / (2 * h)), rel=1e-8)
+    assert float(found.by_parameter) == pytest.approx(float((place(z, 1) - place(z, -1)) / (2 * h)), rel=1e-8)
     mixed = [(place(z + h, k) - place(z - h, k)) / (2 * h) for k in (-1, 1)]
     assert float(found.mixed) == pytest.approx(float((mixed[1] - mixed[0]) / (2 * h)), rel=1e-6)
 
@@ -199,19 +204,19 @@ def test_a_saddle_of_the_henon_map_has_the_multipliers_of_the_textbook():
 def test_where_the_balls_of_a_long_cycle_grow_a_smaller_unit_bounds_the_remainder():
     """Stable manifold of five bounces, multiplier -0.011: its balls grow by 30 with each order."""
     where, precision = CONTACTS["window-merging-15"], Precision(24)
-    large = scale(where.stable, EGG, where.letter, False, precision.outer)
+    large = scale(where.stable, EGG, where.parameter, False, precision.outer)
     with working(precision.bits):
         with pytest.raises(TooWideError, match="not bounded"):
-            pair(where.stable, EGG, arb(where.letter), large, precision)
-        found = smaller(where.stable, EGG, arb(where.letter), large, precision)
+            pair(where.stable, EGG, arb(where.parameter), large, precision)
+        found = smaller(where.stable, EGG, arb(where.parameter), large, precision)
 
     assert found.scale.unit < large.unit
     assert len(found.places[0]) > precision.order + 1
     assert found.error < 1e-40
 
 
-def test_cycles_at_single_letters_are_held_against_the_one_over_a_disc():
-    """A cycle at another letter, or another bounce of the same cycle, is not taken for it."""
+def test_cycles_at_single_parameters_are_held_against_the_one_over_a_disc():
+    """A cycle at another parameter, or another bounce of the same cycle, is not taken for it."""
     with working(300):
         around, here, elsewhere = at(SYMMETRIC, 0.41, 1e-12), at(SYMMETRIC, 0.41), at(SYMMETRIC, 0.4101)
         turned = at(Orbit("its mirror image", tuple(-x for x in SYMMETRIC.start), Closure(-1, (-2, 3))), 0.41)

@@ -48,7 +48,7 @@ def test_each_tangency_is_proved_where_the_cycles_say(kind):
     assert found.holds
     assert tuple(found.checks) == ITEMS
     with working(100):
-        assert abs(found.letter - arb(BY_CYCLES[kind])) < 1e-23
+        assert abs(found.parameter - arb(BY_CYCLES[kind])) < 1e-23
 
 
 @pytest.mark.parametrize("kind", BY_CYCLES)
@@ -79,7 +79,7 @@ def test_no_tangency_is_proved_beside_it(kind, shift):
 def test_bend_and_speed_are_those_of_the_gap_in_float64(kind):
     """Their ratio, at one scale of `z`, depends neither on the rounds near the saddle nor on the gap's unit."""
     touch = tangency(CONTACTS[kind], EGG, 10)
-    gap = Gap(CONTACTS[kind], EGG.over(FLOAT64), float(touch.letter), 28, 1e-16)
+    gap = Gap(CONTACTS[kind], EGG.over(FLOAT64), float(touch.parameter), 28, 1e-16)
     precision = Precision(20)
     with working(precision.bits):
         z = settled(Touching(CONTACTS[kind], EGG, arb(BY_CYCLES[kind]).mid(), precision), precision).orbit[0]
@@ -100,7 +100,7 @@ def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
     """The symmetry at the end of the orbit takes the cycle into itself, so the tangency is homoclinic as it stands."""
     precision = Precision(20)
     with working(precision.bits):
-        system = Touching(CONTACTS[kind], EGG, arb(CONTACTS[kind].letter), precision)
+        system = Touching(CONTACTS[kind], EGG, arb(CONTACTS[kind].parameter), precision)
     orbit = CONTACTS[kind].unstable
     points = list(orbit.start)
     while len(points) < 6 * len(orbit.start):
@@ -115,9 +115,9 @@ def test_the_manifolds_that_touch_belong_to_one_cycle(kind):
 def test_a_flight_obeys_the_rule_however_far_it_goes_into_the_manifolds(kind, early, late):
     """All rules to rounding, but the two where the orbit meets the stable series, which hold as well as the start."""
     where, map = CONTACTS[kind], EGG.over(FLOAT64)
-    out, into = (local(saddle(where.unstable, map, where.letter), unstable) for unstable in (True, False))
+    out, into = (local(saddle(where.unstable, map, where.parameter), unstable) for unstable in (True, False))
     points = [x.c[0] for x in flight(where, map, out, into, early, late).bounces]
-    rules = sorted(abs(map.rule(points[k : k + 3], where.letter)) for k in range(len(points) - 2))
+    rules = sorted(abs(map.rule(points[k : k + 3], where.parameter)) for k in range(len(points) - 2))
 
     assert len(points) == 3 + where.bounces + (early + late) * len(where.unstable.start)
     assert rules[-3] < 1e-12
@@ -135,10 +135,10 @@ def system():
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_matrix_of_the_system_holds_its_difference_quotients(seed):
-    """Along random directions, by central differences; the manifolds are affine in the letter up to the step."""
+    """Along random directions, by central differences; the manifolds are affine in the parameter up to the step."""
     made, zero = system()
     with working(Precision(20).bits):
-        step, here = (arb(10) ** -21).mid(), [*zero.unknowns[:-1], made.letter]
+        step, here = (arb(10) ** -21).mid(), [*zero.unknowns[:-1], made.parameter]
         random = np.random.default_rng(seed).uniform(-1, 1, len(here))
         beside = []
         for move in (step, -step):
@@ -153,7 +153,7 @@ def test_the_vector_along_a_tangency_is_the_tangent_of_the_orbits_on_the_manifol
     made, zero = system()
     with working(Precision(20).bits):
         step = (arb(10) ** -20).mid()
-        moved = Point([x + step * v for x, v in zip(zero.orbit, zero.along, strict=True)], zero.along, zero.letter)
+        moved = Point([x + step * v for x, v in zip(zero.orbit, zero.along, strict=True)], zero.along, zero.parameter)
         apart = [x.mid() for x in made.linear(moved).values]
 
     assert max(abs(float(x)) for x in apart) < 1e-33  # of second order in the step; of first order it would be 1e-20
@@ -183,17 +183,17 @@ HENON = {
 def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(name):
     where, b, (low, high) = HENON[name]
     map = Henon(b)
-    value = sharpened(where, map, str(tangency(where, map, 10).letter), 20)
+    value = sharpened(where, map, str(tangency(where, map, 10).parameter), 20)
     found = tangency_proved(where, map, value, 20)
 
     assert found.holds
-    assert low <= found.letter <= high
+    assert low <= found.parameter <= high
 
 
 @pytest.mark.parametrize(
     ("changed", "value", "known"),
     [
-        ({}, "0.66", ["saddle", "remainder", "admissible"]),  # no tangency near this letter
+        ({}, "0.66", ["saddle", "remainder", "admissible"]),  # no tangency near this parameter
         ({"bounces": 7, "z": 0.02}, BY_CYCLES["boundary"], ["saddle", "remainder"]),  # nor near this orbit
         ({"unstable": Orbit("flat points", (-0.905,), Closure(1, (1, 3)))}, BY_CYCLES["boundary"], []),  # no saddle
     ],

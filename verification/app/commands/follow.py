@@ -90,7 +90,7 @@ def command(
         with output.progress("Certifying", len(events)) as tick:
             for event in events:
                 certificates[id(event)] = certificate(event, digits, letter, lam)
-                tick(event.what.value)
+                tick(event.kind.value)
     documents = []
     for one in found:
         document = record(one)
@@ -178,7 +178,7 @@ def noted(event: Any, letter: str, proof: dict[str, Any] | None) -> dict[str, An
     """An event for JSON."""
     form = event.form
     return {
-        "event": event.what.value,
+        "event": event.kind.value,
         letter: event.value,
         "located": event.located,
         "theta": [float(x) for x in event.point.z[:-1]],
@@ -197,14 +197,14 @@ def curves_of(branches: list["Branch"], scene: Scene, output: Output) -> list[di
     with output.progress("Drawing", len(events)) as tick:
         for period, event in events:
             found = curve_of(event, alpha, scene.K)
-            tick(event.what.value)
+            tick(event.kind.value)
             if found is not None:
                 special = [
-                    {"what": point.what.value, "alpha": point.parameters[0], "lam": point.parameters[1]}
+                    {"what": point.kind.value, "alpha": point.parameters[0], "lam": point.parameters[1]}
                     for point in found.special
                 ]
                 plane = [[float(x) for x in row] for row in found.plane]
-                rows.append({"event": event.what.value, "period": period, "alpha_lam": plane, "special": special})
+                rows.append({"event": event.kind.value, "period": period, "alpha_lam": plane, "special": special})
     return rows
 
 

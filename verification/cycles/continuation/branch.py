@@ -45,7 +45,7 @@ class Event:
     place is interpolated between two points.
     """
 
-    what: BifurcationKind
+    kind: BifurcationKind
     point: Point
     ring: Recurrence
     x: Array = field(repr=False)
@@ -101,7 +101,7 @@ def branch(
     >>> from sympy import Symbol
     >>> from verification.cycles.recurrence.recurrence import logistic
     >>> found = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.9))
-    >>> [(event.what.value, round(event.value, 9)) for event in found.events]
+    >>> [(event.kind.value, round(event.value, 9)) for event in found.events]
     [('period doubling', 3.0)]
     """
     system = Cycles(ring, parameter, fixed or {})
@@ -357,7 +357,7 @@ def dataset(branch: Branch) -> "xarray.Dataset":
     coordinates = {
         parameter: ("point", np.array([point.z[-1] for point, _ in listed])),
         "arclength": ("point", np.array([point.s for point, _ in listed])),
-        "event": ("point", np.array(["" if e is None else e.what.value for _, e in listed])),
+        "event": ("point", np.array(["" if e is None else e.kind.value for _, e in listed])),
     }
     about = {"cycle": branch.system.label, "letter": parameter, **_ended(branch)}
     return xarray.Dataset(values, coordinates, attrs=about)
@@ -377,7 +377,7 @@ def record(branch: Branch) -> dict[str, Any]:
                 "multipliers": [{"real": m.real, "imaginary": m.imag} for m in spectrum.multipliers],
                 "determinant": spectrum.determinant,
                 "stable": spectrum.stable,
-                "event": event.what.value if event is not None else None,
+                "event": event.kind.value if event is not None else None,
                 "branch_coefficient": form.branch if form is not None else None,
                 "supercritical": form.supercritical if form is not None else None,
             }

@@ -49,14 +49,14 @@ def switched(
     >>> from verification.cycles.recurrence.recurrence import logistic
     >>> one = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4))
     >>> (two,) = switched(one, one.events[0], (2.0, 3.6))
-    >>> [(event.what.value, round(event.value, 9)) for event in two.events]
+    >>> [(event.kind.value, round(event.value, 9)) for event in two.events]
     [('period doubling', 3.449489743)]
     """
-    if event.what in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK):
+    if event.kind in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK):
         return _along_the_null_vector(branch, event, interval, steps, tick)
-    if event.what is BifurcationKind.BRANCH_POINT:
+    if event.kind is BifurcationKind.BRANCH_POINT:
         return _across(branch, event, interval, steps, tick)
-    if event.what is BifurcationKind.BORDER_COLLISION:
+    if event.kind is BifurcationKind.BORDER_COLLISION:
         return _over_the_join(branch, event, interval, steps, tick)
     return []
 
@@ -70,11 +70,11 @@ def _along_the_null_vector(
     v, _ = null_vectors(ring_matrix(part.terms(x, at, 1), part.closure, -1))
     ring, image = part.doubled(), part.closure.carried(x, part.closure.radians, 1)
     both, away = np.concatenate([x, image]), np.concatenate([v, -part.closure.turn * v])
-    if isinstance(ring, Chords) and isinstance(part, Chords) and event.what is BifurcationKind.PITCHFORK:
+    if isinstance(ring, Chords) and isinstance(part, Chords) and event.kind is BifurcationKind.PITCHFORK:
         n = branch.system.recurrence.period
         ring, both = whole(replace(part, closure=part.closure), x, n)
         away = _repeated(part, v, n)
-    ways = (1, -1) if event.what is BifurcationKind.PITCHFORK else (1,)
+    ways = (1, -1) if event.kind is BifurcationKind.PITCHFORK else (1,)
     system = Cycles(ring, parameter, fixed)
     z = np.append(both, event.value)
     return [_leaving(system, z, np.append(way * away, 0.0), interval, steps, tick) for way in ways]
@@ -167,7 +167,7 @@ Box = tuple[tuple[float, float], tuple[float, float]]
 NOISE = 1e-10
 
 
-class Special(Enum):
+class CodimensionTwo(Enum):
     """Points of codimension two."""
 
     CUSP = "cusp"
@@ -178,12 +178,12 @@ class Special(Enum):
 
 
 MEANING = {
-    (BifurcationKind.FOLD, "bend"): Special.CUSP,
-    (BifurcationKind.FOLD, "other_one"): Special.ONE_ONE,
-    (BifurcationKind.FOLD, "other_minus_one"): Special.FOLD_FLIP,
-    (BifurcationKind.FLIP, "bend"): Special.GENERALISED_FLIP,
-    (BifurcationKind.FLIP, "other_one"): Special.FOLD_FLIP,
-    (BifurcationKind.FLIP, "other_minus_one"): Special.ONE_TWO,
+    (BifurcationKind.FOLD, "bend"): CodimensionTwo.CUSP,
+    (BifurcationKind.FOLD, "other_one"): CodimensionTwo.ONE_ONE,
+    (BifurcationKind.FOLD, "other_minus_one"): CodimensionTwo.FOLD_FLIP,
+    (BifurcationKind.FLIP, "bend"): CodimensionTwo.GENERALISED_FLIP,
+    (BifurcationKind.FLIP, "other_one"): CodimensionTwo.FOLD_FLIP,
+    (BifurcationKind.FLIP, "other_minus_one"): CodimensionTwo.ONE_TWO,
 }
 
 
@@ -191,7 +191,7 @@ MEANING = {
 class Degenerate:
     """A point of codimension two on a curve."""
 
-    what: Special
+    kind: CodimensionTwo
     point: Point = field(repr=False)
 
     @property

@@ -302,7 +302,7 @@ def parameters() -> Question:
         lambda _: ROUNDING,
     )
     kept = [m for m in sought.methods() if m.arithmetic != "longdouble"]  # SciPy and NumPy integrate in doubles
-    slow = [replace(m, ladder=DIGITS[:4]) if m.arithmetic == "mpmath" else m for m in kept]
+    slow = [replace(m, settings=DIGITS[:4]) if m.arithmetic == "mpmath" else m for m in kept]
     return Question(
         "arclength-inverse",
         "The parameter at an arc length, egg",

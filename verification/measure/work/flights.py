@@ -253,7 +253,7 @@ def textbook_steps(map: PinballMap) -> list[Method]:
     if name != "egg":
         return [paper]
     brent = replace(
-        paper, name="brentq", unit="xtol", ladder=TOLERANCES, call=lambda x: followed(book.egg_by_brentq, x)
+        paper, name="brentq", unit="xtol", settings=TOLERANCES, call=lambda x: followed(book.egg_by_brentq, x)
     )
     return [paper, replace(brent, promise=lambda x: Decimal(f"{x:.3g}"))]
 

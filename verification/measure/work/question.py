@@ -44,7 +44,7 @@ class Claimed(list[Any]):
 
 @dataclass(frozen=True)
 class Method:
-    """One way to answer: `call(setting)` for each setting of a ladder, from quick to exact.
+    """One way to answer: `call(setting)` for each of its settings, from quick to exact.
 
     `unit` says what a setting is (`digits`, `xtol`, `bounces`), `promise(setting)` the largest error that the way
     claims for itself, None when it claims none. A call gives `per` answers at a time, or as many as the setting says
@@ -54,7 +54,7 @@ class Method:
     name: str
     arithmetic: str
     unit: str
-    ladder: tuple[Any, ...]
+    settings: tuple[Any, ...]
     call: Callable[[Any], Answer]
     promise: Callable[[Any], Decimal | None] = lambda setting: None
     per: int = 1
@@ -78,7 +78,7 @@ class Method:
 
     def within(self, most_digits: int) -> tuple[Any, ...]:
         """The settings that ask for no more digits than that."""
-        return tuple(s for s in self.ladder if self.unit != "digits" or s <= most_digits)
+        return tuple(s for s in self.settings if self.unit != "digits" or s <= most_digits)
 
 
 @dataclass(frozen=True)

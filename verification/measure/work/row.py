@@ -35,7 +35,7 @@ class Row:
     textbook: bool = False
     proved: bool = False
     failure: str = ""
-    digits: int | None = None  # that were asked for, where digits are the ladder
+    digits: int | None = None  # that were asked for, where digits are the setting
     least: Decimal | None = None  # that the error is, where the reference leaves it open
 
     @property

@@ -95,12 +95,12 @@ def kink_structure(claim: Claim) -> Judgement:
 @judges("map.cascades_of_different_periods")
 def different_periods(claim: Claim) -> Judgement:
     """The first doublings of orbits of three periods."""
-    rungs = doublings()
-    told = "; ".join(f"{', '.join(map(str, c.periods))} at {', '.join(f'{x:.6f}' for x in c.lams)}" for c in rungs)
+    cascades = doublings()
+    told = "; ".join(f"{', '.join(map(str, c.periods))} at {', '.join(f'{x:.6f}' for x in c.lams)}" for c in cascades)
     return sampled(
         "cascades from periods 4, 12 and 9 at alpha = 0.08: two or three doublings of each are proved, supercritical",
         f"doublings of the periods {told}, each certified; that infinitely many follow is extrapolated",
-        all(c.proved for c in rungs),
+        all(c.proved for c in cascades),
     )
 
 

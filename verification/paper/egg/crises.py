@@ -47,9 +47,9 @@ def values(claim: Claim) -> Judgement:
     """Where the manifolds touch, by two methods, and where balls begin to leave."""
     kind, printed = ("merging", "0.4435") if "merging" in claim.id else ("boundary", "0.66")
     found, balls = located(kind), seen(kind)
-    gap, unit = float(found.letter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
-    value = f"{mpmath.nstr(found.letter, 12)} +- {mpmath.nstr(found.error, 1)}"
-    together = found.agrees and abs(balls.lam - float(found.letter)) <= balls.error + 2e-5
+    gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
+    value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
+    together = found.agrees and abs(balls.lam - float(found.parameter)) <= balls.error + 2e-5
     said = (
         f"homoclinic tangency of the {found.touch.contact.unstable.name} at {value}; the manifolds and the fold of a "
         f"cycle of {found.period} bounces agree to {found.apart:.0e}; balls first leave at {balls.lam:.5f} +- "
@@ -69,7 +69,7 @@ def touch(claim: Claim) -> Judgement:
     said = (
         f"at 0.66, of points 1e-5 on either side of the stable manifold of the unstable triangle {outside:.0%} and "
         f"{inside:.0%} go to period 3; the attractor's distance to that manifold falls to 0: {listed}, and it is 0 at "
-        f"{mpmath.nstr(located('boundary').letter, 10)}, where the triangle's own manifolds touch"
+        f"{mpmath.nstr(located('boundary').parameter, 10)}, where the triangle's own manifolds touch"
     )
     held = nears and outside == 1 and inside == 0
     return sampled("the boundary touched is the stable manifold of the unstable period-3 orbit", said, held)

@@ -240,7 +240,7 @@ def period3(claim: Claim) -> Judgement:
 def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
     """The cycle of period 32 at a share of the way from its birth to its doubling: proved, `lam`, `nu_plus`."""
     table = tables.egg(3).at(alpha=SHAPE)
-    _, _, born, dies = rungs()
+    _, _, born, dies = proved_doublings()
     theta, contraction = doubled(born.problem, born.start, (dies.lam - born.lam) / 50)
     steps = 1 + int(8 * share)
     target = born.lam + float(share) * (dies.lam - born.lam)
@@ -253,7 +253,7 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
 
 
 @cache
-def rungs() -> list:  # type: ignore[type-arg]
+def proved_doublings() -> list:  # type: ignore[type-arg]
     """`lambda_3` to `lambda_6` in float64."""
     return list(islice(cascade(SHAPE), 4))
 
@@ -285,7 +285,8 @@ def chaos_by(claim: Claim) -> Judgement:
     mean, error = float(np.mean(plus)), float(np.std(plus) / np.sqrt(plus.size))
     said = (
         f"at lam = {claim.printed} nu_+ = {mean:.5f} +- {error:.0e} over the {plus.size} of 64 orbits of 20000 bounces "
-        f"that do not end on period 3, {np.min(plus):.4f} at least; period 64 is born at lam = {rungs()[-1].lam:.6f}"
+        f"that do not end on period 3, {np.min(plus):.4f} at least; "
+        f"period 64 is born at lam = {proved_doublings()[-1].lam:.6f}"
     )
     return sampled("nu_+ = 0.019 there", said, mean > 10 * error and float(np.min(plus)) > 0)
 

@@ -1,4 +1,4 @@
-"""Saddles and their local manifolds in complex balls, for every letter in a ball at once.
+"""Saddles and their local manifolds in complex balls, for every parameter in a ball at once.
 
 A saddle of `p` bounces is the zero of its `p` rules, enclosed by an interval Newton step; the product of
 its bounces' derivatives gives the multipliers. With them in balls `doubled` encloses the coefficients of the
@@ -20,9 +20,9 @@ the unstable manifold, `1/mu` for the stable one. Going outwards, each rule is s
 
 So a round outwards takes bounds `e[0], ..., e[p-1]` to bounds `E(e)`, an affine and monotone map. It is checked that
 `E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are taken to functions bounded by `e`, and their
-distances, in the norm weighted by `e`, at least halved. The one fixed point is `h`. It is analytic in the letter, and
-real where the letter is, as all else is. Dividing `z` by `m` again and again leads along an orbit to the saddle: this
-is the manifold.
+distances, in the norm weighted by `e`, at least halved. The one fixed point is `h`. It is analytic in the parameter,
+and real where the parameter is, as all else is. Dividing `z` by `m` again and again leads along an orbit to the saddle:
+this is the manifold.
 """
 
 from collections.abc import Callable, Sequence
@@ -96,19 +96,19 @@ def size(x: Any) -> arb:
     return arb(abs(x).abs_upper())
 
 
-def enclosed_saddle(orbit: Orbit, map: PlaneMap, letter: acb) -> Saddle:
-    """The one cycle near the start, for every letter in a ball, with real multipliers on both sides of the circle."""
+def enclosed_saddle(orbit: Orbit, map: PlaneMap, parameter: acb) -> Saddle:
+    """The one cycle near the start, for every parameter in a ball, with real multipliers either side of the circle."""
 
     def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
         ring = padded(orbit, map, x)
-        values = [map.rule(ring[i : i + 3], letter) for i in range(len(x))]
-        return values, matrix(orbit, slopes(orbit, map, x, letter))
+        values = [map.rule(ring[i : i + 3], parameter) for i in range(len(x))]
+        return values, matrix(orbit, slopes(orbit, map, x, parameter))
 
     found = only_zero(rule, [acb(x) for x in orbit.start])
-    stable, unstable = multipliers_of(orbit, map, found, letter)
+    stable, unstable = multipliers_of(orbit, map, found, parameter)
     if not (abs(stable) < 1 and abs(unstable) > 1):
         raise TooWideError("saddle", f"the multipliers of the {orbit.name} are not separated")
-    return Saddle(orbit, map, letter, tuple(found), stable, unstable)
+    return Saddle(orbit, map, parameter, tuple(found), stable, unstable)
 
 
 def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Sequence[acb]) -> list[acb]:
@@ -131,9 +131,9 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
     return found.zero
 
 
-def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], letter: acb) -> tuple[acb, acb]:
+def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], parameter: acb) -> tuple[acb, acb]:
     """The roots of the characteristic polynomial of one round, the one inside the unit circle first."""
-    trace, determinant = trace_and_determinant(slopes(orbit, map, points, letter), orbit.closure.turn)
+    trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
     root = (trace * trace - 4 * determinant).sqrt()
     if not root.real > 0:
         raise TooWideError("saddle", f"the multipliers of the {orbit.name} may be complex")
@@ -177,7 +177,7 @@ class Enclosed:
 def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float, chief: int) -> Enclosed:
     """The series to `order` with enclosed coefficients; entry `chief` of the eigenvector is 1."""
     factor = saddle.unstable if unstable else saddle.stable
-    found = direction(saddle, slopes(saddle.orbit, saddle.map, saddle.points, saddle.letter), factor)
+    found = direction(saddle, slopes(saddle.orbit, saddle.map, saddle.points, saddle.parameter), factor)
     series = [[x, v / found[chief]] for x, v in zip(saddle.points, found, strict=True)]
     while len(series[0]) <= order:
         series = doubled(saddle, factor, series, min(2 * len(series[0]), order + 1))
@@ -205,7 +205,7 @@ def vanishing(made: Enclosed) -> bool:
     """Do the rules' coefficients up to the order of the series contain 0?"""
     map, ring = made.saddle.map.lifted, made.ring()
     triples = [ring[i : i + 3] for i in range(len(ring) - 2)]
-    rules: list[Jet] = [map.rule(triple, made.saddle.letter) for triple in triples]
+    rules: list[Jet] = [map.rule(triple, made.saddle.parameter) for triple in triples]
     return all(c.contains(0) for rule in rules for c in rule.c)
 
 
@@ -214,14 +214,14 @@ Outwards = list[tuple[int, arb, arb, arb]]  # for each bounce: defect, slope by 
 
 def round_outwards(made: Enclosed, outer: int) -> Outwards:
     """One round from the saddle, each rule solved for its outermost point, with bounds in units of `slope0`."""
-    map, letter, p = made.saddle.map, made.saddle.letter, len(made.coefficients)
+    map, parameter, p = made.saddle.map, made.saddle.parameter, len(made.coefficients)
     inside = -1 if made.unstable else 1
     found: Outwards = []
     for i in range(p) if made.unstable else reversed(range(p)):
         three = [i + inside + k for k in (-1, 0, 1)]
-        defect = size(map.rule([made.over(j, arb(outer)) for j in three], letter))
+        defect = size(map.rule([made.over(j, arb(outer)) for j in three], parameter))
         tube = [made.over(j, arb(1)) + around_zero(arb(TUBE)) for j in three]
-        rows = map.slopes(tube, letter)
+        rows = map.slopes(tube, parameter)
         far, here, outermost = rows if made.unstable else rows[::-1]
         least = arb(acb(outermost).abs_lower())
         if not least > 0:

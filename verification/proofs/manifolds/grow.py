@@ -1,14 +1,14 @@
 """Manifolds grown from their local series to a given length, with points as close as the curve's bends ask for.
 
-The parameter of the series is good for the whole branch: a point far out is one near the saddle, some
+The parameter `z` of the series is good for the whole branch: a point far out is one near the saddle, some
 rounds of the map later (or earlier, on a stable manifold). So new points are put between neighbours
 that are too far apart, or between which the curve turns too much, and nothing is interpolated.
 
 Starts for `tangency` are the places on an unstable manifold at which the gap to a stable one is least. A fundamental
 domain of the unstable branch, both sides of the saddle, is followed bounce by bounce. Wherever its points
-fall into the neighbourhood in which the local stable manifold is a graph, the gap is a function of the
-parameter; its local extrema near 0 are candidates, and `tangency` moves the letter until they are 0. What
-comes back are tangencies near the letter, the one that ends an attractor among others: which one it is,
+fall into the neighbourhood in which the local stable manifold is a graph, the gap is a function of
+`z`; its local extrema near 0 are candidates, and `tangency` moves the map's parameter until they are 0. What
+comes back are tangencies near that value, the one that ends an attractor among others: which one it is,
 sampling has to say.
 """
 
@@ -36,7 +36,7 @@ class Branch:
 
     here: Array
     following: Array
-    parameter: Array
+    logarithm: Array
     x: Array
     y: Array
 
@@ -91,8 +91,8 @@ def _piece(local: Local, side: int, low: float, high: float, spacing: float, tur
         where = np.nonzero(far | (bent & ~small))[0]
         if not where.size:
             break
-        more = _points(local, side, (made.parameter[where] + made.parameter[where + 1]) / 2)
-        order = np.argsort(np.concatenate([made.parameter, more.parameter]), kind="stable")
+        more = _points(local, side, (made.logarithm[where] + made.logarithm[where + 1]) / 2)
+        order = np.argsort(np.concatenate([made.logarithm, more.logarithm]), kind="stable")
         joined = (
             np.concatenate([getattr(made, name), getattr(more, name)])[order] for name in Branch.__dataclass_fields__
         )
@@ -100,20 +100,20 @@ def _piece(local: Local, side: int, low: float, high: float, spacing: float, tur
     return Branch(*(getattr(made, name)[:-1] for name in Branch.__dataclass_fields__))
 
 
-def _points(local: Local, side: int, parameter: Array) -> Branch:
-    """The points at `z = side*exp(parameter)`, those of one number of rounds together."""
-    rounds = np.maximum(0, np.ceil(parameter / abs(math.log(abs(float(local.factor)))))).astype(int)
-    here, following = np.full(parameter.size, np.nan), np.full(parameter.size, np.nan)
+def _points(local: Local, side: int, logarithm: Array) -> Branch:
+    """The points at `z = side*exp(logarithm)`, those of one number of rounds together."""
+    rounds = np.maximum(0, np.ceil(logarithm / abs(math.log(abs(float(local.factor)))))).astype(int)
+    here, following = np.full(logarithm.size, np.nan), np.full(logarithm.size, np.nan)
     for count in np.unique(rounds):
         those = rounds == count
-        here[those], following[those] = far(local, side * np.exp(parameter[those]), int(count))
+        here[those], following[those] = far(local, side * np.exp(logarithm[those]), int(count))
     x, y = local.saddle.map.over(ARRAYS).plane(here, following)
-    return Branch(here, following, parameter, np.asarray(x), np.asarray(y))
+    return Branch(here, following, logarithm, np.asarray(x), np.asarray(y))
 
 
 def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
     """The points at `z` of the manifold, from those `rounds` rounds nearer to the saddle."""
-    map, orbit, letter = local.saddle.map.over(ARRAYS), local.saddle.orbit, float(local.saddle.letter)
+    map, orbit, parameter = local.saddle.map.over(ARRAYS), local.saddle.orbit, float(local.saddle.parameter)
     outwards = abs(float(local.factor)) > 1
     factor = float(local.factor) if outwards else 1 / float(local.factor)
     here, following = local.points(z / factor**rounds)
@@ -124,9 +124,9 @@ def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
             here, following = (closure.carried(x, shift, 1) for x in (here, following))
         for _ in orbit.start:
             if outwards:
-                here, following = following, map.following(here, following, letter)
+                here, following = following, map.following(here, following, parameter)
             else:
-                here, following = map.previous(here, following, letter), here
+                here, following = map.previous(here, following, parameter), here
         if outwards:
             here, following = (closure.carried(x, shift, -1) for x in (here, following))
         if map.turn:  # a mirror leaves the next bounce behind, where the map takes it ahead
@@ -141,46 +141,46 @@ SMALL = 0.05  # a gap that counts as near
 
 
 def touches(
-    orbit: Orbit, map: PlaneMap, letter: float, rounds: int, most: int = 4, any_bounce: bool = False
+    orbit: Orbit, map: PlaneMap, parameter: float, rounds: int, most: int = 4, any_bounce: bool = False
 ) -> list[Touch]:
-    """Homoclinic tangencies near a letter, within some rounds, in the order of their letters; each once.
+    """Homoclinic tangencies near a parameter, within some rounds, in the order of their parameters; each once.
 
     `most` candidates with the smallest gaps are tried, those after whole rounds only or after `any_bounce`.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
     >>> found = touches(Orbit("inner fixed point", (0.63,)), Henon(Rational(3, 10)), 1.3924, 6)
-    >>> min(round(abs(touch.letter - 1.39241980792), 9) for touch in found)
+    >>> min(round(abs(touch.parameter - 1.39241980792), 9) for touch in found)
     0.0
     """
     found: list[Touch] = []
-    for candidate in candidates(orbit, map, letter, rounds, any_bounce)[:most]:
+    for candidate in candidates(orbit, map, parameter, rounds, any_bounce)[:most]:
         try:
             touch = tangency(candidate, map, 8)
         except (ValueError, ArithmeticError):
             continue
-        if all(abs(touch.letter - other.letter) > 1e-11 for other in found):
+        if all(abs(touch.parameter - other.parameter) > 1e-11 for other in found):
             found.append(touch)
-    return sorted(found, key=lambda touch: float(touch.letter))
+    return sorted(found, key=lambda touch: float(touch.parameter))
 
 
-def candidates(orbit: Orbit, map: PlaneMap, letter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
+def candidates(orbit: Orbit, map: PlaneMap, parameter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
     """Extrema of the gap along both branches of the unstable manifold, the smallest first."""
-    at = saddle(orbit, map.over(FLOAT64), letter)
+    at = saddle(orbit, map.over(FLOAT64), parameter)
     out, into = local(at, True), local(at, False)
     found: list[tuple[float, Contact]] = []
     grid = np.exp(np.linspace(-math.log(abs(at.unstable)), 0, POINTS))
     for z in (grid, -grid):
         here, following = out.points(z)
         for count in range(1, rounds * len(orbit.start) + 1):
-            here, following = following, map.over(ARRAYS).following(here, following, letter)
+            here, following = following, map.over(ARRAYS).following(here, following, parameter)
             whole = (orbit.closure.turn ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
             for sign in ((1, -1) if map.turn else (1,)) if any_bounce else whole:
                 gap, end = gaps(into, sign * here, sign * following)
                 for i in turning(gap):
                     place = float(z[i]) * out.unit, float(end[i]) * into.unit
                     least = gap[i] - (gap[i + 1] - gap[i - 1]) ** 2 / 8 / (gap[i - 1] - 2 * gap[i] + gap[i + 1])
-                    found.append((abs(float(least)), Contact(orbit, orbit, count, sign, *place, letter)))
+                    found.append((abs(float(least)), Contact(orbit, orbit, count, sign, *place, parameter)))
     return [contact for _, contact in sorted(found, key=lambda pair: pair[0])]
 
 

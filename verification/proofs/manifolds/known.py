@@ -66,21 +66,21 @@ class Shadow:
     start: list[float]
 
 
-def shadow(contact: Contact, map: Pinball, letter: float, rounds: int) -> Shadow:
+def shadow(contact: Contact, map: Pinball, parameter: float, rounds: int) -> Shadow:
     """The cycle that spends about `rounds` rounds of the saddle near it, a few more where symmetry asks for it."""
     if contact.unstable != contact.stable:
         raise ValueError("shadow: the tangency is heteroclinic; a cycle shadows homoclinic ones only")
     floats = map.over(FLOAT64)
-    gap = Gap(contact, floats, letter, 28, 1e-16)
+    gap = Gap(contact, floats, parameter, 28, 1e-16)
     for more in range(6):
         points, bent, image = period(gap, rounds + more)
         sign, turns = image
         if sign == -1 or turns % map.turn == 0:
-            return closed(points, bent, image, map, letter)
-    return closed(*period(gap, rounds), map, letter)  # it turns at each passage, and closes after several
+            return closed(points, bent, image, map, parameter)
+    return closed(*period(gap, rounds), map, parameter)  # it turns at each passage, and closes after several
 
 
-def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball, letter: float) -> Shadow:
+def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball, parameter: float) -> Shadow:
     """The problem of the fold of a cycle that repeats after its points, turned or as its mirror image."""
     sign, turns = image
     unit = 2 * math.pi / map.turn
@@ -91,7 +91,7 @@ def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball,
     after = [sign * x + shift * unit for x in points[: bent + 1]]
     closure = Closure(sign, (shift, map.turn) if shift else (0, 1))
     problem = Problem(map.table, (0,) * len(points), BifurcationKind.FOLD, "lam", closure=closure)
-    return Shadow(problem, [*points[bent + 1 :], *after, letter])
+    return Shadow(problem, [*points[bent + 1 :], *after, parameter])
 
 
 def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
@@ -214,15 +214,15 @@ def contact(kind: str, alpha: Expr) -> Contact:
 
 def extrapolated(before: Contact, here: Contact, share: float) -> Contact:
     """The starts carried on, `share` times the last change."""
-    names = ("letter", "z", "end")
+    names = ("parameter", "z", "end")
     moved = {name: getattr(here, name) + share * (getattr(here, name) - getattr(before, name)) for name in names}
     return replace(here, **moved)
 
 
 def settled(guess: Contact, map: Pinball) -> Contact:
     """The contact found from a guess, with starts taken from it."""
-    letter = tangency(guess, map, 8).letter
-    return Gap(guess, map.over(FLOAT64), letter, 28, 1e-16).contact()
+    parameter = tangency(guess, map, 8).parameter
+    return Gap(guess, map.over(FLOAT64), parameter, 28, 1e-16).contact()
 
 
 MOST_DIGITS = 500
@@ -232,10 +232,10 @@ SPARE = 4  # rounds by which the second cycle is longer
 
 @dataclass(frozen=True)
 class Crisis:
-    """`letter +- error` and how it was found; `apart` is how far the two methods are from each other."""
+    """`parameter +- error` and how it was found; `apart` is how far the two methods are from each other."""
 
     kind: str
-    letter: Any
+    parameter: Any
     error: Any
     touch: Touch
     apart: float
@@ -279,7 +279,7 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     """The `merging` or the `boundary` crisis of the three-pointed egg to `digits` digits, not proved.
 
     >>> from sympy import Rational
-    >>> mpmath.nstr(crisis("boundary", Rational(2, 25), 10).letter, 10)
+    >>> mpmath.nstr(crisis("boundary", Rational(2, 25), 10).parameter, 10)
     '0.6621442734'
     """
     if digits > MOST_DIGITS:
@@ -291,13 +291,15 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     rounds = math.ceil((digits + 2) * math.log(10) / math.log(unstable))
     found = []
     for more in (0, SPARE):
-        cycle = shadow(where, map, float(touch.letter), rounds + more)
+        cycle = shadow(where, map, float(touch.parameter), rounds + more)
         found.append(refined(cycle.problem, cycle.start, digits + 5).z[-1])
     context = mpmath.MPContext()
     context.dps = digits + 10
-    short, letter = found
-    error = abs(context.mpf(letter) - context.mpf(short)) + context.mpf(10) ** -(digits + 2)
-    return Crisis(kind, context.mpf(letter), error, touch, float(abs(context.mpf(touch.letter) - letter)), cycle)
+    short, parameter = found
+    error = abs(context.mpf(parameter) - context.mpf(short)) + context.mpf(10) ** -(digits + 2)
+    return Crisis(
+        kind, context.mpf(parameter), error, touch, float(abs(context.mpf(touch.parameter) - parameter)), cycle
+    )
 
 
 def proof(found: Crisis, alpha: Expr, digits: int) -> TangencyProof:
@@ -307,12 +309,12 @@ def proof(found: Crisis, alpha: Expr, digits: int) -> TangencyProof:
     """
     digits, map, touch = max(LEAST_DIGITS, digits), table(alpha), found.touch
     try:
-        value = sharpened(touch.contact, map, str(touch.letter), digits)
+        value = sharpened(touch.contact, map, str(touch.parameter), digits)
     except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
-        value = str(touch.letter)
+        value = str(touch.parameter)
     return worked_through(TangencyClaim(touch.contact, alpha, value, digits))
 
 
 def decimals(found: Crisis) -> tuple[str, str]:
     """The value and its error as decimals, all digits of both."""
-    return str(found.letter), mpmath.nstr(found.error, 3)
+    return str(found.parameter), mpmath.nstr(found.error, 3)

@@ -1,7 +1,7 @@
 """Planar maps as one equation in three neighbours of an orbit, which is all that manifolds need to know of them.
 
-`rule(previous, here, following, letter) = 0` along every orbit; it can be solved for either end, so
-the map and its inverse are the same text read in two directions. The letter is the parameter that
+`rule(previous, here, following, parameter) = 0` along every orbit; it can be solved for either end, so
+the map and its inverse are the same text read in two directions. The parameter is the one that
 varies: the contraction of the pinball map, `a` of the Henon map. A map is bound to the words of one
 kind of number: floats, arrays, mpmath or balls, or jets of these.
 """
@@ -47,16 +47,16 @@ class PlaneMap(Protocol):
     def lifted(self) -> Self:
         """The same map over jets of its numbers."""
 
-    def rule(self, near: Sequence[Any], letter: Any) -> Any:
+    def rule(self, near: Sequence[Any], parameter: Any) -> Any:
         """0 at three neighbours of an orbit."""
 
-    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
+    def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         """The derivatives of the rule by its three points."""
 
-    def following(self, previous: Any, here: Any, letter: Any) -> Any:
+    def following(self, previous: Any, here: Any, parameter: Any) -> Any:
         """The map: what comes after `previous, here`."""
 
-    def previous(self, here: Any, following: Any, letter: Any) -> Any:
+    def previous(self, here: Any, following: Any, parameter: Any) -> Any:
         """Its inverse: what came before `here, following`."""
 
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
@@ -65,7 +65,7 @@ class PlaneMap(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Bound(ABC):
-    """The one rule of a recurrence of period 1, bound to a kind of number; `letter` is its parameter."""
+    """The one rule of a recurrence of period 1, bound to a kind of number, at a value of its parameter."""
 
     words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
 
@@ -81,24 +81,24 @@ class _Bound(ABC):
     def ring(self) -> Recurrence:
         """The recurrence."""
 
-    def at(self, letter: Any) -> dict[str, Any]:
+    def at(self, parameter: Any) -> dict[str, Any]:
         """All parameters of the recurrence."""
-        return {"lam": letter}
+        return {"lam": parameter}
 
     @cached_property
     def _rule(self) -> Rule:
         return self.ring.over(self.words)
 
-    def rule(self, near: Sequence[Any], letter: Any) -> Any:
-        return self._rule(0, near, self.at(letter), 0).value
+    def rule(self, near: Sequence[Any], parameter: Any) -> Any:
+        return self._rule(0, near, self.at(parameter), 0).value
 
-    def slopes(self, near: Sequence[Any], letter: Any) -> tuple[Any, Any, Any]:
-        return self._rule(0, near, self.at(letter)).slope
+    def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
+        return self._rule(0, near, self.at(parameter)).slope
 
 
 @dataclass(frozen=True, eq=False)
 class Henon(_Bound):
-    """`x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`; the letter is `a`.
+    """`x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`; the parameter is `a`.
 
     >>> from sympy import Rational
     >>> Henon(Rational(3, 10)).following(0.5, 1.0, 1.5)
@@ -113,14 +113,14 @@ class Henon(_Bound):
     def ring(self) -> Recurrence:
         return henon(1)
 
-    def at(self, letter: Any) -> dict[str, Any]:
-        return {"a": letter, "b": self._b}
+    def at(self, parameter: Any) -> dict[str, Any]:
+        return {"a": parameter, "b": self._b}
 
-    def following(self, previous: Any, here: Any, letter: Any) -> Any:
-        return 1 - letter * here * here + self._b * previous
+    def following(self, previous: Any, here: Any, parameter: Any) -> Any:
+        return 1 - parameter * here * here + self._b * previous
 
-    def previous(self, here: Any, following: Any, letter: Any) -> Any:
-        return (following - 1 + letter * here * here) / self._b
+    def previous(self, here: Any, following: Any, parameter: Any) -> Any:
+        return (following - 1 + parameter * here * here) / self._b
 
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
         return following, self._b * here
@@ -132,7 +132,7 @@ class Henon(_Bound):
 
 @dataclass(frozen=True, eq=False)
 class Pinball(_Bound):
-    """The pinball map of a convex table of one component, on bounce parameters that count turns; the letter is `lam`.
+    """The pinball map of a convex table of one component, with `lam` for its parameter, on angles that count turns.
 
     Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal; backwards it came
     from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`.
@@ -150,11 +150,11 @@ class Pinball(_Bound):
     def ring(self) -> Recurrence:
         return Chords(self.table, (0,))
 
-    def following(self, previous: Any, here: Any, letter: Any) -> Any:
-        return self._other_end(here, -letter * self.angle(here, previous)[0], 0)
+    def following(self, previous: Any, here: Any, parameter: Any) -> Any:
+        return self._other_end(here, -parameter * self.angle(here, previous)[0], 0)
 
-    def previous(self, here: Any, following: Any, letter: Any) -> Any:
-        return self._other_end(here, -self.angle(here, following)[0] / letter, -1)
+    def previous(self, here: Any, following: Any, parameter: Any) -> Any:
+        return self._other_end(here, -self.angle(here, following)[0] / parameter, -1)
 
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
         return here, self.angle(here, following)[0]

@@ -1,13 +1,13 @@
-"""A proof in balls that a saddle's manifolds touch at one letter of an interval, quadratically and with non-zero speed.
+"""A proof in balls that a saddle's manifolds touch at one parameter of an interval, quadratically, at non-zero speed.
 
 An interval Newton step for the system of `touching` proves that it has one zero in a box: the manifolds touch at one
-letter of it. Let `A` be the derivative of the orbit's equations there, `v` the vector that it takes to 0, and `u` the
-vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for all
-unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the letter. At the tangency `g_z = 0`,
+parameter of it. Let `A` be the derivative of the orbit's equations there, `v` the vector that it takes to 0, and `u`
+the vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for all
+unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the parameter. At the tangency `g_z = 0`,
 
-    g_zz = u.(A'v)v,    g_letter = u.(the equations' derivative by the letter).
+    g_zz = u.(A'v)v,    g_letter = u.(the equations' derivative by the parameter).
 
-The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the letter varies.
+The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the parameter varies.
 
 `TangencyClaim` is what a proof claims, as a document: enough to work the proof through anew, with nothing of it
 believed.
@@ -44,12 +44,12 @@ Checks = Mapping[str, bool | None]
 
 @dataclass(frozen=True)
 class Proof:
-    """A tangency in `letter`, when every check is True; `bend` and `speed` are `g_zz` and `g_letter`.
+    """A tangency in `parameter`, when every check is True; `bend` and `speed` are `g_zz` and `g_letter`.
 
     `multipliers` are the stable and the unstable one of the saddle that the orbit leaves.
     """
 
-    letter: arb
+    parameter: arb
     checks: Checks
     bend: arb | None = field(default=None, repr=False)
     speed: arb | None = field(default=None, repr=False)
@@ -62,12 +62,12 @@ class Proof:
 
     @property
     def touches(self) -> bool:
-        """Is it proved that the manifolds touch at one letter, in whatever manner?"""
+        """Is it proved that the manifolds touch at one parameter, in whatever manner?"""
         return all(self.checks[item] is True for item in ITEMS[:5])
 
 
 def tangency_proved(contact: Contact, map: PlaneMap, value: str, digits: int = LEAST_DIGITS) -> Proof:
-    """The proof that the manifolds touch at one letter within `10**-digits` of `value`, which has more digits.
+    """The proof that the manifolds touch at one parameter within `10**-digits` of `value`, which has more digits.
 
     >>> from verification.proofs.manifolds.known import SHAPE, contact, table
     >>> triangle = contact("boundary", SHAPE)
@@ -76,20 +76,20 @@ def tangency_proved(contact: Contact, map: PlaneMap, value: str, digits: int = L
     """
     precision = Precision(digits)
     with working(precision.bits):
-        letter = arb(value).mid()
+        parameter = arb(value).mid()
         try:
-            return _proved(Touching(contact, map, letter, precision), map, precision)
+            return _proved(Touching(contact, map, parameter, precision), map, precision)
         except (ValueError, ArithmeticError) as why:
             known = ITEMS.index(why.item if isinstance(why, TooWideError) else "saddle")
             checks = {item: True if k < known else None for k, item in enumerate(ITEMS)}
-            return Proof(arb(letter, precision.step), checks)
+            return Proof(arb(parameter, precision.step), checks)
 
 
 def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
     """The rest of the checklist, with both manifolds enclosed."""
     near = settled(system, precision).unknowns[:-1]
-    centre, wide = Point.of([*near, system.letter]), arb(10) ** -(precision.digits // 2)
-    box = Point.of([*(arb(x, wide) for x in near), arb(system.letter, precision.step)])
+    centre, wide = Point.of([*near, system.parameter]), arb(10) ** -(precision.digits // 2)
+    box = Point.of([*(arb(x, wide) for x in near), arb(system.parameter, precision.step)])
     at = system.linear(centre)
     with working(slope_bits(len(box.unknowns))):
         over = system.linear(box)
@@ -104,7 +104,7 @@ def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
         "admissible": admissible(map),
     }
     if not found:
-        return Proof(box.letter, checks | {"quadratic": None, "transversal": None})
+        return Proof(box.parameter, checks | {"quadratic": None, "transversal": None})
     bend, speed = generic(system.linear(Point.of(image)), Point.of(image).along)
     checks |= {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}
     left = system.pairs[0].saddle
@@ -122,7 +122,7 @@ def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
     solved = rows.transpose().solve(arb_mat([[-x] for x in linear.rows[-1][1:]]), algorithm="precond")
     left = [*(solved[i, 0] for i in range(solved.nrows())), arb(1)]
     bend = dot(left, [dot(row, along) for row in linear.bent])
-    return bend, dot(left, linear.by_letter)
+    return bend, dot(left, linear.by_parameter)
 
 
 def _nonzero(x: arb) -> bool | None:
@@ -130,7 +130,7 @@ def _nonzero(x: arb) -> bool | None:
 
 
 def settled(system: Touching, precision: Precision) -> Point:
-    """The zero by Newton's method, with the manifolds taken as affine in the letter; not proved."""
+    """The zero by Newton's method, with the manifolds taken as affine in the parameter; not proved."""
 
     def correction(unknowns: Vector) -> Vector:
         linear = system.linear(Point.of(unknowns))
@@ -144,16 +144,16 @@ def settled(system: Touching, precision: Precision) -> Point:
 
 
 def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:
-    """The letter of a contact to a few digits more than `digits`, from a value near it; not proved."""
+    """The parameter of a contact to a few digits more than `digits`, from a value near it; not proved."""
     precision, before = Precision(digits), arb(1)
     with working(precision.bits):
-        letter = arb(value).mid()
+        parameter = arb(value).mid()
         while True:
-            found = settled(Touching(contact, map, letter, precision), precision).letter
-            moved = abs(found - letter)
+            found = settled(Touching(contact, map, parameter, precision), precision).parameter
+            moved = abs(found - parameter)
             if moved < precision.step * SMALL or not moved < before / 2:
                 return str(found.str(digits + 10, radius=False))
-            letter, before = found, moved
+            parameter, before = found, moved
 
 
 LARGEST_DIGITS, LARGEST_PERIOD, LARGEST_FLIGHT = 600, 64, 1000
@@ -207,7 +207,7 @@ class TangencyProof:
     @property
     def value(self) -> arb:
         """The contraction."""
-        return self.proof.letter
+        return self.proof.parameter
 
     @property
     def checks(self) -> Checks:
@@ -245,10 +245,10 @@ def _contact(given: Mapping[str, Any]) -> Contact:
     bounces, sign = int(given["bounces"]), int(given["sign"])
     if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
         raise ValueError(f"certificate: bounces = {bounces} or sign = {sign} is out of range")
-    z, end, letter = (float(given[name]) for name in ("z", "end", "letter"))
-    if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < letter < 1):
-        raise ValueError(f"certificate: z = {z}, end = {end} or letter = {letter} is out of range")
-    return Contact(unstable, stable, bounces, sign, z, end, letter)
+    z, end, parameter = (float(given[name]) for name in ("z", "end", "parameter"))
+    if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < parameter < 1):
+        raise ValueError(f"certificate: z = {z}, end = {end} or parameter = {parameter} is out of range")
+    return Contact(unstable, stable, bounces, sign, z, end, parameter)
 
 
 def _document(orbit: Orbit) -> dict[str, Any]:

@@ -38,11 +38,11 @@ class Orbit:
 
 @dataclass(frozen=True)
 class Saddle:
-    """A cycle at one value of the letter; `stable` and `unstable` are its multipliers."""
+    """A cycle at one value of the parameter; `stable` and `unstable` are its multipliers."""
 
     orbit: Orbit
     map: PlaneMap
-    letter: Any
+    parameter: Any
     points: tuple[Any, ...]
     stable: Any
     unstable: Any
@@ -57,10 +57,10 @@ def padded(orbit: Orbit, map: PlaneMap, points: Sequence[Any]) -> list[Any]:
     return orbit.closure.padded(points, orbit.closure.angle(map.words))
 
 
-def slopes(orbit: Orbit, map: PlaneMap, points: Sequence[Any], letter: Any) -> list[tuple[Any, Any, Any]]:
+def slopes(orbit: Orbit, map: PlaneMap, points: Sequence[Any], parameter: Any) -> list[tuple[Any, Any, Any]]:
     """The derivatives of the rule at each point by the neighbour before, itself and the one after."""
     ring = padded(orbit, map, points)
-    return [map.slopes(ring[i : i + 3], letter) for i in range(len(points))]
+    return [map.slopes(ring[i : i + 3], parameter) for i in range(len(points))]
 
 
 def matrix(orbit: Orbit, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) -> list[list[Any]]:
@@ -74,7 +74,7 @@ def matrix(orbit: Orbit, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) 
     return entries
 
 
-def saddle(orbit: Orbit, map: PlaneMap, letter: Any) -> Saddle:
+def saddle(orbit: Orbit, map: PlaneMap, parameter: Any) -> Saddle:
     """The cycle near its starting values, by Newton's method in the numbers of the map.
 
     >>> from sympy import Rational
@@ -86,24 +86,26 @@ def saddle(orbit: Orbit, map: PlaneMap, letter: Any) -> Saddle:
 
     def correction(points: Vector) -> Vector:
         ring = padded(orbit, map, points)
-        rule = [map.rule(ring[i : i + 3], letter) for i in range(len(points))]
-        rows = matrix(orbit, slopes(orbit, map, points, letter))
+        rule = [map.rule(ring[i : i + 3], parameter) for i in range(len(points))]
+        rows = matrix(orbit, slopes(orbit, map, points, parameter))
         return solved([[*row, r] for row, r in zip(rows, rule, strict=True)])
 
-    found = iterated(correction, [letter * 0 + x for x in orbit.start], NEWTON)
+    found = iterated(correction, [parameter * 0 + x for x in orbit.start], NEWTON)
     if not found.settled:
-        at = f"at {float(letter)} from {orbit.start}"
+        at = f"at {float(parameter)} from {orbit.start}"
         raise ValueError(f"{map.label}: Newton's method did not find the {orbit.name} {at}")
-    stable, unstable = multipliers(orbit, map, found.x, letter)
-    return Saddle(orbit, map, letter, tuple(found.x), stable, unstable)
+    stable, unstable = multipliers(orbit, map, found.x, parameter)
+    return Saddle(orbit, map, parameter, tuple(found.x), stable, unstable)
 
 
-def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], letter: Any) -> tuple[Any, Any]:
+def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
     """The smaller and the larger multiplier in absolute value, of a cycle with real ones."""
-    trace, determinant = trace_and_determinant(slopes(orbit, map, points, letter), orbit.closure.turn)
+    trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
     square = trace * trace - 4 * determinant
     if not square > 0:
-        raise ValueError(f"{map.label}: the {orbit.name} is no saddle at {float(letter)}; its multipliers are complex")
+        raise ValueError(
+            f"{map.label}: the {orbit.name} is no saddle at {float(parameter)}; its multipliers are complex"
+        )
     larger = (trace + (1 if trace > 0 else -1) * map.words["sqrt"](square)) / 2
     return determinant / larger, larger
 
@@ -150,12 +152,12 @@ def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) 
     True
     """
     factor = saddle.unstable if unstable else saddle.stable
-    rows = slopes(saddle.orbit, saddle.map, saddle.points, saddle.letter)
+    rows = slopes(saddle.orbit, saddle.map, saddle.points, saddle.parameter)
     series: Series = [[x, v] for x, v in zip(saddle.points, direction(saddle, rows, factor), strict=True)]
     while len(series[0]) <= order:
         series = doubled(saddle, factor, series, min(2 * len(series[0]), order + 1))
     unit = reach(series, tail) / float(max(abs(factor), abs(1 / factor)))
-    powers = _powers(saddle.letter * 0 + unit, order + 1)
+    powers = _powers(saddle.parameter * 0 + unit, order + 1)
     made = Local(saddle, factor, tuple(tuple(x * u for x, u in zip(c, powers, strict=True)) for c in series), unit)
     return replace(made, residual=residual(made))
 
@@ -179,8 +181,8 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
     ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
     map = saddle.map.lifted
     triples = [ring[i : i + 3] for i in range(len(series))]
-    rules = [map.rule(triple, saddle.letter) for triple in triples]
-    slopes_of = [[s.c for s in map.slopes(triple, saddle.letter)] for triple in triples]
+    rules = [map.rule(triple, saddle.parameter) for triple in triples]
+    slopes_of = [[s.c for s in map.slopes(triple, saddle.parameter)] for triple in triples]
     found: Series = [[*c] for c in series]
     zero = saddle.points[0] * 0
     steps: Series = [[zero] * known for _ in series]
@@ -233,9 +235,9 @@ def residual(made: Local) -> float:
     for share in (-1, -0.75, -0.4, 0.3, 0.7, 1):
         values = []
         for c in neighbours(saddle, series, _powers(made.factor, made.order + 1)):
-            values.append(horner(c.c, saddle.letter * 0 + share))
+            values.append(horner(c.c, saddle.parameter * 0 + share))
         for i in range(len(series)):
-            worst = max(worst, abs(float(saddle.map.rule(values[i : i + 3], saddle.letter))))
+            worst = max(worst, abs(float(saddle.map.rule(values[i : i + 3], saddle.parameter))))
     return worst
 
 

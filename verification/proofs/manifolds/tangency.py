@@ -44,7 +44,7 @@ Polynomials = list[list[arb]]
 
 @dataclass(frozen=True)
 class Precision:
-    """What a proof of a letter within `10**-digits` computes with."""
+    """What a proof of a parameter within `10**-digits` computes with."""
 
     digits: int
 
@@ -65,23 +65,23 @@ class Precision:
 
     @property
     def step(self) -> arb:
-        """How far letters are from the middle of their box, at most."""
+        """How far parameters are from the middle of their box, at most."""
         return (arb(10) ** -self.digits).mid()
 
     @property
     def disc(self) -> arb:
-        """The radius of the complex disc of letters on which Cauchy's bounds rest."""
+        """The radius of the complex disc of parameters on which Cauchy's bounds rest."""
         return (arb(10) ** -math.ceil(0.6 * self.digits)).mid()
 
 
 @dataclass(frozen=True)
 class Near:
-    """A bounce: its place, its derivatives by `z`, by the letter, and by both."""
+    """A bounce: its place, its derivatives by `z`, by the parameter, and by both."""
 
     place: arb
     first: arb
     second: arb
-    by_letter: arb
+    by_parameter: arb
     mixed: arb
 
 
@@ -101,10 +101,10 @@ class Scale:
 
 @dataclass(frozen=True)
 class Pair:
-    """Coefficients of the two: `places` at the letter itself, `slopes` by it up to two steps away.
+    """Coefficients of the two: `places` at the parameter itself, `slopes` by it up to two steps away.
 
     The bounces are -1 and 0 of the unstable manifold, 0 and 1 of the stable one. `error` bounds the
-    remainder for all letters at most `margin` from those; `saddle` is enclosed for the same letters.
+    remainder for all parameters at most `margin` from those; `saddle` is enclosed for the same parameters.
     """
 
     saddle: Saddle
@@ -115,7 +115,7 @@ class Pair:
     margin: arb
 
     def at(self, i: int, z: arb, away: arb) -> Near:
-        """Bounce `i` of the two over a ball of parameters, for letters `away` from the one of the places."""
+        """Bounce `i` of the two over a ball of parameters, for parameters `away` from the one of the places."""
         if not abs(z) < 0.5:
             raise TooWideError("exists", "the parameter leaves the disc of radius 1/2")
         slopes, e = self.slopes[i], self.error
@@ -135,9 +135,9 @@ def _around(bound: arb) -> arb:
     return arb(0, bound.abs_upper())
 
 
-def scale(orbit: Orbit, map: PlaneMap, letter: float, unstable: bool, outer: int) -> Scale:
+def scale(orbit: Orbit, map: PlaneMap, parameter: float, unstable: bool, outer: int) -> Scale:
     """The unit with which the disc of radius `outer` moves bounces by `REACH`, from the series in float64."""
-    made = local(saddle(orbit, map.over(FLOAT64), letter), unstable, ROUGH)
+    made = local(saddle(orbit, map.over(FLOAT64), parameter), unstable, ROUGH)
     first = [abs(c[1]) for c in made.coefficients]
     return Scale(unstable, _reach(made) / outer, first.index(max(first)), made)
 
@@ -152,7 +152,7 @@ def _reach(made: Local) -> float:
     return low
 
 
-def smaller(orbit: Orbit, map: PlaneMap, letter: arb, scale: Scale, precision: Precision) -> Pair:
+def smaller(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Pair:
     """The pair with the largest of a few units for which the remainder is bounded, each with more orders.
 
     Along long cycles the coefficients' balls grow with the order, in the largest unit by up to 100 for each; and
@@ -160,11 +160,11 @@ def smaller(orbit: Orbit, map: PlaneMap, letter: arb, scale: Scale, precision: P
     """
     for k in range(SMALLER):
         try:
-            return pair(orbit, map, letter, shrunk(scale, k), precision)
+            return pair(orbit, map, parameter, shrunk(scale, k), precision)
         except TooWideError as why:
             if why.item != "remainder":
                 raise
-    return pair(orbit, map, letter, shrunk(scale, SMALLER), precision)
+    return pair(orbit, map, parameter, shrunk(scale, SMALLER), precision)
 
 
 def shrunk(scale: Scale, times: int) -> Scale:
@@ -173,15 +173,15 @@ def shrunk(scale: Scale, times: int) -> Scale:
 
 
 def one_cycle(around: Saddle, here: Saddle) -> bool:
-    """Is the cycle at one letter the one that is unique over a ball of letters? It is where its balls lie in those."""
+    """Is the cycle at one parameter the one that is unique over a ball of them? It is where its balls lie in those."""
     return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
 
 
-def pair(orbit: Orbit, map: PlaneMap, letter: arb, scale: Scale, precision: Precision) -> Pair:
-    """The pair near an exact letter, with the saddle and the remainder proved for every letter of the disc."""
+def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Pair:
+    """The pair near an exact parameter, with the saddle and the remainder proved for every parameter of the disc."""
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc
-    beyond = (letter + step).mid()
+    beyond = (parameter + step).mid()
 
     def near(at: acb) -> Enclosed:
         order = precision.order + scale.more
@@ -189,13 +189,13 @@ def pair(orbit: Orbit, map: PlaneMap, letter: arb, scale: Scale, precision: Prec
 
     def slope(here: acb, beside: acb, around: acb) -> arb:
         second = 2 * size(around - here) / (disc - 2 * step) ** 2
-        return ((beside - here) / (beyond - letter)).real + _around(4 * step * second)
+        return ((beside - here) / (beyond - parameter)).real + _around(4 * step * second)
 
-    around = near(acb(letter) + around_zero(disc))
+    around = near(acb(parameter) + around_zero(disc))
     error = remainder(around, precision.outer)
-    here, beside = near(acb(letter)), near(acb(beyond))
+    here, beside = near(acb(parameter)), near(acb(beyond))
     if not all(one_cycle(around.saddle, made.saddle) for made in (here, beside)):
-        raise TooWideError("saddle", "the cycle at a letter may be another than the one over the disc of letters")
+        raise TooWideError("saddle", "the cycle at a parameter may be another than the one over the disc of parameters")
     bounces = list(zip(*(made.pair() for made in (here, beside, around)), strict=True))
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]
@@ -210,7 +210,7 @@ NOISE = (
 
 @dataclass(frozen=True)
 class Contact:
-    """Which manifolds touch, and starts: `z` on the unstable manifold, `end` on the stable one, and the letter.
+    """Which manifolds touch, and starts: `z` on the unstable manifold, `end` on the stable one, and the parameter.
 
     Both are displacements along the eigenvectors. After `bounces` the point is compared with the
     stable manifold after its mirror image (`sign = -1`) and turns of the table.
@@ -222,7 +222,7 @@ class Contact:
     sign: int
     z: float
     end: float
-    letter: float
+    parameter: float
 
     @property
     def kind(self) -> str:
@@ -237,24 +237,24 @@ class Contact:
 
 @dataclass(frozen=True)
 class Touch:
-    """A tangency: the letter with an error estimate, and what makes it a generic one."""
+    """A tangency: the parameter with an error estimate, and what makes it a generic one."""
 
     contact: Contact
-    letter: Any
+    parameter: Any
     error: float
     bend: float  # second derivative of the gap, in units of the local manifolds
-    speed: float  # derivative of the smallest gap by the letter
+    speed: float  # derivative of the smallest gap by the parameter
     multipliers: tuple[float, float, float, float]  # of the unstable manifold's saddle, then of the other
     residual: float
 
 
 class Gap:
-    """The distance from the stable manifold, on orbits that start on the unstable one, at one letter."""
+    """The distance from the stable manifold, on orbits that start on the unstable one, at one parameter."""
 
-    def __init__(self, contact: Contact, map: PlaneMap, letter: Any, order: int, tail: float) -> None:
-        self.old, self.map, self.letter = contact, map, letter
-        self.out = local(saddle(contact.unstable, map, letter), True, order, tail)
-        self.into = local(saddle(contact.stable, map, letter), False, order, tail)
+    def __init__(self, contact: Contact, map: PlaneMap, parameter: Any, order: int, tail: float) -> None:
+        self.old, self.map, self.parameter = contact, map, parameter
+        self.out = local(saddle(contact.unstable, map, parameter), True, order, tail)
+        self.into = local(saddle(contact.stable, map, parameter), False, order, tail)
         early = rounds(contact.z / self.out.unit, float(self.out.factor))
         late = rounds(contact.end / self.into.unit, 1 / float(self.into.factor))
         self.bounces = contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
@@ -275,7 +275,7 @@ class Gap:
         map = self.map.lifted
         found = list(self.out.points(Jet(z, z * 0 + 1, z * 0)))
         for _ in range(self.bounces):
-            found.append(map.following(found[-2], found[-1], self.letter))
+            found.append(map.following(found[-2], found[-1], self.parameter))
         return found
 
     def where(self, here: Jet) -> Jet:
@@ -295,7 +295,7 @@ class Gap:
         found = iterated(correction, [start], Stop(small=1e-6, steps=STEPS), lambda step: relative)
         if not found.settled:
             missed = "the orbit misses the neighbourhood of the stable manifold"
-            raise ValueError(f"tangency: at {float(self.letter)} {missed}")
+            raise ValueError(f"tangency: at {float(self.parameter)} {missed}")
         end: Jet = found.x[0]
         return end
 
@@ -306,9 +306,9 @@ class Gap:
             gap, _ = self.at(*z)
             return [gap.c[1] / (2 * gap.c[2])]
 
-        found = iterated(correction, [self.letter * 0 + self.start], Stop(small=1e-5, steps=STEPS))
+        found = iterated(correction, [self.parameter * 0 + self.start], Stop(small=1e-5, steps=STEPS))
         if not found.settled:
-            raise ValueError(f"tangency: at {float(self.letter)} the manifolds come nowhere closest near the start")
+            raise ValueError(f"tangency: at {float(self.parameter)} the manifolds come nowhere closest near the start")
         return (*found.x, *self.at(*found.x))
 
     def contact(self) -> Contact:
@@ -319,7 +319,7 @@ class Gap:
             for made in (self.out, self.into)
         )
         place = float(z) * self.scales[0], float(end.c[0]) * self.scales[1]
-        return Contact(unstable, stable, self.old.bounces, self.old.sign, *place, float(self.letter))
+        return Contact(unstable, stable, self.old.bounces, self.old.sign, *place, float(self.parameter))
 
 
 def rounds(z: float, factor: float) -> int:
@@ -340,17 +340,17 @@ def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
 
 
 def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
-    """The letter at which the manifolds touch, to about `digits` digits.
+    """The parameter at which the manifolds touch, to about `digits` digits.
 
     The error is that of the last secant step, and what a longer series changes.
     """
-    rough = secant(contact, map.over(FLOAT64), 28, 1e-16, (contact.letter, contact.letter + 1e-7), 1e-14)
+    rough = secant(contact, map.over(FLOAT64), 28, 1e-16, (contact.parameter, contact.parameter + 1e-7), 1e-14)
     if digits <= 11:
         return rough
     context = mpmath.MPContext()
     context.dps = digits + 15
-    exact, near = map.over(multiprecision(context)), context.mpf(rough.letter)
-    start = replace(contact, letter=float(rough.letter))
+    exact, near = map.over(multiprecision(context)), context.mpf(rough.parameter)
+    start = replace(contact, parameter=float(rough.parameter))
     order = 12 + digits
     found = secant(
         start, exact, order, 10.0 ** -(digits + 12), (near, near + context.mpf(10) ** -12), 10.0 ** -(digits + 2)
@@ -358,15 +358,15 @@ def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
     return found
 
 
-def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tuple[Any, Any], goal: float) -> Touch:
-    """The letter where the extremum of the gap is 0, between secants."""
-    a, b = letters
+def secant(contact: Contact, map: PlaneMap, order: int, tail: float, parameters: tuple[Any, Any], goal: float) -> Touch:
+    """The parameter where the extremum of the gap is 0, between secants."""
+    a, b = parameters
     last = a, Gap(contact, map, a, order, tail).extremum()[1]
     steps: list[Touch] = []
 
-    def correction(letter: Vector) -> Vector:
+    def correction(parameter: Vector) -> Vector:
         nonlocal last
-        (b,), (a, before) = letter, last
+        (b,), (a, before) = parameter, last
         gap = Gap(contact, map, b, order, tail)
         _, found, _ = gap.extremum()
         slope = (found.c[0] - before.c[0]) / (b - a)
@@ -382,5 +382,5 @@ def secant(contact: Contact, map: PlaneMap, order: int, tail: float, letters: tu
     # many bounces leave the gap with noise
     found = iterated(correction, [b + 0 * a], Stop(small=NOISE * goal, enough=goal, steps=STEPS))
     if not found.settled:
-        raise ValueError(f"tangency: secants from {contact.letter} did not settle; the last was {float(found.x[0])}")
+        raise ValueError(f"tangency: secants from {contact.parameter} did not settle; the last was {float(found.x[0])}")
     return steps[len(found.sizes) - 1]  # of the last step that was made; what follows it is noise

@@ -5,9 +5,9 @@ parameter `w` where it arrives on the stable one:
 
     y[0] = P[-1](z),  y[1] = P[0](z),  rule(y[k-1], y[k], y[k+1]) = 0,  sign*y[n] = Q[0](w),  sign*y[n+1] = Q[1](w)
 
-up to turns of the table. At one letter the zeros are the points where the manifolds meet. The linearised equations,
+up to turns of the table. At one parameter the zeros are the points where the manifolds meet. The linearised equations,
 along a vector with `1` at `z`, carry the tangent of the one manifold to the other, and vanish exactly where the two
-touch. Both together, with the letter as the last unknown, are the system: as many equations as unknowns. Like the
+touch. Both together, with the parameter as the last unknown, are the system: as many equations as unknowns. Like the
 chord system of a cycle it has one equation for each bounce; no orbit is followed, and no ball grows along the way.
 The start is an orbit in float64, whose points come from the series near the saddles, which costs no digit, and from
 the map in between.
@@ -50,7 +50,7 @@ def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int,
     >>> from verification.proofs.manifolds.saddle import saddle
     >>> from verification.proofs.manifolds.saddle import local
     >>> triangle, map = CONTACTS["boundary"], table(SHAPE).over(FLOAT64)
-    >>> out, into = (local(saddle(triangle.unstable, map, triangle.letter), side) for side in (True, False))
+    >>> out, into = (local(saddle(triangle.unstable, map, triangle.parameter), side) for side in (True, False))
     >>> len(flight(triangle, map, out, into, 2, 3).bounces)
     13
     """
@@ -62,7 +62,7 @@ def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int,
     z, w0 = contact.z / float(out.factor) ** early, contact.end * float(into.factor) ** after
     found = [bounce(out, j, Jet(z, 1.0)) for j in range(-1, (early - before) * p + 2)]
     for _ in range(contact.bounces + before * p + after * q):
-        found.append(map.lifted.following(found[-2], found[-1], contact.letter))
+        found.append(map.lifted.following(found[-2], found[-1], contact.parameter))
     end, rate = bounce(into, 0, Jet(w0, 1.0)).c
     sign = contact.mirrored(early, after)
     w = Jet(w0, sign * found[-2].c[1] / rate)
@@ -94,12 +94,12 @@ class Point:
 
     orbit: Vector
     along: Vector
-    letter: arb
+    parameter: arb
 
     @property
     def unknowns(self) -> Vector:
         """All that is sought, in one row."""
-        return [*self.orbit, *self.along[1:], self.letter]
+        return [*self.orbit, *self.along[1:], self.parameter]
 
     @staticmethod
     def of(unknowns: Vector) -> "Point":
@@ -120,14 +120,14 @@ class Linear:
     along: Vector
     rows: list[Vector]
     bent: list[Vector]
-    by_letter: Vector
-    bent_by_letter: Vector
+    by_parameter: Vector
+    bent_by_parameter: Vector
 
     def matrix(self) -> arb_mat:
         """The derivative of the whole system, by the unknowns in their order."""
         zero = [arb(0)] * (len(self.values) - 1)
-        upper = [[*row, *zero, g] for row, g in zip(self.rows, self.by_letter, strict=True)]
-        lower = zip(self.bent, self.rows, self.bent_by_letter, strict=True)
+        upper = [[*row, *zero, g] for row, g in zip(self.rows, self.by_parameter, strict=True)]
+        lower = zip(self.bent, self.rows, self.bent_by_parameter, strict=True)
         return arb_mat(upper + [[*bent, *row[1:], h] for bent, row, h in lower])
 
     def step(self, values: Vector, algorithm: Literal["approx", "precond"]) -> Vector:
@@ -140,14 +140,14 @@ class Linear:
 
 
 class Touching:
-    """The system of a contact near one letter, with both manifolds enclosed."""
+    """The system of a contact near one parameter, with both manifolds enclosed."""
 
-    def __init__(self, contact: Contact, map: PlaneMap, letter: arb, precision: Precision) -> None:
-        self.map, self.letter = map.over(balls(precision.bits)), letter
+    def __init__(self, contact: Contact, map: PlaneMap, parameter: arb, precision: Precision) -> None:
+        self.map, self.parameter = map.over(balls(precision.bits)), parameter
         self.pairs: list[Pair] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
-            found = scale(orbit, map, float(letter), unstable, precision.outer)
-            self.pairs.append(smaller(orbit, map, letter, found, precision))
+            found = scale(orbit, map, float(parameter), unstable, precision.outer)
+            self.pairs.append(smaller(orbit, map, parameter, found, precision))
         out, into = (made.scale for made in self.pairs)
         early = rounds(contact.z / min(LARGEST * out.unit, out.rough.unit), float(out.rough.factor))
         late = rounds(contact.end / min(LARGEST * into.unit, into.rough.unit), 1 / float(into.rough.factor))
@@ -165,11 +165,11 @@ class Touching:
         turns = round(apart.c[0] * map.turn / (2 * math.pi))
         along = [1.0, *(units[0] * x.c[1] for x in flight.bounces), units[0] / units[1] * flight.w.c[1]]
         orbit = [flight.z / units[0], *(x.c[0] for x in flight.bounces), flight.w.c[0] / units[1]]
-        return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.letter)
+        return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.parameter)
 
     def linear(self, at: Point) -> Linear:
-        """The equations at a point whose letter is the middle one, or over a box around it."""
-        out, into = ([made.at(i, z, at.letter - self.letter) for i in (0, 1)] for made, z in self._ends(at))
+        """The equations at a point whose parameter is the middle one, or over a box around it."""
+        out, into = ([made.at(i, z, at.parameter - self.parameter) for i in (0, 1)] for made, z in self._ends(at))
         m = len(at.orbit)
         made = Linear([], [], [], [], [], [])
         for i, near in enumerate(out):
@@ -185,13 +185,13 @@ class Touching:
         return [(self.pairs[0], at.orbit[0]), (self.pairs[1], at.orbit[-1])]
 
     def _bounced(self, made: Linear, at: Point, k: int) -> None:
-        """The rule at `y[k]`; it is affine in the letter."""
+        """The rule at `y[k]`; it is affine in the parameter."""
         near = [Jet(at.orbit[j], at.along[j]) for j in range(k, k + 3)]
         map = self.map.lifted
         plain = map.rule(near, arb(0))
         moving = map.rule(near, arb(1)) - plain
-        value = plain + at.letter * moving
-        slopes = map.slopes(near, at.letter)
+        value = plain + at.parameter * moving
+        slopes = map.slopes(near, at.parameter)
         m = len(at.orbit)
         rows = ([arb(0)] * k + [s.c[order] for s in slopes] + [arb(0)] * (m - k - 3) for order in (0, 1))
         _add(made, value.c, list(rows), moving.c)
@@ -202,14 +202,14 @@ def _ended(made: Linear, at: Point, here: int, end: int, sign: int, shift: arb, 
     row, bent, share = [arb(0)] * len(at.orbit), [arb(0)] * len(at.orbit), at.along[end]
     row[here], row[end], bent[end] = arb(sign), -near.first, -near.second * share
     values = sign * at.orbit[here] - shift - near.place, sign * at.along[here] - near.first * share
-    _add(made, values, [row, bent], (-near.by_letter, -near.mixed * share))
+    _add(made, values, [row, bent], (-near.by_parameter, -near.mixed * share))
 
 
-def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_letter: Sequence[arb]) -> None:
+def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_parameter: Sequence[arb]) -> None:
     """One more equation, of the orbit and along the vector."""
     for column, x in zip((made.values, made.along), values, strict=True):
         column.append(x)
     for matrix, row in zip((made.rows, made.bent), rows, strict=True):
         matrix.append(row)
-    for column, x in zip((made.by_letter, made.bent_by_letter), by_letter, strict=True):
+    for column, x in zip((made.by_parameter, made.bent_by_parameter), by_parameter, strict=True):
         column.append(x)

@@ -9,9 +9,9 @@ from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 
 
-def homoclinic(orbit: Orbit, bounces: int, sign: int, z: float, end: float, letter: float) -> Contact:
+def homoclinic(orbit: Orbit, bounces: int, sign: int, z: float, end: float, parameter: float) -> Contact:
     """A contact of the two manifolds of one saddle."""
-    return Contact(orbit, orbit, bounces, sign, z, end, letter)
+    return Contact(orbit, orbit, bounces, sign, z, end, parameter)
 
 
 WINDOWS = {

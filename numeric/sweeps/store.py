@@ -120,29 +120,31 @@ def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         _made(sweep, path)
     _same(sweep, path)
-    with _alone(path):
-        for left in path.rglob(f".*{PARTIAL}"):  # of a driver that was killed
+    with _alone(path) as alone:
+        for left in path.rglob(f".*{PARTIAL}") if alone else ():  # of a driver that was killed
             with suppress(OSError):
                 left.unlink()
         yield Stored(sweep, path)
 
 
 @contextmanager
-def _alone(path: Path) -> Iterator[None]:
-    """Keeps a second driver out, where the system has locks that end with their process."""
+def _alone(path: Path) -> Iterator[bool]:
+    """Keeps a second driver out, where the system has locks that end with their process, and says whether it does."""
     try:
         locks: Any = import_module("fcntl")
     except ImportError:  # not a POSIX system: two drivers do everything twice, with the same bits
-        yield
+        yield False
         return
     handle = os.open(path, os.O_RDONLY)
     try:
-        with suppress(OSError):  # a file system without locks
-            try:
-                locks.flock(handle, locks.LOCK_EX | locks.LOCK_NB)
-            except BlockingIOError:
-                raise ValueError(f"--store {path}: another process is writing to it; wait for it or stop it") from None
-        yield
+        try:
+            locks.flock(handle, locks.LOCK_EX | locks.LOCK_NB)
+            alone = True
+        except BlockingIOError:
+            raise ValueError(f"--store {path}: another process is writing to it; wait for it or stop it") from None
+        except OSError:  # a file system without locks
+            alone = False
+        yield alone
     finally:
         os.close(handle)
 

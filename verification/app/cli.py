@@ -8,10 +8,12 @@ import json
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from threading import Timer
 from typing import TYPE_CHECKING, Any
@@ -23,9 +25,6 @@ from verification.arithmetic.progress import heard
 if TYPE_CHECKING:
     from rich.console import Console
 
-import traceback
-from collections.abc import Sequence
-from importlib import import_module
 
 PATIENCE = 2.0  # seconds before a progress bar appears
 

@@ -5,25 +5,18 @@ imports SymPy. From the options come the map in float64, a starting point as exa
 a sweep, and the files in which its results are kept.
 """
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, exact
 from symbolic.tables.scene import Scene
-
-if TYPE_CHECKING:
-    pass
-
-import json
-from collections.abc import Mapping
-from dataclasses import dataclass
-from fractions import Fraction
-from pathlib import Path
-from typing import TYPE_CHECKING
-
 from verification.app.cli import DONE, FAILED, Output, json_option
 
 if TYPE_CHECKING:

@@ -6,36 +6,21 @@ the manifolds, whole and close to where they touch (paper: section 6.7).
 """
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-
-from verification.cycles.continuation.branch import Branch, spectrum_of
-from verification.cycles.recurrence.recurrence import BifurcationKind
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from verification.proofs.global_dynamics.graph import MorseGraph
-
-from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from sympy import Expr
 
 from numeric import PinballMap
+from verification.arithmetic.balls import ARRAYS, FLOAT64
+from verification.cycles.continuation.branch import Branch, spectrum_of
 from verification.cycles.continuation.cells import Array
+from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.named.curves import AccumulationCurve as Accumulation
 from verification.named.curves import BifurcationCurve, cascade, fold, largest_shape
 from verification.named.curves import accumulation_curve as accumulation
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-from typing import TYPE_CHECKING, Any
-
-from sympy import Expr
-
-from verification.arithmetic.balls import ARRAYS, FLOAT64
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, contact, table
 from verification.proofs.manifolds.saddle import local, saddle
@@ -43,6 +28,8 @@ from verification.proofs.manifolds.tangency import Gap
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from verification.proofs.global_dynamics.graph import MorseGraph
 
 
 MARKS = {

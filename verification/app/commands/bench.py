@@ -14,10 +14,6 @@ if TYPE_CHECKING:
 
     from verification.measure.extremes.orbits import Accuracy
     from verification.measure.work.bench import Row
-
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
     from verification.measure.work.question import Question
     from verification.measure.work.row import Row as WorkRow
 

@@ -5,6 +5,7 @@
 
 import json
 import os
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,6 @@ from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
 if TYPE_CHECKING:
     from verification.named.locate import Located
 
-import time
 
 LETTERS = ("lam", "alpha", "n", "period")
 

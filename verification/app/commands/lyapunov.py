@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option
+from verification.app.cli import DONE, FAILED, INTERRUPTED, Output, json_option
 from verification.app.scene import scene_options
 
 if TYPE_CHECKING:
@@ -16,15 +16,6 @@ if TYPE_CHECKING:
 
     from numeric import PinballMap
     from numeric.dynamics.attractors import Attractor
-
-from typing import TYPE_CHECKING
-
-from verification.app.cli import INTERRUPTED
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from numeric import PinballMap
     from numeric.dynamics.exponents import Survey
 
 

@@ -4,26 +4,14 @@
 return.
 """
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option
-from verification.app.scene import scene_options, start_of
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-from typing import TYPE_CHECKING
-
-from verification.app.scene import table_options
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-from math import isfinite
-from typing import TYPE_CHECKING
+from verification.app.scene import scene_options, start_of, table_options
 
 if TYPE_CHECKING:
     from rich.console import Console

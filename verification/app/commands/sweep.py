@@ -4,28 +4,24 @@
 draws the attractors against the contraction.
 """
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.scene import How, carried_out, scene_options, sweep_options
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-from typing import TYPE_CHECKING
-
-from verification.app.scene import lams_option, over, seed_option, table_options
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-from fractions import Fraction
-from typing import TYPE_CHECKING
-
-from verification.app.scene import span
+from verification.app.scene import (
+    How,
+    carried_out,
+    lams_option,
+    over,
+    scene_options,
+    seed_option,
+    span,
+    sweep_options,
+    table_options,
+)
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,20 +3,6 @@
 `pinball figure` draws its figures, and `pinball explore` opens a table to play with on a local page.
 """
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import click
-
-from verification.app.cli import DONE, Output, json_option
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rich.console import Console
-
-    from verification.paper.figures.catalogue import Picture as Figure
-
 import json
 import os
 import socket
@@ -24,14 +10,20 @@ from collections.abc import Collection, Sequence
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from verification.app.cli import FAILED, write_whole
+import click
+
+from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
 from verification.paper.report import report
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rich.console import Console
 
+    from verification.paper.figures.catalogue import Picture as Figure
     from verification.paper.report.page import Picture
     from verification.paper.report.report import Result
 
@@ -154,15 +146,14 @@ def _free(port: int) -> int:
 @json_option
 def command(only: str, digits: int, folder: str, figures: bool, work: str | None, output: Output) -> int:
     """Is each claim of the paper true? Exit status 1 when one is open."""
-    from verification.paper.report import report as claims
     from verification.paper.report.page import diagrams
 
-    wanted = matching(only, [claim.id for claim in claims.catalogue()])
+    wanted = matching(only, [claim.id for claim in report.catalogue()])
     directory = prepared(folder)
     measured = diagrams(Path(work)) if work is not None else []
     results = []
     with output.progress("Judging", len(wanted)) as step:
-        for result in claims.verify(only, digits):
+        for result in report.verify(only, digits):
             results.append(result)
             step(result.id)
     pictures = drawn({result.section for result in results}, output) if figures else []

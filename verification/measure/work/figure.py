@@ -10,7 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from verification.measure.work.row import Row, footer, front
+from verification.measure.work.choice import crossovers, entries
+from verification.measure.work.row import Row, duration, footer, front, short
 from verification.measure.work.sought import WITHOUT
 from verification.plots.sheet import BLACK, DARK, MIDDLE, WIDTH, styled
 
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-from verification.measure.work.choice import crossovers, entries
-from verification.measure.work.row import duration, short
 
 HEIGHT = 4.3  # inches
 WIDE = -40.0  # the decimal logarithm of an error from which on the scale is that of digits

@@ -10,24 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from numeric import PinballMap
-from symbolic.tables.geometry import evolute
-from symbolic.tables.table import theta
-from verification.paper.figures.phase import facts, flights, outline
-from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Panel, Panels, scaled, sheet
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-from typing import TYPE_CHECKING
-
 from numeric.pinball.sampling import interior_starts
 from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import lambda_minus, stability_number, trace_of
+from symbolic.tables.geometry import evolute
 from symbolic.tables.table import a as a_letter
 from symbolic.tables.table import lam as lam_letter
-from verification.paper.figures.phase import SEED
+from symbolic.tables.table import theta
+from verification.paper.figures.phase import SEED, facts, flights, outline
 from verification.paper.figures.phase import slap_by_angle as by_angle
-from verification.plots.sheet import DARK, FAINT, graphs
+from verification.plots.sheet import BLACK, DARK, FAINT, OUTLINE, Array, Curve, Panel, Panels, graphs, scaled, sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

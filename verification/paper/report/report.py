@@ -20,21 +20,12 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict, load
 from verification.paper.claims.judges import JUDGES
-
-if TYPE_CHECKING:
-    pass
-
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    pass
-
 
 TABLES = ("map", "circle", "ellipse", "cardioid", "cuspless", "egg", "appendix")
 ROOMS = ("judges", "egg")  # of judges

@@ -78,7 +78,7 @@ def returning(alpha: Expr, lams: Span, tick: Tick = silent) -> Returning:
     >>> from sympy import Rational
     >>> found = returning(Rational(2, 25), (0.0, 2.0**-10))
     >>> found.proved, [(round(piece.low, 2), round(piece.high, 2)) for piece in found.contracting]
-    (True, [(0.05, 0.05), (0.92, 0.94)])
+    (True, [(0.04, 0.05), (0.91, 0.95)])
     """
     table, count, most = egg(3).at(alpha=alpha), 0, lams[1]
     if convex(table) is not True:

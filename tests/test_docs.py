@@ -84,6 +84,14 @@ def test_the_reference_has_every_module_and_nothing_else():
     assert {path: path.read_text() for path in ROOMS.REFERENCE.rglob("*.md")} == ROOMS.reference()
 
 
+def test_every_room_exports_what_other_rooms_use_of_it():
+    """`python docs/rooms.py` writes the stubs anew; a room's `__init__` reads its own when a name is asked for."""
+    stubs = ROOMS.stubs()
+
+    assert {path: path.read_text() for path in stubs} == stubs
+    assert [path for path in stubs if "attach_stub" not in path.with_suffix(".py").read_text()] == []
+
+
 @pytest.mark.parametrize("module", [name for storey in ROOMS.orders()[""] for name in ROOMS.modules(storey)])
 def test_every_public_object_of_a_module_is_in_the_reference(module):
     """The reference shows what has a docstring, so that a public object without one would be missing."""

@@ -1,1 +1,5 @@
 """Attractors, exponents with error bars, basins, statistics of orbits."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

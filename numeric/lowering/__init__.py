@@ -2,3 +2,7 @@
 
 `lower` is the only module of the storey that imports SymPy, and it is imported only when the data are not on disk.
 """
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

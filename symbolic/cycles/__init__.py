@@ -1,1 +1,5 @@
 """Cycles in closed form: named ones, thresholds, polygons, and the slap maps."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,1 +1,5 @@
 """What has a name: bifurcations, crises, attractors that are proved, and certificate files."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,1 +1,5 @@
 """Claims as printed, and what a judge may say of them."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

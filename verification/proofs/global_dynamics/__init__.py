@@ -1,1 +1,5 @@
 """Global dynamics: attractor blocks, Morse graphs, horseshoes, proved by covering phase space with boxes."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,1 +1,5 @@
 """Invariant manifolds of saddles, and where two of them touch."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

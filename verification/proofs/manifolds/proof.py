@@ -5,7 +5,7 @@ parameter of it. Let `A` be the derivative of the orbit's equations there, `v` t
 the vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for all
 unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the parameter. At the tangency `g_z = 0`,
 
-    g_zz = u.(A'v)v,    g_letter = u.(the equations' derivative by the parameter).
+    g_zz = u.(A'v)v,    g_parameter = u.(the equations' derivative by the parameter).
 
 The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the parameter varies.
 
@@ -44,7 +44,7 @@ Checks = Mapping[str, bool | None]
 
 @dataclass(frozen=True)
 class Proof:
-    """A tangency in `parameter`, when every check is True; `bend` and `speed` are `g_zz` and `g_letter`.
+    """A tangency in `parameter`, when every check is True; `bend` and `speed` are `g_zz` and `g_parameter`.
 
     `multipliers` are the stable and the unstable one of the saddle that the orbit leaves.
     """
@@ -117,7 +117,7 @@ def admissible(map: PlaneMap) -> bool | None:
 
 
 def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
-    """`g_zz` and `g_letter` of the text above."""
+    """`g_zz` and `g_parameter` of the text above."""
     rows = arb_mat([row[1:] for row in linear.rows[:-1]])
     solved = rows.transpose().solve(arb_mat([[-x] for x in linear.rows[-1][1:]]), algorithm="precond")
     left = [*(solved[i, 0] for i in range(solved.nrows())), arb(1)]
@@ -190,8 +190,7 @@ class TangencyClaim:
             "table": "egg",
             "points": 3,
             "shape": {"alpha": str(self.alpha)},
-            "contact": asdict(self.contact)
-            | {"unstable": _document(self.contact.unstable), "stable": _document(self.contact.stable)},
+            "contact": _entries(self.contact),
             "value": self.value,
             "digits": self.digits,
         }
@@ -240,14 +239,21 @@ def claim_of(given: Mapping[str, Any]) -> TangencyClaim:
     return TangencyClaim(contact, alpha, value, digits)
 
 
+def _entries(contact: Contact) -> dict[str, Any]:
+    """A contact in the words of the certificate format, which calls its parameter a letter."""
+    found = asdict(contact)
+    found["letter"] = found.pop("parameter")
+    return found | {"unstable": _document(contact.unstable), "stable": _document(contact.stable)}
+
+
 def _contact(given: Mapping[str, Any]) -> Contact:
     unstable, stable = (_orbit(given[name]) for name in ("unstable", "stable"))
     bounces, sign = int(given["bounces"]), int(given["sign"])
     if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
         raise ValueError(f"certificate: bounces = {bounces} or sign = {sign} is out of range")
-    z, end, parameter = (float(given[name]) for name in ("z", "end", "parameter"))
+    z, end, parameter = (float(given[name]) for name in ("z", "end", "letter"))
     if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < parameter < 1):
-        raise ValueError(f"certificate: z = {z}, end = {end} or parameter = {parameter} is out of range")
+        raise ValueError(f"certificate: z = {z}, end = {end} or letter = {parameter} is out of range")
     return Contact(unstable, stable, bounces, sign, z, end, parameter)
 
 

@@ -14,6 +14,7 @@ FAMILIES = (
     ("harmonic", "Ellipse"),
     ("harmonic", "Fourier"),
     ("pieces", "Pieces"),
+    ("polar", "Polar"),
     ("general", "General"),
 )
 

@@ -63,7 +63,7 @@ def lower(table: Table) -> TableIR:
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols) for component in table.components)
     same = _same_as(table)
-    programs = {} if same else _fourier(table, symbols) or _pieces(table, symbols)
+    programs = {} if same else (_fourier(table, symbols) or _pieces(table, symbols)) | _radius(table, symbols)
     index, start = table.origin
     return TableIR(
         table.name,
@@ -289,6 +289,35 @@ def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
     programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
     return programs
+
+
+def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
+    """The program of `r(theta)` and three derivatives in cosine and sine, where the boundary is given by its radius.
+
+    None where `theta` has a place outside sines and cosines of its whole multiples.
+    """
+    whole = table.components[0]
+    x, y = whole.point
+    if len(table.components) > 1 or whole.end - whole.start != 2 * pi or size(x) > LONG or levels(x) > DEEP:
+        return {}
+    rho = x / cos(theta)
+    if rho * sin(theta) != y:
+        return {}
+    values = [rho.diff(theta, n) if n else rho for n in range(4)]
+    wanted = set().union(*(value.atoms(cos, sin) for value in values))
+    known = {wave: Dummy(real=True) for wave in wanted if _is_wave(wave)}
+    if any(value.xreplace(known).has(theta) for value in values):
+        return {}
+
+    def radius(nodes: Any) -> list[Any]:
+        waves = {}
+        for wave in sorted(known, key=str):
+            multiple = int(wave.args[0] / theta)
+            value = flight.powers(tuple(nodes.inputs), abs(multiple))[abs(multiple)][isinstance(wave, sin)]
+            waves[wave] = -value if isinstance(wave, sin) and multiple < 0 else value
+        return [nodes(value, waves) for value in values]
+
+    return {"radius": _program(symbols, radius, "c", "s")}
 
 
 def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:

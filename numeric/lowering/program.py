@@ -52,6 +52,18 @@ class Program(NamedTuple):
                 known.append(-x if word == "neg" else getattr(ops, word)(x))
         return [known[i] for i in self.outputs]
 
+    def only(self, *outputs: int) -> "Program":
+        """The program of some of the outputs, without the lines that they do not need.
+
+        >>> Program(("x",), (("neg", 0), ("*", 0, 0)), (1, 2)).only(1)
+        Program(inputs=('x',), lines=(('*', 0, 0),), outputs=(1,))
+        """
+        builder = Builder(*self.inputs)
+        numbers = list(range(len(self.inputs)))
+        for word, *operands in self.lines:
+            numbers.append(builder.number((word, *(operands if word == "q" else (numbers[i] for i in operands)))))
+        return builder.program(*(Node(builder, None, numbers[self.outputs[i]]) for i in outputs))
+
     def constant(self, output: int) -> Fraction | None:
         """The rational that an output is whatever the inputs are, or None where it is not written as one."""
         at = self.outputs[output] - len(self.inputs)

@@ -4,7 +4,7 @@ from itertools import chain
 
 import mpmath
 import pytest
-from sympy import Float, Rational, Symbol, asin, cos, erf, pi, sin, sqrt, sympify
+from sympy import Float, Rational, Symbol, asin, cos, erf, exp, pi, sin, sqrt, sympify
 
 from numeric.backends.scalars import ScalarBackend
 from numeric.lowering.lower import converted, lower, named, seen_ahead
@@ -157,7 +157,8 @@ FAMILIES = {
     "cuspless": ("cuspless", tables.cuspless),
     "egg": ("fourier", tables.egg(4)),
     "lifted": ("ellipse", tables.parametric(cos(theta) + 1, 2 * sin(theta) - 3, name="lifted")),
-    "rooted": ("general", tables.polar(sqrt(2 + cos(theta)), name="rooted")),
+    "rooted": ("polar", tables.polar(sqrt(2 + cos(theta)), name="rooted")),
+    "half an angle": ("general", tables.polar(exp(sin(theta / 2) ** 2), name="half an angle")),
     "twice": (
         "general",
         Table("twice", (Component("round", (cos(2 * theta), sin(2 * theta)), -pi / 2, pi / 2),)),
@@ -177,7 +178,8 @@ def test_a_table_is_known_as_the_papers_or_has_the_programs_of_its_fourier_sum(n
     family, table = FAMILIES[name]
     made = lower(table)
     words = {"ellipse": ["point", "velocity", "acceleration", "support"]}
-    words["fourier"] = [*words["ellipse"][:3], "chord"]
+    words["fourier"] = [*words["ellipse"][:3], "chord", "radius"]
+    words["polar"] = ["radius"]
     words["pieces"] = ["circle 0", "circle 1"]
 
     assert made.same_as == (family if family in ("circle", "cardioid", "cuspless") else "")

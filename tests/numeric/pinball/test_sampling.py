@@ -12,7 +12,7 @@ from symbolic import tables
 from symbolic.tables.table import theta
 
 MANY = 40_000
-WAISTED = tables.polar(1 + cos(3 * theta) / 4)  # not convex, and of the general kind
+WAISTED = tables.polar(1 + cos(3 * theta) / 4)  # not convex
 SCENES = {"circle": {}, "ellipse": {"a": 1.5}, "cardioid": {}, "cuspless": {}, "egg": {"alpha": "0.08"}}
 RADII = {
     "cardioid": lambda angle: 1 + np.cos(angle),

@@ -1,0 +1,260 @@
+"""Tables given by their radius, convex or not: the ray meets `r(theta)` first where a march that cannot jump meets it.
+
+As a particle flies, the polar angle of its place runs one way, from `theta0` towards the direction of `v`, by less than
+half a turn; so the first hit is the first zero in `theta`, whatever the table looks like. With `x` the angle run
+through, `h = |z0 x v|` and `S(x)` the sine of the angle from the place to `v`, the ray is at `1/rho = S/h`, and it is
+inside the table as long as
+
+    K(x) = S(x)/h - 1/r > 0.
+
+As `S'' + S = 0`, this obeys `K'' + K = -w` with `w = q + q''`, `q = 1/r`, which is `(r*r + 2*r'*r' - r*r'')/r**3`:
+negative just where the wall disperses, and the constant `1/(semi-latus rectum)` on a conic about the origin. So, if
+`w <= W` on the whole table,
+
+    K(x + y) = K cos y + K' sin y - (integral of sin(y - s)*w(x + s), s from 0 to y)
+            >= K cos y + K' sin y - W(1 - cos y)
+
+for `0 <= y <= pi`, where the sine is not negative. The march goes to the first zero of the right-hand side, which is
+in closed form with one square root and one division and no angle. Before it `K` is positive: **no zero is jumped
+over.** Near a zero the steps are those of Newton's method up to second order, so few are needed; on a conic about the
+origin one is.
+
+A march ends where `K' < 0` and `2*L*K <= HALT*K'*K'` with `|w| + |K| <= L` near by: there a zero lies ahead by
+Kantorovich's theorem, and Newton's method converges to it. It takes the last steps, on the flight equation with its
+known zero divided out (see `Secant`), so that short flights are as exact as long ones.
+
+Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: what passes a bulge of the wall, or cuts it, by less than
+this may be taken for the other; its incidence is within 1e-7 of a tangent. A march that does not end has met a
+tangency, and is said to (`Status.GRAZING`).
+
+`W` and `L` are proved, not sampled: the program of the radius runs on intervals that cover the whole turn.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from numeric.backends import functions as plane
+from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
+from numeric.backends.protocol import Backend, Fields, M, N, modulus
+from numeric.flights.family import Boundary, Family, Landing, Status, grazing
+from numeric.flights.harmonic import Harmonic
+
+CELLS = 4096  # intervals that cover the turn
+STEEP = 2.0**10  # radius times W beyond which marches are long: then every piece is searched instead
+HALT = 2.0**-12
+FLOOR = 2.0**-50  # rounding of K*h*r*r, in units of r*r
+SHALLOW = 2.0**-20  # departures flatter than its root take care of cancellation
+MOST = 400  # steps of a march
+GROWTH = 8.0  # from one step to the next, of a flight that begins along the wall
+
+
+class Polar(Harmonic):
+    """The first hit on `r(theta)` by a safe march in the polar angle; the state is that of `Harmonic`."""
+
+    name, path = "polar", "safe march in the polar angle, first hit"
+    width = 16
+
+    def __init__(self, boundary: Boundary) -> None:
+        Family.__init__(self, boundary)
+        program = boundary.ir.program("radius")
+        self.alone, self.radius, self.bent = program.only(0), program.only(0, 1), program.only(0, 1, 2)
+        self.bounds = bounds(boundary)
+
+    @classmethod
+    def matches(cls, boundary: Boundary) -> bool:
+        return boundary.ir.has("radius") and np.isfinite(bounds(boundary).highest)
+
+    @property
+    def identity(self) -> str:
+        return repr(self.bounds)
+
+    # ---- the curve, from the radius
+
+    def point(self, ops: Backend[N, M], c: N, s: N, *shape: N) -> list[N]:
+        """The Cartesian point."""
+        r, _ = self.radius(ops, c, s, *shape)
+        return [r * c, r * s]
+
+    def velocity(self, ops: Backend[N, M], c: N, s: N, *shape: N) -> list[N]:
+        """Its derivative by `theta`."""
+        r, slope = self.radius(ops, c, s, *shape)
+        return [*plane.times((slope, r), (c, s))]
+
+    def acceleration(self, ops: Backend[N, M], c: N, s: N, *shape: N) -> list[N]:
+        """And the second one."""
+        r, slope, bent = self.bent(ops, c, s, *shape)
+        return [*plane.times((bent - r, slope + slope), (c, s))]
+
+    # ---- a bounce
+
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
+        flight = Flight(self, ops, shape, (position[0], position[1]), (exit[0], exit[1]))
+        x, y, left, reach = flight.marched()
+        u = flight.sharpened((x, y), reach)
+        landing = self.landed(ops, shape, law, u, flight.v)
+        tangent = ops.number(float(Status.GRAZING.code))
+        lost = grazing(ops, landing.across, landing.along) | (ops.number(0.5) < left)
+        landing.code = ops.select(lost, tangent, ops.number(0.0))
+        return landing
+
+
+class Flight:
+    """A ray and the march along it, on some arithmetic."""
+
+    def __init__(self, family: Polar, ops: Any, shape: Any, u0: Any, v: Any) -> None:
+        self.family, self.ops, self.shape, self.u0, self.v = family, ops, shape, u0, v
+        self.r0, slope = family.radius(ops, *u0, *shape)
+        sine, cosine = plane.exact_cross(ops, u0, v), plane.exact_dot(ops, u0, v)
+        self.side = ops.times_sign(ops.number(1.0), sine)  # 1 where the place turns to the left
+        self.h = self.r0 * sine
+        self.size = modulus(self.h)
+        self.rate = slope * sine - self.r0 * cosine  # N0
+
+    def marched(self) -> list[Any]:
+        """Where the march ends, as a unit vector; 1 where it does not; and the length of the last step, or more."""
+        ops, family = self.ops, self.family
+        one, nought = ops.number(1.0), ops.number(0.0)
+        bound = self.size * self.r0 * ops.number(family.bounds.highest)
+        inverse = one / (bound * bound + self.rate * self.rate)
+        c = (bound * bound - self.rate * self.rate) * inverse
+        s = (bound + bound) * self.rate * inverse
+        u = self._turned(self.u0, c, s)
+        cube = self.r0 * self.r0 * self.r0
+        shallow = self.rate * self.rate < ops.number(SHALLOW * family.bounds.largest) * cube
+        flag = ops.select(shallow, nought, one)
+        state = ops.repeat(self._going, self._step, [*u, flag, modulus(s)], MOST)
+
+        def careful() -> list[Any]:
+            start = [*state[:2], ops.select(shallow, one, state[2]), state[3]]
+            return list(ops.repeat(self._going, self._careful, start, MOST))
+
+        return list(ops.when(shallow, state, careful))
+
+    def _going(self, state: Any) -> Any:
+        """Has the march not ended?"""
+        return self.ops.number(0.5) < state[2]
+
+    def _step(self, state: Any) -> list[Any]:
+        """A step of the march; the third number becomes 0 where it was the last."""
+        ops, u = self.ops, (state[0], state[1])
+        r, slope = self.family.radius(ops, *u, *self.shape)
+        S = ops.times_sign(plane.cross(u, self.v), self.side)
+        k = r * (r * S - self.size)
+        c, s, ends = self._stepped(u, r, slope, k, ops.number(FLOOR), ops.number(self.family.bounds.highest))
+        return [*self._turned(u, c, s), ends, modulus(s)]
+
+    def _careful(self, state: Any) -> list[Any]:
+        """The same for flights that begin along the wall, which may follow it from where it is almost straight.
+
+        `K` is that of the divided equation, small to the last bit. A step is at most `GROWTH` times the one before,
+        so that `w` here and the bound of its slope say more than `W` does.
+        """
+        ops, u, family = self.ops, (state[0], state[1]), self.family
+        r, slope, bent = family.bent(ops, *u, *self.shape)
+        value, scale, weight = self._divided(u)
+        tau = scale / weight
+        k = -ops.times_sign(r * value * tau, self.side)
+        farthest = -ops.maximum(-ops.number(GROWTH) * state[3], ops.number(-0.5))
+        w = (r * r + ops.number(2.0) * slope * slope - r * bent) / (r * r * r)
+        w = w + ops.number(1.25 * family.bounds.slope) * farthest
+        high = ops.number(family.bounds.highest)
+        bound = -ops.maximum(-ops.maximum(w, ops.number(2.0**-30) * high), -high)
+        c, s, ends = self._stepped(u, r, slope, k, ops.number(FLOOR) * modulus(tau), bound)
+        far = (c < ops.number(0.5)) | (farthest < s)
+        s = ops.select(far, farthest, s)
+        c = ops.select(far, ops.sqrt(ops.number(1.0) - farthest * farthest), c)
+        ends = ops.select(far, ops.number(1.0), ends)
+        return [*self._turned(u, c, s), ends, ops.maximum(modulus(s), ops.number(2.0**-52))]
+
+    def _stepped(self, u: Any, r: Any, slope: Any, k: Any, floor: Any, highest: Any) -> tuple[Any, Any, Any]:
+        """Cosine and sine of the safe step where `w <= highest`, and 0 where the march ends with it."""
+        ops, one, nought = self.ops, self.ops.number(1.0), self.ops.number(0.0)
+        square = r * r
+        k1 = self.h * slope - square * plane.dot(u, self.v)
+        unit = self.size * square
+        bound = unit * highest
+        A = k + bound
+        root = ops.sqrt(ops.maximum(k1 * k1 + k * (A + bound), nought))
+        inverse = one / (A * A + k1 * k1)
+        s = (k1 * bound + A * root) * inverse
+        c = (A * bound - k1 * root) * inverse
+        close = k * (unit * ops.number(self.family.bounds.largest) + k) <= ops.number(HALT) * (k1 * k1)
+        ends = (k1 < nought) & (close | (k <= floor * square))
+        return c, s, ops.select(ends, nought, one)
+
+    def _turned(self, u: Any, c: Any, s: Any) -> Any:
+        return plane.unit(self.ops, plane.times(u, (c, self.ops.times_sign(s, self.side))))
+
+    def _divided(self, u: Any) -> tuple[Any, Any, Any]:
+        """`H`, `scale` and `weight` with `v x (z - z0) = H*scale/weight`, none of them small for want of digits.
+
+        `u - u0 = tan(B)*i*(u + u0)` for half the angle `B` between them: up to a quarter of a turn differences are
+        divided by `tan(B) = scale/weight`, beyond it by one.
+        """
+        ops, one, u0, v = self.ops, self.ops.number(1.0), self.u0, self.v
+        near = ops.number(0.0) < plane.dot(u0, u)
+        f = (
+            ops.select(near, -(u0[1] + u[1]), u[0] - u0[0]),
+            ops.select(near, u0[0] + u[0], u[1] - u0[1]),
+        )
+        scale = ops.select(near, plane.exact_cross(ops, u0, u), one)
+        weight = ops.select(near, one + plane.dot(u0, u), one)
+        step = scale / weight
+        inputs = [Secant(ops, a, b, d) for a, b, d in zip(u0, u, f, strict=True)]
+        constants = [Secant(ops, x, x, ops.number(0.0)) for x in self.shape]
+        (r,) = self.family.alone(Secants(ops, step), *inputs, *constants)
+        return self.r0 * plane.exact_cross(ops, v, f) + r.slope * plane.cross(v, u), scale, weight
+
+    def sharpened(self, u: Any, reach: Any) -> Any:
+        """The landing, from the end of the march: Newton's steps on the divided equation."""
+        ops, one, two = self.ops, self.ops.number(1.0), self.ops.number(2.0)
+
+        def at(x: Any) -> Any:
+            s = two * x / (x * x + one)
+            return self._turned(u, one - x * s, s)
+
+        def function(x: Any) -> tuple[Any, Any]:
+            here = at(x)
+            value, scale, weight = self._divided(here)
+            d = self.family.velocity(ops, *here, *self.shape)
+            slope = plane.exact_cross(ops, self.v, (d[0], d[1]))
+            return ops.times_sign(value * scale, self.side), (slope + slope) * weight
+
+        far = reach + ops.number(2.0**-20)
+        nought = ops.number(0.0) * reach
+        x = ops.zero(function, nought, -far, far, one, 1)
+        return at(x)
+
+
+class Bounds(NamedTuple):
+    """Numbers of a boundary: `w <= highest`, `|w| <= largest`, `|w'| <= slope`."""
+
+    highest: float
+    largest: float
+    slope: float
+
+
+def bounds(boundary: Boundary) -> Bounds:
+    """Proved, and rounded up to four bits so that neighbouring shapes share a kernel; infinite where there are none."""
+    shape = [Interval.around(np.array(x)) for x in boundary.shape]
+    with np.errstate(all="ignore"):
+        r, r1, r2, r3 = boundary.ir.program("radius")(Intervals(), *whole_turn(CELLS), *shape)
+        square = r.squared()
+        two, six = (Interval.around(np.array(x)) for x in (2.0, 6.0))
+        w = (square + two * r1.squared() - r * r2) / (square * r)
+        slope = (r1 * (six * (r * r2 - r1.squared()) - square) - r3 * square) / square.squared()
+        sizes = [np.max(np.abs([x.low, x.high])) for x in (w, slope)]
+        found = Bounds(float(np.max(w.high)), *map(float, sizes))
+        known = bool(np.all(r.low > 0)) and np.isfinite(found.slope) and found.largest * float(np.max(r.high)) < STEEP
+    return Bounds(*map(rounded_up, found)) if known else Bounds(np.inf, np.inf, np.inf)
+
+
+def rounded_up(x: float) -> float:
+    """A positive number with four bits, at least `x`.
+
+    >>> rounded_up(1.01)
+    1.0625
+    """
+    unit = 2.0 ** (np.floor(np.log2(x)) - 4)
+    return float(np.ceil(x / unit) * unit)

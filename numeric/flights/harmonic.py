@@ -18,11 +18,17 @@ class Harmonic(Family):
     direction = ("vx", "vy")
     pairs = 0, 2
 
-    def __init__(self, boundary: Boundary) -> None:
-        super().__init__(boundary)
-        self.point = boundary.ir.program("point")
-        self.velocity = boundary.ir.program("velocity")
-        self.acceleration = boundary.ir.program("acceleration")
+    def point(self, ops: Backend[N, M], *values: N) -> list[N]:
+        """The boundary point at `cos(theta)`, `sin(theta)` and the shape."""
+        return self.boundary.ir.program("point")(ops, *values)
+
+    def velocity(self, ops: Backend[N, M], *values: N) -> list[N]:
+        """Its derivative by `theta`."""
+        return self.boundary.ir.program("velocity")(ops, *values)
+
+    def acceleration(self, ops: Backend[N, M], *values: N) -> list[N]:
+        """And the second one."""
+        return self.boundary.ir.program("acceleration")(ops, *values)
 
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         return [ops.cos(theta), ops.sin(theta)]

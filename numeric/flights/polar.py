@@ -37,7 +37,7 @@ import numpy as np
 from numeric.backends import functions as plane
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.protocol import Backend, Fields, M, N, modulus
-from numeric.flights.family import Boundary, Family, Landing, Status, grazing
+from numeric.flights.family import Boundary, Landing, Status, grazing
 from numeric.flights.harmonic import Harmonic
 
 CELLS = 4096  # intervals that cover the turn
@@ -56,7 +56,7 @@ class Polar(Harmonic):
     width = 16
 
     def __init__(self, boundary: Boundary) -> None:
-        Family.__init__(self, boundary)
+        super().__init__(boundary)
         program = boundary.ir.program("radius")
         self.alone, self.radius, self.bent = program.only(0), program.only(0, 1), program.only(0, 1, 2)
         self.bounds = bounds(boundary)
@@ -71,20 +71,20 @@ class Polar(Harmonic):
 
     # ---- the curve, from the radius
 
-    def point(self, ops: Backend[N, M], c: N, s: N, *shape: N) -> list[N]:
+    def point(self, ops: Backend[N, M], *values: N) -> list[N]:
         """The Cartesian point."""
-        r, _ = self.radius(ops, c, s, *shape)
+        (r, _), (c, s) = self.radius(ops, *values), values[:2]
         return [r * c, r * s]
 
-    def velocity(self, ops: Backend[N, M], c: N, s: N, *shape: N) -> list[N]:
+    def velocity(self, ops: Backend[N, M], *values: N) -> list[N]:
         """Its derivative by `theta`."""
-        r, slope = self.radius(ops, c, s, *shape)
-        return [*plane.times((slope, r), (c, s))]
+        r, slope = self.radius(ops, *values)
+        return [*plane.times((slope, r), (values[0], values[1]))]
 
-    def acceleration(self, ops: Backend[N, M], c: N, s: N, *shape: N) -> list[N]:
+    def acceleration(self, ops: Backend[N, M], *values: N) -> list[N]:
         """And the second one."""
-        r, slope, bent = self.bent(ops, c, s, *shape)
-        return [*plane.times((bent - r, slope + slope), (c, s))]
+        r, slope, bent = self.bent(ops, *values)
+        return [*plane.times((bent - r, slope + slope), (values[0], values[1]))]
 
     # ---- a bounce
 

@@ -7,7 +7,7 @@ the number of lanes, nor on what else the kernel computes, nor on the version of
 
 import math
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from numeric.backends import functions
@@ -125,6 +125,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         self.scopes, self.scope, self.opened = [0], 0, 0
         self.block, self.count = "entry", 0
         self.called: set[str] = set()
+        self.constants: dict[str, str] = {}  # arrays in memory, and their names
 
     # ---- writing
 
@@ -230,6 +231,31 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return LLVMVector(
             self, self.emit(f"select {self.masks} {mask.text}, {self.type} {x.text}, {self.type} {y.text}")
         )
+
+    def look_up(self, values: Sequence[LLVMVector], index: LLVMVector) -> LLVMVector:
+        """The value of that index; the first one where there is none. Constants are gathered from memory."""
+        numbers = [x.value for x in values]
+        if None in numbers:
+            found = values[0]
+            for i, value in enumerate(values[1:], start=1):
+                found = self.select(self.number(i - 0.5) < index, value, found)
+            return found
+        if len(set(numbers)) == 1:
+            return values[0]
+        items = ", ".join("double " + self.literal(x)[len("splat (double ") : -1] for x in numbers if x is not None)
+        array = f"[{len(numbers)} x double] [{items}]"
+        name = self.constants.setdefault(array, f"@array{len(self.constants)}")
+        known = (self.number(-0.5) < index) & (index < self.number(len(numbers) - 0.5))
+        inside = self.select(known, index, self.number(0.0)).text
+        places = f"<{self.width} x i32>"
+        whole = self.emit(f"fptosi {self.type} {inside} to {places}")
+        pointers = self.emit(f"getelementptr double, ptr {name}, {places} {whole}")
+        gather = f"@llvm.masked.gather.v{self.width}f64.v{self.width}p0"
+        arguments = f"<{self.width} x ptr>", "i32", self.masks, self.type
+        self.called.add(f"declare {self.type} {gather}({', '.join(arguments)})")
+        given = f"{pointers}", "8", "splat (i1 true)", "poison"
+        inner = ", ".join(f"{kind} {value}" for kind, value in zip(arguments, given, strict=True))
+        return LLVMVector(self, self.emit(f"call {self.type} {gather}({inner})"))
 
     def negated(self, mask: LLVMMask) -> LLVMMask:
         """The opposite of a mask."""

@@ -90,6 +90,10 @@ class Backend(NumberSystem[N], Protocol[N, M]):
         """The opposite of a mask."""
         ...
 
+    def look_up(self, values: Sequence[N], index: N, /) -> N:
+        """The value of that index, a whole number; the first one where there is none."""
+        ...
+
     def settle(self, *values: N) -> None:
         """Compute these values here, and not where they are needed."""
         ...

@@ -87,6 +87,11 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         """`x*y`, rounded by itself."""
         return x * y
 
+    def look_up(self, values: Sequence[Array], index: Array) -> Array:
+        """The value of that index; the first one where there is none."""
+        known = (index >= 0.0) & (index < len(values))
+        return np.asarray(values)[np.where(known, index, 0.0).astype(np.int64)]
+
     def settle(self, *values: Array) -> None:
         """Nothing to do: every value is computed where it stands."""
 
@@ -205,6 +210,10 @@ class ScalarBackend(Backend[N, bool]):
     def two_to(self, k: N) -> N:
         """`2**k`."""
         return self.context.exp(k * self.context.log(self.number(2.0)))
+
+    def look_up(self, values: Sequence[N], index: N) -> N:
+        """The value of that index."""
+        return values[int(index)]  # type: ignore[call-overload]
 
     def settle(self, *values: N) -> None:
         """Nothing to do: every value is computed where it stands."""

@@ -47,6 +47,11 @@ class General(Family):
     def identity(self) -> str:
         return repr(self.pieces)
 
+    @property
+    def joins(self) -> list[tuple[float, float]]:
+        """The ends of the components, where they meet others."""
+        return [] if self.closed else self.ends
+
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         return [component, theta]
 
@@ -69,20 +74,31 @@ class General(Family):
         x0, y0, *_ = self.curve(ops, shape, component, theta)
         far = ops.number(FAR)
         best = [far, component, theta]
+        number = ops.number
         for index, low, high in self.pieces:
-            best = self._hits(ops, shape, (index, low, high), (component, theta), (x0, y0), v, best)
+            piece = number(float(index)), number(low), number(high), number(high - low)
+            curve = self._curve_of(ops, shape, index)
+            best = self._hits(ops, curve, piece, (component, theta), (x0, y0), v, best)
+        return self._landed(ops, shape, best, v)
+
+    def _curve_of(self, ops: Backend[N, M], shape: Fields[N], index: int) -> Callable[[N], list[N]]:
+        """Point, velocity and acceleration on one component."""
+        return lambda at: self.parts[index].curve(ops, at, *shape)
+
+    def _landed(self, ops: Backend[N, M], shape: Fields[N], best: list[N], v: Pair[N]) -> Landing[N]:
+        """The landing at the nearest of all arrivals: length, component and parameter."""
         t, where, at = best
+        far = ops.number(FAR)
         _x, _y, dx, dy, _, _ = self.curve(ops, shape, where, at)
         across, along = dx * v[0] + dy * v[1], dy * v[0] - dx * v[1]
         nought, one = ops.number(0.0), ops.number(1.0)
         code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
         speed = ops.sqrt(dx * dx + dy * dy)
-        for index, (low, high) in enumerate(self.ends):
-            if not self.closed:
-                here = ops.number(0.25) < modulus(where - ops.number(float(index)))
-                gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
-                gap = ops.select(here, one, gap * speed)
-                code = ops.select(gap < ops.number(NEAR), ops.number(float(Status.JOIN.code)), code)
+        for index, (low, high) in enumerate(self.joins):
+            here = ops.number(0.25) < modulus(where - ops.number(float(index)))
+            gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
+            gap = ops.select(here, one, gap * speed)
+            code = ops.select(gap < ops.number(NEAR), ops.number(float(Status.JOIN.code)), code)
         nowhere = ops.number(
             float((Status.LOST if self.closed else Status.JOIN).code)
         )  # what is lost between two components is at a join
@@ -92,25 +108,24 @@ class General(Family):
     def _hits(
         self,
         ops: Backend[N, M],
-        shape: Fields[N],
-        piece: tuple[int, float, float],
+        curve: Callable[[N], list[N]],
+        piece: tuple[N, N, N, N],
         start: Pair[N],
         z0: Pair[N],
         v: Pair[N],
         best: list[N],
     ) -> list[N]:
-        """The nearest of `best` and the landings on one piece."""
-        index, low, high = piece
-        curve = self.parts[index].curve
+        """The nearest of `best` and the landings on one piece: its component, its ends and its length in `theta`."""
+        index, a, b, scale = piece
         component, theta = start
-        a, b, nought = ops.number(low), ops.number(high), ops.number(0.0)
+        nought = ops.number(0.0)
 
         def flight(at: N) -> Pair[N]:
-            x, y, dx, dy, _, _ = curve(ops, at, *shape)
+            x, y, dx, dy, _, _ = curve(at)
             return plane.cross(v, (x - z0[0], y - z0[1])), plane.cross(v, (dx, dy))
 
         def slope(at: N) -> Pair[N]:
-            _, _, dx, dy, ax, ay = curve(ops, at, *shape)
+            _, _, dx, dy, ax, ay = curve(at)
             return plane.cross(v, (dx, dy)), plane.cross(v, (ax, ay))
 
         def signed(sign: N, function: Callable[[N], Pair[N]]) -> Callable[[N], Pair[N]]:
@@ -124,10 +139,10 @@ class General(Family):
         sign = ops.times_sign(ops.number(1.0), at_high)
         middle = ops.zero(
             signed(sign, slope), each(ops.number(0.5) * (a + b)), a, b,
-            ops.number(high - low), 2, turns,
+            scale, 2, turns,
         )  # fmt: skip
         middle = ops.select(turns, middle, b)
-        here = modulus(component - ops.number(float(index))) < ops.number(0.25)
+        here = modulus(component - index) < ops.number(0.25)
         own = here & (a <= theta) & (theta <= b)
         for first, last in ((a, middle), (middle, b)):
             f0, f1 = flight(first)[0], flight(last)[0]
@@ -139,14 +154,12 @@ class General(Family):
             up = ops.times_sign(ops.number(1.0), f1 - f0)
             at = ops.zero(
                 signed(up, flight), each(ops.number(0.5) * (first + last)),
-                each(first), each(last), ops.number(high - low), 3, crosses,
+                each(first), each(last), scale, 3, crosses,
             )  # fmt: skip
-            x, y, *_ = curve(ops, at, *shape)
+            x, y, *_ = curve(at)
             t = plane.dot(v, (x - z0[0], y - z0[1]))
             better = crosses & (nought < t) & (t < best[0])
-            best = [
-                ops.select(better, new, old) for new, old in zip([t, ops.number(float(index)), at], best, strict=True)
-            ]
+            best = [ops.select(better, new, old) for new, old in zip([t, index, at], best, strict=True)]
         return best
 
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:

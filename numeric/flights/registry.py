@@ -14,6 +14,7 @@ FAMILIES = (
     ("harmonic", "Ellipse"),
     ("harmonic", "Fourier"),
     ("pieces", "Pieces"),
+    ("spline", "Spline"),
     ("polar", "Polar"),
     ("general", "General"),
 )

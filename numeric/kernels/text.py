@@ -79,7 +79,8 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
         ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
     ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
-    return "\n".join([title, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
+    arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
+    return "\n".join([title, *arrays, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
 
 
 def _joined(

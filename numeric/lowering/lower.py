@@ -6,6 +6,7 @@ disk, and never while a map runs.
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 from sympy import (
@@ -15,6 +16,7 @@ from sympy import (
     Float,
     I,
     Mul,
+    Poly,
     Pow,
     S,
     Symbol,
@@ -164,6 +166,9 @@ def _program(symbols: list[Symbol], formula: Callable[[Any], list[Any]], *first:
 
 def _part(component: Component, symbols: list[Symbol]) -> Part:
     ends = _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)])
+    rows = _rows(component)
+    if rows is not None and max(map(len, rows)) > 3:
+        return Part(component.name, ends, _program(symbols, lambda nodes: _polynomial_curve(nodes, rows), "theta"))
     if sum(map(size, component.point)) > LONG or max(map(levels, component.point)) > DEEP:
         return Part(component.name, ends, _long_curve(component, symbols))
     first = velocity(component)
@@ -321,21 +326,47 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
 
 def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
-    """One program for each component, when all are straight sides or arcs of ellipses; none otherwise.
+    """One program for each component, when all are straight sides or arcs of ellipses, or all cubic; none otherwise.
 
-    Its outputs: the point, which is `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or the
-    parameter and -1; the first corner; `A x B`; the radius; what tells the ends apart, as `numeric.flights.pieces`
-    has it.
+    Its outputs for a cubic are the coefficients of `x` and `y`. For the others they are the point, which is
+    `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or the parameter and -1; the first corner;
+    `A x B`; the radius; what tells the ends apart, as `numeric.flights.pieces` has it.
     """
 
     def program(numbers: list[Expr]) -> Program:
         return _program(symbols, lambda nodes: [nodes(x) for x in numbers])
 
-    found = [_piece(component) for component in table.components]
-    known = [piece for piece in found if piece is not None]
-    if len(known) < len(found):
+    for read in (_piece, _cubic):
+        found = [read(component) for component in table.components]
+        known = [piece for piece in found if piece is not None]
+        if len(known) == len(found):
+            break
+    else:
         return {}
     return {f"{kind} {index}": program(numbers) for index, (kind, numbers) in enumerate(known)}
+
+
+def _rows(component: Component) -> list[list[Expr]] | None:
+    """The coefficients of `x` and of `y`, when they are polynomials of degree three at most."""
+    if not all(coordinate.is_polynomial(theta) for coordinate in component.point):
+        return None
+    rows = [Poly(coordinate, theta).all_coeffs()[::-1] for coordinate in component.point]
+    return rows if max(map(len, rows)) <= 4 else None
+
+
+def _polynomial_curve(nodes: Any, rows: list[list[Expr]]) -> list[Any]:
+    """Point, velocity and acceleration of polynomials, by Horner's rule."""
+    found = []
+    for _ in range(3):
+        found += [reduce(lambda value, c: value * nodes(theta) + nodes(c), reversed(row), nodes(0)) for row in rows]
+        rows = [[i * c for i, c in enumerate(row)][1:] for row in rows]
+    return found
+
+
+def _cubic(component: Component) -> tuple[str, list[Expr]] | None:
+    """The eight coefficients of a cubic piece."""
+    rows = _rows(component)
+    return None if rows is None else ("cubic", [c for row in rows for c in [*row, *[S.Zero] * (4 - len(row))]])
 
 
 def _piece(component: Component) -> tuple[str, list[Expr]] | None:
@@ -344,6 +375,8 @@ def _piece(component: Component) -> tuple[str, list[Expr]] | None:
     low, high = component.start, component.end
     corner = component.at(low)
     slope = [coordinate.diff(theta) for coordinate in (x, y)]
+    if any(d.has(theta) and d.is_polynomial(theta) for d in slope):
+        return None
     if not any(d.has(theta) for d in slope):
         return "line", [*component.at(S.Zero), *slope, S.Zero, S.Zero, *corner, S.Zero, S.One, low, high, low, high]
     if sum(map(size, component.point)) > LONG:  # no arc of an ellipse is as long, and nothing longer is multiplied out

@@ -24,12 +24,14 @@ from .gallery import (
     stadium,
     triangle,
 )
+from .measured import from_fourier, from_path, from_points
 from .scene import Law, Scene
-from .table import Component, Mark, Shape, Table
+from .table import Component, Fit, Mark, Shape, Table
 
 __all__ = [
     "GALLERY",
     "Component",
+    "Fit",
     "Law",
     "Mark",
     "Scene",
@@ -43,6 +45,9 @@ __all__ = [
     "disc",
     "egg",
     "ellipse",
+    "from_fourier",
+    "from_path",
+    "from_points",
     "lemon",
     "mushroom",
     "named",

@@ -193,7 +193,8 @@ def curves(table: Table) -> list[tuple[Component, ...]]:
 
 
 def _meet(before: Component, after: Component) -> bool:
-    return all(vanishes(p - q) for p, q in zip(before.at(before.end), after.at(after.start), strict=True))
+    pairs = zip(before.at(before.end), after.at(after.start), strict=True)
+    return all(p == q or vanishes(p - q) for p, q in pairs)
 
 
 def chord_of_length_zero(c: dict[int, Expr], scale: Expr = S.One) -> str | None:
@@ -290,10 +291,8 @@ def _corners(table: Table, parts: int) -> tuple[list[Corner], list[str]]:
 
 
 def _evaluated(coordinate: Expr, value: Expr) -> Expr:
-    """A coordinate with 20 digits; a long one is evaluated as it stands, without exact values of its sines."""
-    if size(coordinate) > LONG:
-        return coordinate.evalf(20, subs={theta: value})
-    return coordinate.subs(theta, value).evalf(20)
+    """A coordinate with 20 digits, without exact values of its sines, for which SymPy takes long."""
+    return coordinate.evalf(20, subs={theta: value})
 
 
 def _turns(corners: list[Corner]) -> int:

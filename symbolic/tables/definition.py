@@ -22,8 +22,9 @@ GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of t
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law
 PIECE = ("name", "x", "y", "from", "to")
-KINDS = ("table", "polar", "parametric", "component")
-BOUNDARY = ("name", *KINDS, "K", "undefined", "origin")
+KINDS = ("table", "polar", "parametric", "component", "points")
+FIT = ("smoothness", "degree", "by", "uncertainty")  # how points are made a boundary
+BOUNDARY = ("name", *KINDS, *FIT, "K", "undefined", "origin")
 KEYS = (*BOUNDARY, "shape", "law", "lam")
 PLAIN = re.compile(r"[+-]?(\d{1,99}/[1-9]\d{0,98}|(\d{1,99}\.?\d{0,99}|\.\d{1,99})([eE][+-]?\d{1,2})?)", re.ASCII)
 WORD = re.compile(r"[A-Za-z][A-Za-z0-9_ -]{0,59}", re.ASCII)
@@ -87,6 +88,8 @@ def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
     said: dict[str, Any] = {"name": table.name} if table.name not in ("polar", "parametric", "piecewise") else {}
     first = table.components[0]
     x, y = first.point
+    if table.fit is not None:
+        return _fit_entries(table), {}
     if len(table.components) == 1 and (first.start, first.end) == (-pi, pi):
         rho = x / cos(theta)
         same = rho * sin(theta) == y
@@ -99,6 +102,31 @@ def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
     if table.origin != (0, 0):
         said["origin"] = {"component": table.origin[0], "theta": str(table.origin[1])}
     return said, {}
+
+
+def _fit_entries(table: "Table") -> dict[str, Any]:
+    """The points of a fitted table, and how they were fitted, unless that is the cubic spline by distance."""
+    fit = table.fit
+    assert fit is not None
+    said: dict[str, Any] = {"name": table.name} if table.name != "measured" else {}
+    said["points"] = [[str(x), str(y)] for x, y in fit.points]
+    given = {"smoothness": fit.smoothness, "degree": fit.degree, "by": fit.by, "uncertainty": str(fit.uncertainty)}
+    plain = {"smoothness": 2, "degree": None, "by": "chord", "uncertainty": "0"}
+    return said | {key: value for key, value in given.items() if value not in (None, plain[key])}
+
+
+def _fitted(said: Mapping[str, Any]) -> dict[str, Any]:
+    """A boundary that a document gives by points, in the entries of `_fit_entries`."""
+    rows = said["points"]
+    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == 2 for row in rows):
+        raise ValueError("scene: points must be a list of pairs of numbers, as in points = [['1', '0'], ['0', '0.5']]")
+    found: dict[str, Any] = {"points": []}
+    for i, row in enumerate(rows, 1):
+        found["points"].append([exact_text(f"point {i}", number_entry(f"point {i}", value)) for value in row])
+    plain = {"smoothness": 2, "degree": None, "by": "chord"}
+    found |= {key: said[key] for key in plain if key in said and said[key] != plain[key]}
+    margin = exact_text("uncertainty", number_entry("uncertainty", said.get("uncertainty", "0")))
+    return found | ({"uncertainty": margin} if margin != "0" else {})
 
 
 def _points(table: "Table") -> int:
@@ -117,6 +145,8 @@ def boundary_of(said: Mapping[str, Any], letters: tuple[str, ...]) -> dict[str, 
     found: dict[str, Any] = {"name": word_entry("name", said["name"])} if "name" in said else {}
     if "polar" in said:
         found["polar"] = _formula("polar", said["polar"], letters)
+    elif "points" in said:
+        found |= _fitted(said)
     elif "parametric" in said:
         if not isinstance(said["parametric"], list) or len(said["parametric"]) != 2:
             raise ValueError("scene: parametric needs two formulas, as in parametric = ['3*cos(theta)', 'sin(theta)']")
@@ -190,6 +220,9 @@ def built(document: Mapping[str, Any]) -> "Table":
     numbers = {letter: _expression(letter, text) for letter, text in texts.items()}
     if "table" in document:
         return tables.named(document["table"], document.get("K", POINTS)).at(**numbers)
+    if "points" in document:
+        given = {key: document[key] for key in FIT if key in document}
+        return tables.from_points(document["points"], name_of(document), **given)
     symbols = _symbols(texts)
 
     def formula(text: str) -> "Expr":
@@ -211,6 +244,7 @@ def built(document: Mapping[str, Any]) -> "Table":
 def name_of(boundary: Mapping[str, Any]) -> str:
     """The name of a boundary: the paper's, the user's own, or the way it is written."""
     kind = next((key for key in ("polar", "parametric") if key in boundary), "piecewise")
+    kind = "measured" if "points" in boundary else kind
     return str(boundary.get("table") or boundary.get("name") or kind)
 
 

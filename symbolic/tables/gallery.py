@@ -148,7 +148,8 @@ def regular(n: int, radius: Number = 1) -> Table:
         raise ValueError(f"regular: n = {n!r} is no number of sides; accepted: integers from 3")
     r = _positive("regular: radius", radius)
     angles = [-pi / 2 - pi / n + 2 * pi * k / n for k in range(n)]
-    return polygon(*((r * cos(a), r * sin(a)) for a in angles), name=f"regular{n}")
+    corners = [(r * cos(a), r * sin(a)) for a in angles]
+    return Table(f"regular{n}", tuple(_sides(corners)))  # convex, so that nothing need be proved of it
 
 
 def square(side: Number = 1) -> Table:

@@ -220,6 +220,7 @@ class Scene:
         first = [repr(said["table"])] if "table" in said else []
         first += [f"{key}={said[key]!r}" for key in ("name", "polar", "parametric", "K") if key in said]
         first += [f"{len(said['component'])} components"] if "component" in said else []
+        first += [f"{len(said['points'])} points"] if "points" in said else []
         first += [f"{name}={text!r}" for name, text in said.get("shape", {}).items()]
         return f"Scene({', '.join([*first, *(f'{key}={said[key]!r}' for key in ('law', 'lam') if key in said)])})"
 

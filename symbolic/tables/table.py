@@ -76,6 +76,29 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Fit:
+    """What a boundary was fitted to, and how far it may be from the body that was measured.
+
+    The boundary itself is exact. `residual` is the largest distance of a point from its place on it, rounded up;
+    `between` how far the fit to every second point passes from the others, an estimate of what happens between points
+    (None for too few of them); `uncertainty` what was said of the points themselves.
+    """
+
+    points: tuple[Pair, ...]
+    smoothness: int | None
+    degree: int | None
+    by: str
+    uncertainty: Expr
+    residual: Expr
+    between: Expr | None
+
+    @property
+    def error(self) -> Expr:
+        """The error bar, a length: uncertainty of the points, and the larger of the two distances."""
+        return self.uncertainty + max(self.residual, self.between or S.Zero)
+
+
+@dataclass(frozen=True)
 class Table:
     """A billiard table, exact.
 
@@ -89,6 +112,7 @@ class Table:
     undefined: tuple[Mark, ...] = ()
     origin: tuple[int, Expr] = (0, S.Zero)
     fixed: tuple[tuple[str, Expr], ...] = ()
+    fit: Fit | None = None
 
     def at(self, **shape: Expr | int | str) -> "Table":
         """The same table with numbers (or symbols) for its shape parameters.

@@ -36,6 +36,7 @@ from symbolic.expressions.enclosures import UnboundedError, pole, sign_on
 from symbolic.expressions.signs import Box, Outcome, conjunction, positive
 from symbolic.tables.curves import LONG, alone, chord_of_length_zero, curves, polygon_crossing, size, waves
 from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
+from symbolic.tables.polynomial import as_bezier, meets, signed_area
 from symbolic.tables.table import Component, Table, lam, theta
 
 HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box, of a radius judged by Sturm's theorem
@@ -127,7 +128,7 @@ def _finite(table: Table, component: Component) -> None:
             f"{table.name}: {component.name} runs from theta = {start} to {end}; the end must be a larger number"
         )
     for coordinate in component.point:
-        if waves(coordinate) is not None:
+        if coordinate.is_polynomial(theta) or waves(coordinate) is not None:
             continue
         if size(coordinate) > LONG:
             low, high = (Rational(str(end.evalf(20))) if end.is_number else None for end in (start, component.end))
@@ -174,6 +175,11 @@ def enclosed_area(table: Table) -> Expr | None:
     total = S.Zero
     for component in table.components:
         x, y = component.point
+        piece = as_bezier(component)
+        if piece is not None:
+            part = signed_area([piece])
+            total += Rational(part.numerator, part.denominator)
+            continue
         found = waves(x + I * y)
         if found is not None and component.end - component.start == 2 * pi:
             swept = sum(k * (u * u + v * v) for k, (u, v) in found.items())
@@ -191,8 +197,9 @@ def enclosed_area(table: Table) -> Expr | None:
 def simple(table: Table) -> None:
     """Refuses a boundary that crosses itself.
 
-    A positive radius or the exclusion of chords of length 0 proves that it does not; a boundary too
-    hard for either (pieces, high harmonics, no finite sum) is refused when its inscribed polygon crosses.
+    A positive radius or the exclusion of chords of length 0 proves that it does not, and so do the boxes round the
+    pieces of one curve of rational polynomials; a boundary too hard for any (other pieces, high harmonics, no finite
+    sum) is refused when its inscribed polygon crosses.
     """
     whole = table.components[0]
     if any(c.free_symbols - {theta} for component in table.components for c in component.point):
@@ -208,6 +215,10 @@ def simple(table: Table) -> None:
             if crossing:
                 raise ValueError(f"{table.name}: {crossing}")
             return
+    pieces = [as_bezier(component) for component in table.components]
+    known = [piece for piece in pieces if piece is not None]
+    if len(known) == len(pieces) and len(curves(table)) == 1 and meets([known]) is None:
+        return
     crossing = polygon_crossing(table)
     if crossing:
         raise ValueError(f"{table.name}: {crossing}")

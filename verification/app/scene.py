@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from numeric.sweeps.sweep import Cost, Sweep
+    from symbolic.tables.table import Table
 
 
 def scene(
@@ -35,6 +36,7 @@ def scene(
     lam: str | None,
     file: str | None = None,
     given: tuple[str, ...] = (),
+    drawn: "Table | None" = None,
     /,
     **shape: str | None,
 ) -> Scene:
@@ -43,17 +45,23 @@ def scene(
     >>> scene("ellipse", None, None, None, "0.5", a="sqrt(2)")
     Scene('ellipse', a='sqrt(2)', lam='1/2')
     """
-    named = [n for n, said in (("polar", polar), ("parametric", parametric), (table, table), ("scene", file)) if said]
+    options = ("polar", polar), ("parametric", parametric), (table, table), ("scene", file), ("data", drawn)
+    named = [name for name, said in options if said]
     if len(named) != 1 or named[0] is None:
         many = " and ".join(str(name) for name in named) or "none"
         raise ValueError(
             f"one table is needed, {many} given; accepted: {', '.join(PAPER)}, --polar or --parametric, "
-            f"{', '.join(GALLERY)}, --scene"
+            f"{', '.join(GALLERY)}, --scene, --data"
         )
     name = named[0]
     values = dict(map(_shape_value, given))
     if file is not None:
         return _from_file(file, lam, values, K, shape)
+    if drawn is not None:
+        for key in values:
+            raise ValueError(f"--shape {key}: a table from a file of data has no shape parameter; leave it out")
+        _fitting(drawn.name, (), shape)
+        return Scene(drawn, lam=_contraction(lam))
     if name in PAPER:
         shape = {**shape, **values}
     if K is not None and name != "egg":
@@ -136,6 +144,9 @@ TABLE = (
     click.option("--polar", metavar="FORMULA", help="Your own table: the radius, a formula in theta."),
     click.option("--parametric", nargs=2, metavar="X Y", help="Your own table: a closed curve in theta on [-pi, pi)."),
     click.option("--scene", "file", metavar="FILE", help="A scene file: any table, its shape and contraction."),
+    click.option("--data", metavar="FILE", help="A measured table, points in CSV; or a drawn one, closed paths in SVG."),
+    click.option("--smoothness", type=click.IntRange(0, 2), help="Of the spline through the points of --data; or 2."),
+    click.option("--degree", type=click.IntRange(1, 64), help="Of a Fourier sum near the points of --data, instead."),
 )
 SHAPE = click.option(
     "--shape", "given", multiple=True, metavar="NAME=VALUE", help="A shape parameter of your own table, or a length."
@@ -155,11 +166,18 @@ def table_options(command: Command) -> Command:
         a: str | None,
         alpha: str | None,
         file: str | None,
+        data: str | None,
+        smoothness: int | None,
+        degree: int | None,
         lam: str | None = "0",
         given: tuple[str, ...] = (),
         **others: Any,
     ) -> Any:
-        return command(scene=scene(table, polar, parametric, K, lam, file, given, a=a, alpha=alpha), **others)
+        from verification.app.outline import drawn
+
+        measured = drawn(data, smoothness, degree)
+        said = scene(table, polar, parametric, K, lam, file, given, measured, a=a, alpha=alpha)
+        return command(scene=said, **others)
 
     for option in reversed(TABLE):
         called = option(called)

@@ -1,0 +1,407 @@
+"""Tables from data: a closed spline through points, a finite Fourier sum near them, exact as they stand.
+
+The exact definition is the fit: its coefficients are rational, and whatever is computed or proved is so for the fit.
+What the fit says about the body that was measured is an error bar, which the table carries (`Table.fit`).
+
+Points may be in either order round the body. The parameter of the fit grows with the distance between points,
+counted in 64ths of its mean (`by="chord"`), or by one from each to the next (`by="index"`).
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from itertools import pairwise
+from math import isqrt
+from typing import Any
+
+from sympy import Expr, I, Rational, S, cos, pi, re, sin
+from sympy import im as imaginary
+
+from symbolic.tables.definition import PLAIN
+from symbolic.tables.gallery import parametric
+from symbolic.tables.polynomial import Bezier, Vector, as_component, checked, signed_area
+from symbolic.tables.table import Fit, Table, exact_number, theta
+
+BITS = 64  # of a control point, against the size of the whole
+GUARD = 128  # bits of a fixed-point number on the way to a Fourier sum
+SHARES = 64  # of the mean distance: what parameters are counted in
+SWEEPS = 2 * BITS  # each halves the error of the slopes
+BETWEEN = 8  # straight sides in place of a piece, where the distance of a point is taken
+MOST = 4000  # points
+THIRD = Fraction(1, 3)
+
+
+def from_points(
+    points: Iterable[Sequence[Any]],
+    name: str = "measured",
+    *,
+    smoothness: int | None = None,
+    degree: int | None = None,
+    by: str = "chord",
+    uncertainty: Any = 0,
+) -> Table:
+    """The table whose boundary is fitted to points of it, in order round the body.
+
+    Either a closed spline of pieces cubic in `theta`, through the points, with so many continuous derivatives
+    (`smoothness`: 0 for straight sides, 1 for the slopes of parabolas through three points, 2 if left out); or, with a
+    `degree`, the finite Fourier sum of least squares. Coordinates are exact numbers, or text in which a decimal is the
+    decimal it shows; a float is the rational number it is.
+    `uncertainty` is how far each point may be from the body, and is carried along.
+
+    >>> oval = from_points([(2, 0), (0, "1.5"), (-2, 0), (0, "-1.5")])
+    >>> [len(oval.components), oval.fit.residual < Rational(1, 10**15)]
+    [4, True]
+    >>> from_points([(2, 0), (0, 1), (-2, 0), (0, -1)], degree=1, by="index").components[0].at(S.Zero)
+    (2, 0)
+    """
+    given = [_vector(name, i, point) for i, point in enumerate(points, 1)]
+    least = 3 if degree is None else 2 * _whole(name, "degree", degree, 1, 64) + 1
+    if not least <= len(given) <= MOST:
+        raise ValueError(f"{name}: {len(given)} points are given; accepted: from {least} to {MOST}")
+    for i, point in enumerate(given):
+        if point == given[i - 1]:
+            raise ValueError(f"{name}: points {i or len(given)} and {i + 1} are the same; leave one of them out")
+    if degree is not None and smoothness is not None:
+        raise ValueError(f"{name}: smoothness = {smoothness} and degree = {degree}; a fit has one of them")
+    if by not in ("chord", "index"):
+        raise ValueError(f"{name}: by = {by!r} is no parameter of a fit; accepted: 'chord', 'index'")
+    margin = _exact(f"{name}: uncertainty", uncertainty)
+    if margin < 0:
+        raise ValueError(f"{name}: uncertainty = {uncertainty} is no distance; accepted: numbers from 0")
+    order = 2 if smoothness is None else _whole(name, "smoothness", smoothness, 0, 2)
+    ordered = given if _area(given) > 0 else [given[0], *reversed(given[1:])]
+    steps = [1] * len(given) if by == "index" else _steps(ordered)
+    if degree is None:
+        pieces = spline(ordered, steps, order)
+        residual = _rounded_up(max(_distance2(piece[0], point) for piece, point in zip(pieces, ordered, strict=True)))
+        missed = _missed(ordered, steps, order)
+        checked(name, pieces)
+        components = tuple(as_component(f"piece{i}", piece) for i, piece in enumerate(pieces, 1))
+        table = Table(name, components)
+    else:
+        x, y, residual = fourier(ordered, steps, degree)
+        missed = None
+        if len(ordered) // 2 > 2 * degree:
+            half = fourier(ordered[::2], _paired(steps), degree)
+            missed = _rounded_up(_gap(half[:2], ordered, steps))
+        table = parametric(_sum(x), _sum(y), name)
+    said = tuple((Rational(p.numerator, p.denominator), Rational(q.numerator, q.denominator)) for p, q in given)
+    exact = [Rational(v.numerator, v.denominator) for v in (residual, margin)]
+    between = None if missed is None else Rational(missed.numerator, missed.denominator)
+    fit = Fit(said, None if degree is not None else order, degree, by, exact[1], exact[0], between)
+    return Table(table.name, table.components, fit=fit)
+
+
+def from_fourier(coefficients: Mapping[int, Any], name: str = "fourier") -> Table:
+    """The table bounded by `x + i*y = sum c_k exp(i*k*theta)`; a coefficient is a number or a pair `(x, y)`.
+
+    >>> from_fourier({1: 1, -2: "1/10"}).components[0].point
+    (cos(theta) + cos(2*theta)/10, sin(theta) - sin(2*theta)/10)
+    """
+    x, y = S.Zero, S.Zero
+    for k, given in sorted(coefficients.items()):
+        k = _whole(name, "harmonic", k, -1000, 1000)
+        a, b = _complex(f"{name}: coefficient {k}", given)
+        x += a * cos(k * theta) - b * sin(k * theta)
+        y += b * cos(k * theta) + a * sin(k * theta)
+    return parametric(x, y, name)
+
+
+def from_path(curves: Iterable[Sequence[Sequence[Sequence[Any]]]], name: str = "outline") -> Table:
+    """The table bounded by closed curves of straight and Bezier pieces: the largest is the boundary, others are holes.
+
+    A piece is its control points, two for a straight side, three or four for a curve, and begins where the one before
+    ends. Curves may run either way.
+
+    >>> bow = [[(0, 0), (2, 0)], [(2, 0), (2, 2), (0, 2), (0, 0)]]
+    >>> [part.name for part in from_path([bow]).components]
+    ['piece1', 'piece2']
+    """
+    found = [[_bezier(f"{name}: curve {i}", piece) for piece in curve] for i, curve in enumerate(curves, 1)]
+    if not found:
+        raise ValueError(f"{name}: a table needs at least one closed curve, and none is given")
+    for i, curve in enumerate(found, 1):
+        for j, piece in enumerate(curve):
+            if curve[j - 1][3] != piece[0]:
+                x, y = map(float, piece[0])
+                raise ValueError(f"{name}: curve {i} is not closed: no piece before ({x:.6g}, {y:.6g}) ends there")
+    found.sort(key=lambda curve: -abs(signed_area(curve)))
+    for i, curve in enumerate(found):
+        if (signed_area(curve) > 0) != (i == 0):
+            found[i] = [(d, c, b, a) for a, b, c, d in reversed(curve)]
+    checked(name, *found)
+    pieces = [piece for curve in found for piece in curve]
+    return Table(name, tuple(as_component(f"piece{i}", piece) for i, piece in enumerate(pieces, 1)))
+
+
+def _bezier(label: str, points: Sequence[Sequence[Any]]) -> Bezier:
+    """Control points of a cubic curve, from those of one of degree 1, 2 or 3."""
+    p = [_vector(label, i, point) for i, point in enumerate(points, 1)]
+    if len(p) == 2:
+        return p[0], _mix(p[0], p[1], THIRD), _mix(p[0], p[1], 2 * THIRD), p[1]
+    if len(p) == 3:
+        return p[0], _mix(p[0], p[1], 2 * THIRD), _mix(p[2], p[1], 2 * THIRD), p[2]
+    if len(p) != 4:
+        raise ValueError(f"{label}: a piece has {len(p)} control points; accepted: 2, 3 or 4")
+    return p[0], p[1], p[2], p[3]
+
+
+# ---- splines
+
+
+def spline(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> list[Bezier]:
+    """The closed spline of so many continuous derivatives through the points, as cubic curves of Bezier.
+
+    With `smoothness` 2 its control points lie on a lattice of `2**-BITS` of the whole, so that it passes the given
+    points within that distance; its curvature is continuous exactly.
+    """
+    n = len(points)
+    if smoothness == 0:
+        return [(p, _mix(p, q, THIRD), _mix(p, q, 2 * THIRD), q) for p, q in _ring(points)]
+    unit = _unit(points)
+    grid = [(round(x / unit), round(y / unit)) for x, y in points] if smoothness == 2 else None
+    slopes = [_slopes([p[axis] for p in points], steps) for axis in (0, 1)]
+    if grid is not None:
+        slopes = [_smooth_slopes([p[axis] for p in grid], steps) for axis in (0, 1)]
+    ends = grid if grid is not None else points
+    legs: list[tuple[Vector, Vector]] = []
+    for i in range(n):
+        p, q = ends[i], ends[(i + 1) % n]
+        third = steps[i] * THIRD
+        here, there = ((slopes[0][j], slopes[1][j]) for j in (i, (i + 1) % n))
+        legs.append(
+            ((p[0] + third * here[0], p[1] + third * here[1]), (q[0] - third * there[0], q[1] - third * there[1]))
+        )
+    if grid is None:
+        return [(p, *leg, q) for (p, q), leg in zip(_ring(points), legs, strict=True)]
+    corners: list[Vector] = []  # of the polygon of de Boor, rounded: whatever they are, the curvature is continuous
+    for i, ((a, b), (c, d)) in enumerate(legs):
+        ratio = Fraction(steps[i - 1], steps[i])
+        corners.append((round(a + ratio * (a - c)) * unit, round(b + ratio * (b - d)) * unit))
+    inner: list[tuple[Vector, Vector]] = []
+    for i in range(n):
+        h, k = steps[i - 1], steps[i]
+        total = h + k + steps[(i + 1) % n]
+        first, last = corners[i], corners[(i + 1) % n]
+        inner.append((_mix(first, last, Fraction(h, total)), _mix(first, last, Fraction(h + k, total))))
+    knots = [_mix(inner[i - 1][1], inner[i][0], Fraction(steps[i - 1], steps[i - 1] + steps[i])) for i in range(n)]
+    return [(knots[i], *inner[i], knots[(i + 1) % n]) for i in range(n)]
+
+
+def _slopes(values: Sequence[Fraction], steps: Sequence[int]) -> list[Fraction]:
+    """At each point that of the parabola through it and its neighbours."""
+    n, found = len(values), []
+    for i in range(n):
+        h, k = steps[i - 1], steps[i]
+        behind, ahead = (values[i] - values[i - 1]) / h, (values[(i + 1) % n] - values[i]) / k
+        found.append((k * behind + h * ahead) / (h + k))
+    return found
+
+
+def _smooth_slopes(values: Sequence[int], steps: Sequence[int]) -> list[Fraction]:
+    """Those with which the second derivative is continuous, by sweeps that halve the error, in units of the lattice."""
+    n = len(values)
+    sides = []
+    for i in range(n):
+        h, k = steps[i - 1], steps[i]
+        behind, ahead = (values[i] - values[i - 1]) * k * k, (values[(i + 1) % n] - values[i]) * h * h
+        sides.append((3 * (behind + ahead) << BITS) // (h * k))
+    slopes = [0] * n
+    for _ in range(SWEEPS):
+        for i in range(n):
+            h, k = steps[i - 1], steps[i]
+            slopes[i] = (sides[i] - k * slopes[i - 1] - h * slopes[(i + 1) % n]) // (2 * (h + k))
+    return [Fraction(slope, 1 << BITS) for slope in slopes]
+
+
+def _missed(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> Fraction | None:
+    """How far the spline through every second point passes from the others, at most: an estimate, from above."""
+    if len(points) < 6:
+        return None
+    even = points[::2] if len(points) % 2 == 0 else points[:-1:2]
+    used = steps if len(points) % 2 == 0 else [*steps[:-2], steps[-2] + steps[-1]]
+    pieces = spline(even, _paired(used), smoothness)
+    worst = Fraction(0)
+    for i, piece in enumerate(pieces):
+        places = [_on(piece, Fraction(j, BETWEEN)) for j in range(BETWEEN + 1)]
+        worst = max(worst, min(_from_side(points[2 * i + 1], p, q) for p, q in pairwise(places)))
+    return _rounded_up(worst)
+
+
+def _from_side(point: Vector, p: Vector, q: Vector) -> Fraction:
+    """The square of the distance of a point from a straight side."""
+    x, y = q[0] - p[0], q[1] - p[1]
+    square = x * x + y * y
+    share = (x * (point[0] - p[0]) + y * (point[1] - p[1])) / square if square else Fraction(0)
+    return _distance2(_mix(p, q, max(Fraction(0), min(Fraction(1), share))), point)
+
+
+def _paired(steps: Sequence[int]) -> list[int]:
+    return [sum(steps[i : i + 2]) for i in range(0, len(steps), 2)]
+
+
+def _on(piece: Bezier, u: Fraction) -> Vector:
+    points = list(piece)
+    while len(points) > 1:
+        points = [_mix(p, q, u) for p, q in pairwise(points)]
+    return points[0]
+
+
+# ---- Fourier sums
+
+
+def fourier(
+    points: Sequence[Vector], steps: Sequence[int], degree: int
+) -> tuple[list[Fraction], list[Fraction], Fraction]:
+    """The coefficients of `1, cos(theta), sin(theta), cos(2*theta), ...` for `x` and `y`, and the largest residual."""
+    one, unit = 1 << GUARD, _unit(points)
+    rows = _waves(steps, degree)
+    size = 2 * degree + 1
+    matrix = [[sum(row[i] * row[j] for row in rows) // one for j in range(size)] for i in range(size)]
+    values = [[round(p[axis] / unit) for p in points] for axis in (0, 1)]
+    right = [[sum(row[i] * v for row, v in zip(rows, column, strict=True)) for i in range(size)] for column in values]
+    found = [[Fraction(v) * unit for v in column] for column in _solved(matrix, right)]
+    worst = Fraction(0)
+    for row, point in zip(rows, points, strict=True):
+        worst = max(worst, _distance2((_at(found[0], row), _at(found[1], row)), point))
+    return found[0], found[1], _rounded_up(worst) + unit
+
+
+def _waves(steps: Sequence[int], degree: int) -> list[list[int]]:
+    """`1, cos(theta), sin(theta), ...` at the parameters of the points, in units of `2**-GUARD`."""
+    one, total, reached = 1 << GUARD, sum(steps), 0
+    rows: list[list[int]] = []
+    turn = int((2 * pi * one).evalf(GUARD // 3 + 8))
+    for step in steps:
+        x, term, parts, k = turn * reached // total, one, [0, 0], 0
+        while term:
+            parts[k % 2] += -term if k % 4 > 1 else term
+            k += 1
+            term = term * x // (one * k)
+        c, s = parts
+        row, (u, v) = [one], (one, 0)
+        for _ in range(degree):
+            u, v = (u * c - v * s) // one, (u * s + v * c) // one
+            row += [u, v]
+        rows.append(row)
+        reached += step
+    return rows
+
+
+def _solved(matrix: list[list[int]], right: list[list[int]]) -> list[list[int]]:
+    """The solutions for both right-hand sides, to the nearest integers; numbers in units of `2**-GUARD`."""
+    n, one = len(matrix), 1 << GUARD
+    rows = [[*row, *(column[i] for column in right)] for i, row in enumerate(matrix)]
+    for i in range(n):
+        for j in range(i + 1, n):
+            ratio = rows[j][i] * one // rows[i][i]
+            rows[j] = [y - ratio * x // one for x, y in zip(rows[i], rows[j], strict=True)]
+    found = []
+    for at in range(n, n + len(right)):
+        solution = [0] * n
+        for i in reversed(range(n)):
+            rest = rows[i][at] * one - sum(rows[i][j] * solution[j] for j in range(i + 1, n))
+            solution[i] = rest // rows[i][i]
+        found.append([round(Fraction(x, one)) for x in solution])
+    return found
+
+
+def _gap(sums: Sequence[Sequence[Fraction]], points: Sequence[Vector], steps: Sequence[int]) -> Fraction:
+    """The largest square of the distance of every second point from its place on a Fourier sum."""
+    rows = _waves(steps, (len(sums[0]) - 1) // 2)
+    worst = Fraction(0)
+    for row, point in list(zip(rows, points, strict=True))[1::2]:
+        worst = max(worst, _distance2((_at(sums[0], row), _at(sums[1], row)), point))
+    return worst
+
+
+def _at(coefficients: Sequence[Fraction], waves: Sequence[int]) -> Fraction:
+    return sum((c * w for c, w in zip(coefficients, waves, strict=True)), Fraction(0)) / (1 << GUARD)
+
+
+def _sum(coefficients: Sequence[Fraction]) -> Expr:
+    total = S.Zero
+    for i, c in enumerate(coefficients):
+        wave = cos((i + 1) // 2 * theta) if i % 2 or not i else sin(i // 2 * theta)
+        total += Rational(c.numerator, c.denominator) * wave
+    return total
+
+
+# ---- numbers
+
+
+def _exact(label: str, given: Any) -> Fraction:
+    """A number as a fraction; a float is the rational number it is."""
+    try:
+        if isinstance(given, float) or (isinstance(given, str) and PLAIN.fullmatch(given)):
+            return Fraction(given)
+        value = exact_number(label, given)
+        return Fraction(int(value.p), int(value.q))
+    except (ValueError, OverflowError, AttributeError, ZeroDivisionError):
+        raise ValueError(f"{label} = {given!r} is no rational number such as 2/25 or 0.08") from None
+
+
+def _vector(name: str, i: int, point: Sequence[Any]) -> Vector:
+    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+        raise ValueError(f"{name}: point {i} is {point!r}; accepted: two numbers, x and y")
+    return _exact(f"{name}: x of point {i}", point[0]), _exact(f"{name}: y of point {i}", point[1])
+
+
+def _complex(label: str, given: Any) -> tuple[Expr, Expr]:
+    if isinstance(given, tuple | list):
+        a, b = (exact_number(label, part) for part in given)
+        return a, b
+    if isinstance(given, complex):
+        raise ValueError(f"{label} = {given} is a rounded number; give a pair of exact ones, as in (0, '1/10')")
+    value = exact_number(label, given)
+    return (value, S.Zero) if value.is_real or not value.has(I) else (re(value), imaginary(value))
+
+
+def _whole(name: str, label: str, given: Any, low: int, high: int) -> int:
+    if isinstance(given, bool) or not isinstance(given, int) or not low <= given <= high:
+        raise ValueError(f"{name}: {label} = {given!r} is out of range; accepted: integers from {low} to {high}")
+    return given
+
+
+def _unit(points: Sequence[Vector]) -> Fraction:
+    """A power of two, about `2**-BITS` of the size of the whole."""
+    size = max(abs(c) for point in points for c in point) or Fraction(1)
+    exponent = size.numerator.bit_length() - size.denominator.bit_length() - BITS
+    return Fraction(2) ** exponent
+
+
+def _steps(points: Sequence[Vector]) -> list[int]:
+    lengths = [_root(_distance2(p, q)) for p, q in _ring(points)]
+    mean = sum(lengths) / len(lengths)
+    return [max(1, round(SHARES * length / mean)) for length in lengths]
+
+
+def _root(square: Fraction) -> Fraction:
+    """The square root, to a relative `2**-BITS`, from below."""
+    shift = max(0, 2 * BITS - square.numerator.bit_length() + square.denominator.bit_length())
+    shift += shift % 2
+    return Fraction(isqrt((square.numerator << shift) // square.denominator), 1 << shift // 2)
+
+
+def _rounded_up(square: Fraction) -> Fraction:
+    """A short number that is at least the square root, and larger by a 2000th at most."""
+    if not square:
+        return Fraction(0)
+    root = _root(square)
+    unit = Fraction(2) ** (root.numerator.bit_length() - root.denominator.bit_length() - 12)
+    return (root // unit + 1) * unit
+
+
+def _distance2(p: Vector, q: Vector) -> Fraction:
+    return (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2
+
+
+def _area(points: Sequence[Vector]) -> Fraction:
+    return sum((p[0] * q[1] - p[1] * q[0] for p, q in _ring(points)), Fraction(0))
+
+
+def _ring(points: Sequence[Vector]) -> list[tuple[Vector, Vector]]:
+    return list(zip(points, [*points[1:], points[0]], strict=True))
+
+
+def _mix(p: Vector, q: Vector, share: Fraction) -> Vector:
+    return p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1])

@@ -1,0 +1,90 @@
+"""Tables from files: points in CSV, closed paths in SVG, and a sentence for what is neither."""
+
+import sys
+
+import pytest
+from sympy import Rational, pi
+
+from symbolic.tables.validity import enclosed_area
+from verification.app.cli import main
+from verification.app.outline import of_points, of_svg
+
+ROWS = ["2,0", "1.2,0.8", "0,1", "-2,0.1", "0,-1"]
+
+
+def written(tmp_path, name, text):
+    path = tmp_path / name
+    path.write_text(text)
+    return str(path)
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t", " "])
+@pytest.mark.parametrize("heading", ["", "x,y\n", "# of a pebble\n"])
+def test_points_are_read_whatever_stands_between_their_numbers(tmp_path, mark, heading):
+    text = (heading + "\n".join(ROWS) + "\n").replace(",", mark)
+    table = of_points(written(tmp_path, "pebble.csv", text))
+    assert table.fit.points[1] == (Rational(6, 5), Rational(4, 5))
+    assert len(table.components) == len(ROWS)
+
+
+def test_a_first_point_that_is_repeated_to_close_the_curve_counts_once(tmp_path):
+    assert len(of_points(written(tmp_path, "p.csv", "\n".join([*ROWS, ROWS[0]]))).components) == len(ROWS)
+
+
+def test_a_line_that_holds_no_point_is_named(tmp_path):
+    with pytest.raises(ValueError, match="line 3 of data is '7,eight'"):
+        of_points(written(tmp_path, "p.csv", "1,2\n3,4\n7,eight\n"))
+    with pytest.raises(ValueError, match="line 1 of data is '1,two'"):
+        of_points(written(tmp_path, "p.csv", "1,two\n3,4\n7,8\n"))
+
+
+def svg(body):
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100">{body}</svg>'
+
+
+def test_a_drawn_path_keeps_its_decimals_and_points_up(tmp_path):
+    body = '<path d="M 0.1 0 L 0.1 10 L 10 10 L 10 0 Z"/>'
+    table = of_svg(written(tmp_path, "box.svg", svg(body)))
+    assert enclosed_area(table) == Rational(99, 10) * 10
+    corners = {component.at(0) for component in table.components}
+    assert (Rational(1, 10), Rational(-10)) in corners
+
+
+def test_a_drawn_circle_is_one_within_a_ten_millionth_of_its_radius_and_a_smaller_one_a_hole(tmp_path):
+    body = '<circle cx="5" cy="5" r="4"/><circle cx="6" cy="5" r="1"/>'
+    table = of_svg(written(tmp_path, "ring.svg", svg(body)))
+    assert abs(float(enclosed_area(table) - 15 * pi)) < 1e-5
+    for component in table.components[:4]:
+        x, y = component.at(Rational(1, 3))
+        assert abs(float(((x - 5) ** 2 + (y + 5) ** 2) ** Rational(1, 2)) - 4) < 4e-7
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("no drawing", "is no SVG file"),
+        (svg(""), "has no closed path"),
+        (svg('<path d="M 0 0 L 1 0 L 1 1"/>'), "a path is not closed"),
+        (svg('<path d="M 0 0 L 2 2 L 2 0 L 0 2 Z"/>'), "crosses itself|area 0"),
+    ],
+)
+def test_what_is_no_drawing_of_a_table_is_refused_in_one_sentence(tmp_path, text, says):
+    with pytest.raises(ValueError, match=says):
+        of_svg(written(tmp_path, "bad.svg", text))
+
+
+def test_without_the_package_one_sentence_says_how_to_get_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "svgelements", None)
+    path = written(tmp_path, "box.svg", svg('<rect width="3" height="2"/>'))
+    assert main(["orbit", "--data", path, "--lam", "1", "--start", "0.3,0.2", "--bounces", "1"]) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "pip install 'pinball-billiards[outline]'" in told
+
+
+def test_every_command_takes_points(tmp_path, capsys):
+    path = written(tmp_path, "pebble.csv", "\n".join(ROWS))
+    assert main(["orbit", "--data", path, "--lam", "0.5", "--start", "0.3,0.2", "--bounces", "2"]) == 0
+    assert "the piece by halving" in capsys.readouterr().out
+    assert main(["orbit", "--degree", "2", "--lam", "0.5", "--start", "0.3,0.2", "--bounces", "2"]) == 2
+    assert "--degree = 2 says how points are fitted" in capsys.readouterr().err

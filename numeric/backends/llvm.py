@@ -125,7 +125,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         self.scopes, self.scope, self.opened = [0], 0, 0
         self.block, self.count = "entry", 0
         self.called: set[str] = set()
-        self.constants: dict[str, str] = {}  # arrays in memory, and their names
+        self.constants: dict[str, str] = {}  # names of arrays in memory
 
     # ---- writing
 
@@ -233,29 +233,17 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         )
 
     def look_up(self, values: Sequence[LLVMVector], index: LLVMVector) -> LLVMVector:
-        """The value of that index; the first one where there is none. Constants are gathered from memory."""
-        numbers = [x.value for x in values]
-        if None in numbers:
-            found = values[0]
-            for i, value in enumerate(values[1:], start=1):
-                found = self.select(self.number(i - 0.5) < index, value, found)
-            return found
-        if len(set(numbers)) == 1:
-            return values[0]
-        items = ", ".join("double " + self.literal(x)[len("splat (double ") : -1] for x in numbers if x is not None)
-        array = f"[{len(numbers)} x double] [{items}]"
-        name = self.constants.setdefault(array, f"@array{len(self.constants)}")
-        known = (self.number(-0.5) < index) & (index < self.number(len(numbers) - 0.5))
-        inside = self.select(known, index, self.number(0.0)).text
-        places = f"<{self.width} x i32>"
+        """The constant of that index, gathered from memory; the first one where there is none."""
+        items = ", ".join(self.literal(x.value)[len("splat (") : -1] for x in values)  # type: ignore[arg-type]
+        name = self.constants.setdefault(f"[{len(values)} x double] [{items}]", f"@array{len(self.constants)}")
+        known = (self.number(-0.5) < index) & (index < self.number(len(values) - 0.5))
+        inside, places = self.select(known, index, self.number(0.0)).text, f"<{self.width} x i32>"
         whole = self.emit(f"fptosi {self.type} {inside} to {places}")
         pointers = self.emit(f"getelementptr double, ptr {name}, {places} {whole}")
-        gather = f"@llvm.masked.gather.v{self.width}f64.v{self.width}p0"
-        arguments = f"<{self.width} x ptr>", "i32", self.masks, self.type
-        self.called.add(f"declare {self.type} {gather}({', '.join(arguments)})")
-        given = f"{pointers}", "8", "splat (i1 true)", "poison"
-        inner = ", ".join(f"{kind} {value}" for kind, value in zip(arguments, given, strict=True))
-        return LLVMVector(self, self.emit(f"call {self.type} {gather}({inner})"))
+        gather, kind = f"{self.type} @llvm.masked.gather.v{self.width}f64.v{self.width}p0", f"<{self.width} x ptr>"
+        self.called.add(f"declare {gather}({kind}, i32, {self.masks}, {self.type})")
+        given = f"{kind} {pointers}, i32 8, {self.masks} splat (i1 true), {self.type} poison"
+        return LLVMVector(self, self.emit(f"call {gather}({given})"))
 
     def negated(self, mask: LLVMMask) -> LLVMMask:
         """The opposite of a mask."""

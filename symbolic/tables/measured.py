@@ -18,7 +18,7 @@ from sympy import im as imaginary
 
 from symbolic.tables.definition import PLAIN
 from symbolic.tables.gallery import parametric
-from symbolic.tables.polynomial import Bezier, Vector, as_component, checked, signed_area
+from symbolic.tables.polynomial import Bezier, Vector, as_component, checked, elevated, signed_area
 from symbolic.tables.table import Fit, Table, exact_number, theta
 
 BITS = 64  # of a control point, against the size of the whole
@@ -53,7 +53,7 @@ def from_points(
     >>> from_points([(2, 0), (0, 1), (-2, 0), (0, -1)], degree=1, by="index").components[0].at(S.Zero)
     (2, 0)
     """
-    given = [_vector(name, i, point) for i, point in enumerate(points, 1)]
+    given = _read(name, points)
     least = 3 if degree is None else 2 * _whole(name, "degree", degree, 1, 64) + 1
     if not least <= len(given) <= MOST:
         raise ValueError(f"{name}: {len(given)} points are given; accepted: from {least} to {MOST}")
@@ -116,7 +116,7 @@ def from_path(curves: Iterable[Sequence[Sequence[Sequence[Any]]]], name: str = "
     >>> [part.name for part in from_path([bow]).components]
     ['piece1', 'piece2']
     """
-    found = [[_bezier(f"{name}: curve {i}", piece) for piece in curve] for i, curve in enumerate(curves, 1)]
+    found = [[elevated(_read(f"{name}: curve {i}", piece)) for piece in curve] for i, curve in enumerate(curves, 1)]
     if not found:
         raise ValueError(f"{name}: a table needs at least one closed curve, and none is given")
     for i, curve in enumerate(found, 1):
@@ -131,18 +131,6 @@ def from_path(curves: Iterable[Sequence[Sequence[Sequence[Any]]]], name: str = "
     checked(name, *found)
     pieces = [piece for curve in found for piece in curve]
     return Table(name, tuple(as_component(f"piece{i}", piece) for i, piece in enumerate(pieces, 1)))
-
-
-def _bezier(label: str, points: Sequence[Sequence[Any]]) -> Bezier:
-    """Control points of a cubic curve, from those of one of degree 1, 2 or 3."""
-    p = [_vector(label, i, point) for i, point in enumerate(points, 1)]
-    if len(p) == 2:
-        return p[0], _mix(p[0], p[1], THIRD), _mix(p[0], p[1], 2 * THIRD), p[1]
-    if len(p) == 3:
-        return p[0], _mix(p[0], p[1], 2 * THIRD), _mix(p[2], p[1], 2 * THIRD), p[2]
-    if len(p) != 4:
-        raise ValueError(f"{label}: a piece has {len(p)} control points; accepted: 2, 3 or 4")
-    return p[0], p[1], p[2], p[3]
 
 
 # ---- splines
@@ -340,10 +328,14 @@ def _exact(label: str, given: Any) -> Fraction:
         raise ValueError(f"{label} = {given!r} is no rational number such as 2/25 or 0.08") from None
 
 
-def _vector(name: str, i: int, point: Sequence[Any]) -> Vector:
-    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
-        raise ValueError(f"{name}: point {i} is {point!r}; accepted: two numbers, x and y")
-    return _exact(f"{name}: x of point {i}", point[0]), _exact(f"{name}: y of point {i}", point[1])
+def _read(label: str, points: Iterable[Sequence[Any]]) -> list[Vector]:
+    """Points as pairs of fractions."""
+    found = []
+    for i, point in enumerate(points, 1):
+        if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+            raise ValueError(f"{label}: point {i} is {point!r}; accepted: two numbers, x and y")
+        found.append((_exact(f"{label}: x of point {i}", point[0]), _exact(f"{label}: y of point {i}", point[1])))
+    return found
 
 
 def _complex(label: str, given: Any) -> tuple[Expr, Expr]:

@@ -55,6 +55,19 @@ def as_bezier(component: Component) -> Bezier | None:
     return one, two, three, four
 
 
+def elevated(points: Sequence[Vector]) -> Bezier:
+    """The same curve as one of degree three, from the control points of one of degree 1, 2 or 3."""
+    third = Fraction(1, 3)
+    if not 2 <= len(points) <= 4:
+        raise ValueError(f"a piece has {len(points)} control points; accepted: 2, 3 or 4")
+    p, q = points[0], points[-1]
+    if len(points) == 4:
+        return p, points[1], points[2], q
+    inner = [(r[0] + 2 * third * (c[0] - r[0]), r[1] + 2 * third * (c[1] - r[1])) for c in points[1:-1] for r in (p, q)]
+    one, two = inner or [(r[0] + third * (s[0] - r[0]), r[1] + third * (s[1] - r[1])) for r, s in ((p, q), (q, p))]
+    return p, one, two, q
+
+
 def _fraction(value: Expr) -> Fraction | None:
     return Fraction(int(value.p), int(value.q)) if value.is_Rational else None
 

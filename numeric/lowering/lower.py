@@ -16,7 +16,6 @@ from sympy import (
     Float,
     I,
     Mul,
-    Poly,
     Pow,
     S,
     Symbol,
@@ -37,6 +36,7 @@ from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, waves
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
+from symbolic.tables.polynomial import cubic
 from symbolic.tables.table import Component, Table, theta
 from symbolic.tables.validity import closed_and_finite
 
@@ -166,9 +166,9 @@ def _program(symbols: list[Symbol], formula: Callable[[Any], list[Any]], *first:
 
 def _part(component: Component, symbols: list[Symbol]) -> Part:
     ends = _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)])
-    rows = _rows(component)
-    if rows is not None and max(map(len, rows)) > 3:
-        return Part(component.name, ends, _program(symbols, lambda nodes: _polynomial_curve(nodes, rows), "theta"))
+    known = cubic(component)
+    if known is not None and any(row[3] for row in known):
+        return Part(component.name, ends, _program(symbols, lambda nodes: _polynomial_curve(nodes, known), "theta"))
     if sum(map(size, component.point)) > LONG or max(map(levels, component.point)) > DEEP:
         return Part(component.name, ends, _long_curve(component, symbols))
     first = velocity(component)
@@ -336,37 +336,22 @@ def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     def program(numbers: list[Expr]) -> Program:
         return _program(symbols, lambda nodes: [nodes(x) for x in numbers])
 
-    for read in (_piece, _cubic):
-        found = [read(component) for component in table.components]
-        known = [piece for piece in found if piece is not None]
-        if len(known) == len(found):
-            break
-    else:
+    found = [_piece(component) for component in table.components]
+    if None in found:
+        found = [("cubic", [*c[0], *c[1]]) if c is not None else None for c in map(cubic, table.components)]
+    known = [piece for piece in found if piece is not None]
+    if len(known) < len(found):
         return {}
     return {f"{kind} {index}": program(numbers) for index, (kind, numbers) in enumerate(known)}
 
 
-def _rows(component: Component) -> list[list[Expr]] | None:
-    """The coefficients of `x` and of `y`, when they are polynomials of degree three at most."""
-    if not all(coordinate.is_polynomial(theta) for coordinate in component.point):
-        return None
-    rows = [Poly(coordinate, theta).all_coeffs()[::-1] for coordinate in component.point]
-    return rows if max(map(len, rows)) <= 4 else None
-
-
-def _polynomial_curve(nodes: Any, rows: list[list[Expr]]) -> list[Any]:
+def _polynomial_curve(nodes: Any, known: list[list[Expr]]) -> list[Any]:
     """Point, velocity and acceleration of polynomials, by Horner's rule."""
     found = []
     for _ in range(3):
-        found += [reduce(lambda value, c: value * nodes(theta) + nodes(c), reversed(row), nodes(0)) for row in rows]
-        rows = [[i * c for i, c in enumerate(row)][1:] for row in rows]
+        found += [reduce(lambda value, c: value * nodes(theta) + nodes(c), row[::-1], nodes(0)) for row in known]
+        known = [[i * c for i, c in enumerate(row)][1:] for row in known]
     return found
-
-
-def _cubic(component: Component) -> tuple[str, list[Expr]] | None:
-    """The eight coefficients of a cubic piece."""
-    rows = _rows(component)
-    return None if rows is None else ("cubic", [c for row in rows for c in [*row, *[S.Zero] * (4 - len(row))]])
 
 
 def _piece(component: Component) -> tuple[str, list[Expr]] | None:

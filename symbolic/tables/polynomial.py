@@ -31,6 +31,19 @@ def as_component(name: str, piece: Bezier) -> Component:
     return Component(name, (point[0], point[1]), S.Zero, S.One)
 
 
+def cubic(component: Component) -> list[list[Expr]] | None:
+    """The four coefficients of `x` and those of `y`, constant first, when both are polynomials of degree three at most.
+
+    >>> from symbolic.tables import square
+    >>> cubic(square(3).components[0])
+    [[0, 3, 0, 0], [0, 0, 0, 0]]
+    """
+    if not all(coordinate.is_polynomial(theta) for coordinate in component.point):
+        return None
+    found = [Poly(coordinate, theta).all_coeffs()[::-1] for coordinate in component.point]
+    return [[*row, *[S.Zero] * (4 - len(row))] for row in found] if max(map(len, found)) <= 4 else None
+
+
 def as_bezier(component: Component) -> Bezier | None:
     """The control points of a component, if it is a polynomial of degree three at most with rational numbers.
 

@@ -16,7 +16,7 @@ import sys
 import numpy as np
 
 from verification.measure.extremes.kernels import Wide, made_unit
-from verification.measure.extremes.orbits import bounced, cases, conditions
+from verification.measure.extremes.orbits import RADII, bounced, cases, conditions, own_cases
 
 EPS = 2.0**-52
 
@@ -36,6 +36,10 @@ def main(count, word):
     for case in cases(count):
         if word in case.label:
             line(case)
+    for name in RADII:
+        if name in word or not word:
+            for case in own_cases(name, count):
+                line(case)
 
 
 def line(case):

@@ -148,6 +148,79 @@ def cuspless(theta, phi, lam, bounces, a):
     return theta, phi
 
 
+def _polar(radius):
+    """A table `r(theta)`: sixty steps along the ray's polar angle, the first change of sign, bisection and Newton."""
+
+    @njit
+    def bounce(theta, phi, lam, bounces, a):
+        for _ in range(bounces):
+            r, d = radius(theta)
+            x, y = r * math.cos(theta), r * math.sin(theta)
+            psi = theta + math.atan2(r, d) + math.pi / 2 - phi
+            vx, vy = math.cos(psi), math.sin(psi)
+            sweep = _wrapped(psi - theta)
+            side = 1.0 if sweep > 0 else -1.0
+            low, high = theta, psi
+            for i in range(1, 61):
+                high = theta + sweep * i / 60
+                r, d = radius(high)
+                if side * (vx * (r * math.sin(high) - y) - vy * (r * math.cos(high) - x)) > 0:
+                    break
+                low = high
+            at = 0.5 * (low + high)
+            for _ in range(60):
+                r, d = radius(at)
+                c, s = math.cos(at), math.sin(at)
+                f = side * (vx * (r * s - y) - vy * (r * c - x))
+                df = vx * (d * s + r * c) - vy * (d * c - r * s)
+                if f > 0:
+                    high = at
+                else:
+                    low = at
+                new = at - side * f / df
+                if not min(low, high) < new < max(low, high):
+                    new = 0.5 * (low + high)
+                step, at = new - at, new
+                if abs(step) < 1e-15:
+                    break
+            r, d = radius(at)
+            phi = lam * _incidence(psi, at + math.atan2(r, d))
+            theta = _wrapped(at)
+        return theta, phi
+
+    return bounce
+
+
+@njit
+def _limacon(theta):
+    return 1 + 0.6 * math.cos(theta), -0.6 * math.sin(theta)
+
+
+@njit
+def _star(theta):
+    return 1 + 0.25 * math.cos(5 * theta), -1.25 * math.sin(5 * theta)
+
+
+@njit
+def _peanut(theta):
+    r = math.exp(0.25 * math.cos(2 * theta))
+    return r, -0.5 * math.sin(2 * theta) * r
+
+
+@njit
+def _conic(theta):
+    r = 1 / (2 + 0.5 * math.cos(theta))
+    return r, 0.5 * math.sin(theta) * r * r
+
+
+@njit
+def _waves(theta):
+    return 1 + math.cos(40 * theta) / 2000, -math.sin(40 * theta) / 50
+
+
+limacon, star, peanut, conic, waves = map(_polar, (_limacon, _star, _peanut, _conic, _waves))
+
+
 @njit
 def every(step, theta, phi, lam, bounces, a):
     for i in range(theta.size):

@@ -5,9 +5,11 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from verification.app.cli import main
-from verification.measure.extremes.orbits import cases
+from verification.app.commands.bench import show_ratios
+from verification.measure.extremes.orbits import cases, own_cases
 from verification.measure.work import bench as baselines
 from verification.measure.work.bench import LAWS, Row, frontier, multiprecision_rows
 from verification.measure.work.row import HEIGHT, WIDTH, diagram, magnitude
@@ -88,14 +90,22 @@ def test_errors_of_many_digits_are_measured(name):
         assert -digits - 1.5 < error < -digits + 0.8
 
 
-def test_every_labelled_case_has_balls_inside():
-    found = list(cases(5))
+@pytest.mark.parametrize("own", [False, True])
+def test_every_labelled_case_has_balls_inside(own):
+    found = list(own_cases("limacon", 5) if own else cases(5))
 
     assert len({case.label for case in found}) == len(found)
     for case in found:
         low, high = np.array(case.map.states.ends)[case.component].T
         assert np.all((low <= case.theta) & (case.theta <= high))
         assert np.all(np.abs(case.phi) < np.pi / 2)
+
+
+def test_tables_that_are_not_the_papers_are_told_as_multiples_of_the_egg_of_the_same_run(capsys):
+    ways = [("egg", "llvm", 2), ("egg", "llvm, exponents", 4), ("star", "llvm", 5), ("star", "llvm, exponents", 8)]
+    show_ratios(Console(), [Row(scene, "float64", kernel, None, seconds, 1) for scene, kernel, seconds in ways])
+
+    assert capsys.readouterr().out.splitlines()[-1].split() == ["star", "2.50", "2.00", "-"]
 
 
 def row(error, seconds, lam=LAWS["pinball"]):

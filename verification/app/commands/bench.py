@@ -23,7 +23,7 @@ CASES = f"{'case':<40}{'balls':>6}{'position':>10}{'direction':>11}{'/condition'
 
 
 @click.command(epilog="Example: pinball bench --scene egg --digits 20 --digits 100 --json bench.json")
-@click.option("--scene", "scenes", multiple=True, metavar="TABLE", help="Only these tables; all five if left out.")
+@click.option("--scene", "scenes", multiple=True, metavar="TABLE", help="Only these tables; all if left out.")
 @click.option("--digits", multiple=True, type=click.IntRange(10, 1000), help="For mpmath and arb; 20, 100 and 1000.")
 @click.option("--runs", type=click.IntRange(1, 1000), default=5, show_default=True, help="The best of how many.")
 @click.option("--baselines/--no-baselines", default=True, show_default=True, help="The benchmark folder's own ways.")
@@ -52,19 +52,21 @@ def command(
     from verification.measure.work.choice import earlier, moved, of_bench
 
     before = earlier(Path(compare)) if compare else []
-    unknown = [name for name in scenes if name not in labelled.SCENES]
+    known = (*labelled.SCENES, *labelled.RADII)
+    unknown = [name for name in scenes if name not in known]
     if unknown:
-        raise ValueError(f"--scene = {unknown[0]} is no table; accepted: {', '.join(labelled.SCENES)}")
+        raise ValueError(f"--scene = {unknown[0]} is no table; accepted: {', '.join(known)}")
     rows: list[Row] = []
     cases: list[Accuracy] = []
-    chosen = scenes or tuple(labelled.SCENES)
+    chosen = scenes or known
     with output.progress("Measuring", 3 * len(chosen)) as step:
         for name in chosen:
             step(f"{name}, float64")
-            rows += bench.kernel_rows(name, runs)
+            papers = name in labelled.SCENES
+            rows += bench.kernel_rows(name, runs) if papers else bench.own_rows(name, runs)
             rows += baseline_rows(name, runs) if baselines else []
             step(f"{name}, multiprecision")
-            rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs)
+            rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if papers else []
             step(f"{name}, hard cases")
             cases += labelled.accuracy(name) if accuracy else []
     facts = bench.machine_facts()
@@ -75,6 +77,7 @@ def command(
     output.write(document | ({"moved": changes} if compare else {}))
     for name in chosen:
         show(output.console, name, [row for row in rows if row.scene == name])
+    show_ratios(output.console, rows)
     if baselines and not is_checkout():
         output.console.print(f"\n{MISSING}")
     if cases:
@@ -89,12 +92,12 @@ def command(
 
 def show(console: "Console", name: str, rows: "list[Row]") -> None:
     """A scene's rows, with ratios to the kernel and a mark on the Pareto front, and two diagrams."""
-    from verification.measure.extremes.orbits import SCENES
+    from verification.measure.extremes.orbits import RADII, SCENES
     from verification.measure.work.bench import frontier
     from verification.measure.work.row import diagram, duration
 
     front, reference = frontier(rows), rows[0].seconds_per_bounce
-    shape = ", ".join(f"{key} = {value}" for key, value in SCENES[name].items())
+    shape = ", ".join(f"{key} = {value}" for key, value in SCENES.get(name, {"r(theta)": RADII.get(name)}).items())
     console.print(f"\n{name} {shape}".rstrip())
     console.print(HEAD)
     for i, row in enumerate(rows):
@@ -105,6 +108,24 @@ def show(console: "Console", name: str, rows: "list[Row]") -> None:
     for title, kept in (("every arithmetic", rows), ("float64 alone", [r for r in rows if r.arithmetic == "float64"])):
         console.print(f"  {title}: error of one bounce (upwards) against its time")
         console.print(diagram([(row.seconds_per_bounce, row.error) for row in kept], front))
+
+
+def show_ratios(console: "Console", rows: "list[Row]") -> None:
+    """Tables that are not the paper's, as multiples of the egg in the same run."""
+    from verification.measure.extremes.orbits import RADII
+
+    times = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}
+    own = [name for name in RADII if (name, "llvm") in times]
+    if not own or ("egg", "llvm") not in times:
+        return
+    console.print(f"\n{'times the egg':<20}{'bounces':>10}{'exponents':>12}{'scalar numba':>15}")
+    for name in own:
+        ratios = [
+            times[name, kernel] / times["egg", base] if (name, kernel) in times else None
+            for kernel, base in (("llvm",) * 2, ("llvm, exponents",) * 2, ("numba, one ball at a time", "llvm"))
+        ]
+        shown = [f"{ratio:.2f}" if ratio else "-" for ratio in ratios]
+        console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
 
 
 def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:

@@ -27,7 +27,7 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
 from numeric.kernels.machine import KernelSpec
-from symbolic.tables import egg
+from symbolic import tables
 from verification.cycles.recurrence.newton import floats, given
 from verification.cycles.recurrence.problem import Problem
 from verification.maps.exact import ExactMap, errors
@@ -148,7 +148,7 @@ def turning(asked: Long) -> list[Finding]:
 
 def attracted(asked: Long) -> list[Finding]:
     """The distance of balls from the attracting triangles of the egg, which are proved."""
-    table, lam = egg(3).at(alpha="2/25"), Rational(7, 10)
+    table, lam = tables.egg(3).at(alpha="2/25"), Rational(7, 10)
     map = PinballMap("egg", alpha="2/25", lam="7/10")
     problem = Problem(table, (0, 0, 0), lam=lam)
     corner = [-0.65 + 2 * np.pi * k / 3 for k in range(3)]
@@ -214,6 +214,13 @@ SCENES: dict[str, dict[str, Any]] = {
     "cuspless": {},
     "egg": {"alpha": "2/25"},
 }
+RADII = {  # of tables that are not the paper's
+    "limacon": "1 + 3*cos(theta)/5",
+    "star": "1 + cos(5*theta)/4",
+    "peanut": "exp(cos(2*theta)/4)",
+    "conic": "1/(2 + cos(theta)/2)",
+    "waves": "1 + cos(40*theta)/2000",
+}
 LAM, OTHERS = "19/20", (0, 1e-300, 1)
 LABELLED, DIGITS, SEED_OF_LABELLED = 24, 50, 11
 
@@ -270,6 +277,38 @@ def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
     yield Case("ellipse, a = 1e4, near the tip", long, zero, side * tiny, angle)
 
 
+def scene(name: str, lam: Any = LAM) -> PinballMap:
+    """The map of a table by name, at the shape that is measured."""
+    if name in SCENES:
+        return PinballMap(name, lam=lam, **SCENES[name])
+    return PinballMap(tables.polar(RADII[name], name=name), lam=lam)
+
+
+def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
+    """`count` balls of every kind on a table of `RADII`."""
+    rng, map = np.random.default_rng(seed), scene(name)
+    side, zero = rng.choice([-1, 1], count), np.zeros(count, dtype=np.int64)
+    tiny = 10.0 ** rng.uniform(-12, -1, count)
+    theta, angle = rng.uniform(-np.pi, np.pi, count), np.arcsin(rng.uniform(-1, 1, count) * (1 - 1e-12))
+    yield Case(f"{name}, random", map, zero, theta, angle)
+    yield Case(f"{name}, grazing to 1e-12", map, zero, theta, side * (np.pi / 2 - tiny))
+    for lam in (0, 1):
+        yield Case(f"{name}, lam = {lam}", scene(name, lam), zero, theta, angle * lam)
+    x, y = map.states.point(zero, theta)
+    aim = map.states.angle_to_normal(zero, theta, -x, -y) + side * tiny
+    good = np.abs(aim) < 1.57
+    yield Case(f"{name}, through the centre", map, zero[good], theta[good], aim[good])
+    grid = np.linspace(-np.pi, np.pi, 4001)
+    bulge = grid[map.states.boundary.bending(np.zeros(grid.size, dtype=np.int64), grid)[1] > 1e-6]
+    if bulge.size:  # where the wall disperses, a ray may touch it: back from where a tangent ends
+        at = rng.choice(bulge, count)
+        back = map.step(at, side * (np.pi / 2 - 1e-9))
+        x, y = map.states.point(zero, at)
+        aim = map.states.angle_to_normal(zero, back.theta, x - back.x, y - back.y) + side * tiny
+        good = np.abs(aim) < 1.57
+        yield Case(f"{name}, tangent to a bulge", map, zero[good], back.theta[good], aim[good])
+
+
 def _cuspless(rng: np.random.Generator, side: Any, tiny: Array, angle: Array) -> Iterator[Case]:
     map, count = PinballMap("cuspless", lam=LAM), angle.size
     zero, join = np.zeros(count, dtype=np.int64), 2 * np.pi / 3
@@ -303,14 +342,15 @@ def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
     return own, list(result.record[0]), going
 
 
-def accuracy(scene: str, balls: int = LABELLED) -> Iterator[Accuracy]:
+def accuracy(name: str, balls: int = LABELLED) -> Iterator[Accuracy]:
     """The errors of every case of a table, against the exact map of the rounded state."""
-    for case in cases(balls):
-        if case.label.split(",")[0] == scene:
+    for case in cases(balls) if name in SCENES else own_cases(name, balls // 3):
+        if case.label.split(",")[0] == name:
             own, after, going = bounced(case)
             before, found = [row[going] for row in own], [row[going] for row in after]
             position, direction = errors(case.map, ExactMap(case.map, DIGITS), before, found)
             there, turned = (condition[going] for condition in conditions(case))
             largest = (position, direction, position / there, direction / turned)
-            name = case.label.partition(", ")[2]
-            yield Accuracy(scene, name, int(going.sum()), *(float(e.max(initial=0)) for e in largest))
+            yield Accuracy(
+                name, case.label.partition(", ")[2], int(going.sum()), *(float(e.max(initial=0)) for e in largest)
+            )

@@ -283,29 +283,30 @@ def constant(value: Expr) -> Kernel:
 
     >>> from fractions import Fraction
     >>> from sympy import Rational
-    >>> load(constant(Rational(1, 3)), {"q": Fraction})()
+    >>> from types import SimpleNamespace
+    >>> load(constant(Rational(1, 3)), SimpleNamespace(q=Fraction))()
     (Fraction(1, 3),)
     """
     return kernel("constant", [], {"value": value})
 
 
-def load(kernel: Kernel, arithmetic: Mapping[str, Any] | NumberSystem[T]) -> Callable[..., Any]:
-    """The function of a kernel over one kind of number: words or a number system give it its meaning.
+def load(kernel: Kernel, arithmetic: NumberSystem[T]) -> Callable[..., Any]:
+    """The function of a kernel over one kind of number, whose words give it its meaning.
 
     This is the only place where generated text is run; nothing else is in its reach.
 
     >>> from fractions import Fraction
-    >>> third = load(globals()["kernel"]("third", [Symbol("x")], {"third": Symbol("x") / 3}), {"q": Fraction})
+    >>> from types import SimpleNamespace
+    >>> made = kernel("third", [Symbol("x")], {"third": Symbol("x") / 3})
+    >>> third = load(made, SimpleNamespace(q=Fraction))
     >>> third(Fraction(1, 2))
     (Fraction(1, 6),)
     """
-    known = arithmetic
-    if not isinstance(known, Mapping):
-        known = {word: getattr(arithmetic, word) for word in VOCABULARY if hasattr(arithmetic, word)}
-    missing = [word for word in kernel.words if word not in known]
+    missing = [word for word in kernel.words if not hasattr(arithmetic, word)]
     if missing:
+        known = [word for word in VOCABULARY if hasattr(arithmetic, word)]
         raise ValueError(f"{kernel.name}: this arithmetic has no {', '.join(missing)}; it has {', '.join(known)}")
-    scope: dict[str, Any] = {"__builtins__": {}} | {word: known[word] for word in kernel.words}
+    scope: dict[str, Any] = {"__builtins__": {}} | {word: getattr(arithmetic, word) for word in kernel.words}
     exec(compiled(kernel.text, kernel.name), scope)  # noqa: S102
     function: Callable[..., Any] = scope[kernel.name]
     return function

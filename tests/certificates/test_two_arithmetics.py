@@ -3,6 +3,7 @@
 import math
 import random
 from fractions import Fraction
+from types import SimpleNamespace
 
 import mpmath
 import pytest
@@ -113,32 +114,25 @@ def test_pi_is_that_of_the_other_library(check):
             assert overlap(arb.pi(), check.pi(bits))
 
 
-class Words:
+def words_of(check, bits: int) -> SimpleNamespace:
     """The vocabulary of the generated kernels in the second reader's numbers; what it lacks is made of what it has."""
-
-    def __init__(self, check, bits: int) -> None:
-        self.check, self.bits = check, bits
-
-    def words(self) -> dict:
-        check, bits = self.check, self.bits
-        number = lambda x: x if isinstance(x, check.I) else check.I.of(x, bits)  # noqa: E731
-        root = lambda x: check.evaluate(check.parse("sqrt(x)"), {"x": number(x)}, bits)[0]  # noqa: E731
-        return {
-            "sin": lambda x: check.function("sin", number(x), bits),
-            "cos": lambda x: check.function("cos", number(x), bits),
-            "atan": lambda x: check.function("atan", number(x), bits),
-            "sqrt": root,
-            "q": lambda p, n: check.I.of(Fraction(p, n), bits),
-            "pi": check.pi(bits),
-        }
+    number = lambda x: x if isinstance(x, check.I) else check.I.of(x, bits)  # noqa: E731
+    return SimpleNamespace(
+        sin=lambda x: check.function("sin", number(x), bits),
+        cos=lambda x: check.function("cos", number(x), bits),
+        atan=lambda x: check.function("atan", number(x), bits),
+        sqrt=lambda x: check.evaluate(check.parse("sqrt(x)"), {"x": number(x)}, bits)[0],
+        q=lambda p, n: check.I.of(Fraction(p, n), bits),
+        pi=check.pi(bits),
+    )
 
 
 @pytest.fixture(scope="module")
-def ours(check) -> dict:
+def ours(check) -> SimpleNamespace:
     check.I.__rtruediv__ = lambda self, o: (
         check.I.of(o, self.p) / self
     )  # kernels divide whole numbers; the reader never
-    return Words(check, P).words()
+    return words_of(check, P)
 
 
 def alike(check, theirs, mine) -> bool:
@@ -149,7 +143,7 @@ def alike(check, theirs, mine) -> bool:
     return all(map(overlap, balls_of, intervals))
 
 
-def same(words: dict, made, letters: list[Fraction], check) -> bool:
+def same(words: SimpleNamespace, made, letters: list[Fraction], check) -> bool:
     """Do both readers of one kernel overlap, entry by entry?"""
     with working(P):
         theirs = load(made, balls(P))(*(exactly(x) for x in letters))
@@ -197,11 +191,12 @@ def test_every_word_of_the_vocabulary_is_read_alike(check, ours, name):
 def test_a_wrong_reader_of_the_vocabulary_is_caught(check, ours, word):
     """One word off by a part in 10**40: two readers no longer overlap, which one alone would never show."""
     off = check.I.of(1 + Fraction(1, 10**40), P)
-    wrong = ours[word] * off if word == "pi" else lambda *given: ours[word](*given) * off
+    right = getattr(ours, word)
+    wrong = right * off if word == "pi" else lambda *given: right(*given) * off
     made = [kernel(name, [X], {"value": e}) for name, e in EXPRESSIONS.items()]
 
     assert all(same(ours, each, [Fraction(1, 4)], check) for each in made)
-    assert not all(same(ours | {word: wrong}, each, [Fraction(5, 16)], check) for each in made)
+    assert not all(same(SimpleNamespace(**vars(ours) | {word: wrong}), each, [Fraction(5, 16)], check) for each in made)
 
 
 @pytest.mark.parametrize("function", [exp, log])

@@ -10,8 +10,9 @@ With balls come the enclosure of an exact expression, decimals with a radius, an
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from flint import acb, arb, ctx, fmpq
@@ -34,19 +35,37 @@ from sympy import (
 
 from symbolic.expressions import text as vocabulary
 
-Arithmetic = Mapping[str, Any]
 FUNCTIONS = tuple(vocabulary.FUNCTIONS.values())
+T = TypeVar("T")
 
-FLOAT64: dict[str, Any] = {word: getattr(math, word) for word in FUNCTIONS} | {
-    "q": lambda p, n: p / n,
-    "pi": math.pi,
-    "root": lambda x, n: math.pow(x, 1 / n),
-}
-ARRAYS: Arithmetic = (
-    FLOAT64
-    | {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
-    | {"root": lambda x, n: np.power(x, 1 / n)}
+
+@dataclass(frozen=True)
+class Words(Generic[T]):
+    """The closed vocabulary over numbers of type `T`: a `symbolic.expressions.numbers.NumberSystem`, word by word."""
+
+    pi: T
+    q: Callable[[int, int], T]
+    root: Callable[[Any, int], T]
+    sqrt: Callable[[Any], T]
+    sin: Callable[[Any], T]
+    cos: Callable[[Any], T]
+    exp: Callable[[Any], T]
+    log: Callable[[Any], T]
+    atan: Callable[[Any], T]
+    sinh: Callable[[Any], T]
+    cosh: Callable[[Any], T]
+    tanh: Callable[[Any], T]
+
+
+Arithmetic = Words[Any]
+NUMPY = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
+FLOAT64: Words[float] = Words(
+    pi=math.pi,
+    q=lambda p, n: p / n,
+    root=lambda x, n: math.pow(x, 1 / n),
+    **{word: getattr(math, word) for word in FUNCTIONS},
 )
+ARRAYS: Arithmetic = replace(FLOAT64, root=lambda x, n: np.power(x, 1 / n), **NUMPY)
 
 
 def multiprecision(context: Any) -> Arithmetic:
@@ -55,20 +74,21 @@ def multiprecision(context: Any) -> Arithmetic:
     >>> import mpmath
     >>> fifty = mpmath.MPContext()
     >>> fifty.dps = 50
-    >>> multiprecision(fifty)["q"](1, 3)
+    >>> multiprecision(fifty).q(1, 3)
     mpf('0.33333333333333333333333333333333333333333333333333311')
     """
-    return {word: getattr(context, word) for word in FUNCTIONS} | {
-        "q": lambda p, n: context.mpf(p) / n,
-        "pi": context.pi,
-        "root": context.root,
-    }
+    return Words(
+        pi=context.pi,
+        q=lambda p, n: context.mpf(p) / n,
+        root=context.root,
+        **{word: getattr(context, word) for word in FUNCTIONS},
+    )
 
 
-def balls(bits: int) -> Arithmetic:
+def balls(bits: int) -> Words[arb]:
     """Balls that contain the true value; constants are enclosed with `bits` bits.
 
-    >>> third = balls(128)["q"](1, 3)
+    >>> third = balls(128).q(1, 3)
     >>> with working(128):
     ...     print((3 * third).contains(1), third.is_exact())
     True False
@@ -81,7 +101,7 @@ def balls(bits: int) -> Arithmetic:
     with ctx.workprec(bits):
         pi = arb.pi()
     words = {word: _of_ball(word) for word in FUNCTIONS}
-    return words | {"q": rational, "pi": pi, "root": lambda x, n: arb(x).root(n)}
+    return Words(pi=pi, q=rational, root=lambda x, n: arb(x).root(n), **words)
 
 
 @contextmanager

@@ -4,12 +4,12 @@ Jets carry a few coefficients through the generated functions; Taylor models add
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from verification.arithmetic.balls import FUNCTIONS, Arithmetic, balls
+from verification.arithmetic.balls import FUNCTIONS, Arithmetic, Words, balls
 
 
 class Jet:
@@ -69,12 +69,12 @@ def jets(base: Arithmetic) -> Arithmetic:
     """The words of the kernels for jets over the numbers of `base`.
 
     >>> from verification.arithmetic.balls import FLOAT64
-    >>> jets(FLOAT64)["atan"](Jet(0.0, 1.0, 0.0, 0.0)).c[3] * 3
+    >>> jets(FLOAT64).atan(Jet(0.0, 1.0, 0.0, 0.0)).c[3] * 3
     -1.0
     """
 
     def sine_and_cosine(x: Jet) -> tuple[list[Any], list[Any]]:
-        s, c = [base["sin"](x.c[0])], [base["cos"](x.c[0])]
+        s, c = [base.sin(x.c[0])], [base.cos(x.c[0])]
         for k in range(1, len(x.c)):
             terms = [(j, j * x.c[j]) for j in range(1, k + 1)]
             s.append(_sum(d * c[k - j] for j, d in terms) / k)
@@ -84,16 +84,16 @@ def jets(base: Arithmetic) -> Arithmetic:
     def integrated(word: str, slope: Callable[[Jet], Jet]) -> Callable[[Any], Any]:
         def function(x: Any) -> Any:
             if not isinstance(x, Jet):
-                return base[word](x)
+                return getattr(base, word)(x)
             derivative = slope(x) * Jet(*((k + 1) * a for k, a in enumerate(x.c[1:])), 0)
-            return Jet(base[word](x.c[0]), *(d / (k + 1) for k, d in enumerate(derivative.c[:-1])))
+            return Jet(getattr(base, word)(x.c[0]), *(d / (k + 1) for k, d in enumerate(derivative.c[:-1])))
 
         return function
 
-    def root(x: Any) -> Any:
+    def square_root(x: Any) -> Any:
         if not isinstance(x, Jet):
-            return base["sqrt"](x)
-        found = [base["sqrt"](x.c[0])]
+            return base.sqrt(x)
+        found = [base.sqrt(x.c[0])]
         for k in range(1, len(x.c)):
             inner = _sum(found[j] * found[k - j] for j in range(1, k))
             found.append((x.c[k] - inner) / (2 * found[0]))
@@ -101,22 +101,37 @@ def jets(base: Arithmetic) -> Arithmetic:
 
     def exponential(x: Any) -> Any:
         if not isinstance(x, Jet):
-            return base["exp"](x)
-        found = [base["exp"](x.c[0])]
+            return base.exp(x)
+        found = [base.exp(x.c[0])]
         for k in range(1, len(x.c)):
             found.append(_sum(j * x.c[j] * found[k - j] for j in range(1, k + 1)) / k)
         return Jet(*found)
 
-    return {
-        "q": base["q"],
-        "pi": base["pi"],
-        "sin": lambda x: Jet(*sine_and_cosine(x)[0]) if isinstance(x, Jet) else base["sin"](x),
-        "cos": lambda x: Jet(*sine_and_cosine(x)[1]) if isinstance(x, Jet) else base["cos"](x),
-        "atan": integrated("atan", lambda x: 1 / (x * x + 1)),
-        "log": integrated("log", lambda x: 1 / x),
-        "sqrt": root,
-        "exp": exponential,
-    }
+    log = integrated("log", lambda x: 1 / x)
+    return Words(
+        pi=base.pi,
+        q=base.q,
+        root=lambda x, n: exponential(log(x) / n) if isinstance(x, Jet) else base.root(x, n),
+        sqrt=square_root,
+        sin=lambda x: Jet(*sine_and_cosine(x)[0]) if isinstance(x, Jet) else base.sin(x),
+        cos=lambda x: Jet(*sine_and_cosine(x)[1]) if isinstance(x, Jet) else base.cos(x),
+        exp=exponential,
+        log=log,
+        atan=integrated("atan", lambda x: 1 / (x * x + 1)),
+        **hyperbolic(exponential),
+    )
+
+
+def hyperbolic(exp: Callable[[Any], Any]) -> dict[str, Callable[[Any], Any]]:
+    """Hyperbolic sine, cosine and tangent, from an exponential function."""
+
+    def sinh(x: Any) -> Any:
+        return (exp(x) - exp(-x)) / 2
+
+    def cosh(x: Any) -> Any:
+        return (exp(x) + exp(-x)) / 2
+
+    return {"sinh": sinh, "cosh": cosh, "tanh": lambda x: sinh(x) / cosh(x)}
 
 
 def _convolution(a: Any, b: Any, k: int, start: int) -> Any:
@@ -147,19 +162,8 @@ def taylor(order: int) -> Iterator[None]:
 def series(bits: int) -> Arithmetic:
     """The words of a kernel for power series with balls for coefficients."""
     own = {word: getattr(arb_series, word) for word in FUNCTIONS if hasattr(arb_series, word)}
-    return {**balls(bits), **own, "sinh": _sinh, "cosh": _cosh, "tanh": _tanh, "root": lambda x, n: (x.log() / n).exp()}
-
-
-def _sinh(x: arb_series) -> arb_series:
-    return (x.exp() - (-x).exp()) / 2
-
-
-def _cosh(x: arb_series) -> arb_series:
-    return (x.exp() + (-x).exp()) / 2
-
-
-def _tanh(x: arb_series) -> arb_series:
-    return _sinh(x) / _cosh(x)
+    words = own | hyperbolic(arb_series.exp) | {"root": lambda x, n: (x.log() / n).exp()}
+    return replace(balls(bits), **words)
 
 
 @dataclass(frozen=True)

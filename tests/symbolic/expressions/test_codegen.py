@@ -9,6 +9,7 @@ from dataclasses import FrozenInstanceError
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given, settings
@@ -159,11 +160,11 @@ def test_a_word_of_the_vocabulary_cannot_name_a_value_or_a_definition():
 
 def test_an_arithmetic_that_lacks_a_word_is_refused_when_the_kernel_is_loaded():
     with pytest.raises(ValueError, match="f: this arithmetic has no cos; it has q"):
-        load(kernel("f", [x], {"value": cos(x)}), {"q": Fraction})
+        load(kernel("f", [x], {"value": cos(x)}), SimpleNamespace(q=Fraction))
 
 
 def test_loaded_text_reaches_nothing_but_its_arithmetic():
-    function = load(kernel("f", [x], {"value": x + 1}), {})
+    function = load(kernel("f", [x], {"value": x + 1}), SimpleNamespace())
 
     assert set(function.__globals__) == {"__builtins__", "f"}
     assert function.__globals__["__builtins__"] == {}
@@ -187,7 +188,7 @@ rational_expressions = st.recursive(
 @given(st.lists(rational_expressions, min_size=1, max_size=3), rationals, rationals)
 def test_rational_functions_are_computed_exactly_over_fractions(expressions, u, v):
     values = {f"value{i}": e for i, e in enumerate(expressions)}
-    function = load(kernel("f", [x, y], values), {"q": Fraction})
+    function = load(kernel("f", [x, y], values), SimpleNamespace(q=Fraction))
     found = function(Fraction(u.p, u.q), Fraction(v.p, v.q))
 
     assert [Rational(Fraction(f)) for f in found] == [e.subs({x: u, y: v}) for e in expressions]
@@ -198,7 +199,7 @@ def test_every_word_means_the_same_in_floats_and_in_balls():
     made = kernel("f", [x], {"value": everything})
     (value,) = load(made, FLOAT64)(0.75)
     with working(200):
-        (ball,) = load(made, balls(200))(balls(200)["q"](3, 4))
+        (ball,) = load(made, balls(200))(balls(200).q(3, 4))
         close = abs(ball - value) < 1e-14
 
     assert close

@@ -135,9 +135,9 @@ def test_balls_contain_the_values_of_mpmath_and_the_wider_contain_the_finer(here
     p, n = int(shape.numerator), int(shape.denominator)
     precise = load(rule, multiprecision(context))(context.mpf(here), context.mpf(there), context.mpf(p) / n)
     with working(100):
-        coarse = load(rule, balls(100))(arb(here), arb(there), balls(100)["q"](p, n))
+        coarse = load(rule, balls(100))(arb(here), arb(there), balls(100).q(p, n))
     with working(1000):
-        fine = load(rule, balls(1000))(arb(here), arb(there), balls(1000)["q"](p, n))
+        fine = load(rule, balls(1000))(arb(here), arb(there), balls(1000).q(p, n))
         for wide, narrow, value in zip(coarse, fine, precise, strict=True):
             assert wide.contains(narrow)
             assert not narrow.contains(wide)
@@ -150,7 +150,7 @@ def test_one_third_goes_in_exactly():
     with working(200):
         fixed = third(arb(0), arb(2))[0]
 
-        assert fixed.overlaps(general(arb(0), arb(2), balls(200)["q"](1, 30))[0])
+        assert fixed.overlaps(general(arb(0), arb(2), balls(200).q(1, 30))[0])
         assert not fixed.overlaps(general(arb(0), arb(2), arb(1 / 30))[0])  # the double 1/30 is another table
 
 

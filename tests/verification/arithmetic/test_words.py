@@ -25,9 +25,9 @@ def test_a_word_has_one_value_in_every_kind_of_number(expression):
     context.dps = 50
     truth = context.mpf(str(expression.subs(x, HERE).evalf(50)))
     with working(200):
-        ball = load(made, balls(200))(balls(200)["q"](7, 5))[0]
+        ball = load(made, balls(200))(balls(200).q(7, 5))[0]
     with working(200), taylor(3):
-        constant, slope, *_ = list(load(made, series(200))(arb_series([balls(200)["q"](7, 5), 1]))[0])
+        constant, slope, *_ = list(load(made, series(200))(arb_series([balls(200).q(7, 5), 1]))[0])
     with working(200):
         wanted = enclose(expression, {x: HERE}, 50).real
         derivative = enclose(expression.diff(x), {x: HERE}, 50).real

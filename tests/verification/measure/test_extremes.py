@@ -98,7 +98,7 @@ def test_the_corner_orbit_of_the_fixtures_is_the_proved_one():
     exact = refined(corner(), [0.25, 0.07], 30)
     words = multiprecision(type(exact.z[0]).context)
 
-    assert abs(exact.z[1] - words["q"](*Rational(cases.LAMBDA_STAR).as_numer_denom())) < 1e-27
+    assert abs(exact.z[1] - words.q(*Rational(cases.LAMBDA_STAR).as_numer_denom())) < 1e-27
     assert float(exact.z[0]) == cases.THETA_STAR
     assert float(corner_angle(words, exact.z[0])) == cases.PHI_STAR
 

@@ -110,7 +110,7 @@ class Closure:
     def angle(self, words: Arithmetic) -> Any:
         """The shift in radians, in any kind of number."""
         p, q = self.shift
-        return 2 * words["pi"] * words["q"](p, q) if p else 0
+        return 2 * words.pi * words.q(p, q) if p else 0
 
     def padded(self, x: Sequence[Any], angle: Any) -> list[Any]:
         """`x[-1], x[0], ..., x[n]`, with the shift's `angle` in the same numbers.
@@ -256,7 +256,8 @@ class Explicit:
         """The rule at one bounce, the same at each; derivatives that are constant are numbers of the same kind.
 
         >>> from fractions import Fraction
-        >>> found = henon(1).over({"q": Fraction})(0, (1, 2, 3), {"a": 1, "b": 5})
+        >>> from types import SimpleNamespace
+        >>> found = henon(1).over(SimpleNamespace(q=Fraction))(0, (1, 2, 3), {"a": 1, "b": 5})
         >>> found.value, found.slope
         (1, (-5, 4, 1))
         """

@@ -10,7 +10,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from flint import acb, arb
+from flint import acb, arb, ctx
 from sympy import Rational
 
 from numeric import PinballMap
@@ -31,6 +31,7 @@ from verification.measure.work.question import Claimed, Method, Question, availa
 from verification.measure.work.sought import DIGITS, WITHOUT, Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
 from verification.named.locate import certify
+from verification.proofs.manifolds.enclosed import complex_balls
 from verification.proofs.slap_map.exponent import slap_exponent
 
 FEW, MANY = (30, 300, 3_000), (100, 10_000, 1_000_000)
@@ -76,8 +77,8 @@ def larger(arithmetic: Arithmetic, trace: Any, determinant: Any, period: int) ->
     """The larger exponent per bounce of a cycle, in any arithmetic."""
     gap = trace * trace - 4 * determinant
     if gap < 0:
-        return arithmetic["log"](abs(determinant)) / (2 * period)
-    return arithmetic["log"]((abs(trace) + arithmetic["sqrt"](gap)) / 2) / period
+        return arithmetic.log(abs(determinant)) / (2 * period)
+    return arithmetic.log((abs(trace) + arithmetic.sqrt(gap)) / 2) / period
 
 
 def of_chaos() -> Question:
@@ -217,12 +218,7 @@ def enclosed_length(x: arb) -> arb:
 
 def analytic_speed(z: acb, analytic: bool) -> acb:
     """The speed at a complex ball; not finite where the root might not be analytic, when that is asked."""
-    words = {
-        "q": lambda p, n: acb(p) / n,
-        "sqrt": lambda w: acb(w).sqrt(analytic=analytic),
-        "sin": lambda w: w.sin(),
-        "cos": lambda w: w.cos(),
-    }
+    words = replace(complex_balls(ctx.prec), sqrt=lambda w: acb(w).sqrt(analytic=analytic))
     found: acb = load(speed_kernel(), words)(z)[0]
     return found
 

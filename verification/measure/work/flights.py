@@ -72,7 +72,7 @@ class Flights:
     def landed(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """Parameter and next exit angle of each ball."""
         chord = load(chord_kernel(self.table, 0, 0, 0), arithmetic)
-        lam = arithmetic["q"](LAM.numerator, LAM.denominator)
+        lam = arithmetic.q(LAM.numerator, LAM.denominator)
         back = [-lam * chord(x, exactly(arithmetic, ball[0]))[0] for ball, x in zip(PARTICLES, z, strict=True)]
         return [value for pair in zip(z, back, strict=True) for value in pair]
 
@@ -85,7 +85,7 @@ class Flights:
 
 def exactly(arithmetic: Arithmetic, x: float) -> Any:
     """A double as it is, in any arithmetic."""
-    return arithmetic["q"](*x.as_integer_ratio())
+    return arithmetic.q(*x.as_integer_ratio())
 
 
 @cache

@@ -19,7 +19,7 @@ from sympy import Symbol, sqrt
 from numeric import PinballMap
 from symbolic.cycles.cardioid_slap import LAUNCH_Q2, q, slope_squared
 from symbolic.expressions.text import Kernel, kernel, load
-from verification.arithmetic.balls import FLOAT64, FUNCTIONS, Arithmetic, balls, bits_of, multiprecision, working
+from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.recurrence.critical import corner
 from verification.cycles.recurrence.newton import (
@@ -42,11 +42,12 @@ Read = Callable[[Arithmetic, list[Any]], list[Any]]
 DIGITS = (16, 30, 100, 300, 1000)
 WITHOUT = "mpmath, no gmpy2"
 LONG_PI = np.longdouble("3.14159265358979323846264338327950288")
-LONG: Arithmetic = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS} | {
-    "q": lambda p, n: np.longdouble(p) / np.longdouble(n),
-    "pi": LONG_PI,
-    "root": lambda x, n: x ** (np.longdouble(1) / n),
-}
+LONG: Arithmetic = replace(
+    ARRAYS,
+    pi=LONG_PI,
+    q=lambda p, n: np.longdouble(p) / np.longdouble(n),
+    root=lambda x, n: x ** (np.longdouble(1) / n),
+)
 ROUNDINGS = 16  # of a residual and of what is read, in units of the last place
 
 

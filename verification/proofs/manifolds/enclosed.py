@@ -31,7 +31,7 @@ from typing import Any
 
 from flint import acb, acb_mat, arb, ctx, fmpq
 
-from verification.arithmetic.balls import FUNCTIONS, Arithmetic
+from verification.arithmetic.balls import FUNCTIONS, Words
 from verification.arithmetic.iteration import Stop, iterated
 from verification.arithmetic.series import Jet
 from verification.cycles.recurrence.chain import trace_and_determinant
@@ -61,7 +61,7 @@ class TooWideError(ValueError):
         self.item = item
 
 
-def complex_balls(bits: int) -> Arithmetic:
+def complex_balls(bits: int) -> Words[acb]:
     """The words of the kernels for complex balls, analytic wherever they are finite."""
 
     def rational(p: int, n: int) -> acb:
@@ -72,7 +72,7 @@ def complex_balls(bits: int) -> Arithmetic:
         pi = acb.pi()
     cut = {"atan": lambda x: abs(x.imag) < 1, "sqrt": lambda x: x.real > 0, "log": lambda x: x.real > 0}
     words = {word: _analytic(word, cut.get(word)) for word in FUNCTIONS}
-    return words | {"q": rational, "pi": pi, "root": lambda x, n: (words["log"](x) / n).exp()}
+    return Words(pi=pi, q=rational, root=lambda x, n: (words["log"](x) / n).exp(), **words)
 
 
 def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any], acb]:

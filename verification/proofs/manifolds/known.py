@@ -97,7 +97,7 @@ def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball,
 def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
     """One period of the cycle, the bounce that moves most with it, and the symmetry that continues it."""
     turn, orbit = gap.map.turn, gap.out.saddle.orbit
-    unit = 2 * gap.map.words["pi"] / turn
+    unit = 2 * gap.map.words.pi / turn
     p, q = orbit.closure.shift
     once = orbit.closure.turn, p * turn // q
     z, _, end = gap.extremum()

@@ -127,7 +127,7 @@ class Henon(_Bound):
 
     @cached_property
     def _b(self) -> Any:
-        return self.words["q"](int(self.b.p), int(self.b.q))
+        return self.words.q(int(self.b.p), int(self.b.q))
 
 
 @dataclass(frozen=True, eq=False)

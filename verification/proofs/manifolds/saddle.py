@@ -106,7 +106,7 @@ def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], parameter: A
         raise ValueError(
             f"{map.label}: the {orbit.name} is no saddle at {float(parameter)}; its multipliers are complex"
         )
-    larger = (trace + (1 if trace > 0 else -1) * map.words["sqrt"](square)) / 2
+    larger = (trace + (1 if trace > 0 else -1) * map.words.sqrt(square)) / 2
     return determinant / larger, larger
 
 

@@ -332,11 +332,11 @@ def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
     map, ring = into.saddle.map, into.saddle.around()
     if not map.turn:
         return here, following
-    unit = 2 * map.words["pi"] * map.words["q"](1, map.turn)
+    unit = 2 * map.words.pi * map.words.q(1, map.turn)
     k = round((float(floating(here)) - float(ring[1])) / float(unit))
     here, following = here - k * unit, following - k * unit
     whole = round((float(floating(following)) - float(ring[2])) / (2 * math.pi))
-    return here, following - 2 * map.words["pi"] * whole
+    return here, following - 2 * map.words.pi * whole
 
 
 def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:

@@ -68,7 +68,7 @@ def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int,
     w = Jet(w0, sign * found[-2].c[1] / rate)
     turn = found[-2].c[0] - sign * end
     if map.turn:
-        unit = 2 * map.words["pi"] / map.turn
+        unit = 2 * map.words.pi / map.turn
         turn = round(turn / unit) * unit
     for j in range(2, (late - after) * q + 2):
         found.append(sign * bounce(into, j, w) + turn)
@@ -176,7 +176,7 @@ class Touching:
             _ended(made, at, 1 + i, 0, 1, arb(0), near)
         for k in range(1, self.bounces + 1):
             self._bounced(made, at, k)
-        unit = 2 * self.map.words["pi"] / self.map.turn if self.map.turn else arb(0)
+        unit = 2 * self.map.words.pi / self.map.turn if self.map.turn else arb(0)
         for i, near in enumerate(into):
             _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns * unit, near)
         return made

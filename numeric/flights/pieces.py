@@ -11,7 +11,9 @@ subtraction spoils.
 
 Whether a side is met is decided by which side of the line its two ends lie on; two pieces that share a corner compare
 the same number there, so nothing passes between them. Round a convex curve that sign changes once from minus to plus:
-there the piece is chosen first and one equation solved. State: the piece, `p`, `q`, and the direction `v`.
+there the piece is chosen first, by halving if there are many, and one equation solved.
+
+State: the piece, `p`, `q`, and the direction `v`.
 """
 
 from collections.abc import Sequence
@@ -23,9 +25,11 @@ import numpy as np
 from numeric.backends import functions as plane
 from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
 from numeric.flights.general import refuse_long
+from numeric.flights.spline import halved
 
 FAR = 2.0**100  # as far as nothing was met
 LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
+MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
 TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
 Masks = Any
 Pair = tuple[Any, Any]
@@ -61,6 +65,7 @@ class Pieces(Family):
         names = [name.split() for name, _ in ir.programs]
         self.kinds = [kind for kind, _ in names]
         self.programs = [program for _, program in ir.programs]
+        self.halving: list[list[float]] | None = None
         known = self.pieces(boundary.ops, boundary.shape)
         self.following = following(boundary, known)
         self.closed = [
@@ -70,6 +75,8 @@ class Pieces(Family):
         self.wide = [kind != LINE and bool(piece.half[1] < 0) for kind, piece in zip(self.kinds, known, strict=True)]
         first = loops(self.following)[0]
         self.outer = first if convex(boundary, known, first, self.following) else []
+        whole = len(self.outer) == len(known) > MANY and not boundary.shape
+        self.halving = [[float(x) for x in program(boundary.ops)] for program in self.programs] if whole else None
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
@@ -78,13 +85,16 @@ class Pieces(Family):
 
     @property
     def identity(self) -> str:
-        return repr((self.kinds, self.following, self.closed, self.wide, self.outer))
+        return repr((self.kinds, self.following, self.closed, self.wide, self.outer, self.halving))
 
     def pieces(self, ops: Any, shape: Row) -> list[Piece]:
         """All pieces in the arithmetic of `ops`."""
         found = []
-        for kind, program in zip(self.kinds, self.programs, strict=True):
-            x = program(ops, *shape)
+        for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
+            if self.halving and not hasattr(ops, "context"):
+                x = [ops.number(value) for value in self.halving[j]]  # constants, which are looked up
+            else:
+                x = program(ops, *shape)
             found.append(
                 Piece(
                     kind,
@@ -147,8 +157,20 @@ class Pieces(Family):
         z0 = self.point(ops, pieces, position)
         d0 = self.tangent(ops, shape, position)
         flight = Flight(ops, component, z0, v, plane.cross(d0, v))
-        sides = [plane.cross(v, (piece.start[0] - z0[0], piece.start[1] - z0[1])) for piece in pieces]
+        corners = [piece.start for piece in pieces]
         best: list[Any] | None = None
+        if self.halving:
+
+            def side(at: Any) -> Any:
+                x, y = (ops.look_up([corner[i] for corner in corners], at) for i in (0, 1))
+                return plane.cross(v, (x - z0[0], y - z0[1]))
+
+            first, last, where, *_ = halved(ops, component, len(pieces), side)
+            where = ops.select((first < nought) & (nought <= last), where, component)
+            best = [*self._met(flight, self._gathered(ops, where, pieces), where), where]
+            t, p, q, along, _, where = best
+            return self._landed(ops, pieces, law, [where, p, q], v, along, t)
+        sides = [plane.cross(v, (corner[0] - z0[0], corner[1] - z0[1])) for corner in corners]
         if self.outer:
             where = component
             for j in self.outer:
@@ -296,6 +318,8 @@ def column(pieces: list[Piece], i: int) -> list[Any]:
 
 def chosen(ops: Any, component: Any, values: list[Any]) -> Any:
     """The value of the particle's piece; neighbours that are equal cost nothing."""
+    if len(values) > MANY and all(getattr(value, "value", 0.0) is not None for value in values):
+        return values[0] if all(same(value, values[0]) for value in values) else ops.look_up(values, component)
     found = values[0]
     for i in range(1, len(values)):
         if not same(values[i], values[i - 1]):

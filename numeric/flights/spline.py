@@ -80,30 +80,16 @@ class Spline(General):
         count, nought, one = len(self.rows), ops.number(0.0), ops.number(1.0)
         table = self.programmed(ops)
         corners = [[row[0] for row in table], [row[4] for row in table]]  # theta starts at 0
-        many = ops.number(float(count))
 
-        def which(k: N) -> N:
-            at = component + k
-            return ops.select(at < many, at, at - many)
-
-        def side(k: N) -> N:
-            at = which(k)
+        def side(at: N) -> N:
             x, y = (ops.look_up(values, at) for values in corners)
             return plane.cross(v, (x - z0[0], y - z0[1]))
 
-        first, last = side(one), side(nought)
-        low, high = one + nought * theta, many + nought * theta
-        below, above = first, last
-        for _ in range(max(1, (count - 2).bit_length())):
-            middle = ops.rounded(ops.number(0.5) * (low + high) - ops.number(0.25))
-            value = side(middle)
-            right = value < nought
-            low, high = ops.select(right, middle, low), ops.select(right, high, middle)
-            below, above = ops.select(right, value, below), ops.select(right, above, value)
+        first, last, low, below, above = halved(ops, component, count, side)
         ahead = nought <= first
         behind = (last < nought) & ops.negated(ahead)
         here = ahead | behind
-        where = ops.select(here, component, which(low))
+        where = ops.select(here, component, low)
         other = self._row(ops, where)
         p = [plane.cross(v, (other[i], other[i + 4])) for i in range(4)]
         p[0] = plane.cross(v, (other[0] - z0[0], other[4] - z0[1]))
@@ -161,6 +147,30 @@ class Spline(General):
         begin = nought * start[1]
         state = [begin, ops.number(FAR) + begin, start[0] + begin, start[1] + begin]
         return ops.repeat(lambda at: at[0] < end - half, tried, state, len(tree.skip) + 1)[1:]
+
+
+def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
+    """The piece of a closed curve whose first corner lies to the right of a line from `component`, and its last not.
+
+    `side` of a corner, that of the piece which begins there, is negative to the right. Also those of the first corner
+    after the departure and of the last, and of the two corners of the piece.
+    """
+    one, many = ops.number(1.0), ops.number(float(count))
+
+    def which(k: N) -> N:
+        at = component + k
+        return ops.select(at < many, at, at - many)
+
+    low, high = one + ops.number(0.0) * component, many + ops.number(0.0) * component
+    first, last = side(which(one)), side(component)
+    below, above = first, last
+    for _ in range(max(1, (count - 2).bit_length())):
+        middle = ops.rounded(ops.number(0.5) * (low + high) - ops.number(0.25))
+        value = side(which(middle))
+        right = value < ops.number(0.0)
+        low, high = ops.select(right, middle, low), ops.select(right, high, middle)
+        below, above = ops.select(right, value, below), ops.select(right, above, value)
+    return [first, last, which(low), below, above]
 
 
 def evaluated(ops: Backend[N, M], row: Sequence[N], u: N) -> list[N]:

@@ -7,6 +7,7 @@ import pytest
 from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap, phase_starts
+from numeric.flights import pieces
 from numeric.flights.pieces import CIRCLE, Pieces
 from numeric.kernels.machine import KernelSpec
 from symbolic import tables
@@ -210,3 +211,30 @@ def test_a_circle_off_its_centre_and_a_tilted_ellipse_are_arcs_like_any_other():
     assert mapped("stadium").family.outer == [0, 1, 2, 3]
     assert mapped("sinai").family.outer == [0, 1, 2, 3]
     assert mapped("mushroom").family.outer == []
+
+
+@cache
+def of_many(name):
+    if name == "sides":
+        return tables.regular(100)
+    cuts = [2 * pi * Rational(k, 26) for k in range(27)]
+    arcs = [tables.arc(f"arc{k}", 2 * cos(theta), sin(theta), *cuts[k : k + 2]) for k in range(26)]
+    return tables.Table("cut ellipse", tuple(arcs))
+
+
+@pytest.mark.parametrize("name", ["sides", "arcs"])
+def test_one_of_many_pieces_is_found_by_halving_as_by_trying_each(name, monkeypatch):
+    fast = PinballMap(of_many(name), lam=0.9)
+    monkeypatch.setattr(pieces, "MANY", 1000)
+    slow = PinballMap(of_many(name), lam=0.9, kernels=False)
+    assert fast.family.halving is not None
+    assert slow.family.halving is None
+    rng = np.random.default_rng(3)
+    where = rng.integers(0, len(fast.ir.parts), 3000)
+    low, high = np.array(fast.states.ends)[where].T
+    at, phi = low + (high - low) * rng.random(3000), rng.uniform(-1.57, 1.57, 3000)
+    a, b = fast.step(at, phi, where), slow.step(at, phi, where)
+    both = (a.code == 0) & (b.code == 0)
+    assert np.mean(both) > 0.99
+    assert np.array_equal(a.component[both], b.component[both])
+    assert np.max(np.hypot(a.x - b.x, a.y - b.y)[both] * np.cos(a.eta[both])) < 16 * EPS

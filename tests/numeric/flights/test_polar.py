@@ -3,13 +3,17 @@
 import mpmath
 import numpy as np
 import pytest
+from sympy import Interval as Range
+from sympy import Rational, Symbol, cos
 
 from numeric import PinballMap, Status
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.scalars import ArrayBackend, ScalarBackend
+from numeric.flights.general import General
 from numeric.flights.polar import STEEP, Polar, bounds, rounded_up
 from numeric.kernels.machine import KernelSpec
 from symbolic import tables
+from symbolic.tables.table import Shape, theta
 from verification.maps.exact import ExactMap, errors
 
 EPS = 2.0**-52
@@ -141,6 +145,32 @@ def test_a_conic_about_the_origin_is_met_in_one_step():
     assert np.max(np.abs((x / a) ** 2 + y**2 / (a**2 - c**2) - 1)) < 16 * EPS
     foci = (np.hypot(x - s * c, y) for s in (1, -1))
     assert np.max(np.abs(sum(foci) - 2 * a)) < 8 * EPS
+
+
+@pytest.mark.parametrize("name", ["star", "peanut"])
+def test_derivatives_and_exponents_are_those_of_the_general_flight(name):
+    map = PinballMap(tables.polar(RADII[name]), lam="0.9", kernels=False)
+    general = PinballMap(tables.polar(RADII[name]), lam="0.9", kernels=False)
+    general.family = general.states.family = General(map.states.boundary)
+    general.engine = type(general.engine)(general.family, "", general.engine.names, False)
+    theta, phi = np.array([0.3, -2.0, 1.1]), np.array([0.2, -0.5, 0.9])
+    one, other = (each.exponents(theta, phi, 4) for each in (map, general))
+
+    assert np.allclose(map.derivative(theta, phi), general.derivative(theta, phi), rtol=1e-12, atol=0)
+    assert np.allclose(one.nu_plus, other.nu_plus, rtol=0, atol=1e-11)
+    assert np.allclose(one.nu_minus, other.nu_minus, rtol=0, atol=1e-11)
+
+
+def test_a_letter_of_the_radius_is_a_parameter_of_the_kernel_and_near_values_share_one():
+    b = Symbol("b", real=True)
+    table = tables.polar(1 + b * cos(theta), "dented", [Shape(b, Range(0, Rational(3, 4)), "makes the radius small")])
+    maps = [PinballMap(table, lam="0.9", kernels=False, b=value) for value in ("0.6", "0.601", "0.7")]
+    fixed = PinballMap(tables.polar(RADII["limacon"]), lam="0.9", kernels=False)
+    start = np.array([0.3, 2.0]), np.array([0.2, -0.5])
+
+    assert {map.family.name for map in maps} == {"polar"}
+    assert maps[0].family.identity == maps[1].family.identity != maps[2].family.identity
+    assert np.max(np.abs(maps[0].step(*start).theta - fixed.step(*start).theta)) < 4 * EPS
 
 
 def test_slap_flights_stop_at_a_bulge_too():

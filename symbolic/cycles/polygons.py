@@ -10,7 +10,16 @@ radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lan
 The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
 
 Facts on the egg as polynomials in `C = cos(K*theta)`. Paper: section 6.
+
+Tables with straight sides have laws of their own. With `turn` the angle from the normal of one side to that of the
+next, the exit angle changes by an affine map, so that one exponent is `log(lam)` and the word of a cycle, its sequence
+of sides, gives its angles. Where the particle lands is stretched by `cos(phi0)/cos(eta1)`, at least one on average
+round a cycle: none attracts, and none is neutral but that along the common normal of parallel sides. On the square
+[DelMagnoLopesDiasDuarteGaivaoPinheiro2012] find a parabolic attractor beside a chaotic one, on the equilateral
+triangle [ArroyoMarkarianSanders2012] strange attractors.
 """
+
+from collections.abc import Sequence
 
 from sympy import (
     Expr,
@@ -282,3 +291,48 @@ def slap_critical_points(shape: Expr) -> int:
     (6, 0)
     """
     return 6 * len(slap_critical_cosines(shape))
+
+
+def next_exit_angle(turn: Expr, exit_angle: Expr) -> Expr:
+    """The exit angle after a flight from one straight side to another whose normal is turned by `turn`, in (0, 2*pi).
+
+    >>> next_exit_angle(2 * pi / 3, S.Zero)
+    pi*lam/3
+    """
+    return lam * (pi - turn - exit_angle)
+
+
+def exit_angles(turns: Sequence[Expr]) -> list[Expr]:
+    """The exit angles of the cycle that visits sides with these turns from each to the next, for `lam < 1`.
+
+    A word has one such sequence. It is that of a cycle where every angle of incidence, `-angle/lam`, is less than a
+    right angle and the flights hit these sides first, which is not said here.
+
+    >>> [factor(angle) for angle in exit_angles([2 * pi / 3] * 3)][0]
+    pi*lam/(3*(lam + 1))
+    """
+    n, start = len(turns), symbols("start")
+    angle = start
+    for turn in turns:
+        angle = next_exit_angle(turn, angle)
+    constant = expand(angle).subs(start, 0)
+    found = [simplify(constant / (1 - (-lam) ** n))]
+    for turn in turns[:-1]:
+        found.append(simplify(next_exit_angle(turn, found[-1])))
+    return found
+
+
+def straight_multipliers(angles: Sequence[Expr]) -> tuple[Expr, Expr]:
+    """The multipliers of a cycle between straight sides: of the angle, and of the place, at least 1 in modulus.
+
+    Between sides the derivative matrix is triangular, with `-cos(phi0)/cos(eta1)` and `-lam`. An exit angle is `lam`
+    times an angle of incidence, whose cosine is smaller unless both vanish.
+
+    >>> straight_multipliers([S.Zero, S.Zero])
+    (lam**2, 1)
+    """
+    sign = S.NegativeOne ** len(angles)
+    place = S.One
+    for angle in angles:
+        place *= cos(angle) / cos(angle / lam)
+    return sign * lam ** len(angles), sign * place

@@ -1,4 +1,5 @@
 from . import tables
-from .tables.scene import Law, Scene
+from .tables.law import Law
+from .tables.scene import Scene
 
 __all__ = ["Law", "Scene", "tables"]

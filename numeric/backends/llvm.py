@@ -271,8 +271,11 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return inverse, self._double(magic) - self.number(2.0**52 + 1023)
 
     def atan2(self, y: LLVMVector, x: LLVMVector) -> LLVMVector:
-        """Not inside a bounce, where `angle` does."""
-        raise NotImplementedError("a kernel has no atan2; it has angle")
+        """The angle of a point anywhere in the plane, from that of its mirror image on the right."""
+        nought = self.number(0.0)
+        near = self.angle(y, abs(x))
+        half_turn, low = self.with_sign(self.pi, y), self.with_sign(self.pi_low, y)
+        return self.select(x < nought, (half_turn - near) + low, near)
 
     def sin(self, x: LLVMVector) -> LLVMVector:
         """The sine, of angles up to 2**30."""

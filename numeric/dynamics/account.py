@@ -19,6 +19,7 @@ from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey
 from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
+from numeric.flights.family import FORMULA
 from numeric.pinball.sampling import Growth
 
 Document = dict[str, Any]  # of JSON
@@ -155,7 +156,9 @@ class Check(NamedTuple):
 
 
 def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
-    """`log|det D(T^n)|` of each orbit by the rule above, without the `n*log(lam)`; nan for a particle that stops.
+    """`log|det D(T^n)|` of each orbit by the rule above; nan for a particle that stops.
+
+    Without the `n*log(lam)` of the paper's law; with the slopes of any other.
 
     >>> circle = PinballMap("circle", lam="0.5")
     >>> particles = PhasePoints(np.array([0]), np.array([0.3]), np.array([0.4]))
@@ -163,8 +166,12 @@ def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
     True
     """
     orbit = map.orbit(particles.theta, particles.phi, bounces, particles.component)
-    lam = np.broadcast_to(map.lam, particles.theta.shape)
-    inner = np.sum(np.log(np.cos(lam * orbit.eta[1:]) / np.cos(orbit.eta[1:])), axis=0)
+    exit, lam = orbit.phi[1:], np.broadcast_to(map.lam, particles.theta.shape)
+    if map.law == FORMULA:
+        inner = np.sum(np.log(np.abs(map.slopes(orbit.eta[1:], orbit.theta[1:])[0])), axis=0)
+    else:
+        inner, exit = np.zeros(lam.shape), lam * orbit.eta[1:]
+    inner = inner + np.sum(np.log(np.cos(exit) / np.cos(orbit.eta[1:])), axis=0)
     return np.asarray(inner + np.log(np.cos(orbit.phi[0]) / np.cos(orbit.phi[-1])))
 
 

@@ -34,6 +34,7 @@ PART = 0.1  # of an image's points
 
 if TYPE_CHECKING:
     from symbolic.tables.geometry import Symmetry
+    from symbolic.tables.law import Law
 
 
 def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
@@ -53,11 +54,18 @@ def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
     return PhasePoints(np.array(symmetry.onto)[particles.component], theta, symmetry.sign * particles.phi)
 
 
+def kept_by(law: "Law", symmetry: "Symmetry") -> bool:
+    """Are images of orbits under a symmetry of the table orbits? A rotation needs a law that is the same everywhere,
+    a mirror also an odd one."""
+    identity = symmetry.name == "identity"
+    return identity or (not law.placed and (symmetry.sign == 1 or law.odd))
+
+
 def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attractor]:
     """The attractors with their families and stabilisers under the table's symmetries; missing images come last."""
     from numeric.lowering.lower import symmetries
 
-    group = symmetries(map.table)
+    group = tuple(g for g in symmetries(map.table) if kept_by(map.reflection, g))
     found = [replace(a, family=-1) for a in united(map, attractors, group)]
     at = families = 0
     while at < len(found):

@@ -101,9 +101,9 @@ class Count:
     def measured(self, members: Labels, blocks: int | None = None) -> Measured:
         """The exponents over some of the particles, from all blocks or from the first few."""
         plus = self.up[:blocks, members]
-        if self.growth.lam[members[0]] == 0:
+        total = self.volume[:blocks, members] + self.growth.contraction[members]
+        if np.any(np.isneginf(total)):
             return Measured(estimate(plus), None, None)
-        total = self.volume[:blocks, members] + np.log(self.growth.lam[members])
         minus = total - plus
         if np.mean(plus) < np.mean(minus):
             plus, minus = minus, plus

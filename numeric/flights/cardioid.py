@@ -116,7 +116,10 @@ class Cardioid(Family):
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         if law == ELASTIC:
             return list(plane.unit(ops, (landing.along, landing.across)))
-        return list(ops.turn(lam * ops.angle(landing.across, landing.along), 1))
+        return list(ops.turn(self.exit_angle(ops, law, lam, landing), 1))
+
+    def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
+        return drift * ops.number(0.5)  # dtheta/ds = 1/(2*cos(theta/2)), and below = cos(theta/2)
 
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(1.0), ops.number(0.0)]

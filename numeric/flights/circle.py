@@ -47,7 +47,10 @@ class Circle(Family):
         return Landing([(turned - half_turn) - low], phi, ops.number(1.0))
 
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
-        return [lam * landing.across]
+        return [self.exit_angle(ops, law, lam, landing)]
+
+    def incidence(self, ops: Backend[N, M], landing: Landing[N]) -> N:
+        return landing.across
 
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(0.0)]

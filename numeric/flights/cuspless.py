@@ -134,6 +134,10 @@ class Cuspless(Cardioid):
             wall, ops.number(1.0), landing.position[1]
         )
 
+    def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
+        wall = ops.number(0.5) < landing.position[0]
+        return ops.select(wall, drift, drift * ops.number(0.5))
+
     def point(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         """The boundary point on the arc or on the wall."""
         wall = ops.number(0.5) < position[0]

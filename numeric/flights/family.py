@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.backends.scalars import ArrayBackend
-from numeric.lowering.program import TableIR
+from numeric.lowering.program import LawIR, TableIR
 
 
 class Status(Enum):
@@ -128,7 +128,8 @@ class Boundary:
         return speed, -(dx * ay - dy * ax) / speed**3
 
 
-SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"
+SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"  # the uniform contraction, at 0, at 1, and between
+FORMULA = "formula"  # any other law
 GRAZE = 2.0**-50  # cos(eta) below this is a tangency
 NEAR = 2.0**-50  # a landing closer than this to a join or a cusp is one
 
@@ -171,6 +172,7 @@ class Family(ABC):
     direction: tuple[str, ...] = ()
 
     boundary: Boundary
+    formula: LawIR | None = None  # of the law that is called FORMULA
 
     def __init__(self, boundary: Boundary | None = None) -> None:
         if boundary is not None:  # a flight alone gets along without
@@ -249,6 +251,36 @@ class Family(ABC):
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         """The exit fields after the reflection."""
 
+    def incidence(self, ops: Backend[N, M], landing: Landing[N]) -> N:
+        """Minus the incidence angle, in radians."""
+        return ops.angle(landing.across, landing.along)
+
+    def exit_angle(self, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> N:
+        """The exit angle after the reflection."""
+        incidence = self.incidence(ops, landing)
+        if law != FORMULA:
+            return lam * incidence
+        return self._known(law).exit(ops, -incidence, lam, self._landing_parameter(ops, landing))[0]
+
+    def slopes(self, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> tuple[N, N | None]:
+        """Minus the derivative of the exit angle by the incidence angle; and by `theta`, for a law that has it."""
+        if law != FORMULA:
+            return lam, None
+        formula, place = self._known(law), self._landing_parameter(ops, landing)
+        slope, drift = formula.slopes(ops, -self.incidence(ops, landing), lam, place)
+        return slope, drift if formula.placed else None
+
+    def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
+        """`drift` for a tangent vector's own parameter in the place of `theta`, times `below` of `bend`."""
+        return drift * below
+
+    def _known(self, law: str) -> LawIR:
+        assert self.formula is not None, law
+        return self.formula
+
+    def _landing_parameter(self, ops: Backend[N, M], landing: Landing[N]) -> N:
+        return self.place(ops, landing.position)[1] if self._known(FORMULA).placed else ops.number(0.0)
+
     @abstractmethod
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         """The exit fields of a particle that leaves along the normal."""
@@ -300,7 +332,8 @@ class Family(ABC):
     ) -> tuple[list[N], N | None, list[N], list[N]]:
         """As `bounce`, with the rows `numeric.kernels.machine.TANGENT`, and what is kept for the next flight.
 
-        The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`.
+        The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`,
+        with the slope of a law that is no uniform contraction.
         """
         position, exit = self._split(ops, shape, law, state, whole=True)
         landing = self.fly(ops, shape, law, position, exit)
@@ -309,13 +342,17 @@ class Family(ABC):
         moved = self.length(ops, shape, n0, kept, end, landing) * omega + q
         above, below = self.bend(ops, shape, landing)
         fall = landing.along * below
-        turned = (ops.number(1.0) + lam) * above * moved + lam * omega * fall
+        slope, drift = self.slopes(ops, law, lam, landing)
+        turned = (ops.number(1.0) + slope) * above * moved + slope * omega * fall
+        if drift is not None:
+            turned = turned + self.drifting(ops, landing, below, drift) * moved
         down = down * fall
         ops.settle(moved, turned, down, below)
         leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
         n0 = self.leaving_rate(ops, shape, landing, leaving)
         rise = n0 * below
-        rows = [moved * rise, turned, growth, up * rise, down, volume, n0]
+        counted = up * rise if law != FORMULA else up * rise * modulus(slope)
+        rows = [moved * rise, turned, growth, counted, down, volume, n0]
         return landing.position + leaving, landing.code, rows, end
 
     def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
@@ -342,13 +379,12 @@ def grazing(ops: Backend[N, M], across: N, along: N) -> M:
     return ops.negated(ops.number(GRAZE) * modulus(across) < along)
 
 
-def reflected(ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> list[N]:
+def reflected(family: Family, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> list[N]:
     """The unit direction after a reflection, from the flight's direction `v` and the boundary's velocity `d`."""
     v, d = landing.vectors["v"], landing.vectors["d"]
     if law == ELASTIC:
         inverse = ops.number(1.0) / plane.dot(d, d)
         x, y = plane.times(plane.squared(d), plane.conjugate(v))
         return list(plane.unit(ops, (x * inverse, y * inverse)))
-    incidence = ops.angle(landing.across, landing.along)
-    c, s = ops.turn(lam * incidence + incidence)
+    c, s = ops.turn(family.exit_angle(ops, law, lam, landing) + family.incidence(ops, landing))
     return list(plane.unit(ops, plane.times((-v[0], -v[1]), (c, -s))))

@@ -163,7 +163,7 @@ class General(Family):
         return best
 
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
-        return reflected(ops, law, lam, landing)
+        return reflected(self, ops, law, lam, landing)
 
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         _, _, dx, dy, _, _ = self.curve(ops, shape, *position)

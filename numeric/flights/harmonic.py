@@ -47,7 +47,7 @@ class Harmonic(Family):
         return Landing(list(u), across, along, code, {"v": v, "d": (dx, dy)})
 
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
-        return reflected(ops, law, lam, landing)
+        return reflected(self, ops, law, lam, landing)
 
     def slapped_with_unit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.velocity(ops, *position, *shape)

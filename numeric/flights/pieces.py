@@ -280,7 +280,7 @@ class Pieces(Family):
         return Landing(list(position), across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
 
     def leave(self, ops: Any, shape: Row, law: str, lam: Any, landing: Landing[Any]) -> list[Any]:
-        return reflected(ops, law, lam, landing)
+        return reflected(self, ops, law, lam, landing)
 
     def slapped(self, ops: Any, shape: Row, position: Row) -> list[Any]:
         dx, dy = self.tangent(ops, shape, position)

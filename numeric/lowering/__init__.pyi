@@ -2,14 +2,16 @@
 
 from . import cache
 from .cache import key_of
-from .lower import exact_table, symmetries
-from .program import TableIR, table_ir
+from .lower import exact_table, lower_law, symmetries
+from .program import LawIR, TableIR, table_ir
 
 __all__ = [
+    "LawIR",
     "TableIR",
     "cache",
     "exact_table",
     "key_of",
+    "lower_law",
     "symmetries",
     "table_ir",
 ]

@@ -9,26 +9,10 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any
 
-from sympy import (
-    Add,
-    Dummy,
-    Expr,
-    Float,
-    I,
-    Mul,
-    Pow,
-    S,
-    Symbol,
-    cos,
-    expand,
-    pi,
-    sin,
-    sqrt,
-    tan,
-)
+from sympy import Add, Dummy, Expr, Float, I, Mul, Pow, S, Symbol, cos, expand, pi, sin, sqrt, tan
 from sympy import sympify as exact
 
-from numeric.lowering.program import Builder, Node, Part, Program, ShapeRange, TableIR
+from numeric.lowering.program import Builder, LawIR, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.expressions.signs import vanishes
 from symbolic.expressions.text import FUNCTIONS
@@ -36,8 +20,9 @@ from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, waves
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
+from symbolic.tables.law import Law
 from symbolic.tables.polynomial import cubic
-from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.table import Component, Table, eta, lam, theta
 from symbolic.tables.validity import closed_and_finite
 
 DEEP = 12  # operations within each other, beyond which derivatives are not written out
@@ -78,6 +63,19 @@ def lower(table: Table) -> TableIR:
         tuple(programs.items()),
         (index, _program(symbols, lambda nodes: [nodes(start)])),
     )
+
+
+def lower_law(law: Law) -> LawIR:
+    """The programs of a law whose parameters have numbers."""
+    if law.parameters:
+        raise ValueError(f"law = {law}: the parameter {law.parameters[0]} needs a value")
+
+    def program(*values: Expr) -> Program:
+        builder = Builder("eta", "lam", "theta")
+        nodes = dict(zip((eta, lam, theta), builder.nodes, strict=True))
+        return builder.program(*(converted(builder, value, nodes) for value in values))
+
+    return LawIR(str(law), program(law.phi), program(law.slope, law.phi.diff(theta)), law.placed)
 
 
 def exact_table(table: Table | str, K: int, shape: dict[str, Any]) -> Table:

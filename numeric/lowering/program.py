@@ -232,6 +232,18 @@ class Part(NamedTuple):
     curve: Program
 
 
+class LawIR(NamedTuple):
+    """A reflection law as the kernels see it: programs in `eta`, `lam` and `theta`, its own parameters as numbers.
+
+    `exit` gives the exit angle; `slopes` minus its derivative by `eta`, and the one by `theta`.
+    """
+
+    text: str
+    exit: Program
+    slopes: Program
+    placed: bool  # does the exit angle depend on `theta`?
+
+
 class TableIR(NamedTuple):
     """A table as the kernels see it.
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from numeric.flights.family import SLAP, Family, Frame
+from numeric.flights.family import FORMULA, SLAP, Family, Frame
 
 Array = NDArray[np.float64]
 TILE = 1 << 13  # points of orbits translated at a time
@@ -141,7 +141,8 @@ class States:
                 component, at = self.place(fields)
                 frame = self.frame(component, at)
                 exit = self.exit(component, at, fields, law, frame)
-                exit = exit * (lam[particle] != 0)  # the normal, whatever atan2 rounds to
+                if law != FORMULA:
+                    exit = exit * (lam[particle] != 0)  # the normal, whatever atan2 rounds to
                 leaving = self.leaving(frame, exit, fields, law)
                 vx, vy = (np.concatenate([v[None], later[:-1]]) for v, later in zip(flight, leaving, strict=True))
                 flight = leaving[0][-1], leaving[1][-1]

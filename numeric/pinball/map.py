@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from numeric.flights.family import NEAR, PINBALL, SLAP, Boundary, law_of
+from numeric.flights.family import FORMULA, NEAR, PINBALL, SLAP, Boundary, law_of
 from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
 from numeric.kernels.machine import KernelSpec, starting
@@ -28,7 +28,7 @@ from numeric.pinball.states import (
     real,
     shape_value,
 )
-from symbolic.tables.scene import Scene
+from symbolic.tables.scene import Law, Scene
 
 if TYPE_CHECKING:
     from numeric.pinball.coordinates import ArcLength
@@ -42,7 +42,8 @@ class PinballMap:
 
     `table` is a scene, which says everything, or an exact table, or the name of one of the paper's; then shape
     parameters are keywords, exact or decimal, and a decimal means the decimal it shows. `lam` is one number or one
-    for each particle, and comes before a scene's own. With `kernels=False` the same steps run on NumPy arrays.
+    for each particle, and comes before a scene's own. `law` is another law than the paper's, with numbers for its
+    own parameters. With `kernels=False` the same steps run on NumPy arrays.
 
     >>> ellipse = PinballMap("ellipse", lam=1, a=2)
     >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
@@ -56,10 +57,13 @@ class PinballMap:
         lam: Contraction | None = None,
         K: int = 3,
         kernels: bool = True,
+        law: Law | str | None = None,
         **shape: Any,
     ) -> None:
+        proved = isinstance(table, Scene) and lam is None  # a scene has checked its law
         if isinstance(table, Scene):
-            table, lam, K, shape = _unpacked(table, lam, shape)
+            law, (table, lam, K, shape) = table.law, _unpacked(table, lam, shape)
+        self.reflection = law if isinstance(law, Law) else Law() if law is None else Law(law)
         self.ir: TableIR = table_ir(table, K)
         self.lam = contraction(1 if lam is None else lam)
         self._given = table, K
@@ -68,7 +72,15 @@ class PinballMap:
         names = [entry.name for entry in self.ir.shape]
         self.family = family_of(Boundary(self.ir, self.shape))
         self.states = States(self.family)
-        self.engine = Engine(self.family, key_of(self.ir.as_text(), self.family.identity), names, kernels)
+        if not self.reflection.uniform:
+            from numeric.lowering.lower import lower_law
+
+            self.family.formula = lower_law(self.reflection)
+            if not proved:
+                self._check_law()
+        formula = self.family.formula
+        own = [] if formula is None else [str(formula.exit), str(formula.slopes)]
+        self.engine = Engine(self.family, key_of(self.ir.as_text(), self.family.identity, *own), names, kernels)
 
     @cached_property
     def table(self) -> "Table":
@@ -85,7 +97,9 @@ class PinballMap:
 
     @property
     def law(self) -> str:
-        """`slap`, `elastic` or `pinball`: the reflection for which kernels are made."""
+        """`slap`, `elastic` or `pinball`, or `formula`: the reflection for which kernels are made."""
+        if not self.reflection.uniform:
+            return FORMULA
         return law_of(float(np.min(self.lam)), float(np.max(self.lam)))
 
     @cached_property
@@ -123,7 +137,8 @@ class PinballMap:
     def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
         """`d(s1, phi1)/d(s0, phi0)`, a matrix for each particle. Paper: eq. (derivative_of_map).
 
-        The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is.
+        The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is. A law
+        of another kind has its slope there, and what it changes along the boundary times `ds1`.
         """
         where, theta, phi = self._start(theta, phi, component)
         law, states, count = self._law(phi), self.states, theta.size
@@ -137,7 +152,12 @@ class PinballMap:
         rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
         rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
         moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
-        turned = lam * (curvature * moved - omega.reshape(2, count))
+        bent = curvature * moved - omega.reshape(2, count)
+        turned = lam * bent
+        if law == FORMULA:
+            landed = self.step(theta, phi, where)
+            slope, drift = self.slopes(landed.eta.ravel(), landed.theta.ravel())
+            turned = slope * bent + drift / states.speed(landed.component.ravel(), landed.theta.ravel()) * moved
         return np.moveaxis(np.array([moved, turned]), 2, 0).reshape(*theta.shape, 2, 2)
 
     def exponents(
@@ -161,7 +181,7 @@ class PinballMap:
         made = np.maximum(growth.bounces, 1)
         with np.errstate(divide="ignore"):
             plus = growth.stretch / made
-            minus = growth.volume / made + np.log(growth.lam) - plus
+            minus = growth.volume / made + growth.contraction - plus
         upper, lower = np.maximum(plus, minus), np.minimum(plus, minus)
         shape = np.broadcast_shapes(*(np.shape(given) for given in (theta, phi, component)))
         found = upper, lower, growth.bounces, growth.component, growth.theta, growth.phi, growth.code
@@ -175,7 +195,7 @@ class PinballMap:
         >>> abs(float(PinballMap("ellipse", a=2).slap(0.0).theta[1]))
         3.141592653589793
         """
-        slapping = self if self.law == SLAP else self.at(lam=0)
+        slapping = self if self.law == SLAP else self.uniform(lam=0)
         orbit = slapping.orbit(theta, 0.0, iterates, component)
         slope = slapping.derivative(theta, 0.0, component)[..., 0, 0]
         return Slap(orbit.component, orbit.theta, slope, orbit.code)
@@ -195,9 +215,31 @@ class PinballMap:
         """The same table with another contraction."""
         other = copy(self)
         other.lam = contraction(lam)
+        if not self.reflection.uniform:
+            other._check_law()
         return other
 
+    def uniform(self, lam: Contraction) -> "PinballMap":
+        """The same table with the paper's law, `phi = -lam*eta`."""
+        other = copy(self)
+        other.lam, other.reflection = contraction(lam), Law()
+        return other
+
+    def slopes(self, eta: Array, theta: Array) -> tuple[Array, Array]:
+        """Minus the derivative of the exit angle by the incidence angle, and by the landing's `theta`."""
+        formula, ops = self.family.formula, self.states.ops
+        lam = np.broadcast_to(self.lam, eta.shape)
+        if formula is None or self.reflection.uniform:
+            return np.asarray(lam, dtype=float), np.zeros(eta.shape)
+        slope, drift = formula.slopes(ops, eta, lam, theta)
+        return slope + np.zeros(eta.shape), drift + np.zeros(eta.shape)
+
     # ---- within
+
+    def _check_law(self) -> None:
+        """Refuses a law that leads out of the table for some of the contractions."""
+        places = self.reflection.places(self.table) if self.reflection.placed else None
+        self.reflection.check((Fraction(float(np.min(self.lam))), Fraction(float(np.max(self.lam)))), places)
 
     def _law(self, phi: Array) -> str:
         """The law of a run; the slap kernel can only start along the normal."""

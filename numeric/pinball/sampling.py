@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from numeric.flights.family import SLAP
+from numeric.flights.family import FORMULA, SLAP
 from numeric.kernels.machine import TANGENT, KernelSpec, starting
 from numeric.pinball.states import counted
 
@@ -74,7 +74,7 @@ def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
     >>> bool(np.all(np.hypot(starts.x, starts.y) < 1))
     True
     """
-    rng, elastic = np.random.default_rng(seed), map.at(lam=1)
+    rng, elastic = np.random.default_rng(seed), map.uniform(lam=1)
     missing, diameter = counted("count", count), longest(map)
     batches: list[Starts] = []
     while missing > 0:
@@ -159,8 +159,8 @@ GENERIC = 0.8, 0.6  # a first tangent vector (ds, dphi), of length 1
 class Growth:
     """Particles with a tangent vector each, in the coordinates `(s, phi)`; `advance` moves all of them.
 
-    `stretch` is the logarithm of the vector's length, `volume` that of `|det|` without the factors `lam`, both since
-    the start; `bounces` is what each particle made before it stopped, if it did.
+    `stretch` is the logarithm of the vector's length, `volume` that of `|det|` without what `contraction` adds for
+    each bounce, both since the start; `bounces` is what each particle made before it stopped, if it did.
 
     >>> import numpy as np
     >>> from numeric import PinballMap
@@ -180,6 +180,15 @@ class Growth:
         self.bounces: NDArray[np.int64] = np.zeros(at.size, dtype=np.int64)
         self.code: NDArray[np.int64] = np.zeros(at.size, dtype=np.int64)
         self.began()
+
+    @property
+    def contraction(self) -> Array:
+        """The logarithm of what a bounce multiplies angles by, where `volume` leaves it out: `log(lam)`.
+
+        Of a law that is no uniform contraction, `volume` has the slopes already.
+        """
+        with np.errstate(divide="ignore"):
+            return np.zeros_like(self.lam) if self.law == FORMULA else np.log(self.lam)
 
     def began(self) -> None:
         """Starts the sums anew, with the generic vector."""

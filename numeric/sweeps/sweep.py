@@ -232,10 +232,12 @@ KEPT = 16  # maps
 def text_of(scene: Scene) -> str:
     """The scene as a sweep labels it: at `lam = 1`, since the contraction is an axis of the sweep.
 
+    With a law of another kind it stays as it is: at `lam = 1` such a law may lead out of the table.
+
     >>> text_of(Scene("egg", alpha="2/25", lam="1/2"))
     'scene = { table = "egg", shape = { alpha = "2/25" }, lam = "1" }'
     """
-    return scene.at(lam=1).text
+    return (scene.at(lam=1) if scene.law.uniform else scene).text
 
 
 def map_of(text: str, lam: ArrayLike) -> PinballMap:
@@ -322,7 +324,7 @@ def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, thre
         reached[:, i] = growth.stretch, growth.volume
     with np.errstate(divide="ignore", invalid="ignore"):  # at lam = 0 areas vanish
         plus, volume = np.diff(reached, axis=1) / block
-        minus = volume + np.log(growth.lam) - plus
+        minus = volume + growth.contraction - plus
         means = [(x.mean(axis=0), x.std(axis=0, ddof=1) / BLOCKS**0.5) for x in (plus, minus)]
     end = Starts(growth.component, growth.theta, growth.phi, *map.states.point(growth.component, growth.theta))
     (nu_plus, nu_plus_error), (nu_minus, nu_minus_error) = means

@@ -5,8 +5,10 @@ which the sign is not seen is halved, until it is seen everywhere, a point refut
 is spent. The time grows with the number of distinct subexpressions, not with what they would be multiplied out.
 """
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from itertools import product
 from math import isqrt
 
 from sympy import Abs, Add, Expr, Mul, Pow, Rational, S, Symbol, atan, cos, cosh, exp, log, pi, sin, sinh, tan, tanh
@@ -34,24 +36,43 @@ def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: in
     >>> sign_on(cos(x) - Rational(1, 2), x, S(-4), S(4)).reason
     'at x = -4 the value is negative or 0'
     """
-    steps = _steps(expression, x)
-    boxes, spent = [(_ceil(low) - 1, _ceil(high))], 0
-    for end in (low, high):
-        if _value(steps, _rational(end))[1] <= 0:
-            return Finding(Outcome.REFUTED, f"at {x} = {end} the value is negative or 0", ((x, end),))
+    return sign_in(expression, {x: (low, high)}, work)
+
+
+def sign_in(expression: Expr, box: Mapping[Symbol, tuple[Rational, Rational]], work: int = WORK) -> Finding:
+    """Is `expression` > 0 in the whole box? The widest side is halved until it is seen, or refuted at a point.
+
+    >>> x, y = Symbol("x"), Symbol("y")
+    >>> sign_in(2 - cos(x) * y, {x: (S(-4), S(4)), y: (S(-1), S(1))}).outcome.name
+    'PROVED'
+    """
+    names = tuple(box)
+    steps = _steps(expression, *names)
+    boxes, spent = deque([tuple((_ceil(low) - 1, _ceil(high)) for low, high in box.values())]), 0
+    for corner in product(*box.values()):
+        if _value(steps, *map(_rational, corner))[1] <= 0:
+            return _refuted(names, corner)
     while boxes:
         spent += 2 * len(steps)
-        lower, upper = boxes.pop()
-        if spent > work or upper - lower < 1 << BITS // 2:
+        here = boxes.pop() if len(names) == 1 else boxes.popleft()  # where zeros fill curves, the larger boxes first
+        widest = max(range(len(here)), key=lambda i: here[i][1] - here[i][0])
+        if spent > work or here[widest][1] - here[widest][0] < 1 << BITS // 2:
             return Finding(Outcome.UNKNOWN, f"no sign was proved with {work} operations on intervals")
-        if _value(steps, (lower, upper))[0] > 0:
+        if _value(steps, *here)[0] > 0:
             continue
-        middle = (lower + upper) // 2
-        if _value(steps, (middle, middle))[1] <= 0:
-            at = Rational(middle, ONE)
-            return Finding(Outcome.REFUTED, f"at {x} = {at} the value is negative or 0", ((x, at),))
-        boxes += [(lower, middle), (middle, upper)]
-    return Finding(Outcome.PROVED, f"enclosures: positive for {x} from {low} to {high}")
+        middles = [(lower + upper) // 2 for lower, upper in here]
+        if _value(steps, *((middle, middle) for middle in middles))[1] <= 0:
+            return _refuted(names, [Rational(middle, ONE) for middle in middles])
+        (lower, upper), middle = here[widest], middles[widest]
+        boxes += [(*here[:widest], half, *here[widest + 1 :]) for half in ((lower, middle), (middle, upper))]
+    ranges = ", ".join(f"{x} from {low} to {high}" for x, (low, high) in box.items())
+    return Finding(Outcome.PROVED, f"enclosures: positive for {ranges}")
+
+
+def _refuted(names: Sequence[Symbol], point: Sequence[Rational]) -> Finding:
+    at = tuple(zip(names, point, strict=True))
+    where = ", ".join(f"{x} = {value}" for x, value in at)
+    return Finding(Outcome.REFUTED, f"at {where} the value is negative or 0", at)
 
 
 def pole(expression: Expr, x: Symbol, low: Rational, high: Rational) -> Expr | None:
@@ -79,10 +100,10 @@ EVERYTHING: Bounds = (-(1 << 4096), 1 << 4096)
 Step = tuple[Callable[..., Bounds], tuple[int, ...]]
 
 
-def _steps(expression: Expr, x: Symbol) -> list[Step]:
-    """The distinct subexpressions, operands first; the first is `x` itself."""
-    at: dict[Expr, int] = {x: 0}
-    steps: list[Step] = [(lambda: (0, 0), ())]
+def _steps(expression: Expr, *names: Symbol) -> list[Step]:
+    """The distinct subexpressions, operands first; the first are the variables themselves."""
+    at: dict[Expr, int] = {x: i for i, x in enumerate(names)}
+    steps: list[Step] = [(lambda: (0, 0), ()) for _ in names]
 
     def place(e: Expr) -> int:
         if e not in at:
@@ -116,11 +137,11 @@ def _reading(e: Expr) -> tuple[tuple[Expr, ...], Callable[..., Bounds]]:
     raise UnboundedError(f"{e.func.__name__} is not known")
 
 
-def _value(steps: list[Step], here: Bounds) -> Bounds:
+def _value(steps: list[Step], *here: Bounds) -> Bounds:
     """The enclosure over `here`; everything where an operation has no finite one."""
-    known = [here]
+    known = list(here)
     try:
-        for function, operands in steps[1:]:
+        for function, operands in steps[len(here) :]:
             known.append(function(*[known[i] for i in operands]))
     except UnboundedError:
         return EVERYTHING

@@ -7,7 +7,8 @@ the chord `d` to another boundary point makes with the inward normal the angle
 
 The chord to the next bounce gives the exit angle, `phi = A`, and the chord back to the previous one
 the incidence angle, `eta = A`. The law `phi = -lam*eta` is `A(next) + lam*A(previous) = 0`: one
-equation in three neighbouring parameters. A cycle of any length is a cyclic chain of this one.
+equation in three neighbouring parameters. A cycle of any length is a cyclic chain of this one. Any other
+law is `A(next) - phi(A(previous)) = 0`, with its slopes in the derivatives (`law_kernel`).
 
 `A` is the direction of `N` minus the direction of `d`, so each derivative is that of two arguments:
 `dA = bend(V) - bend(d)`, `bend(w) = (w x dw)/(w.w)`.
@@ -29,7 +30,8 @@ from sympy import Derivative, Expr, Function, Interval, Symbol, atan, diff, oo
 from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
 from symbolic.expressions.text import Kernel, kernel
 from symbolic.tables.geometry import in_half_tangent, turning
-from symbolic.tables.table import Table, lam, theta
+from symbolic.tables.law import PAPERS_LAW, Law
+from symbolic.tables.table import Table, eta, lam, theta
 from symbolic.tables.validity import parameter_box
 
 theta0 = Symbol("theta0", real=True)  # the bounce itself
@@ -89,11 +91,13 @@ def chord_angle(table: Table, here: int = 0, there: int = 0, order: int = 1) -> 
     return stage.finished(parameters, found)
 
 
-def collision_rule(table: Table, components: tuple[int, int, int] = (0, 0, 0), order: int = 1) -> Staged:
+def collision_rule(
+    table: Table, components: tuple[int, int, int] = (0, 0, 0), order: int = 1, law: Law = PAPERS_LAW
+) -> Staged:
     """`A(next) + lam*A(previous)` at a bounce, and its first derivatives; 0 when the rule is obeyed.
 
     `components` are those of the previous bounce, of the bounce and of the next one. The values are
-    `residual`, `d_previous`, `d_here`, `d_next`, `d_lam` and one for each shape parameter.
+    `residual`, `d_previous`, `d_here`, `d_next`, `d_lam` and one for each shape parameter and each of the law's own.
 
     >>> from symbolic.tables import circle
     >>> rule = collision_rule(circle).whole("residual")
@@ -111,14 +115,42 @@ def collision_rule(table: Table, components: tuple[int, int, int] = (0, 0, 0), o
         definitions |= {own[s]: e.xreplace(own) for s, e in staged.definitions.items()}
         renamed[mark] = {name: e.xreplace(own) for name, e in staged.values.items()}
     out, into = renamed["next"], renamed["previous"]
-    values = {"residual": out["angle"] + lam * into["angle"]}
-    if order:
-        values |= {"d_previous": lam * into["angle_1"], "d_here": out["angle_0"] + lam * into["angle_0"]}
-        values |= {"d_next": out["angle_1"], "d_lam": into["angle"]}
-        for shape in (p.symbol for p in table.shapes):
-            values[f"d_{shape}"] = out[_named(shape)] + lam * into[_named(shape)]
     shapes = tuple(p.symbol for p in table.shapes)
-    return Staged((theta_previous, theta, theta_next, lam, *shapes), definitions, values)
+    others = tuple(p for p in law.symbols if p not in shapes)
+
+    def reflected(expression: Expr) -> Expr:
+        return expression.subs(eta, into["angle"])
+
+    values = {"residual": out["angle"] - reflected(law.phi)}
+    if order:
+        slope = reflected(law.slope)
+        values |= {"d_previous": slope * into["angle_1"]}
+        values |= {"d_here": out["angle_0"] + slope * into["angle_0"] - reflected(law.phi.diff(theta))}
+        values |= {"d_next": out["angle_1"], "d_lam": -reflected(law.phi.diff(lam))}
+        for shape in shapes:
+            values[f"d_{shape}"] = out[_named(shape)] + slope * into[_named(shape)] - reflected(law.phi.diff(shape))
+        values |= {f"d_{p}": -reflected(law.phi.diff(p)) for p in others}
+    return Staged((theta_previous, theta, theta_next, lam, *shapes, *others), definitions, values)
+
+
+@cache
+def law_kernel(law: Law, order: int = 1) -> Kernel:
+    """The exit angle as a generated function of `(eta, lam, theta, *own)`, with derivatives up to `order`.
+
+    The values are `phi`, then `phi_eta` and its like, and for order 2 `phi_eta_eta` and all other pairs with `eta` or
+    `theta`.
+
+    >>> law_kernel(Law("-lam*eta - b*sin(2*eta)")).results
+    ('phi', 'phi_eta', 'phi_theta', 'phi_lam', 'phi_b')
+    """
+    letters = (eta, theta, lam, *law.symbols)
+    found = {"phi": law.phi}
+    if order:
+        found |= {f"phi_{p}": diff(law.phi, p) for p in letters}
+    if order > 1:
+        pairs = combinations_with_replacement(letters, 2)
+        found |= {f"phi_{p}_{q}": diff(law.phi, p, q) for p, q in pairs if p in (eta, theta)}
+    return kernel(f"law_{order}", (eta, lam, theta, *law.symbols), found, about=f"The law phi = {law}.")
 
 
 @cache
@@ -132,10 +164,11 @@ def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) ->
 
 
 @cache
-def collision_kernel(table: Table, components: tuple[int, int, int] = (0, 0, 0)) -> Kernel:
-    """`collision_rule` as a generated function of `(theta_previous, theta, theta_next, lam, *shape)`."""
-    staged = collision_rule(table, components)
-    about = f"The collision rule phi + lam*eta at a bounce, components {' '.join(map(str, components))}."
+def collision_kernel(table: Table, components: tuple[int, int, int] = (0, 0, 0), law: Law = PAPERS_LAW) -> Kernel:
+    """`collision_rule` as a generated function of `(theta_previous, theta, theta_next, lam, *shape, *own)`."""
+    staged = collision_rule(table, components, law=law)
+    rule = "phi + lam*eta" if law.uniform else f"phi = {law}"
+    about = f"The collision rule {rule} at a bounce, components {' '.join(map(str, components))}."
     name = "collision_rule_" + "_".join(map(str, components))
     return kernel(name, staged.arguments, staged.values, staged.definitions, about)
 

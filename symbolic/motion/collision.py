@@ -8,7 +8,9 @@ direction, with incidence angle `eta1 = psi1 - direction - pi/2`. The law is `ph
 How much area a bounce contracts: at a point, on average, and near the elastic case. Paper: sections 1 and 4.1.
 
 A flight keeps the area `ds d(sin(phi))`; the reflection turns `sin(eta)` into `sin(lam*eta)`. So in these coordinates
-a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends on the incidence angle alone.
+a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends on the incidence angle alone. For any
+law `phi(eta)` it is `g = -phi'(eta)*cos(phi)/cos(eta)`, minus the derivative of `sin(phi)` by `sin(eta)`, and the same
+for a law that depends on the place as well.
 
 - Not pointwise: `g` grows with `|eta|` from `lam` without bound, so for `0 < lam < 1` areas shrink where `|eta|` is
   below the root of `g = 1` and grow beyond it. As `lam` tends to 1 that root tends to the one of `eta*tan(eta) = 1`.
@@ -38,6 +40,7 @@ from sympy import (
     Expr,
     Function,
     Matrix,
+    S,
     Symbol,
     cos,
     diff,
@@ -113,11 +116,13 @@ def derivative_matrix(
     cos_phi0: Expr = cos_phi0,
     cos_eta1: Expr = cos_eta1,
     lam: Expr = lam,
+    drift: Expr = S.Zero,
 ) -> Matrix:
     """`d(s1, phi1)/d(s0, phi0)` of one flight and one reflection. Paper: eq. (derivative_of_map).
 
     `lam` is the slope of the reflection law at the landing, `lambda` for the uniform contraction
-    and `1 - f'(eta1)` for any other (`exit_slope`).
+    and `1 - f'(eta1)` for any other (`exit_slope`). `drift` is the derivative of the exit angle along the boundary,
+    per unit of arc length, for a law that depends on the place.
 
     >>> derivative_matrix(K0=-1, K1=-1, t=2, cos_phi0=1, cos_eta1=1).tolist()
     [[1, -2], [0, lam]]
@@ -125,28 +130,37 @@ def derivative_matrix(
     own = {"K0": K0, "K1": K1, "t": t, "cos_phi0": cos_phi0, "cos_eta1": cos_eta1}
     matrix = implicit_derivative()
     values = {symbol: own[symbol.name] for symbol in matrix.free_symbols}
-    reflected = Matrix([matrix.row(0), lam * matrix.row(1)])
+    reflected = Matrix([matrix.row(0), lam * matrix.row(1) + drift * matrix.row(0)])
     return reflected.subs(values, simultaneous=True)
 
 
-def determinant() -> Expr:
-    """`det DT` in the coordinates `(s, phi)`: `lam * cos_phi0 / cos_eta1`.
+def determinant(slope: Expr = lam, drift: Expr = S.Zero) -> Expr:
+    """`det DT` in the coordinates `(s, phi)`: `lam * cos_phi0 / cos_eta1`, with the slope of any law for `lam`.
 
-    It exceeds 1 at grazing landings, however small `lam` is: contraction holds on average only.
+    It exceeds 1 at grazing landings, however small `lam` is: contraction holds on average only. The drift of a law
+    that depends on the place adds a multiple of the first row to the second, and leaves it.
 
-    >>> determinant()
-    cos_phi0*lam/cos_eta1
+    >>> determinant(), determinant(drift=Symbol("c"))
+    (cos_phi0*lam/cos_eta1, cos_phi0*lam/cos_eta1)
     """
-    return simplify(derivative_matrix().det())
+    return simplify(derivative_matrix(lam=slope, drift=drift).det())
 
 
-def slap_derivative(K0: Expr = K0, t: Expr = t, cos_eta1: Expr = cos_eta1) -> Expr:
+def slap_derivative(
+    K0: Expr = K0, t: Expr = t, cos_eta1: Expr = cos_eta1, cos_phi0: Expr = S.One, drift: Expr = S.Zero
+) -> Expr:
     """`T0'(s)`, the derivative of the slap map (`lambda = 0`, exit along the normal). Paper: section 2.2.
+
+    Where a law forgets the incidence altogether, `phi = c(s)`, the map is one-dimensional too: `drift` is `c'`, and
+    `cos_phi0` the cosine of `c`.
 
     >>> slap_derivative(K0=-1, t=2, cos_eta1=1)
     1
+    >>> slap_derivative(cos_phi0=cos_phi0, drift=Symbol("slope"))
+    (-K0*t - cos_phi0 - slope*t)/cos_eta1
     """
-    return derivative_matrix(K0=K0, t=t, cos_phi0=1, cos_eta1=cos_eta1, lam=0)[0, 0]
+    row = derivative_matrix(K0=K0, t=t, cos_phi0=cos_phi0, cos_eta1=cos_eta1, lam=0).row(0)
+    return row[0] if drift == 0 else simplify(row[0] + drift * row[1])
 
 
 def birkhoff_matrix(matrix: Matrix, cos_phi0: Expr, cos_phi1: Expr) -> Matrix:
@@ -158,17 +172,17 @@ def birkhoff_matrix(matrix: Matrix, cos_phi0: Expr, cos_phi1: Expr) -> Matrix:
     return Matrix([[1, 0], [0, cos_phi1]]) * matrix * Matrix([[1, 0], [0, 1 / cos_phi0]])
 
 
-def area_factor() -> Expr:
-    """`g(eta)`: what a bounce that lands at the incidence angle `eta` multiplies `ds d(sin(phi))` by.
+def area_factor(phi: Expr = -lam * eta) -> Expr:
+    """`g(eta)`: what a bounce that lands at the incidence angle `eta` multiplies `ds d(sin(phi))` by; of any law `phi`.
 
-    >>> area_factor()
-    lam*cos(eta*lam)/cos(eta)
+    >>> area_factor(), area_factor(-eta)
+    (lam*cos(eta*lam)/cos(eta), 1)
     """
-    factor = birkhoff_matrix(derivative_matrix(), cos_phi0, cos(lam * eta)).det()
+    factor = birkhoff_matrix(derivative_matrix(lam=-diff(phi, eta)), cos_phi0, cos(phi)).det()
     return simplify(factor.subs(cos_eta1, cos(eta)))
 
 
-def telescoped(bounces: int) -> Expr:
+def telescoped(bounces: int, phi: Expr = -lam * eta) -> Expr:
     """`prod det DT / (prod g * cos(phi_0)/cos(phi_n))` along an orbit, in `(s, phi)`: 1, which is the sum rule.
 
     >>> telescoped(3)
@@ -176,10 +190,11 @@ def telescoped(bounces: int) -> Expr:
     """
     angles = symbols(f"eta1:{bounces + 1}", real=True)
     start = Symbol("phi_0", real=True)
-    exits = [cos(start), *(cos(lam * angle) for angle in angles)]  # cos(phi_k) = cos(lam*eta_k)
+    exits = [cos(start), *(cos(phi.subs(eta, angle)) for angle in angles)]
     ratio: Expr = exits[-1] / exits[0]
+    whole, factor = determinant(-diff(phi, eta)), area_factor(phi)
     for leaving, angle in zip(exits, angles, strict=False):
-        ratio *= determinant().subs({cos_phi0: leaving, cos_eta1: cos(angle)}) / area_factor().subs(eta, angle)
+        ratio *= whole.subs({cos_phi0: leaving, cos_eta1: cos(angle)}).subs(eta, angle) / factor.subs(eta, angle)
     return simplify(ratio)
 
 
@@ -245,14 +260,15 @@ def growth_defects() -> list[Expr]:
     ]
 
 
-def image_share() -> Expr:
-    """The share of phase space that the image of `T` may fill: the mean of `g` over it.
+def image_share(phi: Expr = -lam * eta) -> Expr:
+    """The share of phase space that the image of `T` may fill: the mean of `g` over it, for a law that falls.
 
     >>> image_share()
     sin(pi*lam/2)
     """
-    angle = Symbol("angle", real=True)  # the exit angle, lam*eta
-    return simplify(integrate(cos(angle), (angle, -lam * pi / 2, lam * pi / 2)) / 2)
+    angle = Symbol("angle", real=True)  # minus the exit angle
+    ends = [-phi.subs(eta, end) for end in (-pi / 2, pi / 2)]
+    return simplify(integrate(cos(angle), (angle, *ends)) / 2)
 
 
 def gradient(x: Expr, y: Expr) -> Matrix:

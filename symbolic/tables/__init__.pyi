@@ -24,8 +24,9 @@ from .gallery import (
     stadium,
     triangle,
 )
+from .law import Law
 from .measured import from_fourier, from_path, from_points
-from .scene import Law, Scene
+from .scene import Scene
 from .table import Component, Fit, Mark, Shape, Table
 
 __all__ = [

@@ -21,6 +21,7 @@ GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of t
 )  # fmt: skip
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law
+LAW_LETTERS = ("eta", "lam", "theta")  # what every law may speak of
 PIECE = ("name", "x", "y", "from", "to")
 KINDS = ("table", "polar", "parametric", "component", "points")
 FIT = ("smoothness", "degree", "by", "uncertainty")  # how points are made a boundary
@@ -216,7 +217,7 @@ def built(document: Mapping[str, Any]) -> "Table":
     from symbolic import tables
     from symbolic.tables.table import Mark
 
-    texts = document.get("shape", {})
+    texts = {letter: document["shape"][letter] for letter in letters_of(document)}
     numbers = {letter: _expression(letter, text) for letter, text in texts.items()}
     if "table" in document:
         return tables.named(document["table"], document.get("K", POINTS)).at(**numbers)
@@ -254,13 +255,14 @@ def letters_of(boundary: Mapping[str, Any]) -> tuple[str, ...]:
         return PAPER[boundary["table"]]
     formulas = [boundary.get("polar", ""), *boundary.get("parametric", ())]
     formulas += [part[key] for part in boundary.get("component", ()) for key in PIECE[1:]]
-    return tuple(sorted({name for text in formulas for name in NAME.findall(text)} - _vocabulary()))
+    return tuple(sorted(words_of(formulas) - {"theta"}))
 
 
-def _vocabulary() -> set[str]:
+def words_of(formulas: Iterable[str]) -> set[str]:
+    """The names in formulas that stand for no function and no constant."""
     from symbolic.tables.formula import CONSTANTS, FUNCTIONS
 
-    return {*FUNCTIONS, *CONSTANTS, "theta"}
+    return {name for text in formulas for name in NAME.findall(text)} - {*FUNCTIONS, *CONSTANTS}
 
 
 # ---- one entry at a time

@@ -32,6 +32,8 @@ from symbolic.tables.definition import (
     toml,
     word_entry,
 )
+from symbolic.tables.law import Law as Law
+from symbolic.tables.law import letters_of_law
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,34 +41,6 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from symbolic.tables.table import Table
-
-
-@dataclass(frozen=True)
-class Law:
-    """A reflection law: the exit angle `phi` as a formula in the angle of incidence `eta` and `lam`.
-
-    >>> Law().phi
-    -eta*lam
-    """
-
-    formula: str = UNIFORM
-
-    def __post_init__(self) -> None:
-        if self.formula != UNIFORM:
-            raise ValueError(
-                f"law = {self.formula!r}; so far only the paper's uniform contraction, {UNIFORM}, is known"
-            )
-
-    @property
-    def phi(self) -> "Expr":
-        """The exit angle, exactly. Paper: section 2, `phi = -lambda*eta`."""
-        from symbolic.tables.formula import parse
-        from symbolic.tables.table import eta, lam
-
-        return parse(self.formula, {"eta": eta, "lam": lam})
-
-    def __str__(self) -> str:
-        return self.formula
 
 
 @dataclass(frozen=True, repr=False)
@@ -98,7 +72,9 @@ class Scene:
 
     def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
         """Keeps the one line that says all of it; the same line for every way to write it."""
-        name, letters = name_of(boundary), letters_of(boundary)
+        name, law = name_of(boundary), law if isinstance(law, Law) else Law(law)
+        letters = tuple(dict.fromkeys((*letters_of(boundary), *letters_of_law(law.formula))))
+        shape = {**dict(law.numbers), **shape}
         for letter in shape:
             if letter not in letters:
                 raise ValueError(f"{name}: no shape parameter {letter}; it has: {', '.join(letters) or 'none'}")
@@ -108,11 +84,13 @@ class Scene:
         document = dict(boundary)
         if letters:
             document["shape"] = {letter: exact_text(f"{name}: {letter}", shape[letter]) for letter in letters}
-        formula = (law if isinstance(law, Law) else Law(law)).formula
-        if formula != UNIFORM:
-            document["law"] = formula
+        if not law.uniform:
+            document["law"] = law.formula
         document["lam"] = contraction_text(lam)
         object.__setattr__(self, "text", f"scene = {toml(document)}")
+        if not law.uniform:
+            law = self.law
+            law.check((self.lam, self.lam), law.places(self.table) if law.placed else None)
 
     # ---- what it says
 
@@ -141,29 +119,31 @@ class Scene:
 
     @property
     def shape(self) -> "dict[str, Fraction | Expr]":
-        """The numbers of the shape parameters, exactly."""
-        return {name: exact(name, text) for name, text in self.document.get("shape", {}).items()}
+        """The numbers of the table's shape parameters, exactly."""
+        return {name: exact(name, self.document["shape"][name]) for name in letters_of(self.document)}
 
     @property
     def law(self) -> Law:
-        """The reflection law."""
-        return Law(self.document.get("law", UNIFORM))
+        """The reflection law, with the numbers of its own parameters."""
+        formula = self.document.get("law", UNIFORM)
+        return Law(formula).at(**{name: self.document["shape"][name] for name in letters_of_law(formula)})
 
     @cached_property
     def table(self) -> "Table":
         """The exact table with its shape; `ValueError` when there is none."""
         return built(self.document)
 
-    def at(self, *, lam: Any = None, **shape: Any) -> "Scene":
-        """The same scene with another contraction, or other numbers for its shape.
+    def at(self, *, lam: Any = None, law: Law | str | None = None, **shape: Any) -> "Scene":
+        """The same scene with another contraction or law, or other numbers for its shape.
 
         >>> Scene("egg", alpha="0.08").at(lam="0.4", alpha="1/20")
         Scene('egg', alpha='1/20', lam='2/5')
         """
         other = object.__new__(Scene)
         boundary = {key: value for key, value in self.document.items() if key in BOUNDARY}
-        numbers = {**self.document.get("shape", {}), **shape}
-        other._hold(boundary, numbers, self.document["lam"] if lam is None else lam, self.law)
+        law, own = (Law(self.law.formula), self.law.numbers) if law is None else (law, ())
+        numbers = {**self.shape, **dict(own), **shape}
+        other._hold(boundary, numbers, self.document["lam"] if lam is None else lam, law)
         return other
 
     # ---- text and back

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import GALLERY, PAPER, POINTS, exact
+from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact
+from symbolic.tables.law import Law, letters_of_law
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option
 
@@ -37,6 +38,7 @@ def scene(
     file: str | None = None,
     given: tuple[str, ...] = (),
     drawn: "Table | None" = None,
+    formula: str | None = None,
     /,
     **shape: str | None,
 ) -> Scene:
@@ -44,6 +46,8 @@ def scene(
 
     >>> scene("ellipse", None, None, None, "0.5", a="sqrt(2)")
     Scene('ellipse', a='sqrt(2)', lam='1/2')
+    >>> scene("circle", None, None, None, "0.5", None, ("b=0.1",), None, "-lam*eta - b*sin(2*eta)")
+    Scene('circle', b='1/10', law='-b*sin(2*eta) - eta*lam', lam='1/2')
     """
     options = ("polar", polar), ("parametric", parametric), (table, table), ("scene", file), ("data", drawn)
     named = [name for name, said in options if said]
@@ -56,12 +60,14 @@ def scene(
     name = named[0]
     values = dict(map(_shape_value, given))
     if file is not None:
-        return _from_file(file, lam, values, K, shape)
+        return _from_file(file, lam, values, K, shape, formula)
+    law = UNIFORM if formula is None else _law(formula).formula
+    own = {letter: values.pop(letter) for letter in letters_of_law(law) if letter in values and name in BUILT}
     if drawn is not None:
         for key in values:
             raise ValueError(f"--shape {key}: a table from a file of data has no shape parameter; leave it out")
         _fitting(drawn.name, (), shape)
-        return Scene(drawn, lam=_contraction(lam))
+        return Scene(drawn, lam=_contraction(lam), law=law, **own)
     if name in PAPER:
         shape = {**shape, **values}
     if K is not None and name != "egg":
@@ -70,14 +76,28 @@ def scene(
         key: exact(f"--{key}", text) for key, text in _fitting(name, PAPER.get(name, ()), shape).items()
     }
     value = _contraction(lam)
+    numbers |= {letter: exact(f"--shape {letter}", text) for letter, text in own.items()}
     if table in GALLERY:
-        return Scene(_of_gallery(table, values), lam=value)
+        return Scene(_of_gallery(table, values), lam=value, law=law, **numbers)
     if table:
-        return Scene(table, lam=value, K=POINTS if K is None else K, **numbers)
+        return Scene(table, lam=value, law=law, K=POINTS if K is None else K, **numbers)
     try:
-        return Scene.of({name: polar or list(parametric or ()), "shape": values, "lam": str(value)})
+        return Scene.of({name: polar or list(parametric or ()), "shape": values, "law": law, "lam": str(value)})
     except ValueError as error:
         raise ValueError(f"--{error}") from None
+
+
+def _law(formula: str) -> Law:
+    try:
+        return Law(formula)
+    except ValueError as error:
+        raise ValueError(f"--{error}") from None
+
+
+def uniform_only(scene: Scene, what: str) -> None:
+    """Refuses a law of another kind for a question that is answered for the paper's law alone."""
+    if not scene.law.uniform:
+        raise ValueError(f"{what} knows the paper's law phi = -lam*eta only, and not {scene.law}; leave --law out")
 
 
 def _shape_value(text: str) -> tuple[str, str]:
@@ -88,8 +108,10 @@ def _shape_value(text: str) -> tuple[str, str]:
     return name.strip(), value.strip()
 
 
-def _from_file(file: str, lam: str | None, values: dict[str, str], K: int | None, shape: dict[str, Any]) -> Scene:
-    """The scene of a file; a contraction and shape parameters on the command line come before its own."""
+def _from_file(
+    file: str, lam: str | None, values: dict[str, str], K: int | None, shape: dict[str, Any], formula: str | None
+) -> Scene:
+    """The scene of a file; a law, a contraction and shape parameters on the command line come before its own."""
     for key, text in {"K": K, **shape}.items():
         if text is not None:
             raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
@@ -98,7 +120,8 @@ def _from_file(file: str, lam: str | None, values: dict[str, str], K: int | None
     except (OSError, UnicodeDecodeError) as reason:
         raise ValueError(f"--scene {file!r} cannot be read: {reason}") from None
     numbers = {name: exact(f"--shape {name}", text) for name, text in values.items()}
-    return found.at(lam=None if lam is None else _contraction(lam), **numbers)
+    law = None if formula is None else _law(formula)
+    return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)
 
 
 def _of_gallery(name: str, values: dict[str, str]) -> Any:
@@ -135,18 +158,21 @@ def _contraction(lam: str | None) -> Any:
     return value
 
 
+NAMED = (*PAPER, *GALLERY)
+BUILT = (*NAMED, "data")  # whose --shape gives lengths; a formula's own letters stand in its scene
 Command = Callable[..., Any]
 TABLE = (
-    click.argument("table", required=False, type=click.Choice([*PAPER, *GALLERY])),
+    click.argument("table", required=False, type=click.Choice(NAMED)),
     click.option("--a", metavar="NUMBER", help="Half the major axis of the ellipse, at least 1."),
     click.option("--alpha", metavar="NUMBER", help="Shape of the egg, from 0 to 1/(1 + K^2)."),
     click.option("--K", "K", type=click.IntRange(2), metavar="INTEGER", help="Points of the egg; the paper's has 3."),
     click.option("--polar", metavar="FORMULA", help="Your own table: the radius, a formula in theta."),
     click.option("--parametric", nargs=2, metavar="X Y", help="Your own table: a closed curve in theta on [-pi, pi)."),
-    click.option("--scene", "file", metavar="FILE", help="A scene file: any table, its shape and contraction."),
+    click.option("--scene", "file", metavar="FILE", help="A scene file: any table, its shape, law and contraction."),
     click.option("--data", metavar="FILE", help="A measured table: points in CSV; or a drawn one: paths in SVG."),
     click.option("--smoothness", type=click.IntRange(0, 2), help="Of the spline through the points of --data; or 2."),
     click.option("--degree", type=click.IntRange(1, 64), help="Of a Fourier sum near the points of --data, instead."),
+    click.option("--law", metavar="FORMULA", help="The exit angle: a formula in eta, lam, theta; or else -lam*eta."),
 )
 SHAPE = click.option(
     "--shape", "given", multiple=True, metavar="NAME=VALUE", help="A shape parameter of your own table, or a length."
@@ -171,12 +197,13 @@ def table_options(command: Command) -> Command:
         degree: int | None,
         lam: str | None = "0",
         given: tuple[str, ...] = (),
+        law: str | None = None,
         **others: Any,
     ) -> Any:
         from verification.app.outline import drawn
 
         measured = drawn(data, smoothness, degree)
-        said = scene(table, polar, parametric, K, lam, file, given, measured, a=a, alpha=alpha)
+        said = scene(table, polar, parametric, K, lam, file, given, measured, law, a=a, alpha=alpha)
         return command(scene=said, **others)
 
     for option in reversed(TABLE):
@@ -272,7 +299,7 @@ def over(scene: Scene, lams: str) -> "tuple[str, NDArray[np.float64]]":
     from numeric.sweeps.sweep import map_of, text_of
 
     text, values = text_of(scene), np.array(span("--lams", lams))
-    map_of(text, values[0])
+    map_of(text, values)
     return text, values
 
 

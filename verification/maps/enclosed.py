@@ -146,6 +146,11 @@ class EnclosedMap:
         """Point, velocity and acceleration."""
         return self.parts[component](self.ops, theta, *self.shape)
 
+    def _exit(self, eta: arb, theta: arb) -> arb:
+        """The exit angle, enclosed."""
+        formula = self.exact.formula
+        return -self.lam * eta if formula is None else formula.exit(self.ops, eta, self.lam, theta)[0]
+
     def _placed(self, component: int) -> Any:
         def place(theta: arb) -> Frame:
             return tuple(self.curve(component, theta)[:4])
@@ -190,7 +195,7 @@ class EnclosedMap:
         if not vx * (x - ball.x) + vy * (y - ball.y) > 0:
             return None
         eta = -(arb.atan2(vx * dx + vy * dy, vx * dy - vy * dx))
-        following = self.ball(guess.component, newton, -self.lam * eta)
+        following = self.ball(guess.component, newton, self._exit(eta, newton))
         return Ball(guess.component, newton, following.phi, following.v, x, y, eta)
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap, Status
 from numeric.backends.scalars import ScalarBackend
-from numeric.flights.family import NEAR, Frame, law_of
+from numeric.flights.family import FORMULA, NEAR, Frame, law_of
 from numeric.flights.general import General
 from verification.arithmetic.iteration import Stop, Vector, iterated
 
@@ -56,7 +56,8 @@ class ExactMap:
         self.ops = ScalarBackend(self.context)
         self.general = General(map.states.boundary)
         self.lam = self.exactly(map.lam.flat[0] if lam is None else lam)  # a float is the double it is
-        self.law = law_of(float(map.lam.flat[0]), float(map.lam.flat[0]))
+        self.law = map.law if map.law == FORMULA else law_of(float(map.lam.flat[0]), float(map.lam.flat[0]))
+        self.formula = map.family.formula if map.law == FORMULA else None
         self.shape = [self.exactly(value) for value in map.exact_shape]
         parts = map.ir.parts
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in parts]
@@ -90,7 +91,7 @@ class ExactMap:
         tx, ty, x, y = self._frame(component, theta)
         vx, vy = ball.v
         eta = -mp.atan2(vx * tx + vy * ty, vx * ty - vy * tx)
-        phi = -self.lam * eta
+        phi = -self.lam * eta if self.formula is None else self.formula.exit(self.ops, eta, self.lam, theta)[0]
         c, s = mp.cos(phi), mp.sin(phi)
         return Ball(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y, eta, code)
 

@@ -17,7 +17,7 @@ from .curves import (
 from .events import curve_of, proof_of
 from .files import check, checked, document, read
 from .locate import GMPY2, WORDS, Located, certify, closed_form, lambda_star
-from .questions import BranchEvent, FollowedOrbit, PeriodicOrbit, PeriodicOrbits, find_cycles, follow
+from .questions import BranchEvent, FollowedOrbit, PeriodicOrbit, PeriodicOrbits, find_cycles, follow, law_over
 
 __all__ = [
     "GMPY2",
@@ -53,6 +53,7 @@ __all__ = [
     "follow",
     "lambda_star",
     "largest_shape",
+    "law_over",
     "proof_of",
     "read",
     "stay",

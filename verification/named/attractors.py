@@ -23,6 +23,7 @@ from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import polished, shortest
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import Symmetry, group
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import balls, bits_of, decimal, working
 from verification.cycles.recurrence.chain import trace_and_determinant
@@ -49,7 +50,7 @@ class Certificate:
         return all(value is True for value in self.checks.values())
 
 
-def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS) -> Certificate:
+def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS, law: Law = PAPERS_LAW) -> Certificate:
     """What balls prove about the cycle whose bounces lie near the given ones.
 
     >>> from sympy import Rational
@@ -59,7 +60,7 @@ def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS
     >>> axis.proved, axis.trace.str(10, radius=False), axis.determinant.str(10, radius=False)
     (True, '-0.4375000000', '0.2500000000')
     """
-    problem = Problem(table, tuple(int(i) for i in near.component), lam=lam)
+    problem = Problem(table, tuple(int(i) for i in near.component), lam=lam, law=law)
     proof = certify(problem, [float(x) for x in near.theta], digits)
     bits = proof.claim.bits
     with working(bits):
@@ -92,7 +93,9 @@ def exponents(trace: arb, determinant: arb, period: int) -> tuple[arb, arb]:
     return plus, size.log() / period - plus
 
 
-def certified_exponents(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS) -> dict[str, Any] | None:
+def certified_exponents(
+    table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS, law: Law = PAPERS_LAW
+) -> dict[str, Any] | None:
     """The exponents of the cycle near some points as decimals with a radius, and the checklist; None if not proved.
 
     At `lam = 0` the lower one is minus infinity, and null.
@@ -104,15 +107,15 @@ def certified_exponents(table: Table, lam: Expr, near: PhasePoints, digits: int 
     >>> axis["nu_plus"][:16], axis["nu_minus"][:16]  # log(1/2)/2, a complex pair
     ('-0.3465735902799', '-0.3465735902799')
     """
-    proof = certificate(table, lam, near, digits)
+    proof = certificate(table, lam, near, digits, law)
     if not all(proof.checks[name] for name in ("exists", "unique", "admissible", "minimal_period")):
         return None
     with working(bits_of(digits, 64)):
-        if lam == 0:
+        if lam == 0 and law.uniform:
             plus, minus = abs(proof.trace).log() / near.size, None
         else:
             plus, minus = exponents(proof.trace, proof.determinant, near.size)
-        if not plus.is_finite():
+        if not plus.is_finite() or (minus is not None and not minus.is_finite()):
             return None
         upper, radius = decimal(plus, digits)
         lower = decimal(minus, digits) if minus is not None else (None, radius)

@@ -54,7 +54,7 @@ def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Frac
             return None
         x, closure = centred, MIRROR
     contraction = None if lam is None else S(lam)
-    problem = Problem(ring.table, ring.components, event.kind.solved, parameter, contraction, closure)
+    problem = Problem(ring.table, ring.components, event.kind.solved, parameter, contraction, closure, ring.law)
     return certify(problem, [*(float(v) for v in x), event.value], digits)
 
 

@@ -16,8 +16,18 @@ from sympy import Expr
 
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
-from symbolic.tables.definition import KINDS, POINTS, boundary_of, built, known_entries, table_boundary
+from symbolic.tables.definition import (
+    KINDS,
+    POINTS,
+    UNIFORM,
+    boundary_of,
+    built,
+    known_entries,
+    table_boundary,
+    text_entry,
+)
 from symbolic.tables.formula import number
+from symbolic.tables.law import Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import working
@@ -77,9 +87,15 @@ def _problem_said(problem: Problem) -> dict[str, Any]:
     boundary, held = table_boundary(problem.table)
     scene = {key: value for key, value in boundary.items() if key != "name"}
     scene |= {"shape": {letter: str(value) for letter, value in held.items()}} if held else {}
+    scene |= {} if problem.law.uniform else _law_said(problem, scene)
     scene |= {} if problem.lam is None else {"lam": str(problem.lam)}
     said = {"kind": problem.kind.name.lower() if problem.kind else "cycle", "scene": scene, "free": problem.free}
     return said | {"components": list(problem.components), "mirror": problem.mirror}
+
+
+def _law_said(problem: Problem, scene: dict[str, Any]) -> dict[str, Any]:
+    """The law's formula, and the numbers of its own parameters beside the table's."""
+    return {"shape": {**scene.get("shape", {}), **dict(problem.law.numbers)}, "law": problem.law.formula}
 
 
 def _words(said: Mapping[str, Any]) -> str:
@@ -95,7 +111,9 @@ def _title(scene: Mapping[str, Any]) -> str:
     kind = next(key for key in KINDS if key in scene)
     title = scene["table"] if kind == "table" else f"{kind} {formulas}"
     points = f" of {scene['K']} points" if "K" in scene else ""
-    return title + points + "".join(f", {k} = {v}" for k, v in [*scene.get("shape", {}).items(), *_lam(scene)])
+    law = [("phi", scene["law"])] if "law" in scene else []
+    said = [*law, *scene.get("shape", {}).items(), *_lam(scene)]
+    return title + points + "".join(f", {k} = {v}" for k, v in said)
 
 
 def _lam(scene: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -193,16 +211,19 @@ def _problem(said: Mapping[str, Any], lam: Any) -> Problem:
     if not 2 <= len(components) <= LARGEST_PERIOD:
         raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
     scene = said["scene"]
-    known_entries("certificate: scene", scene, (*KINDS, "K", "undefined", "origin", "shape", "lam"))
+    known_entries("certificate: scene", scene, (*KINDS, "K", "undefined", "origin", "shape", "law", "lam"))
+    law = Law(text_entry("law", scene.get("law", UNIFORM)))
+    numbers = {letter: number(text, letter) for letter, text in scene.get("shape", {}).items()}
+    law = law.at(**{letter: numbers[letter] for letter in law.parameters if letter in numbers})
     if "table" in scene:
-        shape = {letter: number(text, letter) for letter, text in scene.get("shape", {}).items()}
+        shape = {letter: value for letter, value in numbers.items() if letter not in dict(law.numbers)}
         table = tables.named(scene["table"], int(scene.get("K", POINTS))).at(**shape)
     else:
         table = built(boundary_of(scene, ()))
     if not set(components) <= set(range(len(table.components))):
         raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
     kind = None if said["kind"] == "cycle" else BifurcationKind[said["kind"].upper()]
-    return Problem(table, components, kind, said["free"], lam, Closure(-1 if said["mirror"] else 1))
+    return Problem(table, components, kind, said["free"], lam, Closure(-1 if said["mirror"] else 1), law)
 
 
 def _sized(centre: tuple[arb, ...], wanted: int, what: str) -> None:

@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 from symbolic.tables.definition import exact
+from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ def find_cycles(
         raise ValueError(f"find_cycles: {longest!r} is no period; accepted: integers from 2")
     from sympy import S
 
-    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or (lambda said: None))
+    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or (lambda said: None), scene.law)
     made = (_orbit(scene, cycle) for cycle in found.catalogue.cycles if period in (None, cycle.period))
     return PeriodicOrbits(made, found)
 
@@ -213,11 +214,14 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
     ((parameter, ends),) = interval.items()
     low, high = _ends(parameter, ends)
     scene = orbit.scene
-    ring, fixed = Chords(scene.table, orbit.components), None
+    law, own = law_over(scene, parameter, ends), dict(scene.law.numbers)
+    ring, fixed = Chords(scene.table, orbit.components, law=law), None
     value = float(scene.lam)
-    if parameter != "lam":
+    if law.parameters:
+        value, fixed = float(exact(parameter, own[parameter])), {"lam": float(scene.lam)}
+    elif parameter != "lam":
         if "table" not in scene.document or parameter not in scene.shape:
-            accepted = ", ".join(["lam", *(scene.shape if "table" in scene.document else ())])
+            accepted = ", ".join(["lam", *(scene.shape if "table" in scene.document else ()), *own])
             raise ValueError(f"follow: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
         from sympy import S
 
@@ -229,6 +233,19 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
         parameter,
         branch(ring, np.array(orbit.theta), parameter, value, (low, high), fixed, Steps(most=points), say),
     )
+
+
+def law_over(scene: Scene, parameter: str, ends: Sequence[Any]) -> Law:
+    """The scene's law, with `parameter` left free where it is the law's own; proved to be a law over the interval."""
+    law, lam = scene.law, (scene.lam, scene.lam)
+    low, high = ends
+    interval = exact(parameter, low), exact(parameter, high)
+    if law.uniform or parameter in scene.shape:
+        return law
+    free = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] != parameter))
+    own = {parameter: interval} if free.parameters else {}
+    free.check(interval if parameter == "lam" else lam, free.places(scene.table), **own)
+    return free
 
 
 def _ends(parameter: str, given: Any) -> tuple[float, float]:

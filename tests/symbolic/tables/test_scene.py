@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from sympy import Rational, cos, sqrt
 
 from symbolic import tables
-from symbolic.tables.scene import Law, Scene
+from symbolic.tables.law import Law
+from symbolic.tables.scene import Scene
 from symbolic.tables.table import theta
 
 TRIANGLE = """
@@ -81,9 +82,10 @@ def test_a_decimal_means_the_decimal_that_it_shows():
     assert Scene("ellipse", a="sqrt(2)").shape == {"a": sqrt(2)}
 
 
-def test_the_law_of_a_scene_is_the_paper_s():
+def test_the_law_of_a_scene_is_the_paper_s_unless_another_points_into_the_table():
     assert Scene("circle").law == Law()
-    with pytest.raises(ValueError, match="uniform contraction"):
+    assert Scene("circle", law="-eta**3/9").law == Law("-eta**3/9")
+    with pytest.raises(ValueError, match="does not lie between -pi/2 and pi/2"):
         Scene("circle", law="-eta**3")
 
 

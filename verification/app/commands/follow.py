@@ -1,5 +1,6 @@
 """`pinball follow`: what becomes of this cycle as lambda, or the table's shape, changes?"""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +26,9 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @table_options
 @click.option("--lam", "interval", required=True, metavar="LOW:HIGH", help="The contractions, between 0 and 1.")
 @click.option(
-    "--shape", metavar="LOW:HIGH", help="Vary the table's shape in place of lambda; --lam is then one number."
+    "--shape",
+    metavar="[NAME=]LOW:HIGH",
+    help="Vary the table's shape, or a parameter of the law, in place of lambda; --lam is then one number.",
 )
 @click.option("--cycle", metavar="NAME", help="A cycle of the paper: diameter, triangle, horizontal, ...")
 @click.option("--start", metavar="THETA,...", help="Or the bounces of one, roughly.")
@@ -59,27 +62,34 @@ def command(
     """
     from verification.cycles.continuation.arc import Steps
     from verification.cycles.continuation.branch import at_contraction, branch, freed, named, record, typed
+    from verification.named.questions import law_over
 
     if curves and (scene.name != "egg" or shape):
         given = "--shape" if shape else scene.name
         raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
-    letter = varied(scene) if shape else "lam"
-    low, high = interval_of(f"--{'shape' if shape else 'lam'}", shape or interval)
+    letter, ends = varied(scene, shape) if shape else ("lam", interval)
+    low, high = interval_of(f"--{'shape' if shape else 'lam'}", ends)
     lam = contraction(interval) if shape else None
+    if lam is not None and not scene.law.uniform:
+        scene = scene.at(lam=lam)
+    law = law_over(scene, letter, ends.split(":"))
     table = scene.table
     if cycle is not None:
         ring, x, own = named(cycle, table)
     else:
         names = components.split(",") if components else None
         (ring, x), own = typed(table, [float(exact("--start", t)) for t in str(start).split(",")], names), None
+    ring = replace(ring, law=scene.law)
     first = low if lam is None else float(lam)
     value, fixed = float(exact("--at", at)) if at is not None else first if own is None else own, {}
     if lam is not None:
         x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
-        ring = freed(ring, scene.K, letter, [exact("--shape", part) for part in str(shape).split(":")])
-        value = float(scene.shape[letter])
+        if letter in scene.shape:
+            ring = freed(ring, scene.K, letter, [exact("--shape", part) for part in ends.split(":")])
+        value = float(exact("--shape", scene.document["shape"][letter]))
+    ring = replace(ring, law=law)
     steps = Steps(most=points)
     with output.progress("Following", points) as tick:
         found = [branch(ring, x, letter, value, (low, high), fixed, steps, lambda p: tick(f"{letter} = {p.z[-1]:.4f}"))]
@@ -124,12 +134,15 @@ def interval_of(option: str, text: str) -> tuple[float, float]:
     return low, high
 
 
-def varied(scene: Scene) -> str:
-    """The letter of the table's shape."""
-    if not scene.shape:
+def varied(scene: Scene, shape: str) -> tuple[str, str]:
+    """What `LOW:HIGH` varies, the table's shape, or `NAME=LOW:HIGH`, that or a parameter of the law's own; the ends."""
+    name, given, ends = shape.rpartition("=")
+    known = [*(scene.shape if "table" in scene.document else ()), *dict(scene.law.numbers)]
+    if not known:
         raise ValueError(f"--shape: {scene.name} has none; accepted: the ellipse and the egg")
-    (letter,) = scene.shape
-    return letter
+    if given and name not in known:
+        raise ValueError(f"--shape {shape}: {name} is no parameter that varies here; accepted: {', '.join(known)}")
+    return name or known[0], ends
 
 
 def contraction(text: str) -> "Fraction | Expr":

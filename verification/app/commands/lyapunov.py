@@ -104,7 +104,7 @@ def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
         return {}
     from sympy import S
 
-    return dict(certificate(scene.table, S(scene.lam), attractor.points).checks)
+    return dict(certificate(scene.table, S(scene.lam), attractor.points, law=scene.law).checks)
 
 
 def show_attractor(console: "Console", document: dict[str, Any]) -> None:
@@ -236,8 +236,12 @@ def certify(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
 
     for one, described in zip(survey.groups, document["groups"], strict=True):
         if described.get("period") and one.attractor is not None:
-            described["certified"] = certified_exponents(scene.table, S(scene.lam), one.attractor.points)
-        elif described["kind"] == "chaotic" and (found := chaotic_exponents(scene.table, S(scene.lam))):
+            described["certified"] = certified_exponents(scene.table, S(scene.lam), one.attractor.points, law=scene.law)
+        elif (
+            described["kind"] == "chaotic"
+            and scene.law.uniform
+            and (found := chaotic_exponents(scene.table, S(scene.lam)))
+        ):
             described["certified"] = found
 
 

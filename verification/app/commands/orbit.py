@@ -11,7 +11,7 @@ import click
 
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option
-from verification.app.scene import scene_options, start_of, table_options
+from verification.app.scene import scene_options, start_of, table_options, uniform_only
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -149,6 +149,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
 
     from numeric import PinballMap
 
+    uniform_only(scene, "slap, the map of exits along the normal,")
     map = PinballMap(scene, lam=0)
     names = [part.name for part in map.ir.parts]
     component = np.repeat(np.arange(len(names)), points)
@@ -213,16 +214,22 @@ def cycles_command(
     from verification.cycles.recurrence.newton import given
     from verification.cycles.recurrence.problem import Problem
 
+    for option, given_one in (("--count", count), ("--prove", prove)):
+        if given_one:
+            uniform_only(scene, option)
     table, lam = scene.table, S(scene.lam)
     with output.progress("Searching", ROUNDS) as tick:
-        found = all_cycles(table, lam, period, seed, tick)
+        found = all_cycles(table, lam, period, seed, tick, scene.law)
     catalogue = found.catalogue
-    solutions = [given(Problem(table, cycle.components, lam=lam), cycle.theta) for cycle in catalogue.cycles]
+    solutions = [
+        given(Problem(table, cycle.components, lam=lam, law=scene.law), cycle.theta) for cycle in catalogue.cycles
+    ]
     counts = counted(catalogue, count, output) if count else []
     completed = completeness(catalogue, lam, prove, budget, output) if prove else []
     document = {
         "table": scene.name,
         "lam": str(lam),
+        **({} if scene.law.uniform else {"law": str(scene.law)}),
         "rounds": found.rounds,
         "degenerate": catalogue.degenerate,
         "periods": [

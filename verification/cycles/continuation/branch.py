@@ -318,7 +318,7 @@ def freed(ring: Chords, K: int, parameter: str, interval: Sequence[Expr | Fracti
             table.at(**{parameter: S(value)})
         except ValueError as why:
             raise ValueError(f"--shape: {why}") from None
-    return Chords(table, ring.components, ring.closure)
+    return replace(ring, table=table)
 
 
 def rows(branch: Branch) -> list[tuple[Point, Event | None]]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS
 from verification.arithmetic.iteration import Stop, in_rows
@@ -30,8 +31,8 @@ NEWTON = Stop(enough=1e-11, steps=14, reach=0.5)
 class Corrector:
     """The chord system of a table at one contraction, for many cycles at a time."""
 
-    def __init__(self, table: Table, lam: float) -> None:
-        self.table, self.lam = table, lam
+    def __init__(self, table: Table, lam: float, law: Law = PAPERS_LAW) -> None:
+        self.table, self.lam, self.law = table, lam, law
 
     def closed(self, components: tuple[int, ...], seeds: Array, known: Array | None = None) -> Array:
         """The cycles that Newton's method reaches from the rows of `seeds`; rows that do not settle are dropped.
@@ -56,7 +57,7 @@ class Corrector:
 
     def diagonals(self, components: tuple[int, ...], x: Array) -> tuple[Array, Array, Array, Array]:
         """The rules at each bounce and their derivatives by the bounce before, the bounce, and the one after."""
-        n, rule = len(components), Chords(self.table, components).over(ARRAYS)
+        n, rule = len(components), Chords(self.table, components, law=self.law).over(ARRAYS)
         value, lower, middle, upper = (np.empty_like(x) for _ in range(4))
         for i in range(n):
             near = x[:, i - 1], x[:, i], x[:, (i + 1) % n]

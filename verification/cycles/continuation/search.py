@@ -15,9 +15,13 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 from sympy import Expr
+from sympy import pi as half_turn
 
 from numeric import PinballMap
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
+from symbolic.tables.table import eta as angle
+from symbolic.tables.table import lam as contraction
 from verification.cycles.continuation.cells import Array, Corrector
 from verification.cycles.continuation.linear import Spectrum, spectrum
 from verification.cycles.continuation.systems import symmetries
@@ -62,6 +66,7 @@ class Catalogue:
     cycles: list[Found] = field(default_factory=list)
     marks: dict[int, list[Array]] = field(default_factory=dict)
     degenerate: int = 0
+    law: Law = PAPERS_LAW
 
     def add(self, components: tuple[int, ...], x: Array, phi: Array) -> bool:
         """Files a cycle; False when it was there already, or only repeats a shorter one that was."""
@@ -70,7 +75,7 @@ class Catalogue:
         mark = _mark(components, x, phi)
         if any(np.max(np.abs(mark - known)) < SAME * n for known in self.marks.get(n, [])):
             return False
-        ring = Chords(self.table, components)
+        ring = Chords(self.table, components, law=self.law)
         found = spectrum(ring.terms(x, {"lam": self.lam}, 1), ring.closure)
         if abs(found.at_one) < FAMILY:
             self.degenerate += 1
@@ -166,7 +171,9 @@ class Searched:
     balanced: dict[int, bool | None]
 
 
-def all_cycles(table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick = lambda said: None) -> Searched:
+def all_cycles(
+    table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick = lambda said: None, law: Law = PAPERS_LAW
+) -> Searched:
     """The cycles of periods 2 to `longest`.
 
     >>> from symbolic.tables import ellipse
@@ -175,10 +182,10 @@ def all_cycles(table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick 
     >>> sorted((cycle.period, cycle.spectrum.stable) for cycle in found.catalogue.cycles)
     [(2, False), (2, True)]
     """
-    map = PinballMap(table, lam=float(lam))
-    corrector = Corrector(table, float(lam))
-    catalogue = Catalogue(table, float(lam))
-    whole = convex(table) is True and lam != 1
+    map = PinballMap(table, lam=float(lam), law=law)
+    corrector = Corrector(table, float(lam), law)
+    catalogue = Catalogue(table, float(lam), law=law)
+    whole = convex(table) is True and (lam != 1 if law.uniform else _inside(law, lam))
     quiet = dict.fromkeys(range(2, longest + 1), 0)
     rng = np.random.default_rng(seed)
     rounds = 0
@@ -194,9 +201,18 @@ def all_cycles(table: Table, lam: Expr, longest: int, seed: int = 1, tick: Tick 
         rounds += 1
         tick(f"{len(catalogue.cycles)} cycles")
     catalogue.cycles.sort(key=lambda cycle: (cycle.period, cycle.winding, cycle.theta))
-    law = whole and not catalogue.degenerate
-    balanced = {n: (not any(catalogue.index_sums(n).values())) if law else None for n in quiet}
+    sums = whole and not catalogue.degenerate
+    balanced = {n: (not any(catalogue.index_sums(n).values())) if sums else None for n in quiet}
     return Searched(catalogue, longest, rounds, balanced)
+
+
+def _inside(law: Law, lam: Expr) -> bool:
+    """Does the law lead away from the wall also where the incidence is grazing, the same everywhere?
+
+    Then the closed annulus of phase points is mapped into its own interior, as by a contraction below 1.
+    """
+    ends = [law.phi.subs({contraction: lam, angle: end * half_turn / 2}) for end in (-1, 1)]
+    return not law.placed and all(abs(float(end)) < pi / 2 - SAME for end in ends)
 
 
 def _orbits(map: PinballMap, rng: np.random.Generator, bounces: int) -> Orbits:
@@ -268,6 +284,6 @@ def _file(catalogue: Catalogue, itinerary: tuple[int, ...], x: Array, out: Array
     """A cycle and its images under the symmetries of the table."""
     if not catalogue.add(itinerary, x, out):
         return
-    for g in symmetries(catalogue.table):
+    for g in symmetries(catalogue.table, catalogue.law):
         if len(catalogue.table.components) == 1 or g == MIRROR:
             catalogue.add(itinerary, g.carried(x, g.radians, 1), g.turn * out)

@@ -21,6 +21,7 @@ import numpy as np
 from sympy import Matrix, Rational, cos, expand_trig, simplify, sin
 from sympy import pi as exact_pi
 
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import FLOAT64
 from verification.cycles.continuation.linear import (
@@ -99,11 +100,13 @@ def rotations(table: Table) -> int:
 
 
 @cache
-def symmetries(table: Table) -> tuple[Closure, ...]:
-    """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first."""
+def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
+    """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first, which an odd law alone has."""
+    if law.placed:
+        return ()
     k = rotations(table)
     turns = [(j, k) if j else (0, 1) for j in range(k)]
-    mirror = all(mirrored(component) for component in table.components)
+    mirror = law.odd and all(mirrored(component) for component in table.components)
     return tuple([Closure(-1, s) for s in turns] if mirror else []) + tuple(Closure(1, s) for s in turns[1:])
 
 
@@ -119,7 +122,7 @@ def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
     if ring.closure != IDENTITY:
         return []
     for m in (m for m in range(1, n) if n % m == 0):
-        for g in symmetries(ring.table):
+        for g in symmetries(ring.table, ring.law):
             if all(_maps(ring, g, x, i, m) for i in range(n)):
                 found.append((replace(ring, components=ring.components[:m], closure=g), x[:m].copy()))
     return found

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from symbolic.expressions.text import load
-from symbolic.motion.chords import chord_kernel
+from symbolic.motion.chords import chord_kernel, law_kernel
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
 from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
@@ -17,6 +18,7 @@ from verification.maps.first_hit import convex
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
 CLOSE = 1e-13
+Slopes = Mapping[str, Any]  # of a law, by name
 
 
 class ChordAngles:
@@ -58,11 +60,12 @@ def _in_float64(table: Table, arrays: bool) -> ChordAngles:
 
 @dataclass(frozen=True)
 class Chords:
-    """Cycles of a billiard by the collision rule; parameters are `lam` and the table's free shapes."""
+    """Cycles of a billiard by the collision rule; parameters are `lam`, the table's free shapes, and the law's own."""
 
     table: Table
     components: tuple[int, ...]
     closure: Closure = IDENTITY
+    law: Law = PAPERS_LAW
 
     @property
     def label(self) -> str:
@@ -76,8 +79,13 @@ class Chords:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """`lam` and the shapes."""
-        return "lam", *(p.symbol.name for p in self.table.shapes)
+        """`lam`, the shapes, and what the law has besides."""
+        return tuple(dict.fromkeys(("lam", *self.shapes, *self.law.parameters)))
+
+    @property
+    def shapes(self) -> tuple[str, ...]:
+        """The table's free shapes."""
+        return tuple(p.symbol.name for p in self.table.shapes)
 
     def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
         """The collision rule and its derivatives.
@@ -87,16 +95,27 @@ class Chords:
         >>> bool(abs(axis.terms(np.array([np.pi / 2, -np.pi / 2]), {"lam": 0.5}, 1).value).max() < 1e-15)
         True
         """
-        ring, shape = around(self.closure, x), [at[name] for name in self.parameters[1:]]
+        ring, shape = around(self.closure, x), [at[name] for name in self.shapes]
         ahead = self._angles(1, ring[1:-1], ring[2:], shape, order)
-        return self._terms(ahead, self._angles(-1, ring[1:-1], ring[:-2], shape, order), at["lam"], order)
+        back = self._angles(-1, ring[1:-1], ring[:-2], shape, order)
+        return self._terms(ahead, back, at["lam"], order, self._reflected(ARRAYS, back[0], ring[1:-1], at, order))
 
-    def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int) -> Terms[X]:
+    def _reflected(self, arithmetic: Arithmetic, eta: Any, here: Any, at: Mapping[str, Any], order: int) -> Slopes:
+        """The exit angle of a law that is no uniform contraction, and its derivatives by name; empty for that."""
+        if self.law.uniform:
+            return {}
+        made = law_kernel(self.law, order)
+        own = [at[name] for name in self.law.parameters]
+        return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], here, *own), strict=True))
+
+    def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int, law: Slopes) -> Terms[X]:
         """The rule from the angles of the chords ahead and back, with derivatives as the kernels return them."""
         zero: Any = 0 * f[0]  # type: ignore[operator]  # of the same kind
+        if law:
+            return self._bent(f, b, order, law, zero)
         if not order:
             return Terms(f[0] + lam * b[0], (zero, zero, zero), {}, {}, {})
-        k, shapes = _places(self.table, order), self.parameters[1:]
+        k, shapes = _places(self.table, order), self.shapes
         by = {"lam": b[0]} | {s: f[k[f"angle_{s}"]] + lam * b[k[f"angle_{s}"]] for s in shapes}
         bend: dict[Pair, X] = {}
         slope_by: dict[str, tuple[X, X, X]] = {}
@@ -108,6 +127,32 @@ class Chords:
                 h, o = k[f"angle_0_{s}"], k[f"angle_1_{s}"]
                 slope_by[s] = lam * b[o], f[h] + lam * b[h], f[o]
         return Terms(f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2]), by, bend, slope_by)
+
+    def _bent(self, f: Sequence[Any], b: Sequence[Any], order: int, law: Slopes, zero: Any) -> Terms[Any]:
+        """`A(next) - phi(A(previous))`, with the derivatives of `phi(eta, theta, parameters)` by the chain rule."""
+        value = f[0] - (zero + law["phi"])
+        if not order:
+            return Terms(value, (zero, zero, zero), {}, {}, {})
+        k, slope, place = _places(self.table, order), law["phi_eta"], zero + law["phi_theta"]
+        ahead = {p: f[k[f"angle_{p}"]] for p in self.shapes}
+        back = {p: b[k[f"angle_{p}"]] for p in self.shapes}
+        by = {p: ahead.get(p, zero) - (slope * back.get(p, zero) + law.get(f"phi_{p}", zero)) for p in self.parameters}
+        bend: dict[Pair, Any] = {}
+        slope_by: dict[str, tuple[Any, Any, Any]] = {}
+        if order > 1:
+            (h, o), (hh, ho, oo) = b[1:3], (k["angle_00"], k["angle_01"], k["angle_11"])
+            curved, mixed = law["phi_eta_eta"], law["phi_eta_theta"]
+            bend = {(0, 0): -(slope * b[oo] + curved * o * o), (0, 1): -(slope * b[ho] + curved * h * o + mixed * o)}
+            here = slope * b[hh] + curved * h * h + 2 * mixed * h + law["phi_theta_theta"]
+            bend |= {(1, 1): f[hh] - here, (1, 2): f[ho], (2, 2): f[oo]}
+            for p in self.parameters:
+                there, own = back.get(p, zero), (law.get(f"phi_eta_{p}", 0), law.get(f"phi_theta_{p}", 0))
+                turned = {i: b[k[f"angle_{i}_{p}"]] if p in self.shapes else zero for i in (0, 1)}
+                leaving = [f[k[f"angle_{i}_{p}"]] if p in self.shapes else zero for i in (0, 1)]
+                before = slope * turned[1] + curved * o * there + own[0] * o
+                at = slope * turned[0] + curved * h * there + own[0] * h + mixed * there + own[1]
+                slope_by[p] = -before, leaving[0] - at, leaving[1]
+        return Terms(value, (-(slope * b[2]), f[1] - (slope * b[1] + place), f[2]), by, bend, slope_by)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
         """The collision rule at single bounces.
@@ -123,10 +168,10 @@ class Chords:
 
         def rule(i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
             before, here, after = near
-            shape = [at[name] for name in self.parameters[1:]]
+            shape = [at[name] for name in self.shapes]
             f = angles(parts[i], parts[(i + 1) % len(parts)], order)(here, after, *shape)
             b = angles(parts[i], parts[i - 1], order)(here, before, *shape)
-            return self._terms(f, b, at["lam"], order)
+            return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, b[0], here, at, order))
 
         return rule
 
@@ -136,7 +181,7 @@ class Chords:
 
     def angles(self, x: Array, at: Parameters) -> tuple[Array, Array]:
         """Exit and incidence angles at each bounce, in radians."""
-        ring, shape = around(self.closure, x), [at[name] for name in self.parameters[1:]]
+        ring, shape = around(self.closure, x), [at[name] for name in self.shapes]
         out, into = (self._angles(way, ring[1:-1], end, shape, 0) for way, end in ((1, ring[2:]), (-1, ring[:-2])))
         return out[0], into[0]
 

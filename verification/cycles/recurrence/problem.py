@@ -24,6 +24,7 @@ from typing import Any
 from sympy import Expr, simplify
 
 from symbolic.expressions.text import constant, load
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Component, Table, theta
 from verification.arithmetic.balls import Arithmetic
 from verification.arithmetic.iteration import Vector
@@ -36,7 +37,7 @@ from verification.cycles.recurrence.recurrence import IDENTITY, BifurcationKind,
 
 @dataclass(frozen=True)
 class Problem:
-    """A cycle by its components, in a table whose only free shape is `free`.
+    """A cycle by its components, in a table and under a law whose only free parameter is `free`.
 
     `kind` is FOLD or FLIP, None for a cycle by itself. `closure` says what comes after its bounces: their images
     under `theta -> -theta`, or the same `p/q` of a turn further on; certificates know no shift.
@@ -49,9 +50,10 @@ class Problem:
     free: str = ""
     lam: Expr | Any = None
     closure: Closure = IDENTITY
+    law: Law = PAPERS_LAW
 
     def __post_init__(self) -> None:
-        shapes = {p.symbol.name for p in self.table.shapes}
+        shapes = {*(p.symbol.name for p in self.table.shapes), *self.law.parameters}
         if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
             raise ValueError(f"{self.table.name}: free parameters must be just {self.free or 'none'}; lam = {self.lam}")
         if self.kind not in (None, BifurcationKind.FOLD, BifurcationKind.FLIP):
@@ -61,11 +63,13 @@ class Problem:
             raise ValueError(f"{self.table.name}: {kind} with {self.free or 'no parameter'} free is not square")
         if self.mirror and not all(mirrored(component) for component in self.table.components):
             raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
+        if self.mirror and not self.law.odd:
+            raise ValueError(f"law = {self.law}: no odd function of eta, so mirror images of orbits are no orbits")
 
     @cached_property
     def ring(self) -> Chords:
         """The recurrence that its bounces obey."""
-        return Chords(self.table, self.components, self.closure)
+        return Chords(self.table, self.components, self.closure, self.law)
 
     def at(self, arithmetic: Arithmetic, z: Vector) -> dict[str, Any]:
         """The parameters, given or unknown."""

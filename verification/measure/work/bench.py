@@ -38,6 +38,7 @@ from verification.measure.extremes.orbits import DIGITS, RADII, SCENES, scene
 
 Array = NDArray[np.float64]
 LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
+FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # laws of a user's own: a polynomial, and one sine
 BALLS, RUNS = 4096, 5
 WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
 CHECKED = 24  # balls whose errors are measured
@@ -142,6 +143,11 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
         own, lam = attracted(map, BALLS, 1), np.full(BALLS, float(map.lam))
         alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
         yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
+    for formula in FORMULAS if name == "egg" else ():
+        map = PinballMap(name, lam=LAWS["pinball"], law=formula, **_shape(name))
+        own, lam = attracted(map, BALLS), np.full(BALLS, float(map.lam))
+        alone = run(KernelSpec(map.law), map=map, own=own, lam=lam, bounces=1000)
+        yield Row(name, "float64", f"llvm, phi = {formula}", worst(map, own), alone, runs)
 
 
 def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:

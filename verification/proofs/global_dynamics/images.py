@@ -75,6 +75,8 @@ class PinballImages:
     """
 
     def __init__(self, scene: Scene, lam: tuple[Fraction, Fraction] | None = None) -> None:
+        if not scene.law.uniform:
+            raise ValueError(f"law = {scene.law}: boxes are mapped by the paper's law -lam*eta only; leave the law out")
         self.scene = scene
         low, high = lam or (Fraction(str(scene.lam)), Fraction(str(scene.lam)))
         if not 0 <= low <= high < 1 or high == 0:

@@ -30,6 +30,8 @@ from sympy import Expr
 
 from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
+from symbolic.tables.law import Law
+from symbolic.tables.table import lam as contraction_symbol
 from verification.arithmetic.balls import balls, working
 from verification.cycles.continuation.search import Catalogue
 from verification.cycles.continuation.systems import rotations
@@ -127,6 +129,7 @@ def krawczyk(problem: Problem, centre: list[arb], radii: list[float], bits: int)
     >>> krawczyk(axis, [arb("1.57"), arb("-1.57")], [0.01, 0.01], 64).status.name
     'UNIQUE'
     """
+    affine_in_lam(problem.law)
     with working(bits):
         box = [arb(x, r) for x, r in zip(centre, radii, strict=True)]
         try:
@@ -143,6 +146,12 @@ def krawczyk(problem: Problem, centre: list[arb], radii: list[float], bits: int)
         spread = (one - inverse * slope) * arb_mat([[x - m] for x, m in zip(box, centre, strict=True)])
         image = [m - step[i, 0] - drift[i, 0] * (lam - lam.mid()) + spread[i, 0] for i, m in enumerate(centre)]
         return Enclosure(compared(image, box), image)
+
+
+def affine_in_lam(law: Law) -> None:
+    """Refuses a law for which the drift of a cycle with `lam`, taken at one `lam`, would be no enclosure."""
+    if law.phi.diff(contraction_symbol, 2) != 0:
+        raise ValueError(f"law = {law} is not linear in lam, which this proof over an interval of lam assumes")
 
 
 def dense(chain: Chain) -> arb_mat:
@@ -185,7 +194,7 @@ def no_others(
     True
     """
     table, known = catalogue.table, catalogue.count(n)
-    if len(table.components) > 1 or convex(table) is not True:
+    if len(table.components) > 1 or convex(table) is not True or not catalogue.law.uniform:
         return Completeness(n, None, 0, known)
     with working(BITS):
         angle = load(chord_kernel(table, 0, 0, 1), balls(BITS))

@@ -1,0 +1,127 @@
+"""Cycles, branches and certificates under other reflection laws, against the theorems that survive."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from sympy import S
+
+from numeric import PinballMap
+from symbolic import Law, Scene
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables import egg, ellipse
+from verification import EnclosedMap, certify, find_cycles, follow
+from verification.app.cli import main
+from verification.cycles.recurrence.chords import Chords
+from verification.cycles.recurrence.problem import Problem
+from verification.named.files import _problem, _problem_said
+from verification.proofs.global_dynamics.images import PinballImages
+
+BENT = "-lam*eta - b*sin(2*eta)"
+SCENE = Scene("ellipse", a="3/2", lam="1/2", law=BENT, b="1/20")
+
+
+def test_double_normals_know_the_slope_of_the_law_at_normal_incidence_alone():
+    found = find_cycles(SCENE, period=2)
+    sigma = S(6) / 10  # 1/2 + 2/20
+    short = derivative_matrix(K0=-S(4) / 9, K1=-S(4) / 9, t=2, cos_phi0=1, cos_eta1=1, lam=sigma) ** 2
+    expected = sorted(complex(mu.n()).real for mu in short.eigenvals(multiple=True))
+
+    (minor,) = [orbit for orbit in found if abs(abs(orbit.theta[0]) - np.pi / 2) < 1e-6]
+
+    assert sorted(mu.real for mu in minor.multipliers) == pytest.approx(expected, abs=1e-9)
+    assert len(found) == 2
+
+
+def test_a_fold_is_followed_in_a_parameter_of_the_law_and_proved():
+    scene = Scene("egg", alpha="2/25", lam="7/20", law=BENT, b="1/20")
+    triangle = find_cycles(scene, period=3).stable[0]
+    branch = follow(triangle, b=("0", "1/10"))
+    (fold,) = branch.folds
+    proof = certify(fold, digits=12)
+
+    assert proof.certified
+    assert 0 < fold.value < 1 / 20
+    with pytest.raises(ValueError, match="is no parameter"):
+        follow(triangle, c=("0", "1/10"))
+
+
+@pytest.mark.parametrize("formula", [BENT, "-lam*eta*(1 + cos(theta)/10) - b*eta**3", "-lam*eta + b*cos(theta)"])
+def test_the_chord_rule_of_a_law_has_its_own_derivatives(formula):
+    ring = Chords(ellipse, (0, 0, 0), law=Law(formula))
+    x, at = np.array([0.1, 2.2, 4.0]), {"lam": 0.6, "b": 0.07, "a": 1.3}
+    terms, h = ring.terms(x, at, 2), 1e-5
+
+    for name in ("lam", "b", "a"):
+        up, down = (ring.terms(x, at | {name: at[name] + step}, 1) for step in (h, -h))
+        assert np.max(np.abs((up.value - down.value) / (2 * h) - terms.by[name])) < 1e-8
+        for own, over, under in zip(terms.slope_by[name], up.slope, down.slope, strict=True):
+            assert np.max(np.abs((over - under) / (2 * h) - own)) < 1e-7
+    for shift, by in ((1, 0), (0, 1), (-1, 2)):  # of the bounce before, the bounce, the one after
+        for i in range(3):
+            moved = np.eye(3)[(i - shift) % 3] * h
+            up, down = ring.terms(x + moved, at, 1), ring.terms(x - moved, at, 1)
+            assert abs((up.value[i] - down.value[i]) / (2 * h) - terms.slope[by][i]) < 1e-8
+            for other in range(3):
+                bend = terms.bend.get((min(by, other), max(by, other)))
+                difference = (up.slope[other][i] - down.slope[other][i]) / (2 * h)
+                assert abs(difference - (0 if bend is None else bend[i])) < 1e-7
+
+
+def test_a_bounce_in_balls_holds_the_exit_angle_of_the_law():
+    map = PinballMap(SCENE)
+    enclosed = EnclosedMap(map, Fraction(1, 2), 100)
+    bounce = enclosed.bounce(enclosed.ball(0, Fraction(2, 5), Fraction(3, 10)))
+    step = map.step(0.4, 0.3)
+
+    assert abs(float(bounce.phi.mid()) - float(step.phi)) < 1e-14
+    assert bounce.phi.rad() < 1e-25
+    assert abs(float(bounce.phi.mid()) - (-float(step.eta) / 2 - np.sin(2 * float(step.eta)) / 20)) < 1e-14
+
+
+def test_a_certificate_says_its_law_and_reads_it_back():
+    problem = Problem(egg(3).at(alpha="2/25"), (0, 0), lam=S(1) / 2, law=Law(BENT).at(b="1/20"))
+    said = _problem_said(problem)
+
+    assert said["scene"]["law"] == Law(BENT).formula
+    assert _problem(said, problem.lam) == problem
+
+
+def test_a_mirror_asks_for_an_odd_law():
+    problem = Problem(egg(3).at(alpha="2/25"), (0, 0), lam=S(1) / 2)
+    with pytest.raises(ValueError, match="no odd function"):
+        replace(problem, closure=replace(problem.closure, turn=-1), law=Law("-eta/2 + eta**2/9"))
+
+
+def test_what_knows_one_law_only_says_so():
+    with pytest.raises(ValueError, match="-lam\\*eta only"):
+        PinballImages(SCENE)
+
+
+EGG = ["egg", "--alpha", "0.08", "--lam", "0.5"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["orbit", *EGG, "--start", "0.4,0.3", "--bounces", "2", "--law", "-2*eta"], "at eta = -0.785398"),
+        (["orbit", *EGG, "--start", "0.4,0.3", "--bounces", "2", "--law", "-eta +"], "--law: the end at column 7"),
+        (["slap", "egg", "--alpha", "0.08", "--law", "-eta/3"], "slap, the map of exits along the normal, knows"),
+        (["cycles", *EGG, "--period", "2", "--prove", "2", "--law", "-eta/3"], "--prove knows the paper's law"),
+    ],
+)
+def test_a_command_refuses_a_law_in_one_sentence(arguments, said, capsys):
+    assert main(arguments) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_scene_file_and_options_say_the_same_law(tmp_path, capsys):
+    file = tmp_path / "bent.toml"
+    file.write_text(Scene("egg", alpha="2/25", lam="1/2", law=BENT, b="1/20").text)
+    start = ["--start", "0.4,0.3", "--bounces", "2", "--json", "-"]
+
+    assert main(["orbit", *EGG, "--law", BENT, "--shape", "b=0.05", *start]) == 0
+    typed = capsys.readouterr().out
+    assert main(["orbit", "--scene", str(file), *start]) == 0
+    assert capsys.readouterr().out == typed

@@ -2,6 +2,7 @@
 
 import math
 import re
+from types import SimpleNamespace
 
 import pytest
 from sympy import Rational, cos, diff, pi, simplify, sin, symbols
@@ -151,7 +152,7 @@ def test_a_law_that_forgets_the_incidence_is_a_map_of_the_boundary():
 def test_the_rule_of_any_law_has_its_own_derivatives():
     law = Law("-lam*eta*(1 - b*eta**2) + cos(theta)/20")
     made = collision_kernel(ellipse.at(a="3/2"), law=law)
-    words = {word: getattr(math, word) for word in made.words if word != "q"} | {"q": lambda p, n: p / n}
+    words = SimpleNamespace(**{word: getattr(math, word) for word in made.words if word != "q"}, q=lambda p, n: p / n)
     rule = load(made, words)
     at = [-2.5, 0.3, 2.8, 0.5, 0.15]
     found = dict(zip(made.results, rule(*at), strict=True))

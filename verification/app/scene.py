@@ -62,7 +62,7 @@ def scene(
     if file is not None:
         return _from_file(file, lam, values, K, shape, formula)
     law = UNIFORM if formula is None else _law(formula).formula
-    own = {letter: values.pop(letter) for letter in letters_of_law(law) if letter in values and name in BUILT}
+    own: dict[str, Any] = {n: values.pop(n) for n in letters_of_law(law) if n in values and name in BUILT}
     if drawn is not None:
         for key in values:
             raise ValueError(f"--shape {key}: a table from a file of data has no shape parameter; leave it out")

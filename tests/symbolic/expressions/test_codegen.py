@@ -37,7 +37,7 @@ def test_golden_kernels_are_what_the_definitions_generate():
 
 def test_bytes_do_not_depend_on_the_hash_seed(tmp_path):
     root = HERE.parents[1]
-    for seed in range(5):
+    for seed in (1, 2):
         folder = tmp_path / str(seed)
         folder.mkdir()
         environment = {**os.environ, "PYTHONHASHSEED": str(seed), "PYTHONPATH": str(root)}

@@ -103,3 +103,12 @@ def test_the_two_commands_of_the_readme_exist():
     makefile = (ROOT / "Makefile").read_text()
     for target in re.findall(r"^    make (\w+)", (ROOT / "README.md").read_text(), re.MULTILINE):
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
+
+
+def test_the_source_archive_holds_every_folder_that_is_kept():
+    """What is left out is what git leaves out; from the unpacked archive `make test` and `make verify` run."""
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]["sdist"]
+    ignored = {line.strip("/").partition("/")[0] for line in (ROOT / ".gitignore").read_text().splitlines()}
+    kept = {path.name for path in ROOT.iterdir() if path.is_dir() and path.name not in ignored | {".git"}}
+
+    assert {f"/{name}" for name in kept if not name.endswith(".egg-info")} - {*settings["include"]} == set()

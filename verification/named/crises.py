@@ -23,7 +23,7 @@ from numeric import Exponents, PinballMap
 BALLS, PART, TRANSIENT = 4096, 200, 2000
 SEED = 1
 BLOCKS = 6
-ORBITS, LONG, RECORDED = 400, 20_000, 500  # balls, bounces before their orbits count, and bounces that do
+ORBITS, LONG, RECORDED = 400, 20_000, 500  # particles, bounces before their orbits count, and bounces that do
 CELLS = 500  # to a radian, by which an area is counted
 CHAOTIC = 0.02  # growth from which an orbit counts as chaotic
 AT_ONCE = 0.01  # by which part an extent has to grow in one small step, so that it is no steady growth
@@ -112,7 +112,7 @@ def stay(left: Left, alpha: str, lam: float, budget: int) -> float:
 
 
 def spread(stays: list[tuple[float, float]], low: float, high: float, budget: int) -> float:
-    """From the middle of the bracket to the least contraction at which at least ten balls left within the budget.
+    """From the middle of the bracket to the least contraction at which at least ten particles left within the budget.
 
     >>> spread([(0.5, 10.0), (0.4, 1e7)], 0.38, 0.4, 10**7)
     0.11

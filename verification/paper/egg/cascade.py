@@ -45,7 +45,7 @@ def answer(holds: bool | None, reason: str) -> Finding:
 
 @cache
 def chaotic_lams() -> dict[str, list[float]]:
-    """The contractions of a coarse grid at which a quarter of 20 random balls or more are chaotic, for each shape."""
+    """The contractions of a coarse grid at which a quarter of 20 particles or more are chaotic, for each shape."""
     shapes = np.array([float(shape) for shape in TONGUE])
     found = run(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), workers=1)
     rows = zip(TONGUE, found.chaotic.values, strict=True)
@@ -83,9 +83,7 @@ def tongue(claim: Claim) -> Judgement:
     ends = [(min(rows[x]), max(rows[x])) for x in ("0.08", "0.09", "0.1") if rows[x]]
     starts_lower = [low for low, _ in ends]
     good = len(ends) == 3 and starts_lower == sorted(starts_lower, reverse=True) and not rows["0.07"]
-    said = (
-        f"contractions out of {LAMS.size} in steps of 0.05 at which a quarter of 20 random balls is chaotic: {listed()}"
-    )
+    said = f"contractions out of {LAMS.size} in steps of 0.05 at which a quarter of 20 particles is chaotic: {listed()}"
     return sampled("a region that opens above alpha = 0.07 and moves to smaller lam as alpha grows", said, good)
 
 
@@ -257,7 +255,7 @@ def isolated_resolution(claim: Claim) -> Judgement:
         good = good and share > 0
         said.append(
             f"at alpha = {shape} the doublings of period {period} are certified and accumulate near {found.limit:.6f}; "
-            f"at {beyond} {share:.1%} of 600 balls have nu_+ = {nu:.4f} +- {error:.0e}"
+            f"at {beyond} {share:.1%} of 600 particles have nu_+ = {nu:.4f} +- {error:.0e}"
         )
     return sampled(
         "narrow strips across the plane of alpha and lam, of which a coarse grid meets a point here and there; at one "

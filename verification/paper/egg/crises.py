@@ -1,6 +1,6 @@
 """Claims on the egg's crises, and on how its attractor and the basins of period 3 grow. Paper: section 6.7.
 
-A crisis is a tangency of manifolds, with balls that leave beside it. All else is sampled, except that the period-3
+A crisis is a tangency of manifolds, with particles that leave beside it. All else is sampled, except that the period-3
 orbits attract, which is proved.
 """
 
@@ -38,22 +38,22 @@ def located(kind: str) -> Crisis:
 
 @cache
 def seen(kind: str) -> crises.Crisis:
-    """The same by balls that leave, to five digits in a second or two."""
+    """The same by particles that leave, to five digits in a second or two."""
     return crises.crisis(kind, str(EXACT_SHAPE), tolerance=2e-5, budget=10**7)
 
 
 @judges("egg.merging_crisis", "egg.boundary_crisis", "egg.crisis_below")
 def values(claim: Claim) -> Judgement:
-    """Where the manifolds touch, by two methods, and where balls begin to leave."""
+    """Where the manifolds touch, by two methods, and where particles begin to leave."""
     kind, printed = ("merging", "0.4435") if "merging" in claim.id else ("boundary", "0.66")
-    found, balls = located(kind), seen(kind)
+    found, particles = located(kind), seen(kind)
     gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
     value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
-    together = found.agrees and abs(balls.lam - float(found.parameter)) <= balls.error + 2e-5
+    together = found.agrees and abs(particles.lam - float(found.parameter)) <= particles.error + 2e-5
     said = (
         f"homoclinic tangency of the {found.touch.contact.unstable.name} at {value}; the manifolds and the fold of a "
-        f"cycle of {found.period} bounces agree to {found.apart:.0e}; balls first leave at {balls.lam:.5f} +- "
-        f"{balls.error:.0e}; {printed} differs by {gap:+.1e}"
+        f"cycle of {found.period} bounces agree to {found.apart:.0e}; particles first leave at {particles.lam:.5f} +- "
+        f"{particles.error:.0e}; {printed} differs by {gap:+.1e}"
     )
     near = abs(gap) < unit and (claim.id != "egg.crisis_below" or gap > 0)
     return sampled(f"{value}, estimated", said, together and near)

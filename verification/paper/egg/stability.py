@@ -174,14 +174,14 @@ def no_chaos_below(claim: Claim) -> Judgement:
     limit = float(str(claim.printed))
     known = [chaos_at(*pair) for pair in BELOW if float(pair[0]) < limit]
     found = ", ".join(
-        f"{share:.1%} of 600 random balls at alpha = {a}, lam = {lam} end with nu_+ = {nu:.4f} +- {error:.0e}"
+        f"{share:.1%} of 600 random particles at alpha = {a}, lam = {lam} end with nu_+ = {nu:.4f} +- {error:.0e}"
         for a, lam, share, nu, error in known
         if share > 0
     )
     if not found:
         shapes, lams = np.linspace(0.2, 0.9, 4) * limit, np.linspace(0, 0.95, 20)
         chaotic = run(parameter_space(shapes, lams, 20, seed=SEED), workers=1).chaotic.values
-        said = f"{np.sum(chaotic)} of {20 * chaotic.size} random balls are chaotic, on a coarse grid below {limit}"
+        said = f"{np.sum(chaotic)} of {20 * chaotic.size} random particles are chaotic, on a coarse grid below {limit}"
         return sampled("none on a coarse grid", said, not np.any(chaotic))
     said = (
         f"chaotic attractors are found below {limit}: {found} (100000 bounces each after 10000; "
@@ -194,7 +194,7 @@ def no_chaos_below(claim: Claim) -> Judgement:
 
 @cache
 def chaos_at(shape: str, lam: str) -> tuple[str, str, float, float, float]:
-    """The share of random balls that are chaotic, with the mean of their exponents and its standard error."""
+    """The share of random particles that are chaotic, with the mean of their exponents and its standard error."""
     map = PinballMap("egg", lam=lam, alpha=shape)
     first = measured(map, interior_starts(map, 600, SEED), 4000, 10_000)
     on = np.nonzero(first.chaotic)[0]
@@ -207,14 +207,14 @@ def chaos_at(shape: str, lam: str) -> tuple[str, str, float, float, float]:
 
 @cache
 def cut() -> tuple[np.ndarray, np.ndarray]:
-    """The contractions of the cut at `alpha = 0.08`, and how many of 40 balls are chaotic at each."""
+    """The contractions of the cut at `alpha = 0.08`, and how many of 40 particles are chaotic at each."""
     found = run(parameter_space(np.array([0.08]), CUT, starts=40, bounces=2000, transient=4000, seed=SEED), workers=1)
     return CUT, found.chaotic.values[0]
 
 
 @judges("egg.chaotic_interval")
 def chaotic_interval(claim: Claim) -> Judgement:
-    """The first and the last contraction at which most balls, or some, are chaotic."""
+    """The first and the last contraction at which most particles, or some, are chaotic."""
     lams, chaotic = cut()
     first, last = lams[chaotic >= 20][0], lams[chaotic >= 4][-1]
     low, high = (float(end) for end in str(claim.printed).strip("[]").split(","))
@@ -224,7 +224,7 @@ def chaotic_interval(claim: Claim) -> Judgement:
         for name, same in zip(("lower", "upper"), agrees, strict=True)
     ]
     said = (
-        f"with 40 balls at each of {lams.size} contractions, most are chaotic first at {first:.4f}, and some up to "
+        f"with 40 particles at each of {lams.size} contractions, most are chaotic first at {first:.4f}, and some up to "
         f"{last:.4f}; the cascade ends at 0.3935 (egg.cascade) and the attractor at 0.6621 (egg.boundary_crisis). "
         f"The {ends[0]} and the {ends[1]} with the printed end to {NEAR}"
     )
@@ -240,8 +240,8 @@ def chaos_beyond_cascade(claim: Claim) -> Judgement:
     listed = "; ".join(f"{lam}: {', '.join(str(p or '> 256') for p in sorted(p))}" for lam, p in periods.items())
     share = float(np.mean(chaotic[inside] > 0))
     said = (
-        f"some of 40 balls are chaotic at {share:.0%} of the {np.sum(inside)} contractions tried between 0.3936 and "
-        f"0.662, and at the others cycles attract the balls, of periods {listed}. Beyond the crisis at 0.662 there is "
+        f"some of 40 are chaotic at {share:.0%} of the {np.sum(inside)} contractions tried between 0.3936 and "
+        f"0.662, and at the others cycles attract them, of periods {listed}. Beyond the crisis at 0.662 there is "
         "no chaotic attractor, as section 6.7 says"
     )
     windows = all(found - {0, 3} for found in periods.values())
@@ -256,7 +256,7 @@ def periodic_only_near_zero(claim: Claim) -> Judgement:
     seen = sorted({period for periods in found.values() for period in periods})
     return sampled(
         f"cycles of period {', '.join(map(str, seen))} at alpha = {' and '.join(NEAR_ZERO)}",
-        f"60 random balls each at alpha = {', '.join(NEAR_ZERO)} and lam = {', '.join(lams)} end on cycles, of period "
+        f"60 particles each at alpha = {', '.join(NEAR_ZERO)} and lam = {', '.join(lams)} end on cycles, of period "
         f"{', '.join(str(p or '> 256') for p in seen)}; at lam closer to 1, and at smaller alpha, transients outlast "
         "any sample",
         0 not in seen,
@@ -275,17 +275,17 @@ def isolated_regions(claim: Claim) -> Judgement:
         said.append(
             f"at alpha = {shape} doublings of period {flips}, certified and supercritical, the distances in the ratio "
             f"{found.ratios[0]:.3f}; they would accumulate at {found.limit:.6f}, and at {beyond} {share:.1%} of 600 "
-            f"balls have nu_+ = {nu:.4f} +- {error:.0e}"
+            f"particles have nu_+ = {nu:.4f} +- {error:.0e}"
         )
     return sampled(
         "the regions tried are strips at the ends of cascades from period 12 and from period 8", "; ".join(said), good
     )
 
 
-def periods_at(shape: str, lam: str, balls: int) -> Counter[int]:
-    """How many random balls end on a cycle of each period; 0 stands for none up to `LONGEST`."""
+def periods_at(shape: str, lam: str, particles: int) -> Counter[int]:
+    """How many random particles end on a cycle of each period; 0 stands for none up to `LONGEST`."""
     map = map_of(shaped(3, float(shape)), float(lam))
-    settled: Measured = measured(map, interior_starts(map, balls, SEED), 20_000, 20_000)
+    settled: Measured = measured(map, interior_starts(map, particles, SEED), 20_000, 20_000)
     end = settled.end
     orbit = map.orbit(end.theta, end.phi, LONGEST, end.component)
     gap = np.hypot(orbit.x - orbit.x[0], orbit.y - orbit.y[0]) + np.abs(orbit.phi - orbit.phi[0])

@@ -109,7 +109,7 @@ def transitive(claim: Claim) -> Judgement:
 
 @cache
 def approaches(contraction: str) -> Array:
-    """The smallest distance to the cusp after so many bounces, one column for each of 256 balls."""
+    """The smallest distance to the cusp after so many bounces, one column for each of 256 particles."""
     map = PinballMap("cardioid", lam=contraction)
     start = interior_starts(map, 256, SEED)
     growth = Growth(map, start.component, start.theta, start.phi if map.law != "slap" else 0 * start.phi)
@@ -306,7 +306,7 @@ def stable_if_flatter(claim: Claim) -> Judgement:
 
 
 def from_the_join(contraction: str, bounces: int = 4000) -> Array:
-    """The exit angles after so many bounces of balls that leave the upper join at 41 angles up to 0.05."""
+    """The exit angles after so many bounces of particles that leave the upper join at 41 angles up to 0.05."""
     map = PinballMap("cuspless", lam=contraction)
     start = np.linspace(-0.05, 0.05, 41)
     return np.asarray(map.orbit(np.full(41, 2 * np.pi / 3), start, bounces).phi[-1])
@@ -317,7 +317,7 @@ def below_star(claim: Claim) -> Judgement:
     """From the join, at angles near 0, below `lambda_star`."""
     worst = max(float(np.max(np.abs(from_the_join(x)))) for x in BELOW)
     said = (
-        f"sampled at lam = {', '.join(BELOW)}: each of 41 balls that leave the upper join at angles from -0.05 to 0.05 "
+        f"sampled at lam = {', '.join(BELOW)}: each of 41 that leave the upper join at angles from -0.05 to 0.05 "
         f"has come to the horizontal orbit after 4000 bounces, exit angles up to {worst:.0e}"
     )
     return sampled("the horizontal orbit, proved to attract below lambda_c", said, worst < 1e-9)

@@ -80,35 +80,35 @@ class Spectrum:
 
 
 @cache
-def spectrum(table: str, lams: tuple[float, ...], balls: int = BALLS, bounces: int = BOUNCES) -> Spectrum:
-    """The exponents of `balls` orbits at each contraction, after transients. Paper: figures of 4.1 and 5.3."""
-    growth = settled(table, np.maximum(lams, 1e-300), balls)  # no log(0)
+def spectrum(table: str, lams: tuple[float, ...], particles: int = BALLS, bounces: int = BOUNCES) -> Spectrum:
+    """The exponents of `particles` orbits at each contraction, after transients. Paper: figures of 4.1 and 5.3."""
+    growth = settled(table, np.maximum(lams, 1e-300), particles)  # no log(0)
     growth.advance(bounces)
     plus = growth.stretch / bounces
     minus = growth.volume / bounces + np.log(growth.lam) - plus
-    return Spectrum(np.array(lams), *(x.reshape(len(lams), balls) for x in (plus, minus)))
+    return Spectrum(np.array(lams), *(x.reshape(len(lams), particles) for x in (plus, minus)))
 
 
-def settled(table: str, lams: Array, balls: int) -> Growth:
-    """The same balls, started as in the paper's appendix, on their attractors at each contraction in turn."""
-    map = PinballMap(table, lam=np.repeat(lams, balls))
-    starts = interior_starts(map.at(1), balls, SPECTRA_SEED)
+def settled(table: str, lams: Array, particles: int) -> Growth:
+    """The same particles, started as in the paper's appendix, on their attractors at each contraction in turn."""
+    map = PinballMap(table, lam=np.repeat(lams, particles))
+    starts = interior_starts(map.at(1), particles, SPECTRA_SEED)
     growth = Growth(map, *(np.tile(field, len(lams)) for field in starts[:3]))
     growth.skip(EARLY)
     return growth
 
 
-def visited(table: str, lams: tuple[float, ...], balls: int, bounces: int) -> Array:
+def visited(table: str, lams: tuple[float, ...], particles: int, bounces: int) -> Array:
     """How often each ball is in each cell of `(s, sin(phi))`: contraction, ball, cell."""
-    growth = settled(table, np.array(lams), balls)
+    growth = settled(table, np.array(lams), particles)
     map = growth.map
     orbit = map.orbit(growth.theta, growth.phi, bounces, growth.component)
     share = np.mod(map.arclength.s(orbit.theta, orbit.component) / map.arclength.perimeter, 1.0)
     row = np.minimum((share * CELLS).astype(int), CELLS - 1)
     column = np.minimum(((np.sin(orbit.phi) + 1) / 2 * CELLS).astype(int), CELLS - 1)
-    number = np.arange(len(lams) * balls) * CELLS**2 + row * CELLS + column
-    counts = np.bincount(number.ravel(), minlength=len(lams) * balls * CELLS**2)
-    return counts.reshape(len(lams), balls, CELLS**2).astype(float)
+    number = np.arange(len(lams) * particles) * CELLS**2 + row * CELLS + column
+    counts = np.bincount(number.ravel(), minlength=len(lams) * particles * CELLS**2)
+    return counts.reshape(len(lams), particles, CELLS**2).astype(float)
 
 
 @cache

@@ -6,14 +6,14 @@ tables with plain numbers is read without SymPy.
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
-    from symbolic.tables.table import Table
+    from symbolic.tables.table import Shape, Table
 
 PAPER = {"circle": (), "ellipse": ("a",), "cardioid": (), "cuspless": (), "egg": ("alpha",)}
 GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of their own
@@ -212,13 +212,14 @@ def _symbols(letters: Iterable[str]) -> "dict[str, Symbol]":
     return {letter: Symbol(letter, real=True) for letter in letters} | {theta.name: theta}
 
 
-def built(document: Mapping[str, Any]) -> "Table":
-    """The exact table that a document says, with its numbers."""
+def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
+    """The exact table that a document says, with its numbers, but for shape parameters that are left `free`."""
     from symbolic import tables
     from symbolic.tables.table import Mark
 
     texts = {letter: document["shape"][letter] for letter in letters_of(document)}
-    numbers = {letter: _expression(letter, text) for letter, text in texts.items()}
+    left = {each.symbol.name for each in free}
+    numbers = {letter: _expression(letter, text) for letter, text in texts.items() if letter not in left}
     if "table" in document:
         return tables.named(document["table"], document.get("K", POINTS)).at(**numbers)
     if "points" in document:
@@ -227,19 +228,20 @@ def built(document: Mapping[str, Any]) -> "Table":
     symbols = _symbols(texts)
 
     def formula(text: str) -> "Expr":
-        return _parsed("scene", text, texts).subs({symbols[letter]: value for letter, value in numbers.items()})
+        values = {symbols[letter]: value for letter, value in numbers.items()}
+        return _parsed("scene", text, texts).subs(values | {symbols[each.symbol.name]: each.symbol for each in free})
 
     marks = [Mark(m["name"], m["component"], formula(m["theta"])) for m in document.get("undefined", ())]
     name = name_of(document)
     if "polar" in document:
-        return tables.polar(formula(document["polar"]), name, undefined=marks)
+        return tables.polar(formula(document["polar"]), name, free, marks)
     if "parametric" in document:
         x, y = document["parametric"]
-        return tables.parametric(formula(x), formula(y), name, undefined=marks)
+        return tables.parametric(formula(x), formula(y), name, free, marks)
     arcs = [tables.arc(p["name"], *(formula(p[key]) for key in PIECE[1:])) for p in document["component"]]
     start = document.get("origin", {"component": 0, "theta": "0"})
     origin = start["component"], formula(start["theta"])
-    return tables.piecewise(*arcs, name=name, undefined=marks, origin=origin)
+    return tables.piecewise(*arcs, name=name, shapes=free, undefined=marks, origin=origin)
 
 
 def name_of(boundary: Mapping[str, Any]) -> str:

@@ -133,6 +133,37 @@ class Scene:
         """The exact table with its shape; `ValueError` when there is none."""
         return built(self.document)
 
+    def over(self, parameter: str, low: Any, high: Any) -> "Table":
+        """The table with one of its shape parameters left free, looked at from `low` to `high`.
+
+        `ValueError` with a value at which it is no table. A table given by its radius is proved for every value of the
+        interval; any other one is proved at its ends and at seven values between.
+
+        >>> flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}})
+        >>> flower.over("b", 0, "1/30").shapes[0].range
+        Interval(0, 1/30)
+        """
+        from sympy import Interval, Symbol
+
+        from symbolic.tables.table import Shape
+        from symbolic.tables.validity import radius_over
+
+        if parameter not in self.shape:
+            accepted = ", ".join(self.shape) or "none"
+            raise ValueError(f"{self.name}: no shape parameter {parameter}; it has: {accepted}")
+        ends = [exact(parameter, end) for end in (low, high)]
+        free = Shape(Symbol(parameter, real=True), Interval(*ends), "is outside of what was looked at")
+        table = built(self.document, (free,))
+        proved = "table" in self.document or ("polar" in self.document and radius_over(table))
+        for share in (0, 8) if proved else range(9):
+            value = ends[0] + (ends[1] - ends[0]) * share / 8
+            there: dict[str, Any] = {parameter: value}
+            try:
+                built(self.at(**there).document)
+            except ValueError as why:
+                raise ValueError(f"{parameter} = {value}: {why}") from None
+        return table
+
     def at(self, *, lam: Any = None, law: Law | str | None = None, **shape: Any) -> "Scene":
         """The same scene with another contraction or law, or other numbers for its shape.
 

@@ -32,7 +32,7 @@ from sympy import (
     zoo,
 )
 
-from symbolic.expressions.enclosures import UnboundedError, pole, sign_on
+from symbolic.expressions.enclosures import UnboundedError, pole, sign_in, sign_on
 from symbolic.expressions.signs import Box, Outcome, conjunction, positive
 from symbolic.tables.curves import LONG, alone, chord_of_length_zero, curves, polygon_crossing, size, waves
 from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
@@ -99,6 +99,21 @@ def radius_sign(rho: Expr) -> Outcome:
     polynomial, T, at_pi = half
     sides = (positive(polynomial.subs(T, s * T), {T: Interval(0, oo)}) for s in (1, -1))
     return conjunction(positive(at_pi, {}), *sides).outcome
+
+
+def radius_over(table: Table) -> bool:
+    """Is the radius of a polar table proved positive for every value of its free shape parameters?
+
+    `ValueError` with a value at which it is not.
+    """
+    x, y = table.components[0].point
+    rho = _radius(x, y)
+    ranges = {p.symbol: (p.range.start, p.range.end) for p in table.shapes}
+    found = sign_in(rho, {theta: (-TURN, TURN), **ranges})
+    if found.outcome is Outcome.REFUTED and not table.undefined:
+        where = ", ".join(f"{symbol} = {value.evalf(6)}" for symbol, value in found.at)
+        raise ValueError(f"{table.name}: rho = {rho} is not positive at {where}")
+    return found.outcome is Outcome.PROVED
 
 
 def _own_letters(table: Table, component: Component) -> Component:

@@ -9,7 +9,7 @@
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
@@ -204,7 +204,7 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
     import numpy as np
 
     from verification.cycles.continuation.arc import Steps
-    from verification.cycles.continuation.branch import branch, freed
+    from verification.cycles.continuation.branch import branch
     from verification.cycles.recurrence.chords import Chords
 
     if len(interval) != 1:
@@ -220,12 +220,10 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
     if law.parameters:
         value, fixed = float(exact(parameter, own[parameter])), {"lam": float(scene.lam)}
     elif parameter != "lam":
-        if "table" not in scene.document or parameter not in scene.shape:
-            accepted = ", ".join(["lam", *(scene.shape if "table" in scene.document else ()), *own])
+        if parameter not in scene.shape:
+            accepted = ", ".join(["lam", *scene.shape, *own])
             raise ValueError(f"follow: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
-        from sympy import S
-
-        ring = freed(ring, scene.K, parameter, [S(exact(parameter, end)) for end in ends])
+        ring = replace(ring, table=scene.over(parameter, *ends))
         value, fixed = float(scene.shape[parameter]), {"lam": float(scene.lam)}
     say = (lambda point: tick(f"{parameter} = {point.z[-1]:.4f}")) if tick else None
     return FollowedOrbit(

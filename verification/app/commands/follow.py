@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from sympy import Expr
 
+    from symbolic.tables.table import Table
     from verification.cycles.continuation.branch import Branch
 
 ROWS = 12  # points of a branch shown to people, and all its events
@@ -61,7 +62,7 @@ def command(
     a branch stops inside the interval; what was found is kept.
     """
     from verification.cycles.continuation.arc import Steps
-    from verification.cycles.continuation.branch import at_contraction, branch, freed, named, record, typed
+    from verification.cycles.continuation.branch import at_contraction, branch, named, record, typed
     from verification.named.questions import law_over
 
     if curves and (scene.name != "egg" or shape):
@@ -87,7 +88,7 @@ def command(
     if lam is not None:
         x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
         if letter in scene.shape:
-            ring = freed(ring, scene.K, letter, [exact("--shape", part) for part in ends.split(":")])
+            ring = replace(ring, table=over(scene, letter, ends))
         value = float(exact("--shape", scene.document["shape"][letter]))
     ring = replace(ring, law=law)
     steps = Steps(most=points)
@@ -137,12 +138,22 @@ def interval_of(option: str, text: str) -> tuple[float, float]:
 def varied(scene: Scene, shape: str) -> tuple[str, str]:
     """What `LOW:HIGH` varies, the table's shape, or `NAME=LOW:HIGH`, that or a parameter of the law's own; the ends."""
     name, given, ends = shape.rpartition("=")
-    known = [*(scene.shape if "table" in scene.document else ()), *dict(scene.law.numbers)]
+    known = [*scene.shape, *dict(scene.law.numbers)]
     if not known:
-        raise ValueError(f"--shape: {scene.name} has none; accepted: the ellipse and the egg")
+        raise ValueError(
+            f"--shape: {scene.name} has none; accepted: the ellipse, the egg, and tables with parameters of their own"
+        )
     if given and name not in known:
         raise ValueError(f"--shape {shape}: {name} is no parameter that varies here; accepted: {', '.join(known)}")
     return name or known[0], ends
+
+
+def over(scene: Scene, parameter: str, ends: str) -> "Table":
+    """The table with its shape left free; refused with a value at which it is none."""
+    try:
+        return scene.over(parameter, *ends.split(":"))
+    except ValueError as why:
+        raise ValueError(f"--shape: {why}") from None
 
 
 def contraction(text: str) -> "Fraction | Expr":

@@ -9,14 +9,12 @@ branch; `event` is empty at an ordinary point.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from sympy import Expr, N, S
+from sympy import N
 
-from symbolic import tables
 from symbolic.cycles import cycle as named_cycles
 from symbolic.cycles.cycle import Cycle
 from symbolic.tables.table import Table
@@ -308,17 +306,6 @@ def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
     if not there:
         raise ValueError(f"{ring.label}: the cycle at lam = {given} does not reach lam = {lam}; give another --start")
     return min(there, key=lambda point: abs(point.s)).z[:-1]
-
-
-def freed(ring: Chords, K: int, parameter: str, interval: Sequence[Expr | Fraction]) -> Chords:
-    """The same ring on the table with its shape left free; refused when an end of the interval is no shape."""
-    table = tables.named(ring.table.name, K)
-    for value in interval:
-        try:
-            table.at(**{parameter: S(value)})
-        except ValueError as why:
-            raise ValueError(f"--shape: {why}") from None
-    return replace(ring, table=table)
 
 
 def rows(branch: Branch) -> list[tuple[Point, Event | None]]:

@@ -1,8 +1,8 @@
 """LLVM vectors as an arithmetic: running a step on these values writes its instructions.
 
-A product that is only added to something becomes a fused multiply-add, by this file's rule and not
-by the compiler's leave: no fast-math flag is ever set, so the bits of a result depend neither on
-the number of lanes, nor on what else the kernel computes, nor on the version of LLVM.
+A product that is only added to something becomes a fused multiply-add, by this file's rule and not by the compiler's
+leave: no fast-math flag is ever set, so the bits of a result depend neither on the number of lanes, nor on what else
+the kernel computes, nor on the version of LLVM.
 """
 
 import math
@@ -272,10 +272,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
 
     def atan2(self, y: LLVMVector, x: LLVMVector) -> LLVMVector:
         """The angle of a point anywhere in the plane, from that of its mirror image on the right."""
-        nought = self.number(0.0)
-        near = self.angle(y, abs(x))
-        half_turn, low = self.with_sign(self.pi, y), self.with_sign(self.pi_low, y)
-        return self.select(x < nought, (half_turn - near) + low, near)
+        return self.select(x < self.number(0.0), self.with_sign(self.pi, y) - (near := self.angle(y, abs(x))), near)
 
     def sin(self, x: LLVMVector) -> LLVMVector:
         """The sine, of angles up to 2**30."""

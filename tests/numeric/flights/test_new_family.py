@@ -51,7 +51,7 @@ class Disc(Family):
         return Landing(list(u), across, along, code, {"v": v, "d": d}, {"t": -(half + half) * R})
 
     def leave(self, ops, shape, law, lam, landing):
-        return reflected(ops, law, lam, landing)
+        return reflected(self, ops, law, lam, landing)
 
     def slapped(self, ops, shape, position):
         return [-position[0], -position[1]]

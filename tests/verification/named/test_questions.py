@@ -40,6 +40,28 @@ def test_a_branch_is_followed_to_its_fold_and_the_fold_is_certified():
     assert str(found).endswith("certified)")
 
 
+def test_a_parameter_of_ones_own_varies_as_the_paper_s_do():
+    """The egg written as a radius with a letter of its own: the same fold of the triangles, and the same proof."""
+    own = Scene.of({"polar": "1 + b*cos(3*theta)", "shape": {"b": "2/25"}, "lam": "1/2"})
+    (fold,) = follow(find_cycles(own, period=3).stable[0], b=("0.03", "0.09")).folds
+    (eggs,) = follow(triangles()[0], alpha=("0.03", "0.09")).folds
+
+    assert fold.value == pytest.approx(eggs.value, abs=1e-12)
+    assert certify(fold, digits=15).certified
+
+
+def test_a_table_over_an_interval_is_proved_or_refused_with_a_value():
+    own = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}})
+
+    assert own.over("b", 0, "1/2").shapes[0].range.end == Rational(1, 2)
+    with pytest.raises(ValueError, match=r"polar: rho = .* is not positive at theta = .*, b = 1.5"):
+        own.over("b", 0, 3)
+    with pytest.raises(ValueError, match="alpha = 1/5: egg: alpha = 1/5 makes the table non-convex"):
+        Scene("egg", alpha="2/25").over("alpha", 0, "1/5")
+    with pytest.raises(ValueError, match="no shape parameter c; it has: b"):
+        own.over("c", 0, 1)
+
+
 def test_a_shape_is_a_letter_too():
     axis = find_cycles(Scene("ellipse", a="3/2", lam="1/2"), period=2).stable[0]
     branch = follow(axis, a=("1.2", "1.9"))

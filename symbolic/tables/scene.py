@@ -160,8 +160,8 @@ class Scene:
             there: dict[str, Any] = {parameter: value}
             try:
                 built(self.at(**there).document)
-            except ValueError as why:
-                raise ValueError(f"{parameter} = {value}: {why}") from None
+            except ValueError as why:  # the paper's tables name the value themselves
+                raise ValueError(str(why) if "table" in self.document else f"{parameter} = {value}: {why}") from None
         return table
 
     def at(self, *, lam: Any = None, law: Law | str | None = None, **shape: Any) -> "Scene":

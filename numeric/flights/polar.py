@@ -30,6 +30,7 @@ tangency, and is said to (`Status.GRAZING`).
 `W` and `L` are proved, not sampled: the program of the radius runs on intervals that cover the whole turn.
 """
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -235,6 +236,7 @@ class Bounds(NamedTuple):
     slope: float
 
 
+@lru_cache(maxsize=4)  # the table is asked whether it has them, and then for them
 def bounds(boundary: Boundary) -> Bounds:
     """Proved, and rounded up to four bits so that neighbouring shapes share a kernel; infinite where there are none."""
     shape = [Interval.around(np.array(x)) for x in boundary.shape]

@@ -300,11 +300,11 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     None where `theta` has a place outside sines and cosines of its whole multiples.
     """
     whole = table.components[0]
-    x, y = whole.point
+    x = whole.point[0]
     if len(table.components) > 1 or whole.end - whole.start != 2 * pi or size(x) > LONG or levels(x) > DEEP:
         return {}
-    rho = x / cos(theta)
-    if rho * sin(theta) != y:
+    rho = whole.radius
+    if rho is None:
         return {}
     values = [rho.diff(theta, n) if n else rho for n in range(4)]
     wanted = set().union(*(value.atoms(cos, sin) for value in values))

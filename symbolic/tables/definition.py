@@ -24,7 +24,12 @@ UNIFORM = "-lam*eta"  # the paper's law
 LAW_LETTERS = ("eta", "lam", "theta")  # what every law may speak of
 PIECE = ("name", "x", "y", "from", "to")
 KINDS = ("table", "polar", "parametric", "component", "points")
-FIT = ("smoothness", "degree", "by", "uncertainty")  # how points are made a boundary
+FIT = {
+    "smoothness": 2,
+    "degree": None,
+    "by": "chord",
+    "uncertainty": "0",
+}  # of a boundary by points
 BOUNDARY = ("name", *KINDS, *FIT, "K", "undefined", "origin")
 KEYS = (*BOUNDARY, "shape", "law", "lam")
 PLAIN = re.compile(r"[+-]?(\d{1,99}/[1-9]\d{0,98}|(\d{1,99}\.?\d{0,99}|\.\d{1,99})([eE][+-]?\d{1,2})?)", re.ASCII)
@@ -77,10 +82,9 @@ def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
     """What an exact table says; the paper's own are recognised, with the numbers that they hold already."""
-    from sympy import cos, pi, sin
+    from sympy import pi
 
     from symbolic import tables
-    from symbolic.tables.table import theta
 
     held = dict(table.fixed)
     K = _points(table) if table.name == "egg" else POINTS
@@ -92,9 +96,8 @@ def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
     if table.fit is not None:
         return _fit_entries(table), {}
     if len(table.components) == 1 and (first.start, first.end) == (-pi, pi):
-        rho = x / cos(theta)
-        same = rho * sin(theta) == y
-        said |= {"polar": str(rho)} if same else {"parametric": [str(x), str(y)]}
+        rho = first.radius
+        said |= {"parametric": [str(x), str(y)]} if rho is None else {"polar": str(rho)}
     else:
         values = [(p.name, *p.point, p.start, p.end) for p in table.components]
         said["component"] = [dict(zip(PIECE, map(str, row), strict=True)) for row in values]
@@ -112,8 +115,7 @@ def _fit_entries(table: "Table") -> dict[str, Any]:
     said: dict[str, Any] = {"name": table.name} if table.name != "measured" else {}
     said["points"] = [[str(x), str(y)] for x, y in fit.points]
     given = {"smoothness": fit.smoothness, "degree": fit.degree, "by": fit.by, "uncertainty": str(fit.uncertainty)}
-    plain = {"smoothness": 2, "degree": None, "by": "chord", "uncertainty": "0"}
-    return said | {key: value for key, value in given.items() if value not in (None, plain[key])}
+    return said | {key: value for key, value in given.items() if value not in (None, FIT[key])}
 
 
 def _fitted(said: Mapping[str, Any]) -> dict[str, Any]:
@@ -124,10 +126,10 @@ def _fitted(said: Mapping[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {"points": []}
     for i, row in enumerate(rows, 1):
         found["points"].append([exact_text(f"point {i}", number_entry(f"point {i}", value)) for value in row])
-    plain = {"smoothness": 2, "degree": None, "by": "chord"}
-    found |= {key: said[key] for key in plain if key in said and said[key] != plain[key]}
-    margin = exact_text("uncertainty", number_entry("uncertainty", said.get("uncertainty", "0")))
-    return found | ({"uncertainty": margin} if margin != "0" else {})
+    given = {key: said[key] for key in FIT if key in said}
+    if "uncertainty" in given:
+        given["uncertainty"] = exact_text("uncertainty", number_entry("uncertainty", given["uncertainty"]))
+    return found | {key: value for key, value in given.items() if value != FIT[key]}
 
 
 def _points(table: "Table") -> int:

@@ -122,7 +122,7 @@ class Law:
 
         ranges = {contraction: lam, place: theta or (-pi, pi)}
         ranges |= {symbol: own[symbol.name] for symbol in self.symbols}
-        return tuple((symbol, S(_number(low)), S(_number(high))) for symbol, (low, high) in ranges.items())
+        return tuple((symbol, S(low), S(high)) for symbol, (low, high) in ranges.items())
 
     def places(self, table: "Table") -> Range | None:
         """The range of `theta` over all components of a table, when the law depends on it."""
@@ -202,16 +202,7 @@ def _exit_angle(formula: str, numbers: tuple[tuple[str, str], ...]) -> "Expr":
     from symbolic.tables.formula import parse
 
     symbols = _symbols(formula)
-    return parse(formula, symbols).subs({symbols[name]: S(_number(exact(name, text))) for name, text in numbers})
-
-
-def _number(value: Any) -> Any:
-    """A fraction as SymPy's."""
-    from fractions import Fraction
-
-    from sympy import Rational
-
-    return Rational(value.numerator, value.denominator) if isinstance(value, Fraction) else value
+    return parse(formula, symbols).subs({symbols[name]: S(exact(name, text)) for name, text in numbers})
 
 
 def _cases(phi: "Expr", ranges: Ranges) -> Iterator[Case]:

@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import isqrt
 from typing import Any
 
-from sympy import Expr, I, Rational, S, cos, pi, re, sin
+from sympy import Expr, I, S, cos, pi, re, sin
 from sympy import im as imaginary
 
 from symbolic.tables.definition import PLAIN
@@ -48,7 +48,7 @@ def from_points(
     `uncertainty` is how far each point may be from the body, and is carried along.
 
     >>> oval = from_points([(2, 0), (0, "1.5"), (-2, 0), (0, "-1.5")])
-    >>> [len(oval.components), oval.fit.residual < Rational(1, 10**15)]
+    >>> [len(oval.components), oval.fit.residual < S.One / 10**15]
     [4, True]
     >>> from_points([(2, 0), (0, 1), (-2, 0), (0, -1)], degree=1, by="index").components[0].at(S.Zero)
     (2, 0)
@@ -84,10 +84,9 @@ def from_points(
             half = fourier(ordered[::2], _paired(steps), degree)
             missed = _rounded_up(_gap(half[:2], ordered, steps))
         table = parametric(_sum(x), _sum(y), name)
-    said = tuple((Rational(p.numerator, p.denominator), Rational(q.numerator, q.denominator)) for p, q in given)
-    exact = [Rational(v.numerator, v.denominator) for v in (residual, margin)]
-    between = None if missed is None else Rational(missed.numerator, missed.denominator)
-    fit = Fit(said, None if degree is not None else order, degree, by, exact[1], exact[0], between)
+    said = tuple((S(x), S(y)) for x, y in given)
+    between = None if missed is None else S(missed)
+    fit = Fit(said, None if degree is not None else order, degree, by, S(margin), S(residual), between)
     return Table(table.name, table.components, fit=fit)
 
 
@@ -310,7 +309,7 @@ def _sum(coefficients: Sequence[Fraction]) -> Expr:
     total = S.Zero
     for i, c in enumerate(coefficients):
         wave = cos((i + 1) // 2 * theta) if i % 2 or not i else sin(i // 2 * theta)
-        total += Rational(c.numerator, c.denominator) * wave
+        total += S(c) * wave
     return total
 
 

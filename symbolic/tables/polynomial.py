@@ -10,7 +10,7 @@ from fractions import Fraction
 from itertools import pairwise
 from math import isqrt
 
-from sympy import Expr, Poly, Rational, S
+from sympy import Expr, Poly, S
 
 from symbolic.tables.table import Component, theta
 
@@ -26,7 +26,7 @@ def as_component(name: str, piece: Bezier) -> Component:
     for axis in (0, 1):
         a, b, c, d = (p[axis] for p in piece)
         coefficients = a, 3 * (b - a), 3 * (a - 2 * b + c), d - a + 3 * (b - c)
-        terms = [Rational(k.numerator, k.denominator) * theta**i for i, k in enumerate(coefficients)]
+        terms = [S(k) * theta**i for i, k in enumerate(coefficients)]
         point.append(sum(terms, S.Zero))
     return Component(name, (point[0], point[1]), S.Zero, S.One)
 

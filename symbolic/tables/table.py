@@ -13,7 +13,7 @@ LaTeX with the paper's letters.
 
 from dataclasses import dataclass, replace
 
-from sympy import Basic, Expr, Float, Interval, Matrix, Rational, S, Symbol
+from sympy import Basic, Expr, Float, Interval, Matrix, Rational, S, Symbol, cos, sin
 from sympy import latex as sympy_latex
 from sympy import sympify as exact  # converts Python numbers; never called on text
 
@@ -55,6 +55,18 @@ class Component:
         """The point at parameter `value`, exactly."""
         x, y = self.point
         return x.subs(theta, value), y.subs(theta, value)
+
+    @property
+    def radius(self) -> Expr | None:
+        """`rho` of a component that is written as `rho*(cos(theta), sin(theta))`; None of any other.
+
+        >>> from symbolic.tables import cardioid, cuspless
+        >>> cardioid.components[0].radius, cuspless.component("wall").radius
+        (cos(theta) + 1, None)
+        """
+        x, y = self.point
+        rho = x / cos(theta)
+        return rho if rho * sin(theta) == y else None
 
 
 @dataclass(frozen=True)

@@ -106,8 +106,9 @@ def radius_over(table: Table) -> bool:
 
     `ValueError` with a value at which it is not.
     """
-    x, y = table.components[0].point
-    rho = _radius(x, y)
+    rho = table.components[0].radius
+    if rho is None:
+        return False
     ranges = {p.symbol: (p.range.start, p.range.end) for p in table.shapes}
     found = sign_in(rho, {theta: (-TURN, TURN), **ranges})
     if found.outcome is Outcome.REFUTED and not table.undefined:
@@ -193,12 +194,12 @@ def enclosed_area(table: Table) -> Expr | None:
         piece = as_bezier(component)
         if piece is not None:
             part = signed_area([piece])
-            total += Rational(part.numerator, part.denominator)
+            total += S(part)
             continue
         found = waves(x + I * y)
         if found is not None and component.end - component.start == 2 * pi:
             swept = sum(k * (u * u + v * v) for k, (u, v) in found.items())
-            total += pi * Rational(swept.numerator, swept.denominator)
+            total += pi * S(swept)
             continue
         if size(x) + size(y) > LONG:
             return None

@@ -19,8 +19,7 @@ from verification.cycles.continuation.branch import Branch, spectrum_of
 from verification.cycles.continuation.cells import Array
 from verification.cycles.recurrence.recurrence import BifurcationKind
 from verification.named.curves import AccumulationCurve as Accumulation
-from verification.named.curves import BifurcationCurve, cascade, fold, largest_shape
-from verification.named.curves import accumulation_curve as accumulation
+from verification.named.curves import BifurcationCurve, accumulation_curve, cascade, fold, largest_shape
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, contact, table
 from verification.proofs.manifolds.saddle import local, saddle
@@ -148,7 +147,7 @@ def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) 
         curves = list(cascade(K, highest))
         for line in curves:
             _line(axes, line)
-        _limit(axes, accumulation(curves, np.linspace(0.6 * top, top, 41)))
+        _limit(axes, accumulation_curve(curves, np.linspace(0.6 * top, top, 41)))
     for (p, q), dashes in zip(turns(K), ("-.", "--", ":", "-.", "--"), strict=False):
         plane = fold(K, p, q).curve.plane
         axes.plot(plane[:, 1], plane[:, 0], color="tab:blue", ls=dashes, lw=1.2, label=f"fold of the polygon {p}/{q}")

@@ -11,12 +11,14 @@ from scipy.optimize import fsolve
 from sympy import Rational, sqrt, tan
 from sympy import pi as exact_pi
 
+from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import alpha_tilde, lambda_c
 from symbolic.tables import cuspless, egg
 from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
+from verification.app.commands.follow import varied
 from verification.cycles.continuation import linear
 from verification.cycles.continuation.arc import End, Steps
 from verification.cycles.continuation.branch import branch, dataset, named
@@ -311,6 +313,14 @@ def test_a_table_without_a_shape_has_none_to_follow():
     result = run("circle", "--cycle", "diameter", "--lam", "0.5", "--shape", "0:1")
 
     assert "--shape: circle has none; accepted: the ellipse, the egg, and tables" in str(result.exception)
+
+
+def test_of_several_parameters_one_is_named():
+    scene = Scene.of({"polar": "1 + b*cos(3*theta) + c*cos(2*theta)", "shape": {"b": "1/40", "c": "1/50"}})
+
+    assert varied(scene, "c=0:1/20") == ("c", "0:1/20")
+    with pytest.raises(ValueError, match="say which of b, c varies, as in b=0:1/20"):
+        varied(scene, "0:1/20")
 
 
 def test_a_start_in_a_family_of_cycles_is_refused_as_one():

@@ -19,10 +19,17 @@ from verification.cycles.continuation.systems import Critical, coefficients
 from verification.cycles.recurrence.chords import Chords
 from verification.cycles.recurrence.problem import Linearised, Problem
 from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, henon
-from verification.named.curves import accumulation_curve as accumulation
-from verification.named.curves import cascade, contracting_up_to, double_one, expanding_cycle, fold, largest_shape
+from verification.named.curves import (
+    accumulation_curve,
+    cascade,
+    contracting_up_to,
+    double_one,
+    expanding_cycle,
+    fold,
+    largest_shape,
+)
 
-CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified doublings: `verification.named.curves.accumulation`
+CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified doublings: `named.curves.accumulation_curve`
 AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]
 
 
@@ -65,7 +72,7 @@ def test_the_resonances_pile_up_as_in_area_preserving_maps(curves):
 
 
 def test_the_accumulation_is_that_of_the_certified_cascade(curves):
-    found = accumulation(curves, np.array([0.08]))
+    found = accumulation_curve(curves, np.array([0.08]))
 
     assert abs(found.lam[0] - CERTIFIED_END) < found.error[0]
     assert 0 < found.error[0] < 1e-5

@@ -58,8 +58,8 @@ def command(
 ) -> int:
     """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
 
-    With --shape the letter is the ellipse's --a or the egg's --alpha, whose number is the start's. Exit status 1 when
-    a branch stops inside the interval; what was found is kept.
+    With --shape it is the table's shape that changes, or a parameter of the law; its number is the start's. Exit
+    status 1 when a branch stops inside the interval; what was found is kept.
     """
     from verification.cycles.continuation.arc import Steps
     from verification.cycles.continuation.branch import at_contraction, branch, named, record, typed
@@ -145,6 +145,8 @@ def varied(scene: Scene, shape: str) -> tuple[str, str]:
         )
     if given and name not in known:
         raise ValueError(f"--shape {shape}: {name} is no parameter that varies here; accepted: {', '.join(known)}")
+    if not given and len(scene.shape or known) > 1:
+        raise ValueError(f"--shape {shape}: say which of {', '.join(known)} varies, as in {known[0]}={ends}")
     return name or known[0], ends
 
 

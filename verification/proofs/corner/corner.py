@@ -156,8 +156,6 @@ def enclosed(digits: int = 25) -> tuple[arb, arb]:
     return theta1, contracted
 
 
-# FIXME self-module import verification.proofs.corner.corner
-
 BITS = 64
 Spread = tuple[arb, ...]  # the box of the parameters, around 0
 Angle = Callable[[arb, arb], tuple[arb, arb, arb]]

@@ -29,8 +29,7 @@ from verification.proofs.corner.border_collision import (
     robust,
     strips,
 )
-from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, angle, constant, enclosed
-from verification.proofs.corner.corner import corner_parameters as corners
+from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, angle, constant, corner_parameters, enclosed
 from verification.proofs.corner.half_return import START, limit, pieces
 from verification.proofs.corner.polygon import SIGNS, Pieces, Polygon, Row, grown, hull, part, sides, trapped
 
@@ -77,7 +76,7 @@ def _angles(region: Polygon) -> tuple[float, float]:
     theta1, star = enclosed()
     found = []
     for component in (ARC, WALL):
-        here = Bounce(component, constant(corners()[component], ()))
+        here = Bounce(component, constant(corner_parameters()[component], ()))
         eta, by_v, by_u = angle(here, Bounce(ARC, constant(-theta1, ())))
         found += [-eta - star * (by_v * v + by_u * u) for u, v in part(region, component)]
     return min(float(x.lower()) for x in found), max(float(x.upper()) for x in found)
@@ -160,7 +159,7 @@ def measured(distances: Sequence[float], bounces: int = 40_000) -> list[Attracto
 
 
 def _exit_angle(theta1: float) -> float:
-    here = Bounce(ARC, constant(corners()[ARC], ()))
+    here = Bounce(ARC, constant(corner_parameters()[ARC], ()))
     return float(angle(here, Bounce(ARC, constant(enclosed()[0], ())))[0].mid())
 
 

@@ -34,9 +34,19 @@ from flint import arb
 
 from verification.arithmetic.balls import cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
-from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, Quantity, beyond, enclosed, on_arc, parameter
-from verification.proofs.corner.corner import after_corner as at_corner
-from verification.proofs.corner.corner import corner_parameters as corners
+from verification.proofs.corner.corner import (
+    ARC,
+    BITS,
+    WALL,
+    Bounce,
+    Quantity,
+    after_corner,
+    beyond,
+    corner_parameters,
+    enclosed,
+    on_arc,
+    parameter,
+)
 from verification.proofs.corner.polygon import (
     Expansion,
     Piece,
@@ -118,11 +128,11 @@ def _images(component: int, u: arb, v: arb, e: arb) -> list[Image]:
     spread = u - arb(u.mid()), v - arb(v.mid()), e - arb(e.mid())
     lam = parameter(star + e.mid(), 2, spread)
     before = Bounce(ARC, parameter(-theta1 + u.mid(), 0, spread))
-    here = Bounce(component, parameter(corners()[component] + v.mid(), 1, spread))
+    here = Bounce(component, parameter(corner_parameters()[component] + v.mid(), 1, spread))
     middle = on_arc(before, here, float(theta1.mid()), lam, spread)
     return [
         (_mirrored(middle.at, theta1), beyond(landing, False))
-        for landing in at_corner(here, middle, False, lam, spread)
+        for landing in after_corner(here, middle, False, lam, spread)
     ]
 
 

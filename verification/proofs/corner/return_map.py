@@ -35,15 +35,15 @@ from verification.proofs.corner.corner import (
     WALL,
     Bounce,
     Quantity,
+    after_corner,
     angle,
     beyond,
     constant,
+    corner_parameters,
     enclosed,
     on_arc,
     parameter,
 )
-from verification.proofs.corner.corner import after_corner as at_corner
-from verification.proofs.corner.corner import corner_parameters as corners
 
 Angles = dict[tuple[int, int], Callable[..., Any]]
 TURN = 6.283185307179586
@@ -227,12 +227,12 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
     """What a box of first bounces and contractions does; the derivatives are by these two."""
     spread = theta1 - arb(theta1.mid()), lam - arb(lam.mid())
     contraction = parameter(arb(lam.mid()), 1, spread)
-    start = Bounce(ARC, constant(corners()[ARC], spread))
+    start = Bounce(ARC, constant(corner_parameters()[ARC], spread))
     first = Bounce(ARC, parameter(arb(theta1.mid()), 0, spread))
     found = []
-    for second in at_corner(start, first, False, contraction, spread):
+    for second in after_corner(start, first, False, contraction, spread):
         third = on_arc(first, second, -float(enclosed()[0].mid()), contraction, spread)
-        for fourth in at_corner(second, third, True, contraction, spread):
+        for fourth in after_corner(second, third, True, contraction, spread):
             found.append(Course(second.component, beyond(second, False), beyond(fourth, True)))
     return found
 
@@ -291,7 +291,7 @@ def _turns(course: Course) -> bool:
 
 def exit_angle(theta1: arb) -> arb:
     """The exit angle at the upper corner of a particle that flies to `theta1`; it falls as `theta1` grows."""
-    return angle(Bounce(ARC, constant(corners()[ARC], ())), Bounce(ARC, constant(theta1, ())))[0]
+    return angle(Bounce(ARC, constant(corner_parameters()[ARC], ())), Bounce(ARC, constant(theta1, ())))[0]
 
 
 @dataclass(frozen=True)

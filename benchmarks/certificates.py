@@ -22,11 +22,11 @@ from symbolic import tables
 from symbolic.cycles.polygons import saddle_node
 from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import balls, bits_of, exact_balls, working
-from verification.cycles.recurrence.cascade import cascade
-from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import GUARD, System, floats, levels, refined
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.cascade import cascade
+from verification.cycles.critical import corner
+from verification.cycles.newton import GUARD, System, floats, levels, refined
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.named.curves import limit, ratio
 from verification.named.files import checked, document
 from verification.named.locate import GMPY2, locate

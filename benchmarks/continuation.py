@@ -23,12 +23,12 @@ from sympy import Rational
 
 from numeric import PinballMap
 from symbolic.tables import egg
-from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import branch
-from verification.cycles.recurrence.cascade import next_critical
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind
+from verification.cycles.arc import Steps
+from verification.cycles.branch import branch
+from verification.cycles.cascade import next_critical
+from verification.cycles.chords import Chords
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import Array, BifurcationKind
 from verification.named.curves import BifurcationCurve, cascade
 from verification.named.locate import certify
 

@@ -15,7 +15,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table as Shown
 
-from verification.cycles.recurrence.newton import refined
+from verification.cycles.newton import refined
 from verification.named import crises
 from verification.proofs.manifolds import known as passages
 from verification.proofs.manifolds.known import SHAPE, contact, crisis, shadow, table

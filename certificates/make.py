@@ -16,7 +16,7 @@ from sympy import Expr, Integer, Rational
 
 from symbolic import tables
 from symbolic.tables.table import Table
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.problem import Problem
 from verification.named.files import document
 from verification.named.locate import certify, locate
 

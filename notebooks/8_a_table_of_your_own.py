@@ -52,8 +52,8 @@ print(float(found.nu_plus), float(found.nu_minus))
 
 # +
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.named.locate import certify
 
 problem = Problem(flower, (0, 0), BifurcationKind.FLIP, free="lam")

@@ -14,7 +14,7 @@ from sympy import Rational, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
 from symbolic import tables
 from symbolic.expressions.text import kernel, load
 from verification.arithmetic.balls import balls, working
-from verification.cycles.recurrence.chords import chord_angles
+from verification.cycles.chords import chord_angles
 
 P = 200
 

@@ -1,1 +1,5 @@
-"""Periodic orbits: search, Newton iteration, continuation, normal forms, cascades."""
+"""Periodic orbits: what one is, search, Newton iteration, continuation, normal forms, cascades."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

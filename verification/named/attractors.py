@@ -26,8 +26,8 @@ from symbolic.tables.geometry import Symmetry, group
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import balls, bits_of, decimal, working
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.problem import Linearised, Problem
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.problem import Linearised, Problem
 from verification.named.branches import Branch, Event, alike, ends, own
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Checks, Stability, stability

@@ -26,10 +26,10 @@ from symbolic.tables import egg
 from symbolic.tables.geometry import Symmetry
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence.cascade import FEIGENBAUM, doublings
-from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import IDENTITY, MIRROR, BifurcationKind, Closure
+from verification.cycles.cascade import FEIGENBAUM, doublings
+from verification.cycles.newton import floats
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import IDENTITY, MIRROR, BifurcationKind, Closure
 from verification.named.locate import certify
 
 STEP, LEAST = 1.2e-2, 1e-9

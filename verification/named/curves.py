@@ -36,16 +36,16 @@ from symbolic.tables import egg
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam
 from verification.arithmetic.balls import balls, decimal, exact_balls, working
-from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import branch
-from verification.cycles.continuation.switching import Curve, Degenerate, curve, switched
-from verification.cycles.recurrence.cascade import doubling
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.critical import Small, critical, polygon
-from verification.cycles.recurrence.newton import refined
-from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind
+from verification.cycles.arc import Steps
+from verification.cycles.branch import branch
+from verification.cycles.switching import Curve, Degenerate, curve, switched
+from verification.cycles.cascade import doubling
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.chords import Chords
+from verification.cycles.critical import Small, critical, polygon
+from verification.cycles.newton import refined
+from verification.cycles.problem import Linearised, Problem
+from verification.cycles.recurrence import Array, BifurcationKind
 from verification.named.locate import certify
 from verification.proofs.periodic.interval_newton import Enclosure, interval_newton
 

@@ -18,14 +18,14 @@ import numpy as np
 from sympy import Expr, S
 
 from symbolic.tables import egg
-from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import Event, branch
-from verification.cycles.continuation.search import all_cycles
-from verification.cycles.continuation.switching import Curve, curve
-from verification.cycles.continuation.systems import rotations
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
+from verification.cycles.arc import Steps
+from verification.cycles.branch import Event, branch
+from verification.cycles.search import all_cycles
+from verification.cycles.switching import Curve, curve
+from verification.cycles.systems import rotations
+from verification.cycles.chords import Chords
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
 from verification.named.curves import TWO, largest_shape
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Proof
@@ -37,7 +37,7 @@ def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Frac
     Where the parameter is a shape, `lam` is the contraction.
 
     >>> from symbolic.tables import egg
-    >>> from verification.cycles.continuation.branch import branch
+    >>> from verification.cycles.branch import branch
     >>> ring = Chords(egg(3).at(alpha="7/100"), (0, 0))
     >>> (doubling,) = branch(ring, np.array([0, pi]), "lam", 0.1, (0.0, 1.0)).events
     >>> proof = proof_of(doubling, 20)

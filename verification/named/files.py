@@ -31,8 +31,8 @@ from symbolic.tables.law import Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import working
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind, Closure
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.locate import closed_form
 from verification.proofs.corner.corner import NEAR
 from verification.proofs.corner.corner_orbit import CornerClaim, CornerProof, corner_proved

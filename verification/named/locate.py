@@ -21,12 +21,12 @@ from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
 from verification.arithmetic.progress import telling
-from verification.cycles.recurrence.cascade import HIGHEST, critical_cycle
-from verification.cycles.recurrence.cascade import symmetry_breaking as first_symmetry_breaking
-from verification.cycles.recurrence.critical import corner, focus
-from verification.cycles.recurrence.newton import Step, refined
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.cascade import HIGHEST, critical_cycle
+from verification.cycles.cascade import symmetry_breaking as first_symmetry_breaking
+from verification.cycles.critical import corner, focus
+from verification.cycles.newton import Step, refined
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.proofs.corner.corner_orbit import CornerClaim, CornerProof, corner_proved
 from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
 from verification.proofs.periodic.interval_newton import Status

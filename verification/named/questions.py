@@ -18,8 +18,8 @@ from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
-    from verification.cycles.continuation.branch import Branch, Event
-    from verification.cycles.continuation.search import Found, Searched
+    from verification.cycles.branch import Branch, Event
+    from verification.cycles.search import Found, Searched
     from verification.named.locate import Located
 
 SHOWN = 12  # rows of a table in a notebook
@@ -111,7 +111,7 @@ def find_cycles(
     >>> find_cycles(ellipse, period=2)
     PeriodicOrbits(2: 1 stable)
     """
-    from verification.cycles.continuation.search import all_cycles
+    from verification.cycles.search import all_cycles
 
     if (period is None) == (up_to is None):
         raise ValueError("find_cycles: give one of period=N and up_to=N")
@@ -203,9 +203,9 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
     """
     import numpy as np
 
-    from verification.cycles.continuation.arc import Steps
-    from verification.cycles.continuation.branch import branch
-    from verification.cycles.recurrence.chords import Chords
+    from verification.cycles.arc import Steps
+    from verification.cycles.branch import branch
+    from verification.cycles.chords import Chords
 
     if len(interval) != 1:
         raise ValueError(

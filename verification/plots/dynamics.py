@@ -15,9 +15,9 @@ from sympy import Expr
 
 from numeric import PinballMap
 from verification.arithmetic.balls import ARRAYS, FLOAT64
-from verification.cycles.continuation.branch import Branch, spectrum_of
-from verification.cycles.continuation.cells import Array
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.branch import Branch, spectrum_of
+from verification.cycles.cells import Array
+from verification.cycles.recurrence import BifurcationKind
 from verification.named.curves import AccumulationCurve as Accumulation
 from verification.named.curves import BifurcationCurve, accumulation_curve, cascade, fold, largest_shape
 from verification.proofs.manifolds.grow import branch

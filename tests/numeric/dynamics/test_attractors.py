@@ -15,7 +15,7 @@ from numeric.pinball.sampling import interior_starts
 from symbolic.tables import cardioid, cuspless, egg, ellipse
 from symbolic.tables.geometry import group
 from verification.app.cli import main
-from verification.cycles.recurrence.cascade import cascade
+from verification.cycles.cascade import cascade
 from verification.named.attractors import certificate
 
 EGG = egg(3).at(alpha="0.08")

@@ -10,8 +10,8 @@ from sympy import Rational
 from numeric import PinballMap
 from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.app.commands.orbit import cycles_command as cycles
-from verification.cycles.continuation.cells import Corrector, fixed_points
-from verification.cycles.continuation.search import Catalogue, all_cycles
+from verification.cycles.cells import Corrector, fixed_points
+from verification.cycles.search import Catalogue, all_cycles
 from verification.proofs.periodic.interval_newton import no_others
 from verification.proofs.slap_map.exponent import periodic_points
 

@@ -19,14 +19,14 @@ from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.app.commands.follow import varied
-from verification.cycles.continuation import linear
-from verification.cycles.continuation.arc import End, Steps
-from verification.cycles.continuation.branch import branch, dataset, named
-from verification.cycles.continuation.linear import spectrum
-from verification.cycles.continuation.switching import switched
-from verification.cycles.recurrence.cascade import cascade as followed_in_lam
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
+from verification.cycles import linear
+from verification.cycles.arc import End, Steps
+from verification.cycles.branch import branch, dataset, named
+from verification.cycles.linear import spectrum
+from verification.cycles.switching import switched
+from verification.cycles.cascade import cascade as followed_in_lam
+from verification.cycles.chords import Chords
+from verification.cycles.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
 from verification.named.events import proof_of
 from verification.named.locate import locate
 from verification.plots.dynamics import runs

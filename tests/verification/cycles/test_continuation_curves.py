@@ -12,13 +12,13 @@ from symbolic.tables import egg
 from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.continuation.arc import Steps
-from verification.cycles.continuation.branch import branch
-from verification.cycles.continuation.switching import CodimensionTwo, curve
-from verification.cycles.continuation.systems import Critical, coefficients
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, henon
+from verification.cycles.arc import Steps
+from verification.cycles.branch import branch
+from verification.cycles.switching import CodimensionTwo, curve
+from verification.cycles.systems import Critical, coefficients
+from verification.cycles.chords import Chords
+from verification.cycles.problem import Linearised, Problem
+from verification.cycles.recurrence import BifurcationKind, Closure, henon
 from verification.named.curves import (
     accumulation_curve,
     cascade,

@@ -7,8 +7,8 @@ from sympy import Rational
 from symbolic.cycles.thresholds import lambda_c
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import real_ball, working
-from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.newton import floats
+from verification.cycles.problem import Problem
 from verification.named.locate import locate
 from verification.proofs.corner import corner_orbit as blown
 

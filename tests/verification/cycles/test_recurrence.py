@@ -11,11 +11,11 @@ from sympy import Matrix, N, Rational, eye
 from symbolic.cycles.thresholds import lambda_c
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.critical import critical
-from verification.cycles.recurrence.newton import floats, refined
-from verification.cycles.recurrence.recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, delayed, henon
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.chords import Chords
+from verification.cycles.critical import critical
+from verification.cycles.newton import floats, refined
+from verification.cycles.recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, delayed, henon
 
 FOLD, FLIP, TORUS = BifurcationKind.FOLD, BifurcationKind.FLIP, BifurcationKind.TORUS
 small = st.fractions(-3, 3, max_denominator=5)

@@ -13,9 +13,9 @@ from symbolic.tables import cuspless, egg, polar
 from symbolic.tables.table import theta
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chain import Chain, Elimination
-from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import MIRROR, BifurcationKind
+from verification.cycles.chain import Chain, Elimination
+from verification.cycles.problem import Linearised, Problem
+from verification.cycles.recurrence import MIRROR, BifurcationKind
 
 fractions = st.fractions(-3, 3, max_denominator=7)
 

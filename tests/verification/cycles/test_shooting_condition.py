@@ -14,8 +14,8 @@ from sympy import Rational
 from symbolic.tables import egg
 from verification.app.commands.orbit import cycles_command as cycles
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import (
+from verification.cycles.critical import corner
+from verification.cycles.newton import (
     Conditioning,
     Solution,
     UnsettledError,
@@ -24,7 +24,7 @@ from verification.cycles.recurrence.newton import (
     norm_of_inverse,
     refined,
 )
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.problem import Problem
 from verification.measure.extremes import near
 
 FINE = near.nearly_round(near.FINE_GAP)

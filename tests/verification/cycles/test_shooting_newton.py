@@ -9,11 +9,11 @@ from sympy import Rational
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg
 from symbolic.tables.table import lam
-from verification.cycles.recurrence.cascade import attractor, characteristic, next_critical
-from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import floats, levels, refined
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.cascade import attractor, characteristic, next_critical
+from verification.cycles.critical import corner
+from verification.cycles.newton import floats, levels, refined
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 

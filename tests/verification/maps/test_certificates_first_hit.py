@@ -9,8 +9,8 @@ from sympy import Rational, cos
 from symbolic.tables import cardioid, cuspless, egg, polar
 from symbolic.tables.table import theta
 from verification.arithmetic.balls import exact_balls, working
-from verification.cycles.recurrence.newton import refined
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.newton import refined
+from verification.cycles.problem import Problem
 from verification.maps.first_hit import first_hits
 from verification.proofs.periodic.bifurcation import Claim, proved
 

@@ -13,10 +13,10 @@ from symbolic.cycles.cycle import egg_diameter, minor_axis, trace_and_determinan
 from symbolic.cycles.polygons import saddle_node
 from symbolic.tables.table import a, alpha, lam
 from verification.arithmetic.balls import multiprecision
-from verification.cycles.recurrence.chain import trace_and_determinant as monodromy
-from verification.cycles.recurrence.critical import corner, corner_angle
-from verification.cycles.recurrence.newton import Conditioning, refined
-from verification.cycles.recurrence.problem import Linearised
+from verification.cycles.chain import trace_and_determinant as monodromy
+from verification.cycles.critical import corner, corner_angle
+from verification.cycles.newton import Conditioning, refined
+from verification.cycles.problem import Linearised
 from verification.measure.extremes import flights as cases
 from verification.measure.extremes import kernels as products
 from verification.measure.extremes import near, page

@@ -7,7 +7,7 @@ import pytest
 from sympy import Rational, sqrt
 
 from symbolic import tables
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.problem import Problem
 from verification.named.files import checked, claim_of, document, read
 from verification.named.locate import certify, locate
 

@@ -13,8 +13,8 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import egg, ellipse
 from verification import EnclosedMap, certify, find_cycles, follow
 from verification.app.cli import main
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.chords import Chords
+from verification.cycles.problem import Problem
 from verification.named.files import _problem, _problem_said
 from verification.proofs.global_dynamics.images import PinballImages
 

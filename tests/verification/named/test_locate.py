@@ -9,7 +9,7 @@ from sympy import Integer, Rational
 
 from verification.app.commands.locate import check_command as check
 from verification.app.commands.locate import command as locate_command
-from verification.cycles.recurrence.cascade import cascade
+from verification.cycles.cascade import cascade
 from verification.named.files import document
 from verification.named.locate import NAMES, Located, _continued, locate
 

@@ -12,10 +12,10 @@ from sympy import Rational
 
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from verification.arithmetic.balls import balls, exact_balls, working
-from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import refined
-from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.critical import corner
+from verification.cycles.newton import refined
+from verification.cycles.problem import Linearised, Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Claim, proved

@@ -10,10 +10,10 @@ from sympy import Rational
 
 from symbolic.tables import cuspless, egg
 from verification.arithmetic.balls import working
-from verification.cycles.recurrence.cascade import attractor, cycle_at, doubled
-from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.cascade import attractor, cycle_at, doubled
+from verification.cycles.newton import floats
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.proofs.periodic.bifurcation import Stability, over_interval, stability
 from verification.proofs.periodic.interval_newton import Status, krawczyk
 

@@ -14,8 +14,8 @@ from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Outcome
 from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import exact_balls, working
-from verification.cycles.recurrence.critical import polygon_fold
-from verification.cycles.recurrence.newton import refined
+from verification.cycles.critical import polygon_fold
+from verification.cycles.newton import refined
 from verification.named.curves import DELTA, aitken, limit, ratio, wynn
 from verification.named.locate import closed_form
 from verification.paper.egg.basins import points_of_period_4, without_triangles

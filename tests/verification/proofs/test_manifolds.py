@@ -11,8 +11,8 @@ from sympy import Rational
 
 from symbolic import tables
 from verification.arithmetic.balls import ARRAYS, FLOAT64
-from verification.cycles.recurrence.cascade import cascade
-from verification.cycles.recurrence.recurrence import Closure
+from verification.cycles.cascade import cascade
+from verification.cycles.recurrence import Closure
 from verification.plots.dynamics import portrait
 from verification.proofs.manifolds.grow import branch, far
 from verification.proofs.manifolds.known import (
@@ -143,7 +143,7 @@ def test_two_methods_and_more_digits_agree_on_a_crisis(kind, digits):
 
 def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_multiplier():
     """Three rounds of the triangle more bring the fold nearer by the cube of its unstable multiplier."""
-    from verification.cycles.recurrence.newton import floats
+    from verification.cycles.newton import floats
 
     where = contact("boundary", SHAPE)
     at = tangency(where, EGG, 8)
@@ -161,7 +161,7 @@ def test_the_folds_of_shadowing_cycles_approach_a_tangency_like_the_unstable_mul
 )
 def test_the_folds_of_shadowing_cycles_approach_the_ends_of_windows_at_the_rate_of_the_saddle(kind):
     """Two methods: each round of the saddle more brings the fold nearer by its unstable multiplier."""
-    from verification.cycles.recurrence.newton import floats
+    from verification.cycles.newton import floats
 
     where = contact(kind, SHAPE)
     at = tangency(where, EGG, 8)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from sympy import Rational
 
 from verification.arithmetic.balls import multiprecision, working
-from verification.cycles.recurrence.recurrence import Closure
+from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
     bounds,

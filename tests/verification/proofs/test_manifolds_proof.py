@@ -12,7 +12,7 @@ from sympy import Rational
 
 from symbolic.tables import cardioid
 from verification.arithmetic.balls import FLOAT64, multiprecision, working
-from verification.cycles.recurrence.recurrence import Closure
+from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from symbolic.tables.table import Table
-    from verification.cycles.continuation.branch import Branch
+    from verification.cycles.branch import Branch
 
 ROWS = 12  # points of a branch shown to people, and all its events
 
@@ -61,8 +61,8 @@ def command(
     With --shape it is the table's shape that changes, or a parameter of the law; its number is the start's. Exit
     status 1 when a branch stops inside the interval; what was found is kept.
     """
-    from verification.cycles.continuation.arc import Steps
-    from verification.cycles.continuation.branch import at_contraction, branch, named, record, typed
+    from verification.cycles.arc import Steps
+    from verification.cycles.branch import at_contraction, branch, named, record, typed
     from verification.named.questions import law_over
 
     if curves and (scene.name != "egg" or shape):
@@ -168,8 +168,8 @@ def contraction(text: str) -> "Fraction | Expr":
 
 def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth: int) -> list["Branch"]:
     """The branches that leave at events, and at theirs, `depth` deep."""
-    from verification.cycles.continuation.arc import LostError
-    from verification.cycles.continuation.switching import switched
+    from verification.cycles.arc import LostError
+    from verification.cycles.switching import switched
 
     found, newest = [], [first]
     for _ in range(depth):
@@ -286,7 +286,7 @@ def said_stable(point: dict[str, Any]) -> str:
 
 def told(console: "Console", branches: list["Branch"]) -> int:
     """Says where and why branches stopped inside the interval; the exit status."""
-    from verification.cycles.continuation.arc import End
+    from verification.cycles.arc import End
 
     status = DONE
     for one in branches:

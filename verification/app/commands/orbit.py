@@ -16,8 +16,8 @@ from verification.app.scene import scene_options, start_of, table_options, unifo
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from verification.cycles.continuation.search import Catalogue, Found
-    from verification.cycles.recurrence.newton import Solution
+    from verification.cycles.search import Catalogue, Found
+    from verification.cycles.newton import Solution
 
 
 MOST = 40  # bounces shown to people
@@ -210,9 +210,9 @@ def cycles_command(
     """
     from sympy import S
 
-    from verification.cycles.continuation.search import ROUNDS, all_cycles
-    from verification.cycles.recurrence.newton import given
-    from verification.cycles.recurrence.problem import Problem
+    from verification.cycles.search import ROUNDS, all_cycles
+    from verification.cycles.newton import given
+    from verification.cycles.problem import Problem
 
     for option, given_one in (("--count", count), ("--prove", prove)):
         if given_one:
@@ -281,7 +281,7 @@ def worth(solution: "Solution") -> dict[str, Any]:
 def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[str, Any]]:
     """Fixed points of `T**n` on cells against those of the catalogue."""
     from numeric import PinballMap
-    from verification.cycles.continuation.cells import fixed_points
+    from verification.cycles.cells import fixed_points
     from verification.maps.first_hit import convex
 
     if len(catalogue.table.components) > 1 or convex(catalogue.table) is not True:

@@ -29,7 +29,7 @@ JOIN = 2 * pi / 3
 HALF_HEIGHT = 3**0.5 / 4
 LAMBDA_STAR = "0.0712172452489159804115973829"  # paper, section 5.2; digits by `pinball locate lambda-star`
 PHI_STAR = -0.0289794737869139600  # the exit angle at the upper join, by `pinball locate phi-star`
-THETA_STAR = 0.2545268713206783425  # the orbit's bounce on the arc, by `verification.cycles.recurrence.critical.corner`
+THETA_STAR = 0.2545268713206783425  # the orbit's bounce on the arc, by `verification.cycles.critical.corner`
 
 
 @dataclass(frozen=True)

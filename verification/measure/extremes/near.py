@@ -28,8 +28,8 @@ from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import bits_of, multiprecision
 from verification.arithmetic.iteration import Stop, iterated
-from verification.cycles.recurrence.cascade import doubled, doubling
-from verification.cycles.recurrence.newton import (
+from verification.cycles.cascade import doubled, doubling
+from verification.cycles.newton import (
     ROUNDINGS,
     Conditioning,
     Solution,
@@ -39,8 +39,8 @@ from verification.cycles.recurrence.newton import (
     norm_of_inverse,
     refined,
 )
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 
 DOUBLE = 2.0**-52  # the unit of rounding
 

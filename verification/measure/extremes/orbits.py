@@ -28,8 +28,8 @@ from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
 from numeric.kernels.machine import KernelSpec
 from symbolic import tables
-from verification.cycles.recurrence.newton import floats, given
-from verification.cycles.recurrence.problem import Problem
+from verification.cycles.newton import floats, given
+from verification.cycles.problem import Problem
 from verification.maps.exact import ExactMap, errors
 from verification.measure.extremes.kernels import made_unit
 from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured

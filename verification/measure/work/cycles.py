@@ -16,10 +16,10 @@ from symbolic import tables
 from symbolic.cycles import polygons
 from symbolic.tables.table import Table, lam
 from symbolic.tables.table import alpha as alpha_symbol
-from verification.cycles.recurrence.cascade import Doubling, cascade, cycle_at, doubled
-from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.cascade import Doubling, cascade, cycle_at, doubled
+from verification.cycles.newton import floats
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question
 from verification.measure.work.sought import DIGITS, Sought, last, to_digits

@@ -23,8 +23,8 @@ from symbolic.tables.geometry import speed
 from symbolic.tables.table import theta
 from verification.arithmetic.balls import FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
 from verification.arithmetic.iteration import Vector
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.problem import Linearised, Problem
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.problem import Linearised, Problem
 from verification.measure.work.bench import module
 from verification.measure.work.cycles import EGG, HALF, first_exit, triangle_start, whole
 from verification.measure.work.question import Claimed, Method, Question, available

@@ -21,8 +21,8 @@ from symbolic.cycles.cardioid_slap import LAUNCH_Q2, q, slope_squared
 from symbolic.expressions.text import Kernel, kernel, load
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
-from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import (
+from verification.cycles.critical import corner
+from verification.cycles.newton import (
     ATTEMPTS,
     GUARD,
     System,

@@ -41,7 +41,7 @@ from symbolic.motion.chords import convexity
 from symbolic.motion.flight import flight
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam, phi, theta
-from verification.cycles.recurrence.cascade import doublings
+from verification.cycles.cascade import doublings
 from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement

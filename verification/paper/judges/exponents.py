@@ -25,7 +25,7 @@ from symbolic.expressions.signs import Finding, Outcome
 from symbolic.motion.collision import area_factor, steepening, weak_dissipation
 from symbolic.tables.table import a, alpha, eta, lam
 from verification.arithmetic.balls import enclose, working
-from verification.cycles.recurrence.cascade import cascade, cycle_at, doubled
+from verification.cycles.cascade import cascade, cycle_at, doubled
 from verification.named.attractors import Certificate, certificate, exponents
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, digits, greater, judges, rounded, zero

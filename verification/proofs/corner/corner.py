@@ -24,8 +24,8 @@ from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
-from verification.cycles.recurrence.critical import corner
-from verification.cycles.recurrence.newton import refined
+from verification.cycles.critical import corner
+from verification.cycles.newton import refined
 from verification.proofs.corner.border_collision import robust
 from verification.proofs.corner.polygon import Piece
 from verification.proofs.periodic.interval_newton import Status, interval_newton

@@ -26,11 +26,11 @@ from symbolic.cycles.thresholds import lambda_c
 from symbolic.tables import cuspless, egg
 from verification.arithmetic.balls import balls, real_ball, working
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.chords import Chords, chord_angles
-from verification.cycles.recurrence.critical import Small, corner, corner_angle, focus
-from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import MIRROR
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.chords import Chords, chord_angles
+from verification.cycles.critical import Small, corner, corner_angle, focus
+from verification.cycles.problem import Linearised, Problem
+from verification.cycles.recurrence import MIRROR
 from verification.maps.first_hit import convex, inside
 from verification.proofs.corner.border_collision import homoclinic
 from verification.proofs.corner.corner import at_corner

@@ -34,7 +34,7 @@ from flint import acb, acb_mat, arb, ctx, fmpq
 from verification.arithmetic.balls import FUNCTIONS, Words
 from verification.arithmetic.iteration import Stop, iterated
 from verification.arithmetic.series import Jet
-from verification.cycles.recurrence.chain import trace_and_determinant
+from verification.cycles.chain import trace_and_determinant
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import (
     Orbit,

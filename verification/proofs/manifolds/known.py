@@ -48,9 +48,9 @@ from sympy import Expr, Rational
 from symbolic.tables import egg
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.progress import telling
-from verification.cycles.recurrence.newton import refined
-from verification.cycles.recurrence.problem import Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind, Closure
+from verification.cycles.newton import refined
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, TangencyClaim, TangencyProof, sharpened, worked_through
 from verification.proofs.manifolds.saddle import Orbit, horner

@@ -19,8 +19,8 @@ from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, Arithmetic
 from verification.arithmetic.iteration import Stop, Vector, iterated, largest
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chords import Chords, chord_angles, landing
-from verification.cycles.recurrence.recurrence import Recurrence, Rule, henon
+from verification.cycles.chords import Chords, chord_angles, landing
+from verification.cycles.recurrence import Recurrence, Rule, henon
 
 NEWTON = Stop(small=1e-13, steps=60)  # after a landing in float64, in other numbers and order by order in jets
 

@@ -25,8 +25,8 @@ from symbolic import tables
 from symbolic.tables.formula import number
 from verification.arithmetic.balls import working
 from verification.arithmetic.iteration import Stop, iterated
-from verification.cycles.recurrence.chain import dot
-from verification.cycles.recurrence.recurrence import Closure
+from verification.cycles.chain import dot
+from verification.cycles.recurrence import Closure
 from verification.maps.first_hit import convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap

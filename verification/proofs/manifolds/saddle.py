@@ -19,9 +19,9 @@ from typing import Any
 
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.arithmetic.series import Jet
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.critical import solved
-from verification.cycles.recurrence.recurrence import IDENTITY, Closure
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.critical import solved
+from verification.cycles.recurrence import IDENTITY, Closure
 from verification.proofs.manifolds.plane_map import PlaneMap
 
 NEWTON = Stop(small=1e-10, steps=60)

@@ -4,7 +4,7 @@ widen the attractors of the main cascade.
 All at `alpha = 0.08`, for `known`: what each is, `docs/crises.md` tells. Found by `search`, settled by `tangency`.
 """
 
-from verification.cycles.recurrence.recurrence import Closure
+from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 

@@ -46,10 +46,10 @@ from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, working
 from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chain import trace_and_determinant
-from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Linearised, NormalForm, Problem
-from verification.cycles.recurrence.recurrence import BifurcationKind
+from verification.cycles.chain import trace_and_determinant
+from verification.cycles.newton import floats
+from verification.cycles.problem import Linearised, NormalForm, Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, first_hits, inside, minimal
 from verification.proofs.periodic.interval_newton import Enclosure, Status, dense, interval_newton, krawczyk, slope_bits
 

@@ -2,7 +2,7 @@
 
 The interval Newton operator serves long cycles, Krawczyk's wide boxes around short ones. For a box `X` with midpoint
 `m`, every zero in `X` lies in `N = m - F'(X)^-1 F(m)`, and when `N` lies in the interior of `X` there is exactly one.
-`F'(X)^-1` is applied by elimination in balls, in linear time (see `verification.cycles.recurrence.chain`); it plays
+`F'(X)^-1` is applied by elimination in balls, in linear time (see `verification.cycles.chain`); it plays
 the part that a preconditioner has in Krawczyk's operator, and contracts at least as well.
 
 Krawczyk's operator [Krawczyk1969] is
@@ -33,11 +33,11 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables.law import Law
 from symbolic.tables.table import lam as contraction_symbol
 from verification.arithmetic.balls import balls, working
-from verification.cycles.continuation.search import Catalogue
-from verification.cycles.continuation.systems import rotations
-from verification.cycles.recurrence.chain import Chain
-from verification.cycles.recurrence.newton import System
-from verification.cycles.recurrence.problem import Linearised, Problem
+from verification.cycles.search import Catalogue
+from verification.cycles.systems import rotations
+from verification.cycles.chain import Chain
+from verification.cycles.newton import System
+from verification.cycles.problem import Linearised, Problem
 from verification.maps.first_hit import convex
 
 
@@ -62,7 +62,7 @@ def interval_newton(system: System, centre: list[arb], radius: arb, bits: int) -
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
-    >>> from verification.cycles.recurrence.problem import Problem
+    >>> from verification.cycles.problem import Problem
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> with working(100):
     ...     near, off = [arb("1.5707963268"), arb("-1.5707963268")], [arb("0.5"), arb("-1.5")]
@@ -188,7 +188,7 @@ def no_others(
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
-    >>> from verification.cycles.continuation.search import all_cycles
+    >>> from verification.cycles.search import all_cycles
     >>> found = all_cycles(ellipse.at(a="3/2"), Rational(1, 4), 2).catalogue
     >>> no_others(found, Rational(1, 4), 2).complete
     True

@@ -40,8 +40,8 @@ from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
 from verification.arithmetic.iteration import Vector
 from verification.arithmetic.progress import Tick, silent
-from verification.cycles.recurrence.critical import Small
-from verification.cycles.recurrence.newton import refined
+from verification.cycles.critical import Small
+from verification.cycles.newton import refined
 from verification.maps.first_hit import convex
 from verification.proofs.periodic.interval_newton import Status, interval_newton
 

@@ -26,13 +26,13 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from verification.cycles.continuation import arc
-from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
-from verification.cycles.continuation.branch import Branch, Event, Interval, through
-from verification.cycles.continuation.linear import null_vectors, ring_matrix
-from verification.cycles.continuation.systems import Critical, Cycles, whole
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Parameters, Recurrence
+from verification.cycles import arc
+from verification.cycles.arc import End, LostError, Path, Point, Steps
+from verification.cycles.branch import Branch, Event, Interval, through
+from verification.cycles.linear import null_vectors, ring_matrix
+from verification.cycles.systems import Critical, Cycles, whole
+from verification.cycles.chords import Chords
+from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
@@ -45,8 +45,8 @@ def switched(
 ) -> list[Branch]:
     """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
 
-    >>> from verification.cycles.continuation.branch import branch
-    >>> from verification.cycles.recurrence.recurrence import logistic
+    >>> from verification.cycles.branch import branch
+    >>> from verification.cycles.recurrence import logistic
     >>> one = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4))
     >>> (two,) = switched(one, one.events[0], (2.0, 3.6))
     >>> [(event.kind.value, round(event.value, 9)) for event in two.events]
@@ -232,7 +232,7 @@ def curve(
 ) -> Curve:
     """The curve of `kind` through the critical cycle near `x`, at parameters near `near`, both ways inside `box`.
 
-    >>> from verification.cycles.recurrence.recurrence import henon
+    >>> from verification.cycles.recurrence import henon
     >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))
     >>> found = curve(henon(1), flip, np.array([0.95]), ("b", "a"), (0.3, 0.37), box)
     >>> bool(np.allclose(found.plane[:, 1], 3 * (1 - found.plane[:, 0]) ** 2 / 4))

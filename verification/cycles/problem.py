@@ -29,10 +29,10 @@ from symbolic.tables.table import Component, Table, theta
 from verification.arithmetic.balls import Arithmetic
 from verification.arithmetic.iteration import Vector
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chain import Chain, Elimination, dot, trace_and_determinant
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.newton import Solve
-from verification.cycles.recurrence.recurrence import IDENTITY, BifurcationKind, Closure, Recurrence, Terms
+from verification.cycles.chain import Chain, Elimination, dot, trace_and_determinant
+from verification.cycles.chords import Chords
+from verification.cycles.newton import Solve
+from verification.cycles.recurrence import IDENTITY, BifurcationKind, Closure, Recurrence, Terms
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from sympy import pi as exact_pi
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.continuation.linear import (
+from verification.cycles.linear import (
     Spectrum,
     beside,
     dense,
@@ -33,8 +33,8 @@ from verification.cycles.continuation.linear import (
     solved,
     spectrum,
 )
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import (
+from verification.cycles.chords import Chords
+from verification.cycles.problem import (
     NormalForm,
     Series,
     bend_of,
@@ -43,7 +43,7 @@ from verification.cycles.recurrence.problem import (
     mirrored,
     normal_form,
 )
-from verification.cycles.recurrence.recurrence import (
+from verification.cycles.recurrence import (
     IDENTITY,
     Array,
     BifurcationKind,

@@ -9,12 +9,12 @@
     border collision     a bounce meets a join of the boundary
 
 `M` is the monodromy matrix. A bifurcating cycle solves one equation more than it has bounces, for one parameter more:
-`bordering` is 0. `verification.cycles.recurrence.critical` solves for any of them, and for several at once.
+`bordering` is 0. `verification.cycles.critical` solves for any of them, and for several at once.
 
 A periodic orbit is a ring: at each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the
 ring closes by the identity or by a symmetry that carries a part of the orbit to the next. The derivatives of the
 rules by the three neighbours are the linearised map, so the multipliers come from three diagonals, and no derivative
-of the map itself is needed. Billiards are such rings (`verification.cycles.recurrence.chords`).
+of the map itself is needed. Billiards are such rings (`verification.cycles.chords`).
 
 So are maps whose bifurcations are published, with which the engine is tested: the logistic map, `x -> r*x*(1 - x)`
 [May1976]; Henon's, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three successive `x` [Henon1976]; and the
@@ -35,7 +35,7 @@ from sympy import Expr, Symbol, diff
 
 from symbolic.expressions.text import Kernel, kernel, load
 from verification.arithmetic.balls import ARRAYS, Arithmetic
-from verification.cycles.recurrence.chain import Chain, Elimination, trace_and_determinant
+from verification.cycles.chain import Chain, Elimination, trace_and_determinant
 
 
 class BifurcationKind(Enum):

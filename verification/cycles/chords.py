@@ -13,7 +13,7 @@ from symbolic.motion.chords import chord_kernel, law_kernel
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
-from verification.cycles.recurrence.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
+from verification.cycles.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
 from verification.maps.first_hit import convex
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found

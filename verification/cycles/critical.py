@@ -1,7 +1,7 @@
 """Cycles that bifurcate in any way, of any recurrence, in as many free parameters as there are conditions.
 
 A fold or a flip of a long cycle of a billiard is a `Problem`, solved in linear time. What is here takes every
-bifurcation that `verification.cycles.recurrence.recurrence` defines, and several at once (points of codimension two),
+bifurcation that `verification.cycles.recurrence` defines, and several at once (points of codimension two),
 for cycles of a few dozen bounces. Equations are written once, and their derivatives come from evaluating them on
 jets.
 """
@@ -18,8 +18,8 @@ from symbolic.tables import cuspless, egg
 from verification.arithmetic.balls import Arithmetic
 from verification.arithmetic.iteration import Vector
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.recurrence import BifurcationKind, Closure, Recurrence, Terms
+from verification.cycles.chords import Chords
+from verification.cycles.recurrence import BifurcationKind, Closure, Recurrence, Terms
 
 
 @dataclass(frozen=True)
@@ -133,8 +133,8 @@ def critical(
 ) -> Small:
     """The cycle that bifurcates in all these `kinds`: unknowns are its bounces, then the free `parameters`.
 
-    >>> from verification.cycles.recurrence.recurrence import delayed
-    >>> from verification.cycles.recurrence.newton import floats
+    >>> from verification.cycles.recurrence import delayed
+    >>> from verification.cycles.newton import floats
     >>> torus = critical(delayed(1), [BifurcationKind.TORUS], ["r"])  # at r = 2 [MaynardSmith1968]
     >>> [round(x, 12) for x in floats(torus, [0.4, 1.9])]
     [0.5, 2.0]
@@ -161,7 +161,7 @@ def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
 
     >>> from sympy import Rational
     >>> import mpmath
-    >>> from verification.cycles.recurrence.newton import refined
+    >>> from verification.cycles.newton import refined
     >>> found = refined(polygon_fold(3, Rational(2, 25)), [-0.55, 0.378], 20)
     >>> mpmath.nstr(found.z[1], 15)
     '0.37812125259009'

@@ -1,7 +1,7 @@
 """A branch of cycles in one parameter: where it starts, what happens on it, and its points as a table.
 
 It is followed both ways. Each event is a zero of a test function between two points, located on the curve
-(`verification.cycles.recurrence.recurrence` names them).
+(`verification.cycles.recurrence` names them).
 
 The table is an xarray Dataset or a record for JSON. Points and events stand in one order, by arc length along the
 branch; `event` is empty at an ordinary point.
@@ -18,13 +18,13 @@ from sympy import N
 from symbolic.cycles import cycle as named_cycles
 from symbolic.cycles.cycle import Cycle
 from symbolic.tables.table import Table
-from verification.cycles.continuation import arc
-from verification.cycles.continuation.arc import End, LostError, Path, Point, Steps
-from verification.cycles.continuation.linear import Spectrum
-from verification.cycles.continuation.systems import Cycles, coefficients, parts, whole
-from verification.cycles.recurrence.chords import Chords
-from verification.cycles.recurrence.problem import NormalForm
-from verification.cycles.recurrence.recurrence import Array, BifurcationKind, Parameters, Recurrence
+from verification.cycles import arc
+from verification.cycles.arc import End, LostError, Path, Point, Steps
+from verification.cycles.linear import Spectrum
+from verification.cycles.systems import Cycles, coefficients, parts, whole
+from verification.cycles.chords import Chords
+from verification.cycles.problem import NormalForm
+from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
 
 if TYPE_CHECKING:
     import xarray
@@ -97,7 +97,7 @@ def branch(
     """The branch through the cycle near `x` at `parameter = value`, both ways, inside `interval`.
 
     >>> from sympy import Symbol
-    >>> from verification.cycles.recurrence.recurrence import logistic
+    >>> from verification.cycles.recurrence import logistic
     >>> found = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.9))
     >>> [(event.kind.value, round(event.value, 9)) for event in found.events]
     [('period doubling', 3.0)]
@@ -318,8 +318,8 @@ def rows(branch: Branch) -> list[tuple[Point, Event | None]]:
 def dataset(branch: Branch) -> "xarray.Dataset":
     """Dimensions `point`, `bounce` and `which` (multiplier); the parameter and the event are coordinates.
 
-    >>> from verification.cycles.continuation.branch import branch as followed
-    >>> from verification.cycles.recurrence.recurrence import logistic
+    >>> from verification.cycles.branch import branch as followed
+    >>> from verification.cycles.recurrence import logistic
     >>> table = dataset(followed(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4)))
     >>> [str(name) for name in table["event"].values if name], table["x"].dims
     (['period doubling'], ('point', 'bounce'))

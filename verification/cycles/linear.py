@@ -1,6 +1,6 @@
 """The matrices of a ring: its linearised rules, what they say about multipliers, and their null vectors.
 
-Elimination along the chain (`verification.cycles.recurrence.chain`) does not pivot: right for one cycle in any
+Elimination along the chain (`verification.cycles.chain`) does not pivot: right for one cycle in any
 arithmetic, but a branch passes superstable cycles, where a pivot vanishes. Here float64 matrices are
 factored with pivoting, densely while they are small and by sparse elimination, linear in the period, beyond.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from verification.cycles.recurrence.recurrence import Array, Closure, Terms
+from verification.cycles.recurrence import Array, Closure, Terms
 
 DENSE = 96  # unknowns up to which a dense factorisation is the faster one
 

@@ -19,10 +19,10 @@ from symbolic.tables.table import Table
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.progress import telling
-from verification.cycles.recurrence.chords import chord_angles, landing
-from verification.cycles.recurrence.newton import floats
-from verification.cycles.recurrence.problem import Linearised, Problem
-from verification.cycles.recurrence.recurrence import MIRROR, BifurcationKind
+from verification.cycles.chords import chord_angles, landing
+from verification.cycles.newton import floats
+from verification.cycles.problem import Linearised, Problem
+from verification.cycles.recurrence import MIRROR, BifurcationKind
 
 FEIGENBAUM = 4.6692
 SETTLE = 3000  # bounces thrown away before an attractor is looked at

@@ -54,7 +54,7 @@ def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> floa
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
     >>> from verification.arithmetic.balls import FLOAT64
-    >>> from verification.cycles.recurrence.problem import Problem
+    >>> from verification.cycles.problem import Problem
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> round(norm_of_inverse(axis, FLOAT64, [1.5707963267948966, -1.5707963267948966]), 12)
     1.5
@@ -231,7 +231,7 @@ def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
-    >>> from verification.cycles.recurrence.problem import Problem
+    >>> from verification.cycles.problem import Problem
     >>> axis = Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3))
     >>> found = refined(axis, [1.5, -1.6], 30)
     >>> mpmath.nstr(found.z[0], 30)
@@ -282,7 +282,7 @@ def floats(problem: System, start: Sequence[Any]) -> list[float]:
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
-    >>> from verification.cycles.recurrence.problem import Problem
+    >>> from verification.cycles.problem import Problem
     >>> [round(x, 12) for x in floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6])]
     [1.570796326795, -1.570796326795]
     """
@@ -294,7 +294,7 @@ def in_floats(problem: System, start: Sequence[Any]) -> Solution:
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
-    >>> from verification.cycles.recurrence.problem import Problem
+    >>> from verification.cycles.problem import Problem
     >>> in_floats(Problem(ellipse.at(a=2), (0, 0), lam=Rational(1, 3)), [1.5, -1.6]).words
     'condition number 1.5, 15 of 15 digits sure'
     """

@@ -22,7 +22,7 @@ from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS
 from verification.arithmetic.iteration import Stop, in_rows
-from verification.cycles.recurrence.chords import Chords, chord_angles
+from verification.cycles.chords import Chords, chord_angles
 
 Array = NDArray[np.float64]
 NEWTON = Stop(enough=1e-11, steps=14, reach=0.5)

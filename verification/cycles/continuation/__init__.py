@@ -1,5 +1,0 @@
-"""Branches of cycles: what becomes of one as a parameter changes."""
-
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

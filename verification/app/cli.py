@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verification.arithmetic.progress import heard
+from verification.arithmetic.iteration import heard
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -64,7 +64,7 @@ class Output:
     def progress(self, about: str, total: int) -> Iterator[Callable[[str], None]]:
         """A verb to call with a word on each step done; a bar shows on a terminal after two seconds.
 
-        What a long proof tells of itself within a step (`verification.arithmetic.progress`) moves the bar as well.
+        What a long proof tells of itself within a step (`verification.arithmetic.iteration`) moves the bar as well.
         """
         from rich.console import Console
         from rich.progress import Progress

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from verification.arithmetic.iteration import Stop, iterated, largest
-from verification.cycles.linear import above, solved
+from verification.cycles.cells import above, solved
 from verification.cycles.recurrence import Array
 
 NEWTON = Stop(small=1e-7, enough=1e-11, steps=9)  # in units of the unknowns

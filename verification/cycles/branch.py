@@ -20,11 +20,11 @@ from symbolic.cycles.cycle import Cycle
 from symbolic.tables.table import Table
 from verification.cycles import arc
 from verification.cycles.arc import End, LostError, Path, Point, Steps
-from verification.cycles.linear import Spectrum
-from verification.cycles.systems import Cycles, coefficients, parts, whole
+from verification.cycles.cells import Spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.problem import NormalForm
 from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
+from verification.cycles.systems import Cycles, coefficients, parts, whole
 
 if TYPE_CHECKING:
     import xarray

@@ -22,11 +22,10 @@ from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from symbolic.tables.table import eta as angle
 from symbolic.tables.table import lam as contraction
-from verification.cycles.cells import Array, Corrector
-from verification.cycles.linear import Spectrum, spectrum
-from verification.cycles.systems import symmetries
+from verification.cycles.cells import Array, Corrector, Spectrum, spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.recurrence import MIRROR
+from verification.cycles.systems import symmetries
 from verification.maps.first_hit import convex
 
 SAME = 1e-7

@@ -29,10 +29,10 @@ import numpy as np
 from verification.cycles import arc
 from verification.cycles.arc import End, LostError, Path, Point, Steps
 from verification.cycles.branch import Branch, Event, Interval, through
-from verification.cycles.linear import null_vectors, ring_matrix
-from verification.cycles.systems import Critical, Cycles, whole
+from verification.cycles.cells import null_vectors, ring_matrix
 from verification.cycles.chords import Chords
 from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
+from verification.cycles.systems import Critical, Cycles, whole
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event

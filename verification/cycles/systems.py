@@ -24,15 +24,7 @@ from sympy import pi as exact_pi
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.linear import (
-    Spectrum,
-    beside,
-    dense,
-    null_vectors,
-    ring_matrix,
-    solved,
-    spectrum,
-)
+from verification.cycles.cells import Spectrum, beside, dense, null_vectors, ring_matrix, solved, spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.problem import (
     NormalForm,

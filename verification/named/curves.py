@@ -38,7 +38,6 @@ from symbolic.tables.table import lam
 from verification.arithmetic.balls import balls, decimal, exact_balls, working
 from verification.cycles.arc import Steps
 from verification.cycles.branch import branch
-from verification.cycles.switching import Curve, Degenerate, curve, switched
 from verification.cycles.cascade import doubling
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.chords import Chords
@@ -46,6 +45,7 @@ from verification.cycles.critical import Small, critical, polygon
 from verification.cycles.newton import refined
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.recurrence import Array, BifurcationKind
+from verification.cycles.switching import Curve, Degenerate, curve, switched
 from verification.named.locate import certify
 from verification.proofs.periodic.interval_newton import Enclosure, interval_newton
 

@@ -20,12 +20,12 @@ from sympy import Expr, S
 from symbolic.tables import egg
 from verification.cycles.arc import Steps
 from verification.cycles.branch import Event, branch
-from verification.cycles.search import all_cycles
-from verification.cycles.switching import Curve, curve
-from verification.cycles.systems import rotations
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
+from verification.cycles.search import all_cycles
+from verification.cycles.switching import Curve, curve
+from verification.cycles.systems import rotations
 from verification.named.curves import TWO, largest_shape
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Proof

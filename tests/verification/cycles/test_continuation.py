@@ -19,14 +19,14 @@ from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.app.commands.follow import varied
-from verification.cycles import linear
+from verification.cycles import cells
 from verification.cycles.arc import End, Steps
 from verification.cycles.branch import branch, dataset, named
-from verification.cycles.linear import spectrum
-from verification.cycles.switching import switched
 from verification.cycles.cascade import cascade as followed_in_lam
+from verification.cycles.cells import spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
+from verification.cycles.switching import switched
 from verification.named.events import proof_of
 from verification.named.locate import locate
 from verification.plots.dynamics import runs
@@ -228,7 +228,7 @@ def test_long_cycles_are_followed_with_sparse_matrices_to_the_same_points(monkey
     ring = Chords(TABLE, (0,) * 12)
     start, steps = np.tile(TRIANGLE, 4), Steps(largest=0.1, most=8)  # the triangle run through four times
     full = branch(ring, start, "lam", 0.99, (0.9, 1.0), steps=steps)
-    monkeypatch.setattr(linear, "DENSE", 4)
+    monkeypatch.setattr(cells, "DENSE", 4)
     thin = branch(ring, start, "lam", 0.99, (0.9, 1.0), steps=steps)
 
     assert len(thin.points) == len(full.points)

@@ -14,11 +14,11 @@ from symbolic.tables.table import lam as lam_letter
 from verification.arithmetic.balls import FLOAT64
 from verification.cycles.arc import Steps
 from verification.cycles.branch import branch
-from verification.cycles.switching import CodimensionTwo, curve
-from verification.cycles.systems import Critical, coefficients
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.recurrence import BifurcationKind, Closure, henon
+from verification.cycles.switching import CodimensionTwo, curve
+from verification.cycles.systems import Critical, coefficients
 from verification.named.curves import (
     accumulation_curve,
     cascade,

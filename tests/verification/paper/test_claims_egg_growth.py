@@ -12,7 +12,7 @@ from verification.paper.claims.claim import Verdict
 from verification.paper.egg import cascade as on_egg_cascade
 from verification.paper.egg import crises as on_egg_growth
 from verification.paper.egg.crises import Extent
-from verification.paper.judges.splitting import bounced
+from verification.paper.judges.hyperbolicity import bounced
 from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}

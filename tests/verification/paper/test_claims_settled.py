@@ -3,11 +3,11 @@
 import pytest
 from sympy import Rational
 
-from verification.arithmetic.progress import heard
+from verification.arithmetic.iteration import heard
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg.basins import without_triangles
-from verification.paper.judges import border as on_border
-from verification.paper.judges.border import born
+from verification.paper.judges import hyperbolicity as on_border
+from verification.paper.judges.hyperbolicity import born
 from verification.paper.report.report import verify
 from verification.proofs.corner.half_return import TrappingRegion
 

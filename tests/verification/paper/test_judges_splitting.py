@@ -8,7 +8,7 @@ from symbolic.cycles.splitting import least_rate
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
 from verification.paper.claims.claim import Verdict
-from verification.paper.judges import splitting as on_splitting
+from verification.paper.judges import hyperbolicity as on_splitting
 from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}

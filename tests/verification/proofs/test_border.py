@@ -12,11 +12,21 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic.balls import FLOAT64, working
 from verification.named.locate import locate
-from verification.proofs.corner.border_collision import Kind, exponents, extent, fixed_point, kind, robust
+from verification.proofs.corner.border_collision import (
+    Kind,
+    Piece,
+    expansion,
+    exponents,
+    extent,
+    fixed_point,
+    grown,
+    kind,
+    robust,
+    trapped,
+)
 from verification.proofs.corner.corner import ARC, BITS, WALL, at_corner, enclosed
 from verification.proofs.corner.evidence import border, measured, saddles
 from verification.proofs.corner.half_return import limit, pieces, trapping_region
-from verification.proofs.corner.polygon import Piece, expansion, grown, trapped
 from verification.proofs.corner.return_map import exit_angle, kink, kink_falls, minimum_at_kink
 
 THETA1, STAR = (float(x.mid()) for x in enclosed())

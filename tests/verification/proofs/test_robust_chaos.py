@@ -7,10 +7,9 @@ import pytest
 from flint import arb
 
 from verification.named.locate import locate
-from verification.proofs.corner.border_collision import Kind, homoclinic, hypotheses, kind, robust
+from verification.proofs.corner.border_collision import Kind, Piece, Pieces, homoclinic, hypotheses, kind, robust
 from verification.proofs.corner.corner import ARC, WALL
 from verification.proofs.corner.half_return import limit
-from verification.proofs.corner.polygon import Piece, Pieces
 
 
 def normal_form(left: tuple[float, float], right: tuple[float, float], spread: float = 0.0) -> Pieces:

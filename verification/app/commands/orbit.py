@@ -16,8 +16,8 @@ from verification.app.scene import scene_options, start_of, table_options, unifo
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from verification.cycles.search import Catalogue, Found
     from verification.cycles.newton import Solution
+    from verification.cycles.search import Catalogue, Found
 
 
 MOST = 40  # bounces shown to people
@@ -210,9 +210,9 @@ def cycles_command(
     """
     from sympy import S
 
-    from verification.cycles.search import ROUNDS, all_cycles
     from verification.cycles.newton import given
     from verification.cycles.problem import Problem
+    from verification.cycles.search import ROUNDS, all_cycles
 
     for option, given_one in (("--count", count), ("--prove", prove)):
         if given_one:

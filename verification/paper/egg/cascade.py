@@ -13,7 +13,7 @@ from symbolic.cycles.thresholds import tilt
 from symbolic.expressions.signs import Finding, Outcome, positive
 from symbolic.tables import egg as table_of
 from symbolic.tables.table import alpha
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.cycles.cascade import attractor
 from verification.named.branches import cascade
 from verification.paper.claims.claim import Claim, Judgement
@@ -22,8 +22,8 @@ from verification.paper.egg.egg import SHAPES
 from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettled
 from verification.paper.judges.exponents import sampled
+from verification.paper.judges.hyperbolicity import bounced, ends_of_period
 from verification.paper.judges.located import certified, located
-from verification.paper.judges.splitting import bounced, ends_of_period
 from verification.proofs.periodic.bifurcation import Stability, over_interval
 from verification.proofs.periodic.returning import returning
 

@@ -26,8 +26,7 @@ from symbolic.tables import cuspless
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
 from verification.cycles.critical import corner
 from verification.cycles.newton import refined
-from verification.proofs.corner.border_collision import robust
-from verification.proofs.corner.polygon import Piece
+from verification.proofs.corner.border_collision import Piece, robust
 from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 ARC, WALL = 0, 1

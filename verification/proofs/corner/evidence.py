@@ -20,18 +20,26 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from verification.arithmetic.balls import working
 from verification.proofs.corner.border_collision import (
+    SIGNS,
     Extent,
     Kind,
+    Pieces,
+    Polygon,
+    Row,
     exponents,
     extent,
     fixed_point,
+    grown,
+    hull,
     kind,
+    part,
     robust,
+    sides,
     strips,
+    trapped,
 )
 from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, angle, constant, corner_parameters, enclosed
 from verification.proofs.corner.half_return import START, limit, pieces
-from verification.proofs.corner.polygon import SIGNS, Pieces, Polygon, Row, grown, hull, part, sides, trapped
 
 Array = NDArray[np.float64]
 

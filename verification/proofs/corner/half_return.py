@@ -33,7 +33,18 @@ from dataclasses import dataclass
 from flint import arb
 
 from verification.arithmetic.balls import cuts, halves, joined, working
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, silent
+from verification.proofs.corner.border_collision import (
+    Expansion,
+    Piece,
+    Pieces,
+    Polygon,
+    Row,
+    clipped,
+    expansion,
+    grown,
+    trapped,
+)
 from verification.proofs.corner.corner import (
     ARC,
     BITS,
@@ -46,17 +57,6 @@ from verification.proofs.corner.corner import (
     enclosed,
     on_arc,
     parameter,
-)
-from verification.proofs.corner.polygon import (
-    Expansion,
-    Piece,
-    Pieces,
-    Polygon,
-    Row,
-    clipped,
-    expansion,
-    grown,
-    trapped,
 )
 
 LONGEST_U, LONGEST_V, LONGEST_E, TINY = 1e-2, 2e-3, 5e-4, 1e-9  # sides of the boxes that are followed

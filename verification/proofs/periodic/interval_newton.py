@@ -33,11 +33,11 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables.law import Law
 from symbolic.tables.table import lam as contraction_symbol
 from verification.arithmetic.balls import balls, working
-from verification.cycles.search import Catalogue
-from verification.cycles.systems import rotations
 from verification.cycles.chain import Chain
 from verification.cycles.newton import System
 from verification.cycles.problem import Linearised, Problem
+from verification.cycles.search import Catalogue
+from verification.cycles.systems import rotations
 from verification.maps.first_hit import convex
 
 

@@ -1,4 +1,4 @@
-"""Files kept between runs: table IRs and machine code. Never needed, and trusted only when nobody else can write them.
+"""Files kept between runs: scenes, table IRs, machine code. Never needed; trusted when nobody else can write them.
 
 An entry is found by a key that contains everything it depends on. It is written to a temporary
 file and renamed, so that two processes cannot mix; it carries a digest of its name and content, so that a
@@ -18,7 +18,7 @@ from functools import cache as memoised
 
 FOLDER = "PINBALL_CACHE"  # the environment variable that moves the folder; empty switches it off
 LIMIT = 256 << 20  # bytes kept; a kernel takes 10 to 100 kB
-KINDS = ("table_ir", "kernel")
+KINDS = ("scene", "table_ir", "kernel")
 TEMPORARY = ".new-"  # a file before it is renamed
 FOR_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _said: set[str] = set()

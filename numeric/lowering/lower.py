@@ -22,6 +22,7 @@ from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
 from symbolic.tables.law import Law
 from symbolic.tables.polynomial import cubic
+from symbolic.tables.scene import Scene
 from symbolic.tables.table import Component, Table, eta, lam, theta
 from symbolic.tables.validity import closed_and_finite
 
@@ -33,11 +34,6 @@ WORDS: tuple[type[Expr], ...] = tuple(
     function for function in FUNCTIONS if isinstance(function, type) and function not in (sin, cos)
 )
 ROOT = 12  # the highest root
-
-
-def named(name: str, K: int = 3) -> TableIR:
-    """The table IR of one of the paper's tables."""
-    return lower(tables.named(name, K))
 
 
 def lower(table: Table) -> TableIR:
@@ -78,8 +74,10 @@ def lower_law(law: Law) -> LawIR:
     return LawIR(str(law), program(law.phi), program(law.slope, law.phi.diff(theta)), law.placed)
 
 
-def exact_table(table: Table | str, K: int, shape: dict[str, Any]) -> Table:
+def exact_table(table: Table | Scene | str, K: int, shape: dict[str, Any]) -> Table:
     """The exact table of a map, with the numbers of its shape."""
+    if isinstance(table, Scene):
+        return table.table
     given = tables.named(table, K) if isinstance(table, str) else table
     return given.at(**{name: exact(value) for name, value in shape.items()}) if shape else given
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numeric.lowering import cache
 from symbolic.expressions.numbers import NumberSystem, R
+from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
     from symbolic.tables.table import Table
@@ -293,27 +294,32 @@ class TableIR(NamedTuple):
         )
 
 
-def table_ir(table: "Table | str", K: int = 3) -> TableIR:
-    """The table IR of an exact table, or of one of the paper's tables by name.
+def table_ir(table: "Table | Scene | str", K: int = 3) -> TableIR:
+    """The table IR of an exact table, of one of the paper's tables by name, or of a scene's table with its numbers.
+
+    Those with a name or a text are kept between runs, and need SymPy once.
 
     >>> table_ir("circle").same_as
     'circle'
     """
-    if not isinstance(table, str):
+    if not isinstance(table, str | Scene):
         from numeric.lowering.lower import lower
 
         return lower(table)
-    if table not in PAPER:
+    if isinstance(table, Scene):
+        name = table.boundary
+    elif table in PAPER:
+        name = f"{table}{K}" if table == "egg" else table
+    else:
         raise ValueError(f"no table is called {table!r}; the paper's are {', '.join(PAPER)}")
-    name = f"{table}{K}" if table == "egg" else table
     kept = cache.read("table_ir", name, cache.sources(*SOURCES))
     if kept is not None:
         try:
             return TableIR.from_text(kept.decode())
         except (ValueError, KeyError, TypeError, IndexError):
             pass  # a damaged file is as good as none: it is written again
-    from numeric.lowering.lower import named
+    from numeric.lowering.lower import exact_table, lower
 
-    found = named(table, K)
+    found = lower(exact_table(table, K, {}))
     cache.write("table_ir", name, cache.sources(*SOURCES), found.as_text().encode())
     return found

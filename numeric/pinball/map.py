@@ -303,8 +303,8 @@ class PinballMap:
 
 def _unpacked(
     scene: Scene, lam: Contraction | None, shape: dict[str, Any]
-) -> "tuple[Table | str, Contraction, int, dict[str, Any]]":
-    """A scene as table, contraction, points of the egg and shape; SymPy is needed for a formula or a root only."""
+) -> "tuple[Scene | str, Contraction, int, dict[str, Any]]":
+    """A scene as table, contraction, points of the egg and shape; the scene itself for a table that has no name."""
     if shape:
         raise ValueError(f"{scene.name}: {', '.join(shape)} given beside a scene; change its shape by scene.at")
     numbers: dict[str, Any] = dict(scene.shape)
@@ -312,4 +312,4 @@ def _unpacked(
     lam = lam if lam is not None else own if isinstance(own, Fraction) else float(own)
     if "table" in scene.document and all(isinstance(value, Fraction) for value in numbers.values()):
         return scene.name, lam, scene.K, numbers
-    return scene.table, lam, 3, {}
+    return scene, lam, 3, {}

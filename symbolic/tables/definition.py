@@ -22,6 +22,9 @@ GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of t
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law
 LAW_LETTERS = ("eta", "lam", "theta")  # what every law may speak of
+RESERVED = frozenset({  # names in a formula that are functions or constants; all others are parameters
+    "Abs", "E", "abs", "atan", "cos", "cosh", "exp", "log", "pi", "sin", "sinh", "sqrt", "tan", "tanh"
+})  # fmt: skip
 PIECE = ("name", "x", "y", "from", "to")
 KINDS = ("table", "polar", "parametric", "component", "points")
 FIT = {
@@ -264,9 +267,7 @@ def letters_of(boundary: Mapping[str, Any]) -> tuple[str, ...]:
 
 def words_of(formulas: Iterable[str]) -> set[str]:
     """The names in formulas that stand for no function and no constant."""
-    from symbolic.tables.formula import CONSTANTS, FUNCTIONS
-
-    return {name for text in formulas for name in NAME.findall(text)} - {*FUNCTIONS, *CONSTANTS}
+    return {name for text in formulas for name in NAME.findall(text)} - RESERVED
 
 
 # ---- one entry at a time

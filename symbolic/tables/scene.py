@@ -128,6 +128,12 @@ class Scene:
         formula = self.document.get("law", UNIFORM)
         return Law(formula).at(**{name: self.document["shape"][name] for name in letters_of_law(formula)})
 
+    @property
+    def boundary(self) -> str:
+        """The table with the numbers of its shape, as one line of text: the same for every law and contraction."""
+        said = {key: value for key, value in self.document.items() if key in BOUNDARY}
+        return toml(said | {"shape": {name: self.document["shape"][name] for name in letters_of(self.document)}})
+
     @cached_property
     def table(self) -> "Table":
         """The exact table with its shape; `ValueError` when there is none."""
@@ -217,6 +223,13 @@ class Scene:
         boundary = boundary_of({key: document[key] for key in BOUNDARY if key in document}, tuple(numbers))
         law = text_entry("law", document.get("law", UNIFORM))
         other._hold(boundary, numbers, number_entry("lam", document.get("lam", "1")), law)
+        return other
+
+    @classmethod
+    def proved(cls, text: str) -> "Scene":
+        """The scene whose own `text` this is; what was proved when it was made is not proved again."""
+        other = object.__new__(cls)
+        object.__setattr__(other, "text", text)
         return other
 
     @classmethod

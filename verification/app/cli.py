@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verification.arithmetic.iteration import heard
+from verification.arithmetic.progress import heard
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -64,7 +64,7 @@ class Output:
     def progress(self, about: str, total: int) -> Iterator[Callable[[str], None]]:
         """A verb to call with a word on each step done; a bar shows on a terminal after two seconds.
 
-        What a long proof tells of itself within a step (`verification.arithmetic.iteration`) moves the bar as well.
+        What a long proof tells of itself within a step (`verification.arithmetic.progress`) moves the bar as well.
         """
         from rich.console import Console
         from rich.progress import Progress
@@ -277,3 +277,29 @@ def _told(message: str, status: int) -> int:
         traceback.print_exc()
     click.echo(f"pinball: {message}", err=True)
     return status
+
+
+def finite(values: Any) -> Any:
+    """Nested lists in which null stands for what is no finite number.
+
+    >>> finite([1.0, [float("nan"), float("-inf")]])
+    [1.0, [None, None]]
+    """
+    if isinstance(values, list):
+        return [finite(value) for value in values]
+    return values if abs(values) < float("inf") else None
+
+
+def duration(seconds: float) -> str:
+    """A time, for people."""
+    if seconds < 90:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def size(count: int) -> str:
+    """Bytes, for people."""
+    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.3g} {unit}"
+    return f"{count} bytes"

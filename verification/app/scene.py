@@ -7,6 +7,7 @@ a sweep, and the files in which its results are kept.
 
 import json
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import wraps
@@ -18,7 +19,7 @@ import click
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact
 from symbolic.tables.law import Law, letters_of_law
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option
+from verification.app.cli import DONE, FAILED, Output, duration, finite, json_option, size
 
 if TYPE_CHECKING:
     import numpy as np
@@ -85,6 +86,29 @@ def scene(
         return Scene.of({name: polar or list(parametric or ()), "shape": values, "law": law, "lam": str(value)})
     except ValueError as error:
         raise ValueError(f"--{error}") from None
+
+
+def _known(table: str | None, *others: Any, **shape: str | None) -> Scene:
+    """The scene of the options. What needs SymPy to be read and proved is kept between runs, and read without it."""
+    *said, file, given, drawn, formula = others
+    if drawn is not None or (table in PAPER and formula is None):
+        return scene(table, *others, **shape)
+    content = None
+    if file is not None:
+        with suppress(OSError, UnicodeDecodeError):
+            content = Path(file).read_text(encoding="utf-8")
+    from numeric.lowering import cache
+
+    key = (
+        json.dumps([table, *said, file, content, given, formula, shape]),
+        cache.sources("symbolic", "verification/app"),
+    )
+    kept = cache.read("scene", *key)
+    if kept is not None:
+        return Scene.proved(kept.decode())
+    found = scene(table, *others, **shape)
+    cache.write("scene", *key, found.text.encode())
+    return found
 
 
 def _law(formula: str) -> Law:
@@ -200,11 +224,13 @@ def table_options(command: Command) -> Command:
         law: str | None = None,
         **others: Any,
     ) -> Any:
-        from verification.app.outline import drawn
+        measured = None
+        if data is not None or smoothness is not None or degree is not None:
+            from verification.app.outline import drawn
 
-        measured = drawn(data, smoothness, degree)
-        said = scene(table, polar, parametric, K, lam, file, given, measured, law, a=a, alpha=alpha)
-        return command(scene=said, **others)
+            measured = drawn(data, smoothness, degree)
+        options = table, polar, parametric, K, lam, file, given, measured, law
+        return command(scene=_known(*options, a=a, alpha=alpha), **others)
 
     for option in reversed(TABLE):
         called = option(called)
@@ -345,9 +371,9 @@ def estimated(expected: "Cost") -> list[str]:
     """A dry run, for people."""
     return [
         f"{expected.parts} parts, {expected.collisions:.3g} bounces",
-        f"about {_duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
+        f"about {duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
         f"{expected.workers} cores",
-        f"{_size(expected.bytes)} of results before compression",
+        f"{size(expected.bytes)} of results before compression",
     ]
 
 
@@ -368,27 +394,3 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
 def _read(value: Any) -> Any:
     """What an attribute says; those that hold JSON are read."""
     return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
-
-
-def finite(values: Any) -> Any:
-    """Nested lists in which null stands for what is no finite number.
-
-    >>> finite([1.0, [float("nan"), float("-inf")]])
-    [1.0, [None, None]]
-    """
-    if isinstance(values, list):
-        return [finite(value) for value in values]
-    return values if abs(values) < float("inf") else None
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 90:
-        return f"{seconds:.2g} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
-
-
-def _size(count: int) -> str:
-    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if count >= size:
-            return f"{count / size:.3g} {unit}"
-    return f"{count} bytes"

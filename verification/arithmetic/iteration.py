@@ -1,17 +1,11 @@
-"""Newton's method, and every other iteration that ends in rounding; and how far a long proof has come.
+"""Newton's method, and every other iteration that ends in rounding: one loop and one rule for its end.
 
-One loop and one rule for its end. The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero
-each correction is about the square of the one before, until rounding takes over. So an iteration has settled when a
-correction is as small as is wanted, or when corrections that were small shrink no more. At a double zero they halve,
-which is still shrinking.
-
-Shares of long work are reported to a progress bar, if there is one. A proof calls its `tick` with each share that is
-done and knows of no bar; `telling` makes such a function.
+The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square
+of the one before, until rounding takes over. So an iteration has settled when a correction is as small as is wanted,
+or when corrections that were small shrink no more. At a double zero they halve, which is still shrinking.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any
@@ -118,46 +112,3 @@ def largest(parts: Sequence[Any]) -> float:
             else:
                 sizes.append(float(abs(number)))
     return max(sizes)
-
-
-Tick = Callable[[float], None]
-Hearer = Callable[[str, float], None]
-_hearer: ContextVar[Hearer | None] = ContextVar("hearer", default=None)
-STEP = 1e-3  # a bar shows no smaller share
-
-
-@contextmanager
-def heard(by: Hearer) -> Iterator[None]:
-    """Within, `by` is called with what is being worked at and the share of it that is done.
-
-    >>> heard_of = []
-    >>> with heard(lambda about, share: heard_of.append((about, share))):
-    ...     tick = telling("boxes")
-    ...     tick(0.25)
-    ...     tick(0.5)
-    >>> heard_of
-    [('boxes', 0.25), ('boxes', 0.75)]
-    """
-    before = _hearer.set(by)
-    try:
-        yield
-    finally:
-        _hearer.reset(before)
-
-
-def silent(share: float) -> None:
-    """The tick of a proof that nobody asked to tell."""
-
-
-def telling(about: str) -> Tick:
-    """A verb to call with each share that is done; it does nothing while nobody listens."""
-    hear, done, told = _hearer.get(), 0.0, 0.0
-
-    def tick(share: float) -> None:
-        nonlocal done, told
-        done += share
-        if hear is not None and done - told >= STEP:
-            told = done
-            hear(about, min(done, 1.0))
-
-    return tick

@@ -173,8 +173,12 @@ TYPES = "symbolic.expressions.numbers"  # protocols, of which no digit and no in
 @pytest.mark.parametrize(
     ("module", "folders", "besides"),
     [
-        # what lowers a table makes the table IR, which is in a kernel's key
-        ("numeric.kernels.text", machine.SOURCES, {TYPES, "numeric.lowering.lower", "symbolic.tables.table"}),
+        # what a table IR is made of and by is in a kernel's key, since the IR itself is
+        (
+            "numeric.kernels.text",
+            machine.SOURCES,
+            {TYPES, "numeric.lowering.lower", "symbolic.tables.table", "symbolic.tables.scene"},
+        ),
         ("numeric.lowering.lower", program.SOURCES, {TYPES}),
     ],
     ids=["kernel", "table IR"],

@@ -7,7 +7,7 @@ import pytest
 from sympy import Float, Rational, Symbol, asin, cos, erf, exp, pi, sin, sqrt, sympify
 
 from numeric.backends.scalars import ScalarBackend
-from numeric.lowering.lower import converted, lower, named, seen_ahead
+from numeric.lowering.lower import converted, lower, seen_ahead
 from numeric.lowering.program import Builder, table_ir
 from symbolic import tables
 from symbolic.motion.flight import ONE, chord_polynomial
@@ -125,7 +125,7 @@ def test_what_has_no_word_is_refused(expression, words):
 
 @pytest.mark.parametrize("name", ["circle", "ellipse", "cardioid", "cuspless", "egg"])
 def test_a_part_is_the_curve_of_its_component_with_two_derivatives(name):
-    table, made = tables.named(name, 3), named(name)
+    table, made = tables.named(name, 3), lower(tables.named(name, 3))
     shape = {symbol.symbol: Rational(1, 12) if name == "egg" else Rational(7, 5) for symbol in table.shapes}
     numbers = [MP.mpf(x.p) / x.q for x in shape.values()]
     for part, component in zip(made.parts, table.components, strict=True):
@@ -187,11 +187,11 @@ def test_a_table_is_known_as_the_papers_or_has_the_programs_of_its_fourier_sum(n
 
 
 def test_shapes_and_the_origin_come_along():
-    made = named("egg", 4)
+    made = lower(tables.named("egg", 4))
     (shape,) = made.shape
 
     assert (shape.name, shape.low, shape.high) == ("alpha", "0", "1/17")
-    assert named("ellipse").shape[0].high is None
+    assert lower(tables.named("ellipse")).shape[0].high is None
     assert (made.table, made.origin[0], made.origin[1](OPS, MP.mpf(1))) == ("egg", 0, [0])
-    assert named("cuspless").origin[0] == 1
-    assert len(named("egg").program("chord").outputs) == 8
+    assert lower(tables.named("cuspless")).origin[0] == 1
+    assert len(lower(tables.named("egg")).program("chord").outputs) == 8

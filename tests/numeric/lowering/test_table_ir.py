@@ -8,6 +8,7 @@ from numeric.lowering import program
 from numeric.lowering.lower import lower
 from numeric.lowering.program import ShapeRange, TableIR, table_ir
 from symbolic import tables
+from symbolic.tables.scene import Scene
 
 
 @pytest.mark.parametrize("name", ["circle", "ellipse", "cardioid", "cuspless", "egg"])
@@ -60,6 +61,19 @@ def test_eggs_are_kept_apart_by_their_number_of_points(tmp_path, monkeypatch):
     assert two == lower(tables.named("egg", 2)) != three
     assert len(list(tmp_path.iterdir())) == 2
     assert (table_ir("egg", 2), table_ir("egg", 3)) == (two, three)
+
+
+def test_the_table_of_a_scene_is_kept_for_every_law_and_contraction_and_for_no_other_shape(tmp_path, monkeypatch):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
+    flower = Scene.of({"polar": "1 + b*cos(3*theta)", "shape": {"b": "1/20"}, "lam": "1/2"})
+    alike = flower.at(lam="1/3", law="-lam*eta - c*sin(2*eta)", c="1/10")
+    made = table_ir(flower)
+
+    assert made == lower(flower.table)
+    assert table_ir(alike) == made
+    assert len(list(tmp_path.iterdir())) == 1
+    assert table_ir(flower.at(b="1/30")) == lower(flower.at(b="1/30").table) != made
+    assert len(list(tmp_path.iterdir())) == 2
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from sympy import Rational, cos, sqrt
 
 from symbolic import tables
+from symbolic.tables.definition import RESERVED
+from symbolic.tables.formula import CONSTANTS, FUNCTIONS
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import theta
@@ -49,6 +51,17 @@ SCENES = [
     Scene(tables.parametric("3*cos(theta)", "2*sin(theta) + sqrt(2)"), lam="1"),
     Scene.parse(TRIANGLE),
 ]
+
+
+def test_the_names_that_are_no_parameters_are_those_that_formulas_know():
+    assert {*FUNCTIONS, *CONSTANTS} == RESERVED
+
+
+def test_a_scene_comes_back_from_its_own_text_without_its_proofs():
+    scene = Scene.of({"polar": "1 + b*cos(3*theta)", "shape": {"b": "1/20"}, "lam": "1/2"})
+
+    assert Scene.proved(scene.text) == scene
+    assert Scene.proved(scene.text).table == scene.table
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)

@@ -309,6 +309,31 @@ def test_help_loads_no_mathematics():
         assert about in done.stdout
 
 
+@pytest.mark.parametrize("table", ["--polar 1+cos(3*theta)/20", "stadium", "--scene flower.toml"])
+def test_a_table_of_ones_own_is_read_and_proved_once_and_then_without_sympy(table, tmp_path):
+    flower = '[shape]\nb = "{}"\n'
+    said = 'polar = "1 + b*cos(3*theta)"\nlam = "1/2"\n'
+    (tmp_path / "flower.toml").write_text(said + flower.format("1/20"))
+    asked = ["orbit", *table.split(), "--lam", "1/2", "--start", "0.3,0.2", "--bounces", "3"]
+    code = f"import sys; from verification.app import cli; status = cli.main({asked}); "
+    code += "print('sympy' in sys.modules, file=sys.stderr); sys.exit(status)"
+    kept = dict(os.environ, PINBALL_CACHE=str(tmp_path / "cache"))
+
+    def run() -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=kept, cwd=tmp_path, timeout=60
+        )
+
+    first, second = run(), run()
+    assert (first.stderr, second.stderr) == ("True\n", "False\n")
+    assert first.stdout == second.stdout
+    if "--scene" in table:  # what the file says now counts, and not its name
+        (tmp_path / "flower.toml").write_text(said + flower.format("1/30"))
+        third = run()
+        assert third.stdout != first.stdout
+        assert third.stderr == "True\n"
+
+
 def test_the_catalogue_has_every_id_that_scripts_rely_on():
     from verification.paper.report.report import catalogue
 

@@ -28,7 +28,7 @@ from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
-from verification.arithmetic.iteration import Tick, silent
+from verification.arithmetic.progress import Tick, silent
 from verification.proofs.corner.corner import (
     ARC,
     BITS,

@@ -47,7 +47,7 @@ from sympy import Expr, Rational
 
 from symbolic.tables import egg
 from verification.arithmetic.balls import FLOAT64
-from verification.arithmetic.iteration import telling
+from verification.arithmetic.progress import telling
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure

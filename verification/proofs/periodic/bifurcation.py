@@ -44,7 +44,7 @@ from symbolic.tables import egg
 from symbolic.tables.table import Table, theta
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, working
-from verification.arithmetic.iteration import Tick, silent
+from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.newton import floats

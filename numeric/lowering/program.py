@@ -297,7 +297,7 @@ class TableIR(NamedTuple):
 def table_ir(table: "Table | Scene | str", K: int = 3) -> TableIR:
     """The table IR of an exact table, of one of the paper's tables by name, or of a scene's table with its numbers.
 
-    Those with a name or a text are kept between runs, and need SymPy once.
+    A shape parameter that has a range stays open. What has a name or a text is kept between runs, and needs SymPy once.
 
     >>> table_ir("circle").same_as
     'circle'
@@ -307,7 +307,7 @@ def table_ir(table: "Table | Scene | str", K: int = 3) -> TableIR:
 
         return lower(table)
     if isinstance(table, Scene):
-        name = table.boundary
+        name = table.family_text or table.boundary
     elif table in PAPER:
         name = f"{table}{K}" if table == "egg" else table
     else:
@@ -320,6 +320,6 @@ def table_ir(table: "Table | Scene | str", K: int = 3) -> TableIR:
             pass  # a damaged file is as good as none: it is written again
     from numeric.lowering.lower import exact_table, lower
 
-    found = lower(exact_table(table, K, {}))
+    found = lower(table.family if isinstance(table, Scene) else exact_table(table, K, {}))
     cache.write("table_ir", name, cache.sources(*SOURCES), found.as_text().encode())
     return found

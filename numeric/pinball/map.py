@@ -312,4 +312,4 @@ def _unpacked(
     lam = lam if lam is not None else own if isinstance(own, Fraction) else float(own)
     if "table" in scene.document and all(isinstance(value, Fraction) for value in numbers.values()):
         return scene.name, lam, scene.K, numbers
-    return scene, lam, 3, {}
+    return scene, lam, 3, {name: numbers[name] for name in scene.ranges if name in numbers}

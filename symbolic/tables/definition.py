@@ -69,6 +69,42 @@ def exact_text(label: str, given: Any) -> str:
     return str(exact(label, given))
 
 
+def parameter_text(label: str, given: Any) -> str:
+    """A parameter as exact text: its value, or `VALUE:LOW..HIGH`, the value and the range that is looked at.
+
+    >>> parameter_text("b", "0.1"), parameter_text("b", "0.1:0..0.25")
+    ('1/10', '1/10:0..1/4')
+    """
+    if not isinstance(given, str) or ":" not in given:
+        return exact_text(label, given)
+    value, _, ends = given.partition(":")
+    low, dots, high = (part.strip() for part in ends.partition(".."))
+    if not (value.strip() and low and dots and high):
+        raise ValueError(f"{label} = {given} is no value with its range; accepted: VALUE:LOW..HIGH such as 0.1:0..1/4")
+    middle, first, last = (exact(label, part) for part in (value.strip(), low, high))
+    if not first < last:
+        raise ValueError(f"{label} = {given}: {low}..{high} is no range; accepted: LOW..HIGH with LOW < HIGH")
+    if not first <= middle <= last:
+        raise ValueError(f"{label} = {middle} lies outside of its range {first}..{last}")
+    return f"{middle}:{first}..{last}"
+
+
+def value_text(text: str) -> str:
+    """The value of a parameter, from `parameter_text`."""
+    return text.partition(":")[0]
+
+
+def range_text(text: str) -> str:
+    """Its range `LOW..HIGH`, or nothing where it has none."""
+    return text.partition(":")[2]
+
+
+def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr]":
+    """The ends of a range `LOW..HIGH`."""
+    low, _, high = text.partition("..")
+    return exact(label, low), exact(label, high)
+
+
 # ---- the boundary, from a name, a table or a document
 
 
@@ -224,7 +260,7 @@ def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
 
     texts = {letter: document["shape"][letter] for letter in letters_of(document)}
     left = {each.symbol.name for each in free}
-    numbers = {letter: _expression(letter, text) for letter, text in texts.items() if letter not in left}
+    numbers = {key: _expression(key, value_text(text)) for key, text in texts.items() if key not in left}
     if "table" in document:
         return tables.named(document["table"], document.get("K", POINTS)).at(**numbers)
     if "points" in document:

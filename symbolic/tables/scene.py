@@ -8,7 +8,8 @@ table when somebody asks for it. Paper: section 2.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from symbolic.tables.definition import (
@@ -21,15 +22,18 @@ from symbolic.tables.definition import (
     built,
     contraction_text,
     exact,
-    exact_text,
     known_entries,
     letters_of,
     name_of,
     named_boundary,
     number_entry,
+    parameter_text,
+    range_ends,
+    range_text,
     table_boundary,
     text_entry,
     toml,
+    value_text,
     word_entry,
 )
 from symbolic.tables.law import Law as Law
@@ -48,7 +52,8 @@ class Scene:
     """A table with numbers for its shape, a law and a contraction.
 
     `table` is an exact table, or the name of one of the paper's; shape parameters are keywords. Numbers are exact,
-    or text, where a decimal means the decimal it shows.
+    or text, where a decimal means the decimal it shows. A parameter may have a range, `b="0.1:0..1/4"`, over which the
+    boundary is proved to be a table (as far as `over` says), and a law to be one.
 
     >>> egg = Scene("egg", alpha="0.08", lam="1/2")
     >>> egg
@@ -68,7 +73,8 @@ class Scene:
         self, table: "Table | str", *, lam: Any = 1, law: Law | str = UNIFORM, K: int = POINTS, **shape: Any
     ) -> None:
         boundary, fixed = named_boundary(table, K) if isinstance(table, str) else table_boundary(table)
-        self._hold(boundary, {**fixed, **shape}, lam, law)
+        ranges = _own_ranges(table) if not isinstance(table, str) and "table" not in boundary else {}
+        self._hold(boundary, {**fixed, **_with_ranges(shape, ranges)}, lam, law)
 
     def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
         """Keeps the one line that says all of it; the same line for every way to write it."""
@@ -83,14 +89,18 @@ class Scene:
                 raise ValueError(f"{name}: the shape parameter {letter} needs a value, as in Scene(..., {letter}=...)")
         document = dict(boundary)
         if letters:
-            document["shape"] = {letter: exact_text(f"{name}: {letter}", shape[letter]) for letter in letters}
+            document["shape"] = {letter: parameter_text(f"{name}: {letter}", shape[letter]) for letter in letters}
         if not law.uniform:
             document["law"] = law.formula
         document["lam"] = contraction_text(lam)
         object.__setattr__(self, "text", f"scene = {toml(document)}")
+        if self.family_text:
+            _family(self.family_text)
         if not law.uniform:
-            law = self.law
-            law.check((self.lam, self.lam), law.places(self.table) if law.placed else None)
+            own, law = letters_of_law(law.formula), self.law
+            ranges = {letter: ends for letter, ends in self.ranges.items() if letter in own}
+            free = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] not in ranges))
+            free.check((self.lam, self.lam), free.places(self.table) if free.placed else None, **ranges)
 
     # ---- what it says
 
@@ -120,24 +130,52 @@ class Scene:
     @property
     def shape(self) -> "dict[str, Fraction | Expr]":
         """The numbers of the table's shape parameters, exactly."""
-        return {name: exact(name, self.document["shape"][name]) for name in letters_of(self.document)}
+        return {name: exact(name, value_text(self.document["shape"][name])) for name in letters_of(self.document)}
+
+    @property
+    def ranges(self) -> "dict[str, tuple[Fraction | Expr, Fraction | Expr]]":
+        """The ends of the range of each parameter that has one, the table's and the law's own.
+
+        >>> Scene.of({"polar": "1 + b*cos(theta)", "shape": {"b": "0.1:0..1/4"}}).ranges
+        {'b': (Fraction(0, 1), Fraction(1, 4))}
+        """
+        given = {name: range_text(text) for name, text in self.document.get("shape", {}).items()}
+        return {name: range_ends(name, ends) for name, ends in given.items() if ends}
 
     @property
     def law(self) -> Law:
         """The reflection law, with the numbers of its own parameters."""
         formula = self.document.get("law", UNIFORM)
-        return Law(formula).at(**{name: self.document["shape"][name] for name in letters_of_law(formula)})
+        return Law(formula).at(**{name: value_text(self.document["shape"][name]) for name in letters_of_law(formula)})
 
     @property
     def boundary(self) -> str:
         """The table with the numbers of its shape, as one line of text: the same for every law and contraction."""
         said = {key: value for key, value in self.document.items() if key in BOUNDARY}
-        return toml(said | {"shape": {name: self.document["shape"][name] for name in letters_of(self.document)}})
+        shape = {name: value_text(self.document["shape"][name]) for name in letters_of(self.document)}
+        return toml(said | {"shape": shape})
 
     @cached_property
     def table(self) -> "Table":
         """The exact table with its shape; `ValueError` when there is none."""
         return built(self.document)
+
+    @cached_property
+    def family_text(self) -> str:
+        """The boundary with the ranges of its parameters in the place of their values; nothing where none has one."""
+        shape = {letter: self.document["shape"][letter] for letter in letters_of(self.document)}
+        if not any(map(range_text, shape.values())):
+            return ""
+        return self._with({letter: range_text(text) or text for letter, text in shape.items()})
+
+    def _with(self, shape: Mapping[str, str]) -> str:
+        boundary = {key: value for key, value in self.document.items() if key in BOUNDARY}
+        return f"scene = {toml({**boundary, 'shape': shape})}"
+
+    @property
+    def family(self) -> "Table":
+        """The table with every shape parameter left free that has a range; the table itself where none has one."""
+        return _family(self.family_text) if self.family_text else self.table
 
     def over(self, parameter: str, low: Any, high: Any) -> "Table":
         """The table with one of its shape parameters left free, looked at from `low` to `high`.
@@ -149,26 +187,14 @@ class Scene:
         >>> flower.over("b", 0, "1/30").shapes[0].range
         Interval(0, 1/30)
         """
-        from sympy import Interval, Symbol
-
-        from symbolic.tables.table import Shape
-        from symbolic.tables.validity import radius_over
-
         if parameter not in self.shape:
             accepted = ", ".join(self.shape) or "none"
             raise ValueError(f"{self.name}: no shape parameter {parameter}; it has: {accepted}")
         ends = [exact(parameter, end) for end in (low, high)]
-        free = Shape(Symbol(parameter, real=True), Interval(*ends), "is outside of what was looked at")
-        table = built(self.document, (free,))
-        proved = "table" in self.document or ("polar" in self.document and radius_over(table))
-        for share in (0, 8) if proved else range(9):
-            value = ends[0] + (ends[1] - ends[0]) * share / 8
-            there: dict[str, Any] = {parameter: value}
-            try:
-                built(self.at(**there).document)
-            except ValueError as why:  # the paper's tables name the value themselves
-                raise ValueError(str(why) if "table" in self.document else f"{parameter} = {value}: {why}") from None
-        return table
+        values = {letter: value_text(text) for letter, text in self.document["shape"].items()}
+        return _family(
+            self._with({letter: values[letter] for letter in self.shape} | {parameter: "{}..{}".format(*ends)})
+        )
 
     def at(self, *, lam: Any = None, law: Law | str | None = None, **shape: Any) -> "Scene":
         """The same scene with another contraction or law, or other numbers for its shape.
@@ -178,9 +204,13 @@ class Scene:
         """
         other = object.__new__(Scene)
         boundary = {key: value for key, value in self.document.items() if key in BOUNDARY}
-        law, own = (Law(self.law.formula), self.law.numbers) if law is None else (law, ())
-        numbers = {**self.shape, **dict(own), **shape}
-        other._hold(boundary, numbers, self.document["lam"] if lam is None else lam, law)
+        kept = self.shape if law is not None else self.document.get("shape", {})
+        texts = {name: self.document["shape"][name] for name in kept}
+        law = Law(self.law.formula) if law is None else law
+        ranges = {name: range_text(text) for name, text in texts.items() if range_text(text)}
+        other._hold(
+            boundary, {**texts, **_with_ranges(shape, ranges)}, self.document["lam"] if lam is None else lam, law
+        )
         return other
 
     # ---- text and back
@@ -252,3 +282,53 @@ class Scene:
         from symbolic.tables.table import latex
 
         return rf"$\displaystyle {latex(self.table)}, \quad \varphi = {latex(self.law.phi)}$"
+
+
+def _with_ranges(shape: Mapping[str, Any], ranges: Mapping[str, str]) -> dict[str, Any]:
+    """Numbers, each with the range that is known for it where it says none of its own."""
+    return {
+        name: value
+        if name not in ranges or (isinstance(value, str) and ":" in value)
+        else f"{exact(name, value)}:{ranges[name]}"
+        for name, value in shape.items()
+    }
+
+
+def _own_ranges(table: "Table") -> dict[str, str]:
+    """The ranges that a table states for its own shape parameters, as far as their ends are numbers."""
+    ends = {p.symbol.name: (p.range.start, p.range.end) for p in table.shapes}
+    return {name: f"{low}..{high}" for name, (low, high) in ends.items() if low.is_finite and high.is_finite}
+
+
+@lru_cache(maxsize=64)
+def _family(line: str) -> "Table":
+    """The table of a line in which some parameters have a range `LOW..HIGH` alone: these stay free.
+
+    A radius is proved positive over all of the ranges; of any other table the corners of the ranges and, for each
+    parameter, nine values of it are looked at, the others in the middle.
+    """
+    import tomllib
+
+    from sympy import Interval, Symbol
+
+    from symbolic.tables.table import Shape
+    from symbolic.tables.validity import radius_over
+
+    document: dict[str, Any] = tomllib.loads(line)["scene"]
+    ranges = {name: range_ends(name, text) for name, text in document["shape"].items() if ".." in text}
+    outside = "is outside of what was looked at"
+    free = [Shape(Symbol(name, real=True), Interval(*ends), outside) for name, ends in ranges.items()]
+    table = built(document, free)
+    proved = "table" in document or ("polar" in document and radius_over(table))
+    places = [dict(zip(ranges, corner, strict=True)) for corner in product(*ranges.values())]
+    if not proved:
+        middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
+        for name, (low, high) in ranges.items():
+            places += [{**middle, name: low + (high - low) * share / 8} for share in range(9)]
+    for place in {str(place): place for place in places}.values():
+        try:
+            built({**document, "shape": {**document["shape"], **{name: str(value) for name, value in place.items()}}})
+        except ValueError as why:  # the paper's tables name the value themselves
+            where = ", ".join(f"{name} = {value}" for name, value in place.items())
+            raise ValueError(str(why) if "table" in document else f"{where}: {why}") from None
+    return table

@@ -1,12 +1,11 @@
 """A scene as the options of a command line, and what the commands that sweep over scenes have in common.
 
 Table, shape and contraction are exact all the way: a decimal is the decimal it shows. None of the paper's tables
-imports SymPy. From the options come the map in float64, a starting point as exact numbers, what a dry run says of
-a sweep, and the files in which its results are kept.
+imports SymPy. From the options come the scene, a starting point as exact numbers, and the axes of a sweep.
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,17 +15,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact
+from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text
 from symbolic.tables.law import Law, letters_of_law
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, duration, finite, json_option, size
+from verification.app.cli import Output, json_option
 
 if TYPE_CHECKING:
     import numpy as np
-    import xarray as xr
     from numpy.typing import NDArray
 
-    from numeric.sweeps.sweep import Cost, Sweep
     from symbolic.tables.table import Table
 
 
@@ -74,10 +71,10 @@ def scene(
     if K is not None and name != "egg":
         raise ValueError(f"{name}: --K = {K} is only for the egg; leave it out")
     numbers: dict[str, Any] = {
-        key: exact(f"--{key}", text) for key, text in _fitting(name, PAPER.get(name, ()), shape).items()
+        key: parameter_text(f"--{key}", text) for key, text in _fitting(name, PAPER.get(name, ()), shape).items()
     }
     value = _contraction(lam)
-    numbers |= {letter: exact(f"--shape {letter}", text) for letter, text in own.items()}
+    numbers |= {letter: parameter_text(f"--shape {letter}", text) for letter, text in own.items()}
     if table in GALLERY:
         return Scene(_of_gallery(table, values), lam=value, law=law, **numbers)
     if table:
@@ -125,11 +122,30 @@ def uniform_only(scene: Scene, what: str) -> None:
 
 
 def _shape_value(text: str) -> tuple[str, str]:
-    """`NAME=VALUE` as a pair."""
+    """`NAME=VALUE`, or `NAME=VALUE:LOW..HIGH` with its range, as a pair."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip().isidentifier():
         raise ValueError(f"--shape {text!r} sets nothing; give NAME=VALUE such as b=1/10")
     return name.strip(), value.strip()
+
+
+def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
+    """What --shape sets, and what it varies: `[NAME=]LOW:HIGH` for a branch, `NAME=LOW:HIGH:N` for a sweep.
+
+    >>> parted(("b=0.1:0..1/4", "c=0:1/8"))
+    (('b=0.1:0..1/4',), 'c=0:1/8')
+    """
+    varied = [text for text in given if ":" in text and ".." not in text]
+    if len(varied) > 1:
+        raise ValueError(f"--shape {' and '.join(varied)}: two parameters vary; accepted: one, and a number for others")
+    return tuple(text for text in given if text not in varied), next(iter(varied), None)
+
+
+def _starting(given: tuple[str, ...], axis: str) -> tuple[str, ...]:
+    """What --shape sets, with the lower end for the parameter that varies where nothing else gives it a number."""
+    name, equals, ends = axis.partition("=")
+    known = {text.partition("=")[0].strip() for text in given}
+    return given if not equals or name.strip() in known else (*given, f"{name}={ends.partition(':')[0]}")
 
 
 def _from_file(
@@ -143,7 +159,7 @@ def _from_file(
         found = Scene.load(file)
     except (OSError, UnicodeDecodeError) as reason:
         raise ValueError(f"--scene {file!r} cannot be read: {reason}") from None
-    numbers = {name: exact(f"--shape {name}", text) for name, text in values.items()}
+    numbers = {name: parameter_text(f"--shape {name}", text) for name, text in values.items()}
     law = None if formula is None else _law(formula)
     return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)
 
@@ -159,6 +175,9 @@ def _of_gallery(name: str, values: dict[str, str]) -> Any:
     for key in values:
         if key not in known:
             raise ValueError(f"{name}: --shape {key} is none of its lengths; accepted: {', '.join(known) or 'none'}")
+    for key, text in values.items():
+        if ":" in text:
+            raise ValueError(f"{name}: --shape {key}={text}: a length has no range; accepted: one number")
     return make(**{key: exact(f"--shape {key}", text) for key, text in values.items()})
 
 
@@ -199,13 +218,20 @@ TABLE = (
     click.option("--law", metavar="FORMULA", help="The exit angle: a formula in eta, lam, theta; or else -lam*eta."),
 )
 SHAPE = click.option(
-    "--shape", "given", multiple=True, metavar="NAME=VALUE", help="A shape parameter of your own table, or a length."
+    "--shape",
+    "given",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="A parameter of your own table or law, NAME=VALUE or NAME=VALUE:LOW..HIGH with its range; or a length.",
 )
 CONTRACTION = click.option("--lam", metavar="NUMBER", help="Contraction of the angle, from 0 to 1.")
 
 
-def table_options(command: Command) -> Command:
-    """Gives `command` the arguments of a table, as a keyword `scene` whose `lam` is 0."""
+def table_options(command: Command, varies: bool = False) -> Command:
+    """Gives `command` the arguments of a table, as a keyword `scene` whose `lam` is 0.
+
+    Where a parameter `varies`, what --shape says of it is a keyword `axis`, None where lambda varies.
+    """
 
     @wraps(command)
     def called(
@@ -224,6 +250,12 @@ def table_options(command: Command) -> Command:
         law: str | None = None,
         **others: Any,
     ) -> Any:
+        given, axis = parted(given)
+        if varies:
+            others["axis"] = axis
+            given = given if axis is None else _starting(given, axis)
+        elif axis is not None:
+            raise ValueError(f"--shape {axis} varies a parameter; this command takes one number, as in b=1/10")
         measured = None
         if data is not None or smoothness is not None or degree is not None:
             from verification.app.outline import drawn
@@ -232,14 +264,19 @@ def table_options(command: Command) -> Command:
         options = table, polar, parametric, K, lam, file, given, measured, law
         return command(scene=_known(*options, a=a, alpha=alpha), **others)
 
-    for option in reversed(TABLE):
+    for option in reversed((*TABLE, SHAPE)):
         called = option(called)
     return called
 
 
+def varied_options(command: Command) -> Command:
+    """Gives `command` the arguments of a table with a parameter that varies, as keywords `scene` and `axis`."""
+    return table_options(command, varies=True)
+
+
 def scene_options(command: Command) -> Command:
     """Gives `command` the arguments of a scene, as a keyword `scene`."""
-    return CONTRACTION(SHAPE(table_options(command)))
+    return CONTRACTION(table_options(command))
 
 
 def start_of(text: str) -> tuple[Any, Any]:
@@ -256,8 +293,6 @@ def start_of(text: str) -> tuple[Any, Any]:
 
 
 MOST = 1_000_000  # values of an axis
-LARGEST = 1 << 26  # bytes that are written as JSON
-Lines = Callable[["xr.Dataset"], list[str]]
 
 
 @dataclass(frozen=True)
@@ -332,65 +367,3 @@ def over(scene: Scene, lams: str) -> "tuple[str, NDArray[np.float64]]":
 def _rational(label: str, text: str) -> Fraction:
     value = exact(label, text)
     return value if isinstance(value, Fraction) else Fraction(float(value))
-
-
-def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
-    """Does a sweep, or says what it would cost, and shows what `lines` makes of the results."""
-    from numeric.sweeps.run import UnfinishedError, run
-    from numeric.sweeps.sweep import cost
-
-    if how.dry_run:
-        expected = cost(sweep, how.workers)
-        how.output.write({"dry_run": True, "sweep": sweep.name, **expected.as_data()})
-        for line in estimated(expected):
-            how.output.console.print(line)
-        return DONE
-    with how.output.progress(sweep.name, len(sweep.indices())) as advance:
-        shown = 0
-
-        def tick(done: int, parts: int) -> None:
-            nonlocal shown
-            for i in range(shown, done):
-                advance(f"{i + 1} of {parts}")
-            shown = done
-
-        try:
-            found = run(sweep, how.store, how.scheduler, how.workers, tick)
-        except UnfinishedError as stop:
-            click.echo(f"pinball: {stop}", err=True)
-            return FAILED
-    how.output.write(document(found, how.store))
-    for line in lines(found):
-        how.output.console.print(line)
-    if how.store is not None:
-        how.output.console.print(f"all of it is in {how.store}: xarray.open_zarr({str(how.store)!r})")
-    return DONE
-
-
-def estimated(expected: "Cost") -> list[str]:
-    """A dry run, for people."""
-    return [
-        f"{expected.parts} parts, {expected.collisions:.3g} bounces",
-        f"about {duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
-        f"{expected.workers} cores",
-        f"{size(expected.bytes)} of results before compression",
-    ]
-
-
-def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
-    """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
-    fields: dict[str, Any] = {}
-    for name, values in found.data_vars.items():
-        fields[str(name)] = {"dims": list(values.dims), "units": values.attrs["units"]}
-        fields[str(name)]["about"] = values.attrs["long_name"]
-        if store is None and found.nbytes <= LARGEST:
-            fields[str(name)]["values"] = finite(values.values.tolist())
-    coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
-    labels = {str(key): _read(value) for key, value in found.attrs.items()}
-    whole = {**labels, "coords": coords, "fields": fields}
-    return whole if store is None else {**whole, "store": str(store)}
-
-
-def _read(value: Any) -> Any:
-    """What an attribute says; those that hold JSON are read."""
-    return json.loads(value) if isinstance(value, str) and value.startswith("{") else value

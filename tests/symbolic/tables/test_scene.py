@@ -1,6 +1,7 @@
 """A scene is exact, and one line of text and back, however it was written down."""
 
 import pickle
+import re
 import subprocess
 import sys
 from fractions import Fraction
@@ -8,14 +9,16 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sympy import Rational, cos, sqrt
+from sympy import Interval, Rational, Symbol, cos, sqrt
 
 from symbolic import tables
 from symbolic.tables.definition import RESERVED
 from symbolic.tables.formula import CONSTANTS, FUNCTIONS
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene
-from symbolic.tables.table import theta
+from symbolic.tables.table import Shape, theta
+
+b = Symbol("b", real=True)
 
 TRIANGLE = """
 name = "triangle"
@@ -129,3 +132,44 @@ def test_one_of_the_paper_s_scenes_needs_no_sympy():
     done = subprocess.run([sys.executable, "-c", code + "; import sys; sys.exit('sympy' in sys.modules)"], check=False)
 
     assert done.returncode == 0
+
+
+def test_a_parameter_keeps_its_range_in_text_and_with_other_numbers():
+    scene = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "0.1:0..0.25"}, "lam": "1/2"})
+
+    assert scene.shape == {"b": Fraction(1, 10)}
+    assert scene.ranges == {"b": (0, Fraction(1, 4))}
+    assert Scene.parse(scene.text) == scene
+    assert scene.at(b="1/5", lam=1).ranges == scene.ranges
+    assert [p.range for p in scene.family.shapes] == [Interval(0, Rational(1, 4))]
+    assert scene.table == tables.polar("1 + cos(5*theta)/10")
+
+
+def test_the_range_that_a_table_states_is_the_scene_s():
+    own = tables.polar(1 + b * cos(theta), "pear", [Shape(b, Interval(0, Rational(1, 4)), "is too long")])
+
+    assert Scene(own, b="1/10").ranges == {"b": (0, Fraction(1, 4))}
+    with pytest.raises(ValueError, match=r"pear: b = 1/2 lies outside of its range 0\.\.1/4"):
+        Scene(own, b="1/2")
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("0.1:0..5/4", "rho = b*cos(5*theta) + 1 is not positive at theta = "),
+        ("0.1:0-1/4", "b = 0.1:0-1/4 is no value with its range; accepted: VALUE:LOW..HIGH such as 0.1:0..1/4"),
+        ("0.1:1/4..0", "b = 0.1:1/4..0: 1/4..0 is no range; accepted: LOW..HIGH with LOW < HIGH"),
+        ("0.1:0.2..0.3", "b = 1/10 lies outside of its range 1/5..3/10"),
+    ],
+)
+def test_a_range_in_which_there_is_no_table_is_refused_in_one_sentence(given, says):
+    with pytest.raises(ValueError, match=re.escape(says)):
+        Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": given}})
+
+
+def test_the_range_of_a_law_s_parameter_is_proved():
+    kept = Scene("circle", law="-lam*eta - b*sin(2*eta)", lam="1/2", b="0.1:0..1/4")
+
+    assert kept.law.numbers == (("b", "1/10"),)
+    with pytest.raises(ValueError, match="the exit angle is"):
+        kept.at(b="0.1:0..9/4")

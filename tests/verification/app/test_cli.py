@@ -214,8 +214,10 @@ def test_a_scene_is_exact(scenes, arguments, scene):
 def test_a_table_of_the_gallery_and_a_shape_of_ones_own_are_typed_like_the_papers(scenes):
     assert main(["show", "stadium", "--lam", "9/10", "--shape", "straight=1/2"]) == 0
     assert main(["show", "--polar", "1 + b*cos(5*theta)", "--shape", "b=1/40", "--lam", "1"]) == 0
+    assert main(["show", "--polar", "1 + b*cos(5*theta)", "--shape", "b=1/40:0..1/4", "--lam", "1"]) == 0
 
-    (stadium, _), (star, _) = scenes
+    (stadium, _), (star, _), (ranged, _) = scenes
+    assert ranged.ranges == {"b": (0, Fraction(1, 4))}
     assert stadium == Scene(tables.stadium(Rational(1, 2)), lam="9/10")
     assert star.shape == {"b": Fraction(1, 40)}
     assert set(GALLERY) == set(tables.GALLERY)
@@ -252,6 +254,8 @@ def test_the_shapes_known_here_are_those_of_the_tables():
         ("--lam 1", "one table is needed, none given; accepted: circle, ellipse, cardioid, cuspless, egg, --polar or"),
         ("stadium --shape b=1 --lam 1", "stadium: --shape b is none of its lengths; accepted: straight, radius"),
         ("stadium --shape straight --lam 1", "--shape 'straight' sets nothing; give NAME=VALUE such as b=1/10"),
+        ("--polar 1+b*cos(theta) --shape b=0.1:0..2 --lam 1", "--polar: rho = b*cos(theta) + 1 is not positive at"),
+        ("--polar 1+b*cos(theta) --shape b=0.1:1/4 --lam 1", "--shape b=0.1:1/4 varies a parameter; this"),
         ("--scene nowhere.toml", "--scene 'nowhere.toml' cannot be read"),
         ("circle --polar 1 --lam 1", "one table is needed, polar and circle given"),
         ("circle", "--lam = missing is no contraction; accepted: numbers in [0, 1]"),

@@ -9,7 +9,7 @@ import click
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option
-from verification.app.scene import table_options
+from verification.app.scene import varied_options
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -24,13 +24,8 @@ ROWS = 12  # points of a branch shown to people, and all its events
 
 
 @click.command(epilog="Example: pinball follow egg --alpha 0.08 --cycle triangle --lam 0.37:1 --digits 20")
-@table_options
+@varied_options
 @click.option("--lam", "interval", required=True, metavar="LOW:HIGH", help="The contractions, between 0 and 1.")
-@click.option(
-    "--shape",
-    metavar="[NAME=]LOW:HIGH",
-    help="Vary the table's shape, or a parameter of the law, in place of lambda; --lam is then one number.",
-)
 @click.option("--cycle", metavar="NAME", help="A cycle of the paper: diameter, triangle, horizontal, ...")
 @click.option("--start", metavar="THETA,...", help="Or the bounces of one, roughly.")
 @click.option("--components", metavar="NAME,...", help="Where the bounces of --start lie, on a table of several parts.")
@@ -43,8 +38,8 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @json_option
 def command(
     scene: Scene,
+    axis: str | None,
     interval: str,
-    shape: str | None,
     cycle: str | None,
     start: str | None,
     components: str | None,
@@ -58,13 +53,15 @@ def command(
 ) -> int:
     """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
 
-    With --shape it is the table's shape that changes, or a parameter of the law; its number is the start's. Exit
-    status 1 when a branch stops inside the interval; what was found is kept.
+    With --shape [NAME=]LOW:HIGH, or NAME=VALUE:LOW..HIGH, and one number for --lam it is the table's shape that
+    changes, or a parameter of the law; its number is the start's. Exit status 1 when a branch stops inside the
+    interval; what was found is kept.
     """
     from verification.cycles.arc import Steps
     from verification.cycles.branch import at_contraction, branch, named, record, typed
     from verification.named.questions import law_over
 
+    shape = axis or (ranged(scene) if ":" not in interval else None)
     if curves and (scene.name != "egg" or shape):
         given = "--shape" if shape else scene.name
         raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
@@ -89,7 +86,7 @@ def command(
         x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
         if letter in scene.shape:
             ring = replace(ring, table=over(scene, letter, ends))
-        value = float(exact("--shape", scene.document["shape"][letter]))
+        value = float({**scene.shape, **own_numbers(scene)}[letter])
     ring = replace(ring, law=law)
     steps = Steps(most=points)
     with output.progress("Following", points) as tick:
@@ -133,6 +130,21 @@ def interval_of(option: str, text: str) -> tuple[float, float]:
     if not low < high:
         raise ValueError(f"{option} {text} is no interval; accepted: LOW:HIGH with LOW < HIGH")
     return low, high
+
+
+def own_numbers(scene: Scene) -> dict[str, Any]:
+    """The numbers of the law's own parameters."""
+    return {name: exact(name, text) for name, text in scene.law.numbers}
+
+
+def ranged(scene: Scene) -> str | None:
+    """The parameter that has a range, as --shape would vary it; None where none has one."""
+    found = [f"{name}={low}:{high}" for name, (low, high) in scene.ranges.items()]
+    if len(found) > 1:
+        raise ValueError(
+            f"--lam is one number and {', '.join(scene.ranges)} have ranges; say which, --shape {found[0]}"
+        )
+    return next(iter(found), None)
 
 
 def varied(scene: Scene, shape: str) -> tuple[str, str]:

@@ -4,16 +4,19 @@
 draws the attractors against the contraction.
 """
 
+import json
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
+from verification.app.cli import DONE, FAILED, duration, finite, size
 from verification.app.scene import (
     How,
-    carried_out,
     lams_option,
     over,
     scene_options,
@@ -26,9 +29,75 @@ from verification.app.scene import (
 if TYPE_CHECKING:
     import xarray as xr
 
+    from numeric.sweeps.sweep import Cost, Sweep
+
 
 COLUMNS, ROWS = 96, 24  # of the picture in letters
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+LARGEST = 1 << 26  # bytes that are written as JSON
+Lines = Callable[["xr.Dataset"], list[str]]
+
+
+def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
+    """Does a sweep, or says what it would cost, and shows what `lines` makes of the results."""
+    from numeric.sweeps.run import UnfinishedError, run
+    from numeric.sweeps.sweep import cost
+
+    if how.dry_run:
+        expected = cost(sweep, how.workers)
+        how.output.write({"dry_run": True, "sweep": sweep.name, **expected.as_data()})
+        for line in estimated(expected):
+            how.output.console.print(line)
+        return DONE
+    with how.output.progress(sweep.name, len(sweep.indices())) as advance:
+        shown = 0
+
+        def tick(done: int, parts: int) -> None:
+            nonlocal shown
+            for i in range(shown, done):
+                advance(f"{i + 1} of {parts}")
+            shown = done
+
+        try:
+            found = run(sweep, how.store, how.scheduler, how.workers, tick)
+        except UnfinishedError as stop:
+            click.echo(f"pinball: {stop}", err=True)
+            return FAILED
+    how.output.write(document(found, how.store))
+    for line in lines(found):
+        how.output.console.print(line)
+    if how.store is not None:
+        how.output.console.print(f"all of it is in {how.store}: xarray.open_zarr({str(how.store)!r})")
+    return DONE
+
+
+def estimated(expected: "Cost") -> list[str]:
+    """A dry run, for people."""
+    return [
+        f"{expected.parts} parts, {expected.collisions:.3g} bounces",
+        f"about {duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
+        f"{expected.workers} cores",
+        f"{size(expected.bytes)} of results before compression",
+    ]
+
+
+def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
+    """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
+    fields: dict[str, Any] = {}
+    for name, values in found.data_vars.items():
+        fields[str(name)] = {"dims": list(values.dims), "units": values.attrs["units"]}
+        fields[str(name)]["about"] = values.attrs["long_name"]
+        if store is None and found.nbytes <= LARGEST:
+            fields[str(name)]["values"] = finite(values.values.tolist())
+    coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
+    labels = {str(key): _read(value) for key, value in found.attrs.items()}
+    whole = {**labels, "coords": coords, "fields": fields}
+    return whole if store is None else {**whole, "store": str(store)}
+
+
+def _read(value: Any) -> Any:
+    """What an attribute says; those that hold JSON are read."""
+    return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
 
 
 @click.command(epilog="Example: pinball basins cuspless --lam 0.09 --columns 400 --rows 400 --store basins.zarr")

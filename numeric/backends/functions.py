@@ -132,13 +132,19 @@ def logarithm(ops: Backend[N, M], x: N) -> N:
 
 
 def root(ops: Backend[N, M], x: N, n: int) -> N:
-    """The positive `n`-th root of a positive number: a guess by logarithms, and Newton's step on `y**n = x`."""
-    positive = ops.number(0.0) < x
+    """The positive `n`-th root of a positive number: a guess by logarithms, and Newton's step on `y**n = x`.
+
+    A number so small that what Newton's step corrects might be subnormal is first made larger by a power of two.
+    """
+    positive, lift = ops.number(0.0) < x, 900 // n
+    small = x < ops.number(2.0**-900)
+    x = ops.select(small, x * ops.number(2.0 ** (n * lift)), x)
     y = exponential(ops, logarithm(ops, x) * ops.number(1 / n))
     power = y
     for _ in range(n - 2):
         power = power * y
     y = y - (power * y - x) / (power * ops.number(float(n)))
+    y = y * ops.select(small, ops.number(2.0**-lift), ops.number(1.0))
     return ops.select(positive, y, ops.select(ops.negated(x < ops.number(0.0)), x, ops.number(math.nan)))
 
 

@@ -6,10 +6,15 @@
 `state` holds one row of `width` doubles for each field: the particle's own, then `code` and `lost` when the
 family has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
 worked on. `record`, when orbits are asked for, receives the particle's own rows after every bounce.
+
+Inside, the processor takes numbers below 2**-1022 for zero: a particle at rest on a cycle ends up there, and many
+processors take such an operation for an exception, sixty times as long. The caller's mode is restored on the way out.
 """
 
+import platform
 import re
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from numeric.backends.llvm import LLVMBackend, LLVMVector
 from numeric.flights.family import ELASTIC, SLAP, Family
@@ -20,15 +25,53 @@ HEAD = (
     "define void @run(ptr noalias %state, ptr noalias %lam, ptr noalias %shape, ptr noalias %record, "
     "i64 %width, i64 %first, i64 %last, i64 %bounces) #0 {"
 )
-TAIL = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
+TAIL = (
+    'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" '
+    '"denormal-fp-math"="preserve-sign,preserve-sign" }'
+)
 
 
-def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: int = 0) -> str:
-    """The module in LLVM's language."""
+class Mode(NamedTuple):
+    """How a processor is told to take subnormal numbers for zero: on entry, on the way out, and what to declare."""
+
+    entry: tuple[str, ...] = ()
+    exit: tuple[str, ...] = ()
+    declared: tuple[str, ...] = ()
+
+
+X86 = Mode(  # the bits "flush to zero", of results, and "denormals are zeros", of operands, of the register MXCSR
+    (
+        "%mode = alloca i32, align 4",
+        "%flushed = alloca i32, align 4",
+        "call void @llvm.x86.sse.stmxcsr(ptr %mode)",
+        "%found = load i32, ptr %mode, align 4",
+        f"%flushing = or i32 %found, {0x8040}",
+        "store i32 %flushing, ptr %flushed, align 4",
+        "call void @llvm.x86.sse.ldmxcsr(ptr %flushed)",
+    ),
+    ("call void @llvm.x86.sse.ldmxcsr(ptr %mode)",),
+    ("declare void @llvm.x86.sse.ldmxcsr(ptr)", "declare void @llvm.x86.sse.stmxcsr(ptr)"),
+)
+ARM = Mode(  # the bit FZ, of both, of the register FPCR
+    (
+        "%mode = call i64 @llvm.aarch64.get.fpcr()",
+        f"%flushing = or i64 %mode, {1 << 24}",
+        "call void @llvm.aarch64.set.fpcr(i64 %flushing)",
+    ),
+    ("call void @llvm.aarch64.set.fpcr(i64 %mode)",),
+    ("declare i64 @llvm.aarch64.get.fpcr()", "declare void @llvm.aarch64.set.fpcr(i64)"),
+)
+MODES = {"x86_64": X86, "amd64": X86, "aarch64": ARM, "arm64": ARM}  # elsewhere subnormal numbers stay what they are
+
+
+def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: int = 0, processor: str = "") -> str:
+    """The module in LLVM's language, for this kind of processor or for the one that it is written on."""
+    mode = MODES.get((processor or platform.machine()).lower(), Mode())
     ops = LLVMBackend(width or family.width)
     names = fields(family, spec)
     own = len(family.fields(spec.law))
     ops.label("entry")
+    ops.lines += [f"  {line}" for line in mode.entry]
     parameters = [_broadcast(ops, i, name) for i, name in enumerate(shape)]
     ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
     ops.lines += ["  %busy = icmp slt i64 %at, %last", "  br i1 %busy, label %start, label %exit"]
@@ -78,9 +121,12 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     for name, address in zip(finals, addresses, strict=True):
         ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
     ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
+    ops.lines += [f"  {line}" for line in mode.exit]
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
-    return "\n".join([title, *arrays, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), TAIL, ""])
+    return "\n".join(
+        [title, *arrays, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), *mode.declared, TAIL, ""]
+    )
 
 
 def _joined(

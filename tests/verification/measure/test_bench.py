@@ -11,15 +11,30 @@ from verification.app.cli import main
 from verification.app.commands.bench import show_ratios
 from verification.measure.extremes.orbits import cases, own_cases
 from verification.measure.work import bench as baselines
+from verification.measure.work import calls
 from verification.measure.work.bench import LAWS, Row, frontier, multiprecision_rows
+from verification.measure.work.calls import Call
 from verification.measure.work.row import HEIGHT, WIDTH, diagram, magnitude
+
+NO = ("--no-baselines", "--no-calls")
 
 
 @pytest.fixture(scope="module")
 def document(tmp_path_factory):
     """What `pinball bench` writes for one table."""
     path = tmp_path_factory.mktemp("bench") / "bench.json"
-    question = ["--scene", "circle", "--digits", "20", "--digits", "1000", "--runs", "1", "--no-baselines"]
+    question = [
+        "--scene",
+        "circle",
+        "--digits",
+        "20",
+        "--digits",
+        "1000",
+        "--runs",
+        "1",
+        "--no-baselines",
+        "--no-calls",
+    ]
     assert main(["bench", *question, "--json", str(path)]) == 0
     return json.loads(path.read_text())
 
@@ -49,7 +64,19 @@ def test_the_hard_cases_of_the_table_are_within_the_bounds(document):
     assert all(case["position"] <= 4 and case["direction"] <= 8 for case in cases)
 
 
-QUICK = ("bench", "--scene", "circle", "--digits", "20", "--runs", "1", "--no-baselines", "--no-accuracy", "--json")
+QUICK = (
+    "bench",
+    "--scene",
+    "circle",
+    "--digits",
+    "20",
+    "--runs",
+    "1",
+    "--no-baselines",
+    "--no-accuracy",
+    "--no-calls",
+    "--json",
+)
 
 
 def test_bench_says_what_moved_since_another_run(tmp_path, capsys):
@@ -151,3 +178,23 @@ def test_bench_says_where_its_baselines_are(tmp_path, monkeypatch, capsys):
     assert main(["bench", "--scene", "circle", "--digits", "20", "--runs", "1", "--no-accuracy"]) == 0
 
     assert baselines.MISSING in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_call_over_its_bar_is_marked_and_is_a_failure(monkeypatch, capsys, tmp_path):
+    inside = {"scene": "circle", "against": "the kernel", "reference": 1e-9, "bar": 2.0}
+    given = [Call(call="quick", seconds=1.5e-9, **inside), Call(call="slow", seconds=3e-9, **inside)]
+    for rows, status in ((given, 1), (given[:1], 0)):
+        monkeypatch.setattr(calls, "call_rows", lambda name, runs, rows=rows: rows)
+        path = tmp_path / f"{status}.json"
+        assert main([*(word for word in QUICK if word != "--no-calls"), str(path)]) == status
+        shown = {line.split()[1]: "*" in line for line in capsys.readouterr().out.splitlines() if "the kernel" in line}
+
+        assert shown == {row.call: row.call == "slow" for row in rows}
+        assert [row["ratio"] for row in json.loads(path.read_text())["calls"]] == [row.ratio for row in rows]
+
+
+def test_a_ball_at_rest_is_compared_with_the_same_ball_on_its_way():
+    row = calls.at_rest("circle", 1, sizes=(32, 10, 100))
+
+    assert (row.call, row.bar) == ("exponents, 100 bounces", 1.1)
+    assert 0 < row.ratio < 100

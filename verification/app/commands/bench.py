@@ -14,11 +14,13 @@ if TYPE_CHECKING:
 
     from verification.measure.extremes.orbits import Accuracy
     from verification.measure.work.bench import Row
+    from verification.measure.work.calls import Call
     from verification.measure.work.question import Question
     from verification.measure.work.row import Row as WorkRow
 
 
 HEAD = f"     {'way':<38}{'time a bounce':>13}{'ratio':>10}   error / 2**-52"
+CALLS = f"{'table':<10}{'call':<36}{'time':>12}{'ratio':>8}{'bar':>7}   against"
 CASES = f"{'case':<40}{'balls':>6}{'position':>10}{'direction':>11}{'/condition':>19}"
 
 
@@ -28,6 +30,7 @@ CASES = f"{'case':<40}{'balls':>6}{'position':>10}{'direction':>11}{'/condition'
 @click.option("--runs", type=click.IntRange(1, 1000), default=5, show_default=True, help="The best of how many.")
 @click.option("--baselines/--no-baselines", default=True, show_default=True, help="The benchmark folder's own ways.")
 @click.option("--accuracy/--no-accuracy", default=True, show_default=True, help="The errors of labelled hard cases.")
+@click.option("--calls/--no-calls", default=True, show_default=True, help="Whole calls against the kernel inside.")
 @click.option("--compare", metavar="FILE", help="Say what moved since a run of which FILE is the --json.")
 @json_option
 def command(
@@ -36,6 +39,7 @@ def command(
     runs: int,
     baselines: bool,
     accuracy: bool,
+    calls: bool,
     compare: str | None,
     output: Output,
 ) -> int:
@@ -43,12 +47,14 @@ def command(
 
     Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30
     digits more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the
-    Pareto front: no other way is both faster and more exact. With --compare the exit status is 1 when a time, beside
-    the others of its run, changed by more than a factor 1.5, or an error grew tenfold.
+    Pareto front: no other way is both faster and more exact. Whole calls have bars, as multiples
+    of what they are compared with; the exit status is 1 when one is over its bar. So it is with --compare when a
+    time, beside the others of its run, changed by more than a factor 1.5, or an error grew tenfold.
     """
     from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
     from verification.measure.work.bench import MISSING, baseline_rows, is_checkout
+    from verification.measure.work.calls import call_rows
     from verification.measure.work.choice import earlier, moved, of_bench
 
     before = earlier(Path(compare)) if compare else []
@@ -58,6 +64,7 @@ def command(
         raise ValueError(f"--scene = {unknown[0]} is no table; accepted: {', '.join(known)}")
     rows: list[Row] = []
     cases: list[Accuracy] = []
+    whole: list[Call] = []
     chosen = scenes or known
     with output.progress("Measuring", 3 * len(chosen)) as step:
         for name in chosen:
@@ -65,6 +72,7 @@ def command(
             papers = name in labelled.SCENES
             rows += bench.kernel_rows(name, runs) if papers else bench.own_rows(name, runs)
             rows += baseline_rows(name, runs) if baselines else []
+            whole += call_rows(name, runs) if papers and calls else []
             step(f"{name}, multiprecision")
             rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if papers else []
             step(f"{name}, hard cases")
@@ -72,12 +80,13 @@ def command(
     facts = bench.machine_facts()
     measured = [row.as_data() for row in rows]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []
-    document = {"machine": facts, "rows": measured}
+    document = {"machine": facts, "rows": measured, "calls": [call.as_data() for call in whole]}
     document |= {"accuracy": [case._asdict() | {"error_unit": "2**-52"} for case in cases]}
     output.write(document | ({"moved": changes} if compare else {}))
     for name in chosen:
         show(output.console, name, [row for row in rows if row.scene == name])
     show_ratios(output.console, rows)
+    show_calls(output.console, whole)
     if baselines and not is_checkout():
         output.console.print(f"\n{MISSING}")
     if cases:
@@ -87,7 +96,7 @@ def command(
     )
     if compare:
         output.console.print(f"\nsince {compare}: " + ("; ".join(changes) or "nothing moved by more than a factor 1.5"))
-    return FAILED if changes else DONE
+    return FAILED if changes or any(call.ratio > call.bar for call in whole) else DONE
 
 
 def show(console: "Console", name: str, rows: "list[Row]") -> None:
@@ -126,6 +135,17 @@ def show_ratios(console: "Console", rows: "list[Row]") -> None:
         ]
         shown = [f"{ratio:.2f}" if ratio else "-" for ratio in ratios]
         console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
+
+
+def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
+    """Whole calls with their bars; what is over its bar is marked."""
+    from verification.measure.work.row import duration
+
+    if calls:
+        console.print(f"\nwhole calls, beside what is inside; over the bar marked\n{CALLS}")
+    for call in calls:
+        times = f"{duration(call.seconds):>12}{call.ratio:>8.3g}{call.bar:>7.3g}"
+        console.print(f"{call.scene:<10}{call.call:<36}{times}{' *' if call.ratio > call.bar else '  '} {call.against}")
 
 
 def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:

@@ -2,6 +2,7 @@
 
 from . import bench
 from .bench import MISSING, Row, baseline_rows, frontier, is_checkout
+from .calls import Call, call_rows
 from .choice import QUESTIONS, digits_for, earlier, for_orbit, moved, of_bench
 from .figure import drawn, image
 from .question import Question, measured
@@ -10,10 +11,12 @@ from .row import diagram, duration, facts, footer, plain
 __all__ = [
     "MISSING",
     "QUESTIONS",
+    "Call",
     "Question",
     "Row",
     "baseline_rows",
     "bench",
+    "call_rows",
     "diagram",
     "digits_for",
     "drawn",

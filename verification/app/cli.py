@@ -61,8 +61,10 @@ class Output:
             ) from None
 
     @contextmanager
-    def progress(self, about: str, total: int) -> Iterator[Callable[[str], None]]:
-        """A verb to call with a word on each step done; a bar shows on a terminal after two seconds.
+    def progress(self, about: str, total: float) -> Iterator[Callable[..., None]]:
+        """A verb to call with a word on each step done, and its size where that is not 1.
+
+        A bar shows on a terminal after two seconds.
 
         What a long proof tells of itself within a step (`verification.arithmetic.progress`) moves the bar as well.
         """
@@ -71,17 +73,17 @@ class Output:
 
         console = Console(stderr=True)
         if not console.is_terminal:
-            yield lambda step: None
+            yield lambda step, size=1: None
             return
         bar = Progress(console=console, transient=True)
         task = bar.add_task(about, total=total)
         timer = Timer(PATIENCE, bar.start)
         timer.start()
-        done = 0
+        done = 0.0
 
-        def step(word: str) -> None:
+        def step(word: str, size: float = 1) -> None:
             nonlocal done
-            done += 1
+            done += size
             bar.update(task, completed=done, description=f"{about} {word}")
 
         def within(what: str, share: float) -> None:

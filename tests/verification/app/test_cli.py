@@ -46,18 +46,22 @@ class Result:
         return {**self.__dict__, "verdict": self.verdict.value}
 
 
+def closable(results):
+    yield from results
+
+
 @pytest.fixture
 def engine(monkeypatch, tmp_path):
     """A catalogue of two claims, and an empty working directory."""
     verdicts = {"circle.area": "confirmed", "ellipse.P1": "corrected"}
     fake = SimpleNamespace(
         verdicts=verdicts,
-        verify=lambda only="*", digits=15: (
-            Result(each, Verdict(verdict)) for each, verdict in verdicts.items() if only in ("*", each)
-        ),
+        judged=lambda claims, digits, jobs: (Result(each.id, Verdict(verdicts[each.id])) for each in claims),
     )
-    monkeypatch.setattr(report, "catalogue", lambda: [SimpleNamespace(id=each) for each in verdicts])
-    monkeypatch.setattr(report, "verify", lambda *asked: fake.verify(*asked))
+    monkeypatch.setattr(
+        report, "catalogue", lambda: [SimpleNamespace(id=each, section="3.1 Circular table") for each in verdicts]
+    )
+    monkeypatch.setattr(report, "judged", lambda *asked: closable(fake.judged(*asked)))
     monkeypatch.chdir(tmp_path)
     return fake
 
@@ -144,7 +148,7 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--digits"], "'--digits' requires an argument"),
         (
             ["verify", "--nope"],
-            "no option is called --nope; accepted: --digits, --figures, --help, --json, --only, --report, --work, -h",
+            "no option is called --nope; accepted: --changed, --digits, --figures, --help, --jobs, --json, --only, ",
         ),
         (["verify", "more"], "unexpected extra argument (more); pinball verify --help shows what is accepted"),
         (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),
@@ -173,7 +177,7 @@ def test_no_traceback_reaches_a_user(engine, capsys, error, status, sentence):
     def broken(*_):
         raise error
 
-    engine.verify = broken
+    engine.judged = broken
 
     assert main(["verify"]) == status
     printed = capsys.readouterr().err
@@ -184,7 +188,7 @@ def test_no_traceback_reaches_a_user(engine, capsys, error, status, sentence):
 
 def test_the_traceback_is_there_for_who_asks(engine, capsys, monkeypatch):
     monkeypatch.setenv("PINBALL_DEBUG", "1")
-    engine.verify = None
+    engine.judged = None
 
     assert main(["verify"]) == 1
     assert "Traceback" in capsys.readouterr().err

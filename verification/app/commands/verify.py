@@ -3,10 +3,14 @@
 `pinball figure` draws its figures, and `pinball explore` opens a table to play with on a local page.
 """
 
+import base64
 import json
 import os
+import re
 import socket
 from collections.abc import Collection, Sequence
+from contextlib import closing
+from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from importlib.util import find_spec
@@ -17,12 +21,14 @@ import click
 
 from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
 from verification.paper.report import report
+from verification.paper.report.changed import codes
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Generator, Mapping
 
     from rich.console import Console
 
+    from verification.paper.claims.claim import Claim
     from verification.paper.figures.catalogue import Picture as Figure
     from verification.paper.report.page import Picture
     from verification.paper.report.report import Result
@@ -139,29 +145,110 @@ def _free(port: int) -> int:
 
 @click.command(epilog="Example: pinball verify --only 'egg.*' --digits 30")
 @click.option("--only", metavar="GLOB", default="*", show_default=True, help="Judge the claims whose id matches.")
+@click.option("--section", metavar="LABEL", help="Judge the claims of a section, such as 6.3, 6 or Abstract.")
+@click.option("--changed", is_flag=True, help="Judge what depends on changed code; keep the rest of the last report.")
 @click.option("--digits", type=click.IntRange(1, 10_000), default=15, show_default=True, help="Digits of the values.")
 @click.option("--report", "folder", metavar="DIR", default="report", show_default=True, help="Where the report goes.")
 @click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the paper's figures in the report.")
 @click.option("--work", metavar="FILE", help="Show the diagrams of what `pinball work --json FILE` measured.")
+@click.option("--jobs", type=click.IntRange(1, 1024), help="Processes that judge and draw; one for each core.")
 @json_option
-def command(only: str, digits: int, folder: str, figures: bool, work: str | None, output: Output) -> int:
-    """Is each claim of the paper true? Exit status 1 when one is open."""
+def command(
+    only: str,
+    section: str | None,
+    changed: bool,
+    digits: int,
+    folder: str,
+    figures: bool,
+    work: str | None,
+    jobs: int | None,
+    output: Output,
+) -> int:
+    """Is each claim of the paper true? Exit status 1 when one is open.
+
+    The report does not depend on --jobs, but for the seconds in it.
+    """
+    from numeric.sweeps.sweep import cores
     from verification.paper.report.page import diagrams
 
-    wanted = matching(only, [claim.id for claim in report.catalogue()])
+    claims = chosen(only, section)
     directory = prepared(folder)
     measured = diagrams(Path(work)) if work is not None else []
-    results = []
-    with output.progress("Judging", len(wanted)) as step:
-        for result in report.verify(only, digits):
-            results.append(result)
-            step(result.id)
-    pictures = drawn({result.section for result in results}, output) if figures else []
-    write_report(directory, results, [*pictures, *measured])
+    last = Last.read(directory, claims, digits) if changed else Last({}, {})
+    found = {result.id: result for result in last.results.values()}
+    missing = [claim for claim in claims if claim.id not in found]
+    if changed:
+        output.console.print(f"{len(missing)} of {len(claims)} claims depend on code that has changed.")
+    jobs = jobs or cores()
+    with (
+        output.progress("Judging", report.seconds(missing)) as step,
+        closing(report.judged(missing, digits, jobs)) as judged,
+    ):
+        for result in judged:
+            found[result.id] = result
+            step(f"{len(found)} of {len(claims)}: {result.id}", report.seconds([result]))
+    results = [found[claim.id] for claim in claims]
+    pictures = drawn({claim.section for claim in claims}, output, jobs, last.images) if figures else []
+    write_report(directory, results, [*pictures, *measured], codes(claims, digits))
     output.write(report.document(results))
     show(output.console, results)
     output.console.print(f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex).")
     return FAILED if report.counts(results)["open"] else DONE
+
+
+@dataclass(frozen=True)
+class Last:
+    """What of the last report still stands: the results and the images whose code is what it was."""
+
+    results: "Mapping[str, Result]"
+    images: "Mapping[str, bytes]"
+
+    @classmethod
+    def read(cls, directory: Path, claims: "Sequence[Claim]", digits: int) -> "Last":
+        """From the report in a directory; nothing where there is none."""
+        path = directory / "report.json"
+        if not path.is_file():
+            return cls({}, {})
+        try:
+            document = json.loads(path.read_text(encoding="utf-8"))
+            before = dict(document.get("code", {}))
+            told = {each["id"]: report.Result.from_dict(each) for each in document["claims"]}
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise ValueError(
+                f"--changed: {path} is no report ({type(error).__name__}); remove it, or judge without --changed"
+            ) from None
+        same = {name for name, code in codes(claims, digits).items() if before.get(name) == code}
+        page = directory / "report.html"
+        shown = IMAGE.findall(page.read_text(encoding="utf-8")) if page.is_file() else []
+        images = {name: base64.b64decode(data) for data, name in shown if f"figure {name}" in same}
+        return cls({name: result for name, result in told.items() if name in same}, images)
+
+
+IMAGE = re.compile(r'<img src="data:image/png;base64,([^"]*)" alt="([^"]*)">')
+
+
+def chosen(only: str, section: str | None) -> "list[Claim]":
+    """The claims that are asked for; `ValueError` with the nearest ids or the sections there are when none is."""
+    claims = report.catalogue()
+    if section is not None:
+        known = dict.fromkeys(claim.section for claim in claims)
+        there = [name for name in known if within(name, section)]
+        if not there:
+            labels = ", ".join(sorted((name.split(" ")[0] for name in known), key=report.section_order))
+            raise ValueError(f"--section {section!r} has no claim; accepted: {labels}")
+        claims = [claim for claim in claims if claim.section in there]
+    wanted = matching(only, [claim.id for claim in claims])
+    return [claim for claim in claims if claim.id in wanted]
+
+
+def within(name: str, section: str) -> bool:
+    """Is the section of that name the one asked for, or a part of it?
+
+    >>> within("6.3 Period-2 orbits", "6"), within("10 End", "1"), within("Abstract", "abstract")
+    (True, False, True)
+    """
+    label, asked = name.split(" ")[0].lower(), section.strip().lower()
+    return asked in (label, name.lower()) or label.startswith(f"{asked}.")
 
 
 def matching(only: str, ids: Sequence[str]) -> list[str]:
@@ -189,8 +276,13 @@ def prepared(folder: str) -> Path:
     return directory
 
 
-def drawn(sections: Collection[str], output: Output) -> "list[Picture]":
-    """The figures of those sections, as drafts; none where Matplotlib is missing."""
+def drawn(
+    sections: Collection[str], output: Output, jobs: int = 1, known: "Mapping[str, bytes] | None" = None
+) -> "list[Picture]":
+    """The figures of those sections, as drafts, in their order; those known already are not drawn again.
+
+    There are none where Matplotlib is missing.
+    """
     from verification.paper.figures.catalogue import pictures
     from verification.paper.report.page import Picture
 
@@ -198,22 +290,48 @@ def drawn(sections: Collection[str], output: Output) -> "list[Picture]":
         output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
         return []
     wanted = [picture for picture in pictures().values() if picture.section in sections]
-    found = []
-    with output.progress("Drawing", len(wanted)) as step:
-        for picture in wanted:
-            image = picture.image(picture.data(), ".png")
-            found.append(Picture(picture.name, picture.caption, picture.section, image))
+    images = dict(known or {})
+    missing = [picture for picture in wanted if picture.name not in images]
+    with output.progress("Drawing", len(missing)) as step, closing(_images(missing, jobs)) as found:
+        for picture, image in found:
+            images[picture.name] = image
             step(picture.name)
-    return found
+    return [Picture(each.name, each.caption, each.section, images[each.name]) for each in wanted if each.name in images]
 
 
-def write_report(directory: Path, results: Sequence["Result"], pictures: "Sequence[Picture]" = ()) -> None:
-    """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once."""
+def _images(wanted: "Sequence[Figure]", jobs: int) -> "Generator[tuple[Figure, bytes], None, None]":
+    from verification.paper.report.workers import Lost, in_processes
+
+    if jobs == 1 or len(wanted) < 2:
+        yield from ((picture, _image(picture)) for picture in wanted)
+        return
+    modules = sorted({picture.module for picture in wanted})
+    with closing(in_processes(_image, [[picture] for picture in wanted], jobs, modules)) as found:
+        for picture, image in found:
+            if isinstance(image, Lost):
+                raise RuntimeError(f"the figure {picture.name} could not be drawn: {image}")
+            yield picture, image
+
+
+def _image(picture: "Figure") -> bytes:
+    return picture.image(picture.data(), ".png")
+
+
+def write_report(
+    directory: Path,
+    results: Sequence["Result"],
+    pictures: "Sequence[Picture]" = (),
+    code: "Mapping[str, str] | None" = None,
+) -> None:
+    """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once.
+
+    `code` has digests of the code that the results depend on, kept for `--changed`.
+    """
     from verification.paper.report.page import markdown, page
     from verification.paper.report.report import tables
 
     versions = report.made_with()
-    whole = report.document(results) | {"made_with": versions}
+    whole = report.document(results) | {"made_with": versions, "code": dict(code or {})}
     write_whole(directory / "report.html", page(results, versions, pictures))
     write_whole(directory / "report.md", markdown(results, versions))
     write_whole(directory / "report.tex", tables(results))

@@ -36,9 +36,13 @@ class Picture:
 
     @cached_property
     def _pair(self) -> tuple[Callable[[float], "Panels"], Callable[["Panels"], Any]]:
-        module, function = self.made_by.split(".")
-        found = import_module(f"verification.paper.figures.{module}")
+        found, function = import_module(self.module), self.made_by.rpartition(".")[2]
         return getattr(found, function), getattr(found, f"draw_{function}")
+
+    @property
+    def module(self) -> str:
+        """The module that computes and draws it."""
+        return f"verification.paper.figures.{self.made_by.partition('.')[0]}"
 
     def data(self, fine: float = DRAFT) -> "Panels":
         """The panels at a resolution, 1 for a draft."""

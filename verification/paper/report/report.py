@@ -8,14 +8,16 @@ The page is one file that needs no network; a result is shown in each form from 
 The LaTeX tables are brought into a document by `\input`.
 """
 
+import json
 import platform
 import re
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
@@ -26,9 +28,12 @@ from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict, load
 from verification.paper.claims.judges import JUDGES
+from verification.paper.report.workers import Lost, in_processes
 
 TABLES = ("map", "circle", "ellipse", "cardioid", "cuspless", "egg", "appendix")
 ROOMS = ("judges", "egg")  # of judges
+UNKNOWN_SECONDS = 0.1  # for a claim that the record does not have
+SMALL = 4.0  # seconds of judging that other processes would not save
 JUDGED, QUOTED = re.compile(r"@judges\(([^)]*)\)"), re.compile(r'"([^"]+)"')
 
 
@@ -49,6 +54,11 @@ class Result:
     erratum: str = ""
     witness: Mapping[str, str] = field(default_factory=dict)
 
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Result":
+        """What `to_dict` says, as a result."""
+        return cls(**{**data, "verdict": Verdict(data["verdict"])})
+
     def to_dict(self) -> dict[str, object]:
         """The keys of the JSON schema, in order."""
         rounded = {"verdict": self.verdict.value, "seconds": round(self.seconds, 4), "witness": dict(self.witness)}
@@ -60,11 +70,63 @@ def catalogue() -> list[Claim]:
     return [claim for table in TABLES for claim in load(table)]
 
 
-def verify(only: str = "*", digits: int = 15) -> Iterator[Result]:
-    """Judges the claims whose id matches the glob `only`, one at a time; only their judges are imported."""
-    for claim in catalogue():
-        if fnmatchcase(claim.id, only):
-            yield judge(claim, digits)
+def verify(only: str = "*", digits: int = 15, jobs: int = 1) -> Iterator[Result]:
+    """Judges the claims whose id matches the glob `only`, in the catalogue's order; only their judges are imported.
+
+    With more than one job the claims are judged in that many processes.
+    """
+    claims = [claim for claim in catalogue() if fnmatchcase(claim.id, only)]
+    found: dict[str, Result] = {}
+    with closing(judged(claims, digits, jobs)) as results:
+        for result in results:
+            found[result.id] = result
+            while claims and claims[0].id in found:
+                yield found[claims.pop(0).id]
+
+
+def judged(claims: Sequence[Claim], digits: int, jobs: int) -> Generator[Result, None, None]:
+    """The result of each claim as it comes; with more than one job from processes, the dearest begun first.
+
+    The results do not depend on `jobs`, but for their seconds. A claim whose process died again and again is open.
+    """
+    groups = shared_out(claims)
+    if jobs == 1 or len(groups) < 2 or seconds(claims) < SMALL:
+        yield from (judge(claim, digits) for claim in claims)
+        return
+    modules = sorted({homes()[claim.id] for claim in claims if claim.id in homes()})
+    with closing(in_processes(partial(judge, digits=digits), groups, jobs, modules)) as answers:
+        for claim, answer in answers:
+            yield _result(claim, _open(f"not judged: {answer}"), digits, 0.0) if isinstance(answer, Lost) else answer
+
+
+@cache
+def recorded() -> tuple[dict[str, float], dict[str, int]]:
+    """The seconds that judging each claim takes, and which claims share results: those of one number.
+
+    `python benchmarks/judges.py` measures them. They say who does what first, and change no result.
+    """
+    text = (files("verification.paper.report") / "seconds.json").read_text(encoding="utf-8")
+    record = json.loads(text)
+    groups = {name: number for number, names in enumerate(record["together"]) for name in names}
+    return record["seconds"], groups
+
+
+def seconds(claims: Iterable["Claim | Result"]) -> float:
+    """What the record says that judging claims takes; of one that it does not know, little."""
+    known = recorded()[0]
+    return sum(known.get(claim.id, UNKNOWN_SECONDS) for claim in claims)
+
+
+def shared_out(claims: Iterable[Claim]) -> list[list[Claim]]:
+    """The claims in groups, those that share results together, the dearest group first.
+
+    >>> [len(group) for group in shared_out(catalogue()[:3])]
+    [1, 1, 1]
+    """
+    found: dict[object, list[Claim]] = {}
+    for claim in claims:
+        found.setdefault(recorded()[1].get(claim.id, claim.id), []).append(claim)
+    return sorted(found.values(), key=seconds, reverse=True)
 
 
 @cache
@@ -89,10 +151,15 @@ def judge(claim: Claim, digits: int = 15) -> Result:
     start = time.perf_counter()
     if claim.id in homes():
         import_module(homes()[claim.id])
-    if claim.id in JUDGES:
-        judgement = _judged(claim)
-    else:
-        judgement = Judgement(Finding(Outcome.UNKNOWN, "stated from numerics; nothing settles it here yet"), "")
+    judgement = _judged(claim) if claim.id in JUDGES else _open("stated from numerics; nothing settles it here yet")
+    return _result(claim, judgement, digits, time.perf_counter() - start)
+
+
+def _open(reason: str) -> Judgement:
+    return Judgement(Finding(Outcome.UNKNOWN, reason), "")
+
+
+def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> Result:
     value, radius = None, None
     if judgement.value is not None:
         value, radius = decimal(real_ball(judgement.value, digits + 5), digits)
@@ -106,7 +173,7 @@ def judge(claim: Claim, digits: int = 15) -> Result:
         value,
         radius,
         method(judgement),
-        time.perf_counter() - start,
+        seconds,
         judgement.erratum if judgement.verdict in (Verdict.CORRECTED, Verdict.REFUTED) else "",
         {str(letter): str(value) for letter, value in judgement.witness(claim).items()},
     )
@@ -117,7 +184,7 @@ def _judged(claim: Claim) -> Judgement:
     try:
         return JUDGES[claim.id](claim)
     except Exception as error:
-        return Judgement(Finding(Outcome.UNKNOWN, f"the judge failed: {type(error).__name__}: {error}"), "")
+        return _open(f"the judge failed: {type(error).__name__}: {error}")
 
 
 def method(judgement: Judgement) -> str:

@@ -1,0 +1,118 @@
+"""What judging each claim takes, and which claims share results: the record by which `pinball verify` shares out work.
+
+    python benchmarks/judges.py          # five minutes; writes verification/paper/report/seconds.json
+    python benchmarks/judges.py --jobs 4 # reads it: how long so many processes need, by the record
+
+The claims are judged one after the other in one process, and every function of the package that keeps its results
+notes which claim computed one and which took it from there. Claims that saved each other more than `SHARED` seconds
+stand together.
+"""
+
+import functools
+import json
+import sys
+import time
+from collections.abc import Callable
+from heapq import heappop, heappush
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+RECORD = Path(__file__).resolve().parents[1] / "verification" / "paper" / "report" / "seconds.json"
+OURS = ("symbolic", "numeric", "verification")
+SHARED = 0.5  # seconds that are worth staying together for
+PROCESSES = 16  # among which the claims should divide evenly
+SHARE = 0.3  # of a group's seconds: claims that share more stay together however large it is
+DIGITS = 2  # of the seconds
+
+judged = ""  # the claim that is being judged
+found_by: dict[tuple[str, Any], tuple[str, float]] = {}  # who computed a result, and how long it took
+taken: dict[tuple[str, str], float] = {}  # what a claim was saved by another
+
+
+def noting(function: Callable[..., Any]) -> Callable[..., Any]:
+    """As `functools.cache`, with notes of who computed what."""
+    kept: dict[Any, Any] = {}
+    name = f"{function.__module__}.{function.__qualname__}"
+
+    @functools.wraps(function)
+    def called(*arguments: Any, **named: Any) -> Any:
+        key = (arguments, tuple(sorted(named.items())))
+        if key not in kept:
+            start = time.process_time()
+            kept[key] = function(*arguments, **named)
+            found_by[name, key] = (judged, time.process_time() - start)
+        first, seconds = found_by[name, key]
+        if first != judged:
+            taken[first, judged] = taken.get((first, judged), 0.0) + seconds
+        return kept[key]
+
+    called.cache_clear = kept.clear  # type: ignore[attr-defined]
+    return called
+
+
+def note_all() -> None:
+    """From here on what the package's modules cache is noted; call it before they are imported."""
+    cache, lru_cache = functools.cache, functools.lru_cache
+
+    def noted(function: Any) -> Any:
+        return noting(function) if function.__module__.partition(".")[0] in OURS else cache(function)
+
+    def sized(maxsize: Any = 128, typed: bool = False) -> Any:
+        plain = lru_cache(maxsize, typed)
+        if callable(maxsize):
+            return noted(maxsize)
+        return lambda function: noting(function) if function.__module__.partition(".")[0] in OURS else plain(function)
+
+    functools.cache, functools.lru_cache = noted, sized  # type: ignore[assignment]
+
+
+def joined(seconds: dict[str, float]) -> list[list[str]]:
+    """The claims in groups that share more than `SHARED` seconds, the most shared first; no group of one.
+
+    A group does not grow beyond the share of one of `PROCESSES`: what the rest of it would save is a process's own.
+    """
+    ids, most = list(seconds), sum(seconds.values()) / PROCESSES
+    group = {name: {name} for name in ids}
+    for (first, other), saved in sorted(taken.items(), key=lambda pair: -pair[1]):
+        if saved > SHARED and first in group and group[first] is not group[other]:
+            both = group[first] | group[other]
+            if sum(seconds[name] for name in both) < max(most, saved / SHARE):
+                group |= dict.fromkeys(both, both)
+    whole = {id(names): names for names in group.values() if len(names) > 1}
+    return [sorted(names, key=ids.index) for names in whole.values()]
+
+
+def measure() -> None:
+    """Judges everything, and writes the record."""
+    global judged
+    note_all()
+    report = import_module("verification.paper.report.report")
+    for module in sorted(set(report.homes().values())):
+        import_module(module)
+    seconds = {}
+    for claim in report.catalogue():
+        judged, start = claim.id, time.process_time()
+        report.judge(claim)
+        seconds[judged] = round(time.process_time() - start, DIGITS)
+        sys.stdout.write(f"{seconds[judged]:8.2f}  {judged}\n")
+    lines = ",\n".join(f'    "{name}": {value}' for name, value in seconds.items())
+    groups = ",\n".join(f"    {json.dumps(names)}" for names in joined(seconds))
+    text = f'{{\n  "seconds": {{\n{lines}\n  }},\n  "together": [\n{groups}\n  ]\n}}\n'
+    RECORD.write_text(text, encoding="utf-8")
+
+
+def shown(jobs: int) -> None:
+    """How long `jobs` processes need, dearest group first, beside an even share of the work."""
+    report = import_module("verification.paper.report.report")
+    groups = report.shared_out(report.catalogue())
+    ends = [0.0] * jobs
+    for group in groups:
+        heappush(ends, heappop(ends) + report.seconds(group))
+    whole = sum(ends)
+    sys.stdout.write(f"{len(groups)} groups, {whole:.0f} s; the dearest {report.seconds(groups[0]):.1f} s; ")
+    sys.stdout.write(f"{jobs} processes: {max(ends):.1f} s, an even share {whole / jobs:.1f} s\n")
+
+
+if __name__ == "__main__":
+    shown(int(sys.argv[2])) if "--jobs" in sys.argv else measure()

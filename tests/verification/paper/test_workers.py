@@ -1,0 +1,186 @@
+"""Work in processes: every item answered, in any number of them; one that dies is said; nothing outlives Ctrl-C."""
+
+import multiprocessing
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from verification.app.cli import main
+from verification.app.commands.verify import Last, write_report
+from verification.paper.claims.claim import Verdict
+from verification.paper.report import changed, report
+from verification.paper.report.workers import TRIES, Lost, in_processes
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_every_item_is_answered_whatever_the_number_of_processes(jobs):
+    tasks = [[1, 2, 3], [4], [5, 6], [7]]
+
+    assert sorted(in_processes(float, tasks, jobs)) == [(n, float(n)) for n in range(1, 8)]
+
+
+def test_a_process_that_dies_is_replaced_and_what_it_died_of_is_named():
+    """The items are signals that a process sends to itself; 0 is none."""
+    answers = list(in_processes(signal.raise_signal, [[0, signal.SIGKILL, 0], [0]], 1))
+
+    assert [answer for _, answer in answers] == [None, Lost(-signal.SIGKILL), None, None]
+    assert [item for item, _ in answers] == [0, signal.SIGKILL, 0, 0]
+    assert str(answers[1][1]) == (
+        f"the process that worked at it died {TRIES} times, at last of signal 9 (Killed); it may have run out of memory"
+    )
+
+
+def test_what_work_raises_is_raised_here_and_the_other_processes_end():
+    answers = in_processes(time.sleep, [[60.0], [0.0, "a text"]], 2)
+    assert next(answers) == (0.0, None)
+    processes = multiprocessing.active_children()
+
+    with pytest.raises(TypeError):
+        list(answers)
+    assert len(processes) == 2
+    assert not any(process.is_alive() for process in processes)
+
+
+SECONDS = re.compile(r"(?:\"seconds\": |seconds: |seconds</dt><dd>|claims took )[\d.]+")
+
+
+def files(folder):
+    """The files of a report, without the seconds in them."""
+    return {path.name: SECONDS.sub("", path.read_text()) for path in folder.iterdir()}
+
+
+def test_the_report_does_not_depend_on_the_number_of_processes(tmp_path, monkeypatch):
+    """Two sections, each with a figure."""
+    monkeypatch.setattr(report, "SMALL", 0.0)
+    for jobs in ("1", "2"):
+        assert (
+            main(["verify", "--only", "ellipse.[ls]*s[qt]*[2s]", "--jobs", jobs, "--report", str(tmp_path / jobs)]) == 0
+        )
+
+    one, two = files(tmp_path / "1"), files(tmp_path / "2")
+    assert one["report.html"].count("data:image/png") == 2
+    assert one == two
+
+
+def test_a_claim_whose_process_dies_is_open_and_says_so(monkeypatch):
+    claims = report.catalogue()[1:3]
+    lost, found = Lost(-9), report.judge(claims[1])
+    monkeypatch.setattr(report, "SMALL", 0.0)
+    monkeypatch.setattr(report, "in_processes", lambda *_: (pair for pair in zip(claims, (lost, found), strict=True)))
+
+    first, second = report.judged(claims, 15, 2)
+    assert (first.id, first.verdict) == (claims[0].id, Verdict.OPEN)
+    assert first.method == f"not judged: {lost}"
+    assert second == found
+
+
+def test_claims_that_share_results_are_judged_by_one_process_and_the_dearest_begin():
+    groups = report.shared_out(report.catalogue())
+    costs = [report.seconds(group) for group in groups]
+
+    assert sorted(claim.id for group in groups for claim in group) == sorted(c.id for c in report.catalogue())
+    assert costs == sorted(costs, reverse=True)
+    known, together = report.recorded()
+    assert set(known) <= {claim.id for claim in report.catalogue()}
+    assert set(together) <= set(known)
+    assert any(len(group) > 1 for group in groups)
+
+
+def running(folder):
+    """The processes that work in a folder."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            found += [int(process.name)] if (process / "cwd").readlink() == folder else []
+        except OSError:
+            continue
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="processes are looked up in /proc")
+def test_ctrl_c_ends_every_process(tmp_path):
+    command = [sys.executable, "-m", "verification", "verify", "--only", "egg.slap*", "--jobs", "2", "--no-figures"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    deadline = time.monotonic() + 60
+    while len(running(tmp_path)) < 4 and time.monotonic() < deadline:  # the command, its server, two workers
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+
+    assert process.communicate(timeout=60)[1].endswith("pinball: interrupted\n")
+    assert process.returncode == 130
+    while running(tmp_path) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert running(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["map.A", "cuspless.lambda_c", "egg.alpha_hat"])
+def test_a_judge_loads_no_module_that_its_digest_leaves_out(name):
+    """Imports inside functions and names that a room hands out when asked are followed as well."""
+    program = (
+        "import sys; from verification.paper.report import report; before = set(sys.modules); "
+        f"list(report.verify({name!r})); print(*(set(sys.modules) - before))"
+    )
+    run = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = {module for module in run.stdout.split() if module.partition(".")[0] in changed.STOREYS}
+
+    assert loaded
+    assert loaded <= changed.closure(report.homes()[name])
+
+
+def test_a_digest_changes_with_every_module_that_a_judge_can_load_and_with_no_other(monkeypatch):
+    claims = [claim for claim in report.catalogue() if claim.id in ("ellipse.P1", "cuspless.corner_orbit")]
+    before = changed.codes(claims, 15)
+    texts = dict(changed.sources())
+    texts["verification.proofs.corner.corner"] += "\n# another text\n"
+    monkeypatch.setattr(changed, "sources", lambda: texts)
+    changed.digest.cache_clear()
+    after = changed.codes(claims, 15)
+    changed.digest.cache_clear()
+
+    assert after["ellipse.P1"] == before["ellipse.P1"]
+    assert after["cuspless.corner_orbit"] != before["cuspless.corner_orbit"]
+    assert changed.codes(claims, 16)["ellipse.P1"] != before["ellipse.P1"]
+
+
+def test_only_what_changed_is_judged_again(tmp_path, monkeypatch, capsys):
+    claims = [claim for claim in report.catalogue() if claim.id in ("ellipse.P1", "ellipse.P2")]
+    results = [replace(report.judge(claim), seconds=0.5) for claim in claims]
+    code = changed.codes(claims, 15)
+    write_report(tmp_path, results, (), {**code, "ellipse.P2": "another"})
+
+    assert list(Last.read(tmp_path, claims, 15).results.values()) == [r for r in results if r.id != "ellipse.P2"]
+    assert Last.read(tmp_path, claims, 16).results == {}
+    monkeypatch.setattr(report, "judge", lambda claim, digits: pytest.fail(f"{claim.id} was judged"))
+    write_report(tmp_path, results, (), code)
+    assert main(["verify", "--only", "ellipse.P[12]", "--changed", "--no-figures", "--report", str(tmp_path)]) == 0
+    assert "0 of 2 claims depend on code that has changed" in capsys.readouterr().out
+
+
+def test_a_report_that_is_none_is_refused_in_one_sentence(tmp_path, capsys):
+    (tmp_path / "report.json").write_text("[]")
+
+    assert main(["verify", "--changed", "--report", str(tmp_path)]) == 2
+    assert "report.json is no report (AttributeError); remove it" in capsys.readouterr().err
+
+
+def test_a_section_is_asked_for_by_its_number(capsys):
+    assert main(["verify", "--section", "17"]) == 2
+    assert "--section '17' has no claim; accepted: Abstract, 1" in capsys.readouterr().err

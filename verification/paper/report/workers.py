@@ -1,0 +1,141 @@
+"""Independent work in worker processes: the claims of a report and its figures, over all cores.
+
+Balls and mpmath hold ambient state and SymPy its caches, so workers are processes, started afresh. Answers come as they
+are found, whatever became of the process: one that dies is replaced, and what it was at is tried once more.
+"""
+
+import signal
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass, field
+from multiprocessing import get_all_start_methods, get_context
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import BaseContext
+from multiprocessing.process import BaseProcess
+from typing import Any, Generic, TypeVar
+
+Item = TypeVar("Item")
+Answer = TypeVar("Answer")
+TRIES = 2  # processes that one item may cost
+GRACE = 5.0  # seconds for a process to end
+
+
+@dataclass(frozen=True)
+class Lost:
+    """What came of an item whose process died, each time that it was tried."""
+
+    status: int
+
+    def __str__(self) -> str:
+        ended = f"exit status {self.status}"
+        if self.status < 0:
+            ended = f"signal {-self.status} ({signal.strsignal(-self.status) or 'unknown'})"
+        return f"the process that worked at it died {TRIES} times, at last of {ended}; it may have run out of memory"
+
+
+@dataclass
+class _Worker(Generic[Item]):
+    """A process, this end of its pipe, and the items it was given and has not answered, in order."""
+
+    process: BaseProcess
+    pipe: Connection
+    ready: bool = False
+    waiting: deque[Item] = field(default_factory=deque)
+
+
+def in_processes(
+    work: Callable[[Item], Answer], tasks: Iterable[Sequence[Item]], jobs: int, modules: Sequence[str] = ()
+) -> Generator[tuple[Item, Answer | Lost], None, None]:
+    """Each item with what `work` makes of it, as answers come; a task's items go to one process, in order.
+
+    `work`, items and answers must be picklable; `modules` are those that every worker needs, imported once where the
+    system can fork. What `work` raises is raised here. However this ends, by Ctrl-C as well, the workers end with it.
+    """
+    queue = deque(list(task) for task in tasks)
+    context = _context(modules)
+    workers: list[_Worker[Item]] = []
+    tried: dict[int, int] = {}  # by identity: an item need not be hashable
+    try:
+        for _ in range(min(jobs, len(queue))):
+            workers.append(_started(context, work))
+        while workers:
+            for pipe in wait([each.pipe for each in workers]):
+                worker = next(each for each in workers if each.pipe is pipe)
+                try:
+                    told = worker.pipe.recv()
+                except (EOFError, OSError):
+                    workers.remove(worker)
+                    yield from _mourned(worker, queue, tried)
+                    if queue:
+                        workers.append(_started(context, work))
+                    continue
+                if worker.ready:
+                    if isinstance(told, BaseException):
+                        raise told
+                    yield worker.waiting.popleft(), told
+                worker.ready = True
+                if not worker.waiting and queue:
+                    worker.waiting.extend(queue[0])
+                    worker.pipe.send(queue.popleft())
+                if not worker.waiting:
+                    workers.remove(worker)
+                    worker.pipe.close()  # which ends it
+                    worker.process.join(GRACE)
+    finally:
+        for worker in workers:
+            worker.process.kill()
+        for worker in workers:
+            worker.process.join(GRACE)
+
+
+def _context(modules: Sequence[str]) -> BaseContext:
+    """Processes that inherit nothing of this one: forked from a server that has imported `modules`, or spawned."""
+    if "forkserver" not in get_all_start_methods():
+        return get_context("spawn")
+    context = get_context("forkserver")
+    context.set_forkserver_preload([__name__, *modules])
+    return context
+
+
+def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[Item]:
+    here, there = context.Pipe()
+    process: BaseProcess = context.Process(target=_serve, args=(there, work), daemon=True)  # type: ignore[attr-defined]
+    process.start()
+    there.close()  # so that its death is heard
+    return _Worker(process, here)
+
+
+def _serve(pipe: "Connection", work: Callable[[Any], Any]) -> None:
+    """What a worker does: answers until nobody asks. Ctrl-C is for the one that asks."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        pipe.send(None)  # it has started
+        while True:
+            for item in pipe.recv():
+                try:
+                    answer = work(item)
+                except Exception as error:
+                    answer = error
+                pipe.send(answer)
+    except (EOFError, OSError):
+        return
+
+
+def _mourned(
+    worker: _Worker[Item], queue: deque[list[Item]], tried: dict[int, int]
+) -> Generator[tuple[Item, Answer | Lost], None, None]:
+    """The items of a worker that died go back to the queue, but for one that it died of once too often."""
+    worker.process.join(GRACE)
+    status = worker.process.exitcode or 0
+    if not worker.ready:
+        raise RuntimeError(f"a worker process ended at its start with exit status {status}; --jobs 1 needs none")
+    if not worker.waiting:
+        return
+    item = worker.waiting.popleft()
+    tried[id(item)] = tried.get(id(item), 0) + 1
+    if worker.waiting:
+        queue.appendleft(list(worker.waiting))
+    if tried[id(item)] < TRIES:
+        queue.appendleft([item])
+    else:
+        yield item, Lost(status)

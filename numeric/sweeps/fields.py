@@ -1,20 +1,12 @@
-"""Basins of attraction on a grid of phase space. Paper: appendix, figures of basins.
+"""What sweeps measure: basins of attraction, bifurcation diagrams, exponents by attractor, where chaos is.
 
-The attractors are found once, from random starts; then each cell's centre is a particle, and its label is the number
-of the attractor that it reaches.
-
-Bifurcation diagrams: where random particles are after a long time, against the contraction. Paper: section 6.6.
-
-Lyapunov exponents against the contraction, by attractor. Paper: sections 4.1 and 5.3, figures of exponents.
-
-Orbits that share an attractor make a group, and groups are never averaged together. The groups of one `lam` are
-numbered from the one with the most orbits on; the same number at two contractions need not be the same branch.
-
-Where in its parameter space the egg is chaotic. Paper: section 6.5, figure of parameter space.
-
-From each pair `(alpha, lam)` random particles are started as in the paper's appendix, and those are counted whose
-exponent is positive beyond its error (`numeric.sweeps.sweep`). The curve on top of the figure is the
-doubling of period 2.
+Basins (paper: appendix): the attractors are found once, from random starts; then each cell's centre is a particle,
+and its label is the number of the attractor that it reaches. Bifurcation diagrams (section 6.6): where random
+particles are after a long time, against the contraction or another parameter. Exponents (sections 4.1 and 5.3):
+orbits that share an attractor make a group, and groups are never averaged together; the groups of one value are
+numbered from the one with the most orbits on, and the same number at two values need not be the same branch.
+Parameter space (section 6.5): from each pair of a shape and a contraction random particles are started as in the
+paper's appendix, and those are counted whose exponent is positive beyond its error (`numeric.sweeps.sweep`).
 """
 
 import json
@@ -25,12 +17,32 @@ from typing import Any
 
 import numpy as np
 
+from numeric import PinballMap
 from numeric.dynamics.attractors import find
 from numeric.dynamics.basins import Window, labels, starts_at, whole
 from numeric.dynamics.exponents import Group, surveyed
 from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
-from numeric.sweeps.sweep import BLOCKS, Array, Axis, Field, Part, Sweep, map_of, measured, spread, text_of
+from numeric.pinball.sampling import Starts
+from numeric.sweeps.sweep import (
+    BLOCKS,
+    Array,
+    Axis,
+    Field,
+    Part,
+    Sweep,
+    against,
+    at_value,
+    fixed,
+    map_of,
+    measured,
+    missing_value,
+    parameter_axis,
+    said,
+    spread,
+    spread_over,
+    text_of,
+)
 from symbolic.tables.scene import Scene
 
 PARTICLES = 1 << 15  # of a task, about; a fraction of a second for a thousand bounces
@@ -78,18 +90,12 @@ def basins(
     map = map_of(scene, lam)
     attractors = find(map, starts, seed, transient, images=images) if known is None else known
     where = window or whole(map)
-    cells = Cells(scene, lam, attractors, transient)
+    cells, share = Cells(scene, lam, attractors, transient), max(1, PARTICLES // columns)
     return Sweep(
         name="basins",
         about=f"Basins of attraction at lam = {lam:g}",
         axes=(
-            Axis(
-                "sin_phi",
-                _centres(where.sin_phi, rows),
-                "1",
-                "sine of the first exit angle",
-                max(1, PARTICLES // columns),
-            ),
+            Axis("sin_phi", _centres(where.sin_phi, rows), "1", "sine of the first exit angle", share),
             Axis("s", _centres(where.s, columns), "length", "arc length of the start, as in the paper"),
         ),
         fields=FIELDS,
@@ -112,9 +118,8 @@ def described(attractor: Attractor) -> dict[str, Any]:
     first = {"theta": float(attractor.points.theta[0]), "phi": float(attractor.points.phi[0])}
     exponents = {"nu_plus": attractor.nu_plus, "nu_minus": attractor.nu_minus}
     finite = {name: value if np.isfinite(value) else None for name, value in exponents.items()}
-    return (
-        {"kind": attractor.kind.name.lower(), "period": attractor.period, "family": attractor.family} | finite | first
-    )
+    kind = {"kind": attractor.kind.name.lower(), "period": attractor.period, "family": attractor.family}
+    return kind | finite | first
 
 
 def attractors_of(settings: str) -> list[dict[str, Any]]:
@@ -128,7 +133,7 @@ def _centres(ends: tuple[float, float], count: int) -> Array:
 
 
 DIAGRAM_PARTICLES = 2000  # of a task, about; a fraction of a second for some thousand bounces
-POINT, ORBIT = ("lam", "orbit", "bounce"), ("lam", "orbit")
+POINT, ORBIT = ("orbit", "bounce"), ("orbit",)  # after the parameter that varies
 DIAGRAM_FIELDS = (
     Field("s", POINT, "float64", "length", "arc length of each bounce, as in the paper"),
     Field("phi", POINT, "float64", "rad", "exit angle of each bounce"),
@@ -142,22 +147,29 @@ DIAGRAM_FIELDS = (
 
 @dataclass(frozen=True)
 class Diagram:
-    """The task: the orbits of a few contractions, on their attractors."""
+    """The task: the orbits of a few contractions, or of one shape, on their attractors."""
 
     scene: str
     orbits: int
     points: int
     bounces: int
     transient: int
+    parameter: str = "lam"
+    lam: float = 1.0
 
     def __call__(self, part: Part) -> dict[str, Array]:
-        lams = part.values["lam"]
-        map, starts = spread(self.scene, lams, self.orbits, part.seed)
+        values = part.values[self.parameter]
+        runs = spread_over(self.scene, self.parameter, values, self.lam, self.orbits, part.seed)
+        rows = [self.rows(map, starts) for _, map, starts in runs]
+        return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
+
+    def rows(self, map: PinballMap, starts: Starts) -> dict[str, Array]:
+        """The fields of one map, a row for each of its contractions."""
         found = measured(map, starts, self.bounces, self.transient, threads=1)
         orbit = map.orbit(found.end.theta, found.end.phi, self.points, found.end.component, threads=1)
         s = map.arclength.s(orbit.theta, orbit.component)
         s = np.where(orbit.code == 0, s, np.nan)
-        each = lams.size, self.orbits
+        each = starts.theta.size // self.orbits, self.orbits
         shown = {"s": s, "phi": orbit.phi, "theta": orbit.theta, "component": orbit.component}
         along = {name: np.moveaxis(x[1:], 0, -1).reshape(*each, self.points) for name, x in shown.items()}
         ends = {"nu_plus": found.nu_plus, "nu_plus_error": found.nu_plus_error, "chaotic": found.chaotic}
@@ -172,8 +184,12 @@ def bifurcation(
     bounces: int = 2000,
     transient: int = 4000,
     seed: int = 1,
+    parameter: str = "lam",
+    lam: float = 1.0,
 ) -> Sweep:
     """The sweep over `lams`: for each the last `points` bounces of `orbits` particles. `s` is nan where one stopped.
+
+    With another `parameter`, of the table or of the law, its values stand in their place, and `lam` is fixed.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -182,27 +198,27 @@ def bifurcation(
     >>> np.unique(found["theta"].round(6)).tolist()  # every particle ends on the minor axis
     [-1.570796, 1.570796]
     """
-    diagram = Diagram(scene, orbits, points, bounces // BLOCKS * BLOCKS, transient)
+    diagram = Diagram(scene, orbits, points, bounces // BLOCKS * BLOCKS, transient, parameter, lam)
     return Sweep(
         name="bifurcation",
-        about=f"Attractors against the contraction, from {orbits} random particles each",
+        about=f"Attractors against {said(parameter)}, from {orbits} random particles each",
         axes=(
-            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, DIAGRAM_PARTICLES // orbits)),
+            parameter_axis(parameter, lams, max(1, DIAGRAM_PARTICLES // orbits)),
             Axis("orbit", np.arange(orbits), "1", "number of the particle"),
             Axis("bounce", np.arange(points), "1", "number of the bounce, after the transient"),
         ),
-        fields=DIAGRAM_FIELDS,
+        fields=against(parameter, DIAGRAM_FIELDS),
         task=diagram,
         seed=seed,
         scene=scene,
-        settings={"bounces": diagram.bounces, "transient": transient, "blocks": BLOCKS},
+        settings={"bounces": diagram.bounces, "transient": transient, "blocks": BLOCKS} | fixed(parameter, lam),
         collisions=len(lams) * orbits * (diagram.bounces + transient + points),
         map=partial(map_of, scene, 0.5),
     )
 
 
 KINDS = (*Kind, None)  # the number of each kind in the results; None for particles that settle on no attractor
-ON = ("lam", "group")
+ON = ("group",)  # after the parameter that varies
 MEANINGS = ", ".join(f"{i} {kind.name.lower() if kind else 'unsettled'}" for i, kind in enumerate(KINDS))
 EXPONENT_FIELDS = (
     Field("orbits", ON, "int32", "orbits", "orbits of the group, -1 where there is no such group"),
@@ -219,22 +235,23 @@ EXPONENT_FIELDS = (
 
 @dataclass(frozen=True)
 class Surveys:
-    """The task: the groups of one contraction."""
+    """The task: the groups of one contraction, or of one shape."""
 
     scene: str
     orbits: int
     groups: int
     bounces: int
     transient: int
+    parameter: str = "lam"
+    lam: float = 1.0
 
     def __call__(self, part: Part) -> dict[str, Array]:
-        lam = float(part.values["lam"][0])
-        _, starts = spread(self.scene, np.array([lam]), self.orbits, part.seed)
-        survey = surveyed(map_of(self.scene, lam), starts, self.bounces, self.transient)
+        values = part.values[self.parameter][:1]
+        lam = float(values[0]) if self.parameter == "lam" else self.lam
+        ((scene, _, starts),) = spread_over(self.scene, self.parameter, values, lam, self.orbits, part.seed)
+        survey = surveyed(map_of(scene, lam), starts, self.bounces, self.transient)
         rows = [numbers(group) for group in survey.groups[: self.groups]]
-        none: dict[str, float] = {
-            field.name: -1 if field.dtype.startswith("int") else np.nan for field in EXPONENT_FIELDS
-        }
+        none = {field.name: missing_value(field.dtype) for field in EXPONENT_FIELDS}
         rows += [none] * (self.groups - len(rows))
         return {field.name: np.array([[row[field.name] for row in rows]], field.dtype) for field in EXPONENT_FIELDS}
 
@@ -264,8 +281,10 @@ def exponents(
     bounces: int = 4096,
     transient: int = 2000,
     seed: int = 1,
+    parameter: str = "lam",
+    lam: float = 1.0,
 ) -> Sweep:
-    """The sweep over `lams`, with as many `groups` as are kept for each.
+    """The sweep over `lams`, or over another `parameter` at one `lam`, with as many `groups` as are kept for each.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -276,16 +295,16 @@ def exponents(
     """
     return Sweep(
         name="exponents",
-        about=f"Lyapunov exponents against the contraction, from {orbits} random orbits each, by attractor",
+        about=f"Lyapunov exponents against {said(parameter)}, from {orbits} random orbits each, by attractor",
         axes=(
-            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", 1),
+            parameter_axis(parameter, lams, 1),
             Axis("group", np.arange(groups), "1", "attractors, from the one that most orbits reach on"),
         ),
-        fields=EXPONENT_FIELDS,
-        task=Surveys(scene, orbits, groups, bounces, transient),
+        fields=against(parameter, EXPONENT_FIELDS),
+        task=Surveys(scene, orbits, groups, bounces, transient, parameter, lam),
         seed=seed,
         scene=scene,
-        settings={"orbits": orbits, "bounces": bounces, "transient": transient},
+        settings={"orbits": orbits, "bounces": bounces, "transient": transient} | fixed(parameter, lam),
         collisions=len(lams) * orbits * (bounces + transient),
         map=partial(map_of, scene, 0.5),
     )
@@ -294,45 +313,37 @@ def exponents(
 PAIR_PARTICLES = 20_000  # of a task, at most; what a core does in a second or less
 
 SPACE_FIELDS = (
-    Field("chaotic", ("alpha", "lam"), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
-    Field(
-        "regular",
-        ("alpha", "lam"),
-        "int32",
-        "orbits",
-        "orbits whose largest exponent is not positive; the rest is undecided or stopped",
-    ),
-    Field("nu_max", ("alpha", "lam"), "float64", "1/bounce", "largest nu_plus of all orbits"),
-    Field("nu_max_error", ("alpha", "lam"), "float64", "1/bounce", "its standard error, over blocks of the orbit"),
-    Field("nu_min", ("alpha", "lam"), "float64", "1/bounce", "smallest nu_plus of all orbits"),
+    Field("chaotic", ("lam",), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
+    Field("regular", ("lam",), "int32", "orbits", "orbits with no positive exponent; the rest is undecided or stopped"),
+    Field("nu_max", ("lam",), "float64", "1/bounce", "largest nu_plus of all orbits"),
+    Field("nu_max_error", ("lam",), "float64", "1/bounce", "its standard error, over blocks of the orbit"),
+    Field("nu_min", ("lam",), "float64", "1/bounce", "smallest nu_plus of all orbits"),
 )
 
 
 @dataclass(frozen=True)
 class Pairs:
-    """The task: all orbits of a range of `lam` at a few `alpha`."""
+    """The task: all orbits of a range of `lam` at a few shapes."""
 
-    K: int
+    scene: str
+    parameter: str
     starts: int
     bounces: int
     transient: int
 
     def __call__(self, part: Part) -> dict[str, Array]:
         rng = np.random.default_rng(part.seed)
-        seeds = rng.integers(0, 2**63, part.values["alpha"].size)
-        rows = [
-            self.row(float(a), part.values["lam"], int(s)) for a, s in zip(part.values["alpha"], seeds, strict=True)
-        ]
+        values = part.values[self.parameter]
+        seeds = rng.integers(0, 2**63, values.size)
+        rows = [self.row(float(a), part.values["lam"], int(s)) for a, s in zip(values, seeds, strict=True)]
         return {field.name: np.array([row[field.name] for row in rows]) for field in SPACE_FIELDS}
 
-    def row(self, alpha: float, lams: Array, seed: int) -> dict[str, Array]:
+    def row(self, value: float, lams: Array, seed: int) -> dict[str, Array]:
         """The fields for one shape."""
-        map, starts = spread(egg(self.K, alpha), lams, self.starts, seed)
+        map, starts = spread(at_value(self.scene, self.parameter, value), lams, self.starts, seed)
         found = measured(map, starts, self.bounces, self.transient, threads=1)
-        nu, error, chaotic, regular = (
-            x.reshape(lams.size, self.starts)
-            for x in (found.nu_plus, found.nu_plus_error, found.chaotic, found.regular)
-        )
+        kept = found.nu_plus, found.nu_plus_error, found.chaotic, found.regular
+        nu, error, chaotic, regular = (x.reshape(lams.size, self.starts) for x in kept)
         best = np.argmax(nu, axis=1)[:, None]
         return {
             "chaotic": chaotic.sum(axis=1),
@@ -349,27 +360,37 @@ def egg(K: int, alpha: float) -> str:
 
 
 def parameter_space(
-    alphas: Array, lams: Array, starts: int = 100, bounces: int = 2000, transient: int = 2000, K: int = 3, seed: int = 1
+    alphas: Array,
+    lams: Array,
+    starts: int = 100,
+    bounces: int = 2000,
+    transient: int = 2000,
+    K: int = 3,
+    seed: int = 1,
+    scene: str | None = None,
+    parameter: str = "alpha",
 ) -> Sweep:
-    """The sweep over all pairs.
+    """The sweep over all pairs: shapes of the egg, or values of a `parameter` of another `scene`, by contractions.
 
     >>> sweep = parameter_space(np.array([0.02, 0.09]), np.array([0.1, 0.3]), starts=3)
     >>> sweep.task(sweep.part((1, 0)))["chaotic"].tolist()
     [[0, 3]]
     """
-    pairs = Pairs(K, starts, bounces // BLOCKS * BLOCKS, transient)
+    whole = egg(K, 0.08 * 10 / (1 + K * K)) if scene is None else scene
+    pairs = Pairs(whole, parameter, starts, bounces // BLOCKS * BLOCKS, transient)
+    name, what = (f"the {K}-pointed egg", "shape of the egg") if scene is None else ("the scene", "shape of the table")
     return Sweep(
         name="parameter-space",
-        about=f"Chaos or none in the {K}-pointed egg, from {starts} random orbits for each pair",
+        about=f"Chaos or none in {name}, from {starts} random orbits for each pair",
         axes=(
-            Axis("alpha", np.asarray(alphas, dtype=np.float64), "1", "shape of the egg", 1),
+            Axis(parameter, np.asarray(alphas, dtype=np.float64), "1", what, 1),
             Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PAIR_PARTICLES // starts)),
         ),
-        fields=SPACE_FIELDS,
+        fields=against(parameter, SPACE_FIELDS),
         task=pairs,
         seed=seed,
-        scene=f"egg, K = {K}",
+        scene=f"egg, K = {K}" if scene is None else scene,
         settings={"starts": starts, "bounces": pairs.bounces, "transient": transient, "blocks": BLOCKS},
         collisions=len(alphas) * len(lams) * starts * (pairs.bounces + transient),
-        map=partial(map_of, egg(K, 0.08 * 10 / (1 + K * K)), 0.5),
+        map=partial(map_of, whole, 0.5),
     )

@@ -16,8 +16,9 @@ import itertools
 import json
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property, lru_cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
@@ -257,6 +258,54 @@ def spread(text: str, lams: Array, each: int, seed: int) -> tuple[PinballMap, St
     ([0.0, 0.0, 0.0, 0.5, 0.5, 0.5], 6)
     """
     return map_of(text, np.repeat(lams, each)), interior_starts(_elastic(text), len(lams) * each, seed)
+
+
+def at_value(text: str, parameter: str, value: float) -> str:
+    """The scene with another number for a parameter of its table or law: the decimal that `value` shows, in its range.
+
+    >>> at_value(text_of(Scene("egg", alpha="2/25")), "alpha", 0.05)
+    'scene = { table = "egg", shape = { alpha = "1/20" }, lam = "1" }'
+    """
+    scene, shown = Scene.parse(text), Fraction(repr(float(value)))
+    low, high = scene.ranges.get(parameter, (shown, shown))  # an end of it may have no decimal
+    number: dict[str, Any] = {parameter: low if shown < low else high if shown > high else shown}
+    return scene.at(**number).text
+
+
+def spread_over(
+    text: str, parameter: str, values: Array, lam: float, each: int, seed: int
+) -> Iterator[tuple[str, PinballMap, Starts]]:
+    """Particles of one scene at several values of a parameter: all contractions at once, or one shape after the other.
+
+    With each map comes the scene at that value.
+    """
+    if parameter == "lam":
+        yield text, *spread(text, values, each, seed)
+        return
+    for value, own in zip(values, np.random.default_rng(seed).integers(0, 2**63, len(values)), strict=True):
+        here = at_value(text, parameter, value)
+        yield here, *spread(here, np.array([lam]), each, int(own))
+
+
+def against(parameter: str, fields: Iterable[Field]) -> tuple[Field, ...]:
+    """The fields, each on the axis of the parameter that varies before its own."""
+    return tuple(field._replace(dims=(parameter, *field.dims)) for field in fields)
+
+
+def parameter_axis(parameter: str, values: Array, part: int) -> Axis:
+    """The axis of what varies: contractions, `part` of them at a time, or shapes, one at a time."""
+    about, part = ("contraction", part) if parameter == "lam" else ("parameter of the scene", 1)
+    return Axis(parameter, np.asarray(values, dtype=np.float64), "1", about, part)
+
+
+def said(parameter: str) -> str:
+    """What varies, in words."""
+    return "the contraction" if parameter == "lam" else parameter
+
+
+def fixed(parameter: str, lam: float) -> dict[str, Any]:
+    """The one contraction at which another parameter varies, for the label of the results."""
+    return {} if parameter == "lam" else {"lam": lam}
 
 
 @lru_cache(KEPT)

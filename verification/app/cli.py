@@ -23,9 +23,11 @@ import click
 from verification.arithmetic.progress import heard
 
 if TYPE_CHECKING:
+    import xarray as xr
     from rich.console import Console
 
 
+LARGEST = 1 << 26  # bytes of a sweep's results that are written as JSON
 PATIENCE = 2.0  # seconds before a progress bar appears
 
 
@@ -305,3 +307,22 @@ def size(count: int) -> str:
         if count >= size:
             return f"{count / size:.3g} {unit}"
     return f"{count} bytes"
+
+
+def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
+    """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
+    fields: dict[str, Any] = {}
+    for name, values in found.data_vars.items():
+        fields[str(name)] = {"dims": list(values.dims), "units": values.attrs["units"]}
+        fields[str(name)]["about"] = values.attrs["long_name"]
+        if store is None and found.nbytes <= LARGEST:
+            fields[str(name)]["values"] = finite(values.values.tolist())
+    coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
+    labels = {str(key): _read(value) for key, value in found.attrs.items()}
+    whole = {**labels, "coords": coords, "fields": fields}
+    return whole if store is None else {**whole, "store": str(store)}
+
+
+def _read(value: Any) -> Any:
+    """What an attribute says; those that hold JSON are read."""
+    return json.loads(value) if isinstance(value, str) and value.startswith("{") else value

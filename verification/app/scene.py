@@ -7,18 +7,16 @@ imports SymPy. From the options come the scene, a starting point as exact number
 import json
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text
 from symbolic.tables.law import Law, letters_of_law
 from symbolic.tables.scene import Scene
-from verification.app.cli import Output, json_option
 
 if TYPE_CHECKING:
     import numpy as np
@@ -141,10 +139,10 @@ def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
     return tuple(text for text in given if text not in varied), next(iter(varied), None)
 
 
-def _starting(given: tuple[str, ...], axis: str) -> tuple[str, ...]:
+def _starting(given: tuple[str, ...], axis: str, known: set[str]) -> tuple[str, ...]:
     """What --shape sets, with the lower end for the parameter that varies where nothing else gives it a number."""
     name, equals, ends = axis.partition("=")
-    known = {text.partition("=")[0].strip() for text in given}
+    known |= {text.partition("=")[0].strip() for text in given}
     return given if not equals or name.strip() in known else (*given, f"{name}={ends.partition(':')[0]}")
 
 
@@ -227,10 +225,11 @@ SHAPE = click.option(
 CONTRACTION = click.option("--lam", metavar="NUMBER", help="Contraction of the angle, from 0 to 1.")
 
 
-def table_options(command: Command, varies: bool = False) -> Command:
+def table_options(command: Command, varies: bool = False, optional: bool = False) -> Command:
     """Gives `command` the arguments of a table, as a keyword `scene` whose `lam` is 0.
 
-    Where a parameter `varies`, what --shape says of it is a keyword `axis`, None where lambda varies.
+    Where a parameter `varies`, what --shape says of it is a keyword `axis`, None where lambda varies. Where a table is
+    `optional`, the scene is None without one, and a keyword `bare` has --K and --alpha.
     """
 
     @wraps(command)
@@ -253,9 +252,17 @@ def table_options(command: Command, varies: bool = False) -> Command:
         given, axis = parted(given)
         if varies:
             others["axis"] = axis
-            given = given if axis is None else _starting(given, axis)
+            if axis is not None and file is None:
+                given = _starting(given, axis, {key for key, text in (("a", a), ("alpha", alpha)) if text is not None})
         elif axis is not None:
             raise ValueError(f"--shape {axis} varies a parameter; this command takes one number, as in b=1/10")
+        if optional:
+            others["bare"] = {"K": K, "alpha": alpha}
+            if not (table or polar or parametric or file or data):
+                for option, said in (("a", a), ("law", law), ("shape", axis or next(iter(given), None))):
+                    if said is not None:
+                        raise ValueError(f"--{option} {said} says something of a table, and none is given")
+                return command(scene=None, **others)
         measured = None
         if data is not None or smoothness is not None or degree is not None:
             from verification.app.outline import drawn
@@ -272,6 +279,11 @@ def table_options(command: Command, varies: bool = False) -> Command:
 def varied_options(command: Command) -> Command:
     """Gives `command` the arguments of a table with a parameter that varies, as keywords `scene` and `axis`."""
     return table_options(command, varies=True)
+
+
+def optional_options(command: Command) -> Command:
+    """The same where a table may be left out."""
+    return table_options(command, varies=True, optional=True)
 
 
 def scene_options(command: Command) -> Command:
@@ -295,47 +307,7 @@ def start_of(text: str) -> tuple[Any, Any]:
 MOST = 1_000_000  # values of an axis
 
 
-@dataclass(frozen=True)
-class How:
-    """Where results go and who computes them."""
-
-    output: Output
-    store: Path | None
-    scheduler: str | None
-    workers: int | None
-    dry_run: bool
-
-
-OPTIONS = (
-    click.option("--store", type=click.Path(path_type=Path), metavar="DIR", help="Zarr store, made or resumed."),
-    click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler, such as tcp://127.0.0.1:8786."),
-    click.option("--workers", type=click.IntRange(1, 4096), help="Threads; all cores if left out."),
-    click.option("--dry-run", is_flag=True, help="Say what it costs, and do nothing."),
-    json_option,
-)
-
-
-lams_option = click.option(
-    "--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, both ends included."
-)
-seed_option = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
-
-
-def sweep_options(command: Command) -> Command:
-    """Gives `command` the options of every sweep, as a keyword `how`."""
-
-    @wraps(command)
-    def called(
-        output: Output, store: Path | None, scheduler: str | None, workers: int | None, dry_run: bool, **others: Any
-    ) -> Any:
-        return command(how=How(output, store, scheduler, workers, dry_run), **others)
-
-    for option in reversed(OPTIONS):
-        called = option(called)
-    return called
-
-
-def span(label: str, text: str, low: Fraction = Fraction(0), high: Fraction = Fraction(1)) -> list[float]:
+def span(label: str, text: str, low: Fraction | None = Fraction(0), high: Fraction | None = Fraction(1)) -> list[float]:
     """The numbers that `LOW:HIGH:N` says, equally spaced with both ends, or one number; each the nearest to the exact.
 
     >>> span("--lams", "0:0.3:4"), span("--lams", "1/2")
@@ -347,21 +319,57 @@ def span(label: str, text: str, low: Fraction = Fraction(0), high: Fraction = Fr
     if len(parts) != 3 or not (parts[2].isascii() and parts[2].isdigit() and 1 <= int(parts[2]) <= MOST):
         raise ValueError(f"{label} {text!r} is no range; accepted: LOW:HIGH:N such as 0:1:101, or one number")
     first, last = (Fraction(_rational(label, part)) for part in parts[:2])
-    if not low <= first <= last <= high:
+    if first > last:
+        raise ValueError(f"{label} {text!r} is no range; accepted: LOW:HIGH:N with LOW <= HIGH, or one number")
+    if (low is not None and first < low) or (high is not None and last > high):
         raise ValueError(f"{label} {text!r} does not lie in order in [{low}, {high}]; accepted: numbers that do")
     steps = int(parts[2]) - 1
     return [float(first + (last - first) * Fraction(i, max(steps, 1))) for i in range(steps + 1)]
 
 
-def over(scene: Scene, lams: str) -> "tuple[str, NDArray[np.float64]]":
-    """The scene as a sweep labels it, and its contractions; a bad shape is refused before anything runs."""
+class Varied(NamedTuple):
+    """What a sweep varies in a scene, as the sweep labels it: the parameter, its values, and the one contraction."""
+
+    text: str
+    parameter: str
+    values: "NDArray[np.float64]"
+    lam: float
+
+
+def over(scene: Scene, lams: str, axis: str | None) -> Varied:
+    """The contractions, or `NAME=LOW:HIGH:N` in their place; a bad shape is refused before anything runs."""
     import numpy as np
 
     from numeric.sweeps.sweep import map_of, text_of
 
-    text, values = text_of(scene), np.array(span("--lams", lams))
-    map_of(text, values)
-    return text, values
+    if axis is None:
+        text, values = text_of(scene), np.array(span("--lams", lams))
+        map_of(text, values)
+        return Varied(text, "lam", values, float(values[0]))
+    if ":" in lams:
+        raise ValueError(f"--lams {lams} and --shape {axis} both vary; accepted: one number for --lams")
+    lam = _contraction(lams)
+    scene, parameter, values = along(scene.at(lam=lam), axis)
+    text = text_of(scene)
+    map_of(text, float(lam))
+    return Varied(text, parameter, values, float(lam))
+
+
+def along(scene: Scene, axis: str) -> "tuple[Scene, str, NDArray[np.float64]]":
+    """The scene with the range that `NAME=LOW:HIGH:N` says, its parameter, and the values."""
+    import numpy as np
+
+    name, equals, ends = axis.partition("=")
+    name, known = name.strip(), [*scene.shape, *dict(scene.law.numbers)]
+    if not equals or name not in known:
+        accepted = f"NAME=LOW:HIGH:N with one of {', '.join(known)}" if known else "--lams, as it has no parameter"
+        raise ValueError(f"--shape {axis}: {name} is no parameter of {scene.name}; accepted: {accepted}")
+    values = np.array(span(f"--shape {name}", ends, low=None, high=None))
+    low, high = (str(_rational(f"--shape {name}", text)) for text in ends.split(":")[:2])
+    try:
+        return scene.at(**{name: f"{low}:{low}..{high}" if low != high else low}), name, values
+    except ValueError as why:
+        raise ValueError(f"--shape {axis}: {why}") from None
 
 
 def _rational(label: str, text: str) -> Fraction:

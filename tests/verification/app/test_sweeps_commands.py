@@ -1,6 +1,7 @@
 """`pinball sweep`, `bifurcation` and `basins`: what they answer, as text and as JSON, and what they refuse."""
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import xarray as xr
 
 from numeric.sweeps.fields import KINDS, basins, exponents
 from numeric.sweeps.run import run
+from numeric.sweeps.sweep import at_value
 from symbolic import Scene
 from verification.app.cli import main
 from verification.app.scene import span
@@ -98,6 +100,17 @@ def test_a_range_that_is_none_is_refused_with_what_is_accepted(text):
             ["basins", "cuspless", "--lam", "0.1", "--columns", "2", "--rows", "2", "--window", "1", "0", "0", "1"],
             "window",
         ),
+        (["bifurcation", "--polar", "1 + b*cos(theta)", "--shape", "b=0:2:3", "--lams", "0.3"], "is not positive at"),
+        (
+            ["bifurcation", "--polar", "1", "--shape", "b=0:2:3", "--lams", "0.3"],
+            "polar: no shape parameter b; it has: none",
+        ),
+        (["bifurcation", "egg", "--shape", "alpha=0:0.1:3", "--lams", "0:1:3"], "both vary; accepted: one number"),
+        (
+            ["sweep", "parameter-space", "egg", "--alpha", "0.1", "--lams", "0.3"],
+            "one shape varies; accepted: --alphas",
+        ),
+        (["bifurcation", "circle", "--shape", "b=0:2:3", "--lams", "0.3"], "b = 0 is no shape parameter"),
         (["bifurcation", "egg", "--alpha", "1/2", "--lams", "0.3"], "alpha must lie in [0, 1/10]"),
         (["sweep", "parameter-space", "--alphas", "0:0.2:3", "--lams", "0.3"], "in [0, 1/10]"),
         (
@@ -105,7 +118,19 @@ def test_a_range_that_is_none_is_refused_with_what_is_accepted(text):
             "is not a sweep of ours",
         ),
     ],
-    ids=["kind", "no kind", "window", "alpha", "alphas", "store"],
+    ids=[
+        "kind",
+        "no kind",
+        "window",
+        "no table",
+        "no parameter",
+        "both",
+        "no shape",
+        "none at all",
+        "alpha",
+        "alphas",
+        "store",
+    ],
 )
 def test_bad_input_is_one_sentence(arguments, said, capsys):
     assert main(arguments) == 2
@@ -129,3 +154,43 @@ def test_the_picture_of_parameter_space_in_letters(capsys):
     assert main(arguments) == 0
 
     assert capsys.readouterr().out.splitlines()[1:] == ["0.02     ..", "0.1      ##"]
+
+
+def test_a_parameter_of_ones_own_is_swept_like_the_egg_s(capsys):
+    # the egg written as a table of one's own: the same particles, the same attractors
+    chosen = ["--lams", "0.5", "--orbits", "3", "--points", "4", "--bounces", "40", "--transient", "200"]
+    own = document(capsys, "bifurcation", "--polar", "1 + b*cos(3*theta)", "--shape", "b=0.05:0.08:2", *chosen)
+    egg = document(capsys, "bifurcation", "egg", "--shape", "alpha=0.05:0.08:2", *chosen)
+
+    assert own["coords"]["b"] == egg["coords"]["alpha"] == [0.05, 0.08]
+    assert own["fields"]["phi"]["dims"] == ["b", "orbit", "bounce"]
+    assert own["settings"]["lam"] == 0.5
+    own_phi, phi = (np.array(found["fields"]["phi"]["values"])[0] for found in (own, egg))
+    assert np.allclose(own_phi, phi, rtol=0, atol=1e-9)  # of period 2; the other shape is chaotic
+
+
+def test_a_parameter_of_a_law_is_swept():
+    # the period-2 orbit on the minor axis has det DT^2 = sigma^2, with the law's slope sigma = 1/2 + 2*b at 0
+    scene = Scene("ellipse", a="2", law="-lam*eta - b*sin(2*eta)", lam="1/2", b="0:0..1/10")
+    found = run(exponents(scene.text, np.array([0.1]), orbits=4, groups=1, parameter="b", lam=0.5))
+
+    assert found.total.dims == ("b", "group")
+    assert np.allclose(found.total.values[:, 0], np.log([0.7]), rtol=0, atol=1e-9)
+
+
+def test_the_plane_of_a_parameter_of_a_scene_and_the_contraction(capsys):
+    arguments = ["sweep", "parameter-space", "egg", "--shape", "alpha=0.02:0.1:2"]
+    assert main([*arguments, "--lams", "0.2:0.3:2", "--starts", "5"]) == 0
+
+    assert capsys.readouterr().out.splitlines()[:3] == [
+        "alpha down, lam from 0.2 to 0.3 across; # chaos, . none",
+        "0.02     ..",
+        "0.1      ##",
+    ]
+
+
+def test_both_ends_of_a_range_belong_to_it_whatever_their_decimals():
+    found = Scene.parse(at_value(Scene.of({"polar": "1 + b*cos(theta)", "shape": {"b": "0:0..5/6"}}).text, "b", 5 / 6))
+
+    assert Fraction(5, 6) < 5 / 6  # the double
+    assert found.shape["b"] == Fraction(5, 6)

@@ -4,26 +4,25 @@
 draws the attractors against the contraction.
 """
 
-import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import exact
+from symbolic.tables.definition import POINTS, exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, duration, finite, size
+from verification.app.cli import DONE, FAILED, Output, document, duration, json_option, size
 from verification.app.scene import (
-    How,
-    lams_option,
+    along,
+    optional_options,
     over,
     scene_options,
-    seed_option,
     span,
-    sweep_options,
-    table_options,
+    varied_options,
 )
 
 if TYPE_CHECKING:
@@ -34,8 +33,48 @@ if TYPE_CHECKING:
 
 COLUMNS, ROWS = 96, 24  # of the picture in letters
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-LARGEST = 1 << 26  # bytes that are written as JSON
+Command = Callable[..., Any]
 Lines = Callable[["xr.Dataset"], list[str]]
+
+
+@dataclass(frozen=True)
+class How:
+    """Where results go and who computes them."""
+
+    output: Output
+    store: Path | None
+    scheduler: str | None
+    workers: int | None
+    dry_run: bool
+
+
+OPTIONS = (
+    click.option("--store", type=click.Path(path_type=Path), metavar="DIR", help="Zarr store, made or resumed."),
+    click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler, such as tcp://127.0.0.1:8786."),
+    click.option("--workers", type=click.IntRange(1, 4096), help="Threads; all cores if left out."),
+    click.option("--dry-run", is_flag=True, help="Say what it costs, and do nothing."),
+    json_option,
+)
+
+
+lams_option = click.option(
+    "--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, both ends included."
+)
+seed_option = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+
+
+def sweep_options(command: Command) -> Command:
+    """Gives `command` the options of every sweep, as a keyword `how`."""
+
+    @wraps(command)
+    def called(
+        output: Output, store: Path | None, scheduler: str | None, workers: int | None, dry_run: bool, **others: Any
+    ) -> Any:
+        return command(how=How(output, store, scheduler, workers, dry_run), **others)
+
+    for option in reversed(OPTIONS):
+        called = option(called)
+    return called
 
 
 def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
@@ -79,25 +118,6 @@ def estimated(expected: "Cost") -> list[str]:
         f"{expected.workers} cores",
         f"{size(expected.bytes)} of results before compression",
     ]
-
-
-def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
-    """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
-    fields: dict[str, Any] = {}
-    for name, values in found.data_vars.items():
-        fields[str(name)] = {"dims": list(values.dims), "units": values.attrs["units"]}
-        fields[str(name)]["about"] = values.attrs["long_name"]
-        if store is None and found.nbytes <= LARGEST:
-            fields[str(name)]["values"] = finite(values.values.tolist())
-    coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
-    labels = {str(key): _read(value) for key, value in found.attrs.items()}
-    whole = {**labels, "coords": coords, "fields": fields}
-    return whole if store is None else {**whole, "store": str(store)}
-
-
-def _read(value: Any) -> Any:
-    """What an attribute says; those that hold JSON are read."""
-    return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
 
 
 @click.command(epilog="Example: pinball basins cuspless --lam 0.09 --columns 400 --rows 400 --store basins.zarr")
@@ -179,7 +199,7 @@ MANY = 64  # distinct points; more are not counted
 @click.command(
     epilog="Example: pinball bifurcation egg --alpha 0.08 --lams 0.35:0.45:101 --orbits 20 --json diagram.json"
 )
-@table_options
+@varied_options
 @lams_option
 @click.option(
     "--orbits", type=click.IntRange(1, 100_000), default=20, show_default=True, help="Random particles for each."
@@ -190,13 +210,24 @@ MANY = 64  # distinct points; more are not counted
 @seed_option
 @sweep_options
 def bifurcation_command(
-    scene: Scene, lams: str, orbits: int, points: int, transient: int, bounces: int, seed: int, how: How
+    scene: Scene,
+    axis: str | None,
+    lams: str,
+    orbits: int,
+    points: int,
+    transient: int,
+    bounces: int,
+    seed: int,
+    how: How,
 ) -> int:
-    """Where random particles are after a long time, for each contraction; starts as in the paper's appendix."""
+    """Where random particles are after a long time, for each contraction; starts as in the paper's appendix.
+
+    With --shape NAME=LOW:HIGH:N it is a parameter of the table or of the law that varies, and --lams is one number.
+    """
     from numeric.sweeps.fields import bifurcation
 
-    text, values = over(scene, lams)
-    sweep = bifurcation(text, values, orbits, points, bounces, transient, seed)
+    text, parameter, values, lam = over(scene, lams, axis)
+    sweep = bifurcation(text, values, orbits, points, bounces, transient, seed, parameter, lam)
     return carried_out(sweep, how, bifurcation_lines)
 
 
@@ -204,13 +235,15 @@ def bifurcation_lines(found: "xr.Dataset") -> list[str]:
     """For some contractions, how many orbits are chaotic and how many points the attractors show."""
     import numpy as np
 
-    shown = ["lam        chaotic  nu_plus max  points"]
-    for i in range(0, found.lam.size, max(1, found.lam.size // BIFURCATION_ROWS)):
-        one = found.isel(lam=i)
+    parameter = str(found.chaotic.dims[0])
+    values = found[parameter].values
+    shown = [f"{parameter:<11}chaotic  nu_plus max  points"]
+    for i in range(0, values.size, max(1, values.size // BIFURCATION_ROWS)):
+        one = found.isel({parameter: i})
         places = np.stack([one.s.values.ravel(), one.phi.values.ravel()], axis=1)
         count = len(np.unique(np.round(places / DISTINCT), axis=0))
         shown.append(
-            f"{float(one.lam):<11.6g}{int(one.chaotic.sum()):<9d}{float(one.nu_plus.max()):<13.4f}"
+            f"{values[i]:<11.6g}{int(one.chaotic.sum()):<9d}{float(one.nu_plus.max()):<13.4f}"
             + (f"{count}" if count <= MANY else "many")
         )
     return shown
@@ -246,11 +279,9 @@ def command() -> None:
     "parameter-space",
     epilog="Example: pinball sweep parameter-space --alphas 0:0.1:101 --lams 0:1:101 --store parameter-space.zarr",
 )
-@click.option(
-    "--alphas", metavar="LOW:HIGH:N", required=True, help="Shapes of the egg, equally spaced, with both ends."
-)
+@optional_options
+@click.option("--alphas", metavar="LOW:HIGH:N", help="Shapes of the egg, equally spaced, with both ends.")
 @lams_option
-@click.option("--K", "K", type=click.IntRange(2, 100), default=3, show_default=True, help="Points of the egg.")
 @click.option(
     "--starts", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Random particles a pair."
 )
@@ -259,26 +290,47 @@ def command() -> None:
 @seed_option
 @sweep_options
 def parameter_space(
-    alphas: str, lams: str, K: int, starts: int, bounces: int, transient: int, seed: int, how: How
+    scene: Scene | None,
+    axis: str | None,
+    bare: dict[str, Any],
+    alphas: str | None,
+    lams: str,
+    starts: int,
+    bounces: int,
+    transient: int,
+    seed: int,
+    how: How,
 ) -> int:
-    """Chaos or none in the egg, for each pair of shape and contraction.
+    """Chaos or none in the egg, or in a table with --shape NAME=LOW:HIGH:N, for each pair of shape and contraction.
 
     An orbit counts as chaotic when its exponent is positive beyond two standard errors and beyond what shear shows.
     """
     import numpy as np
 
     from numeric.sweeps import fields as space
+    from numeric.sweeps.sweep import map_of, text_of
 
-    shapes = np.array(span("--alphas", alphas, high=Fraction(1, K * K + 1)))
-    sweep = space.parameter_space(shapes, np.array(span("--lams", lams)), starts, bounces, transient, K, seed)
+    if (axis is None) == (alphas is None) or (scene is None) != (axis is None):
+        raise ValueError("one shape varies; accepted: --alphas LOW:HIGH:N, or a table with --shape NAME=LOW:HIGH:N")
+    contractions = np.array(span("--lams", lams))
+    if scene is None or axis is None:
+        K = bare["K"] or POINTS
+        shapes = np.array(span("--alphas", str(alphas), high=Fraction(1, K * K + 1)))
+        sweep = space.parameter_space(shapes, contractions, starts, bounces, transient, K, seed)
+    else:
+        scene, parameter, shapes = along(scene, axis)
+        map_of(text := text_of(scene), contractions)
+        count = starts, bounces, transient
+        sweep = space.parameter_space(shapes, contractions, *count, seed=seed, scene=text, parameter=parameter)
     return carried_out(sweep, how, picture)
 
 
 def picture(found: "xr.Dataset") -> list[str]:
     """The parameter space in letters: `#` where some orbit is chaotic, `.` where none is. Paper: section 6.5."""
     step = max(1, -(-found.lam.size // TEXT_WIDTH))
-    shown = [f"alpha down, lam from {float(found.lam[0]):g} to {float(found.lam[-1]):g} across; # chaos, . none"]
-    for alpha, counts in zip(found.alpha.values, found.chaotic.values[:, ::step], strict=True):
+    shape, ends = str(found.chaotic.dims[0]), (float(found.lam[0]), float(found.lam[-1]))
+    shown = [f"{shape} down, lam from {ends[0]:g} to {ends[1]:g} across; # chaos, . none"]
+    for alpha, counts in zip(found[shape].values, found.chaotic.values[:, ::step], strict=True):
         shown.append(f"{alpha:<9.5g}" + "".join("#" if count else "." for count in counts))
     return shown
 
@@ -286,7 +338,7 @@ def picture(found: "xr.Dataset") -> list[str]:
 @command.command(
     "exponents", epilog="Example: pinball sweep exponents cuspless --lams 0:1:51 --orbits 100 --json exponents.json"
 )
-@table_options
+@varied_options
 @lams_option
 @click.option(
     "--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random particles for each."
@@ -297,25 +349,39 @@ def picture(found: "xr.Dataset") -> list[str]:
 @seed_option
 @sweep_options
 def exponents(
-    scene: Scene, lams: str, orbits: int, groups: int, bounces: int, transient: int, seed: int, how: How
+    scene: Scene,
+    axis: str | None,
+    lams: str,
+    orbits: int,
+    groups: int,
+    bounces: int,
+    transient: int,
+    seed: int,
+    how: How,
 ) -> int:
-    """Both Lyapunov exponents against the contraction, with standard errors, for each attractor."""
+    """Both Lyapunov exponents against the contraction, with standard errors, for each attractor.
+
+    With --shape NAME=LOW:HIGH:N it is a parameter of the table or of the law that varies, and --lams is one number.
+    """
     from numeric.sweeps import fields as kind
 
-    text, values = over(scene, lams)
-    return carried_out(kind.exponents(text, values, orbits, groups, bounces, transient, seed), how, table_of_groups)
+    text, parameter, values, lam = over(scene, lams, axis)
+    sweep = kind.exponents(text, values, orbits, groups, bounces, transient, seed, parameter, lam)
+    return carried_out(sweep, how, table_of_groups)
 
 
 def table_of_groups(found: "xr.Dataset") -> list[str]:
     """For some contractions, a line for each attractor."""
-    shown = ["lam        orbits  period  nu_plus               nu_minus"]
-    for i in range(0, found.lam.size, max(1, found.lam.size // SWEEP_ROWS)):
-        one = found.isel(lam=i).load()
+    parameter = str(found.orbits.dims[0])
+    values = found[parameter].values
+    shown = [f"{parameter:<11}orbits  period  nu_plus               nu_minus"]
+    for i in range(0, values.size, max(1, values.size // SWEEP_ROWS)):
+        one = found.isel({parameter: i}).load()
         for j in range(found.group.size):
             group = one.isel(group=j)
             if int(group.orbits) > 0:
                 shown.append(
-                    f"{float(one.lam):<11.6g}{int(group.orbits):<8d}{int(group.period) or '-':<8}"
+                    f"{values[i]:<11.6g}{int(group.orbits):<8d}{int(group.period) or '-':<8}"
                     f"{float(group.nu_plus):<11.6f}+- {float(group.nu_plus_error):<8.1g}"
                     f"{float(group.nu_minus):<11.6f}+- {float(group.nu_minus_error):.1g}"
                 )

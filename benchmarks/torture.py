@@ -4,6 +4,8 @@
     restarts    sweeps that are killed, refused and damaged again and again, until they are done
     falsehoods  certificates of true statements made slightly false: none may be certified
     intervals   how often 95 per cent intervals of an exponent hold the value that balls enclose
+    shares      how often those of a basin's share hold one half, where a mirror maps one basin to another
+    dimensions  how often those of a boundary's dimension hold that of random fractal graphs
 
 Each part prints one line: what was tried, how often, and how much of it failed. The exit status is 1 when anything
 failed. The same functions with smaller counts are tests of the suite.
@@ -308,8 +310,81 @@ def intervals(seeds: int, seed: int = 1) -> Outcome:
         found = [estimate(part) for part in np.split(count.up, seeds, axis=1)]
         held = sum(abs(each.mean - truth) <= each.interval for each in found)
         said.append(f"{100 * held / seeds:.1f} of 100 at {bounces} bounces")
-        failed += max(0, int(0.93 * seeds) - held, held - int(0.97 * seeds + 1))
+        failed += allowed(held, seeds)
     return Outcome(3 * seeds, failed, f"{', '.join(said)}; the value is {truth:.8f}")
+
+
+def allowed(held: int, seeds: int) -> int:
+    """How many seeds are beyond what 93 to 97 of 100 allow."""
+    return max(0, int(0.93 * seeds) - held, held - int(0.97 * seeds + 1))
+
+
+def shares(seeds: int, starts: int = 400, seed: int = 1) -> Outcome:
+    """Wilson's intervals for the basin of one of the egg's two triangles among those that end on either.
+
+    The triangles are mirror images, and so are their basins: the share is one half.
+    """
+    import numpy as np
+
+    from numeric import PinballMap
+    from numeric.dynamics.attractors import find, wilson
+    from numeric.dynamics.basins import labels, random_points, starts_at, whole
+
+    map = PinballMap("egg", alpha="2/25", lam="1/2")
+    attractors = find(map, 200, 1)
+    pair = [i for i, each in enumerate(attractors) if each.period == 3]
+    if len(pair) != 2:
+        raise ValueError(f"{len(pair)} triangles attract, where two mirror images do")
+    window, held = whole(map), 0
+    for k in range(seeds):
+        s, height = random_points(window, starts, np.random.default_rng([seed, k]))
+        label = labels(map, starts_at(map, s, height), attractors)
+        one, other = (int(np.sum(label == i)) for i in pair)
+        found = wilson(one, one + other)
+        held += found.low <= 0.5 <= found.high
+    return Outcome(seeds, allowed(held, seeds), f"{100 * held / seeds:.1f} of 100 hold one half")
+
+
+RATIO = 1.35  # of the frequencies of a graph; near 1 leaves a pure power law
+FINEST = 1e-12
+
+
+def fractal_fates(roughness: float, distances: Any, starts: int, seed: int) -> Any:
+    """Which pairs of points lie on different sides of a graph of dimension `2 - roughness`; distances along the rows.
+
+    The graph is Weierstrass's sum of sines of random phase, cut off below all distances.
+    """
+    import numpy as np
+
+    rng = np.random.default_rng(seed)
+    order = np.arange(int(np.log(1 / FINEST) / np.log(RATIO)))
+    frequency, size, phase = RATIO**order, RATIO ** (-roughness * order), rng.uniform(0, 2 * np.pi, order.size)
+    wide = np.sqrt(2 * np.sum(size**2))  # twice the standard deviation
+    x, y, turn = (rng.uniform(low, high, starts) for low, high in ((0, 20 * np.pi), (-wide, wide), (0, 2 * np.pi)))
+
+    def below(x: Any, y: Any) -> Any:
+        return y < np.sin(x[:, None] * frequency + phase) @ size
+
+    here = below(x, y)
+    return np.array([below(x + eps * np.cos(turn), y + eps * np.sin(turn)) != here for eps in distances])
+
+
+def dimensions(seeds: int, starts: int = 3000, seed: int = 1) -> Outcome:
+    """The dimension of random graphs of dimension 1.75 and 1.5, from pairs of points at seven distances."""
+    import numpy as np
+
+    from numeric.dynamics.statistics import fitted
+
+    distances, said, failed = 10.0 ** -np.arange(2, 5.5, 0.5), [], 0
+    for roughness in (0.25, 0.5):
+        held = 0
+        for k in range(seeds):
+            different = fractal_fates(roughness, distances, starts, seed + k)
+            found = fitted(distances, different, np.random.default_rng([seed, k]))
+            held += bool(abs(found.dimension - (2 - roughness)) <= 1.96 * found.error)
+        said.append(f"{100 * held / seeds:.1f} of 100 at {2 - roughness}")
+        failed += allowed(held, seeds)
+    return Outcome(2 * seeds, failed, ", ".join(said))
 
 
 PARTS: dict[str, Callable[[float], Outcome]] = {
@@ -317,6 +392,8 @@ PARTS: dict[str, Callable[[float], Outcome]] = {
     "restarts": lambda share: restarts(int(400 * share)),
     "falsehoods": lambda share: falsehoods(int(1000 * share)),
     "intervals": lambda share: intervals(max(100, int(500 * share))),
+    "shares": lambda share: shares(max(100, int(500 * share))),
+    "dimensions": lambda share: dimensions(max(100, int(500 * share))),
 }
 
 

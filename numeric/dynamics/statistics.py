@@ -148,13 +148,14 @@ def autocorrelation_time(series: Array) -> float:
 
 
 DISTANCES = tuple(10.0 ** (-k / 2) for k in range(4, 17))  # 1e-2 to 1e-8 in s and sin(phi)
-FEWEST_STARTS = 10  # differing pairs that a distance needs to take part in the fit
+FEWEST_STARTS = 10  # differing pairs at each of two distances, without which there is no fit
 RESAMPLED = 400
+NEWTON = 12  # steps, which double the digits
 
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Pairs with different fates at each distance, and the fit over the distances from `smallest` to `largest`.
+    """Pairs with different fates at each distance, and the fit over all; `smallest` to `largest` have enough pairs.
 
     `curvature` is the change of the local exponent per decade with its error: 0 for a power law.
     """
@@ -216,28 +217,40 @@ def fitted(distances: Array, different: NDArray[np.bool_], rng: np.random.Genera
     >>> abs(found.exponent - 0.5) < 3 * found.error < 0.1
     True
     """
-    counts = different.sum(axis=1)
+    counts, size = different.sum(axis=1), different.shape[1]
     used = counts >= FEWEST_STARTS
     if np.sum(used) < 2:
         nothing = float("nan")
-        return Uncertainty(
-            distances, counts, different.shape[1], nothing, nothing, (nothing, nothing), nothing, nothing
-        )
-    size, chosen = different.shape[1], different[used]
-    x = np.log10(distances[used])
-    slope, bend = _power(x, counts[used], size)
-    draws = [_power(x, chosen[:, rng.integers(0, size, size)].sum(axis=1), size) for _ in range(RESAMPLED)]
-    errors = np.nanstd(np.array(draws), axis=0)
-    ends = distances[used]
+        return Uncertainty(distances, counts, size, nothing, nothing, (nothing, nothing), nothing, nothing)
+    draws = np.array([different[:, rng.integers(0, size, size)].sum(axis=1) for _ in range(RESAMPLED)])
+    (slope, bend), *drawn = power_laws(np.log(distances), np.vstack([counts, draws]), size)
+    errors, ends = np.nanstd(np.array(drawn), axis=0), distances[used]
     return Uncertainty(
         distances, counts, size, slope, float(errors[0]), (bend, float(errors[1])), float(max(ends)), float(min(ends))
     )
 
 
-def _power(x: Array, counts: NDArray[np.int64], of: int) -> tuple[float, float]:
-    """Slope of `log f` against `log eps`, weighted by the binomial errors, and its change per decade."""
+def power_laws(x: Array, counts: NDArray[np.int64], of: int) -> list[tuple[float, float]]:
+    """Slope of `log f` against `log eps`, and its change per decade, for each row of counts.
+
+    The most likely power law for binomial counts, by Newton's method: a count of 0 or 1 says as much as it
+    knows. Logarithms of counts, the small ones left out, make the slope too small by a third of its error.
+    """
+    slopes = _most_likely(x, counts, of, 1)[:, 0]
+    bends = 2 * np.log(10) * _most_likely(x, counts, of, 2)[:, 0] if x.size > 2 else np.full(len(counts), np.nan)
+    return [(float(slope), float(bend)) for slope, bend in zip(slopes, bends, strict=True)]
+
+
+def _most_likely(x: Array, counts: NDArray[np.int64], of: int, degree: int) -> Array:
+    """Coefficients of the polynomial `log f` of `x`, highest first, by reweighted least squares; a row for each row."""
+    powers = np.vander(x - np.mean(x), degree + 1)  # the highest coefficient is the same about any point
     share = np.maximum(counts, 0.5) / of
-    weight = 1 / np.sqrt((1 - share) / (share * of))
-    slope = float(np.polyfit(x, np.log10(share), 1, w=weight)[0])
-    bend = float(2 * np.polyfit(x, np.log10(share), 2, w=weight)[0]) if x.size > 2 else float("nan")
-    return slope, bend
+    for _ in range(NEWTON):
+        weight = of * share / (1 - share)
+        wanted = weight * (np.log(share) + (counts / of - share) / share)
+        normal = np.einsum("ri,ij,ik->rjk", weight, powers, powers)
+        found: Array = (np.linalg.pinv(normal, hermitian=True) @ np.einsum("ri,ij->rj", wanted, powers)[..., None])[
+            ..., 0
+        ]
+        share = np.clip(np.exp(found @ powers.T), 1e-300, 1 - 1 / (2 * of))
+    return found

@@ -13,6 +13,15 @@ Whether a side is met is decided by which side of the line its two ends lie on; 
 the same number there, so nothing passes between them. Round a convex curve that sign changes once from minus to plus:
 there the piece is chosen first, by halving if there are many, and one equation solved.
 
+**Corners and tangencies are told from landings beside them by the flight's own error.** Let `S` be the sum of the
+moduli of the numbers from which the two ends of a flight are added up. Rounding moves the line sideways by at most
+`UNSURE*S = 8*2**-52*S`: in units of `2**-53`, a computed point is off by 5 of its share of `S`, a corner by 2, and a
+direction and a product by 3 each of the length, which is at most `S`. So a flight that passes a corner no farther
+aside ends there, as a `JOIN`, on whichever side the line seems to land, and also where it would fly past a corner
+that bends into the table. One that comes as near to a tangent of a dispersing arc is `GRAZING`, whether it seems to
+touch or not. A flight that ends on the arc from which it started is known far better when it is short: its departure is
+off by `UNSURE*S` along the arc, and the line moves sideways by `UNSURE` times its length.
+
 State: the piece, `p`, `q`, and the direction `v`.
 """
 
@@ -20,34 +29,33 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from numeric.backends import functions as plane
-from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
+from numeric.backends.protocol import modulus
+from numeric.flights.corners import (
+    CIRCLE,
+    ELLIPSE,
+    LINE,
+    MANY,
+    Pair,
+    Piece,
+    chosen,
+    chosen_mask,
+    column,
+    convex,
+    following,
+    loops,
+    passable,
+    piece_of,
+    span,
+)
+from numeric.flights.family import Boundary, Family, Landing, Status, grazing, reflected
 from numeric.flights.general import refuse_long
 from numeric.flights.spline import halved
 
 FAR = 2.0**100  # as far as nothing was met
-LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
-MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
-TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
+UNSURE = 2.0**-49  # how far a line is moved sideways by rounding, as a share of the numbers it is made of
 Masks = Any
-Pair = tuple[Any, Any]
 Row = Sequence[Any]
-
-
-class Piece(NamedTuple):
-    """The numbers of a piece in some arithmetic."""
-
-    kind: str
-    origin: Pair
-    A: Pair
-    B: Pair
-    start: Pair  # its first corner
-    D: Any  # A x B: positive where the arc focuses
-    radius: Any
-    middle: Pair  # (p, q) in the middle of an arc; the ends of the parameter of a side
-    half: Pair  # sine and cosine of half the angle of an arc
 
 
 class Pieces(Family):
@@ -67,14 +75,17 @@ class Pieces(Family):
         self.programs = [program for _, program in ir.programs]
         self.halving: list[list[float]] | None = None
         known = self.pieces(boundary.ops, boundary.shape)
+        self.known = known
         self.following = following(boundary, known)
         self.closed = [
             after == at and kind != LINE
             for at, (after, kind) in enumerate(zip(self.following, self.kinds, strict=True))
         ]
         self.wide = [kind != LINE and bool(piece.half[1] < 0) for kind, piece in zip(self.kinds, known, strict=True)]
+        self.bulges = [kind != LINE and bool(piece.D < 0) for kind, piece in zip(self.kinds, known, strict=True)]
         first = loops(self.following)[0]
         self.outer = first if convex(boundary, known, first, self.following) else []
+        self.passed = [j for j in range(len(known)) if passable(boundary, known, j, self.following)]
         whole = len(self.outer) == len(known) > MANY and not boundary.shape
         self.halving = [[float(x) for x in program(boundary.ops)] for program in self.programs] if whole else None
 
@@ -85,7 +96,8 @@ class Pieces(Family):
 
     @property
     def identity(self) -> str:
-        return repr((self.kinds, self.following, self.closed, self.wide, self.outer, self.halving))
+        told = self.kinds, self.following, self.closed, self.wide, self.outer, self.bulges, self.passed, self.halving
+        return repr(told)
 
     def pieces(self, ops: Any, shape: Row) -> list[Piece]:
         """All pieces in the arithmetic of `ops`."""
@@ -95,19 +107,7 @@ class Pieces(Family):
                 x = [ops.number(value) for value in self.halving[j]]  # constants, which are looked up
             else:
                 x = program(ops, *shape)
-            found.append(
-                Piece(
-                    kind,
-                    (x[0], x[1]),
-                    (x[2], x[3]),
-                    (x[4], x[5]),
-                    (x[6], x[7]),
-                    x[8],
-                    x[9],
-                    (x[10], x[11]),
-                    (x[12], x[13]),
-                )
-            )
+            found.append(piece_of(kind, x))
         return found
 
     @cached_property
@@ -156,7 +156,7 @@ class Pieces(Family):
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0 = self.point(ops, pieces, position)
         d0 = self.tangent(ops, shape, position)
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v))
+        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p)
         corners = [piece.start for piece in pieces]
         best: list[Any] | None = None
         if self.halving:
@@ -165,11 +165,10 @@ class Pieces(Family):
                 x, y = (ops.look_up([corner[i] for corner in corners], at) for i in (0, 1))
                 return plane.cross(v, (x - z0[0], y - z0[1]))
 
-            first, last, where, *_ = halved(ops, component, len(pieces), side)
+            first, last, where, below, above = halved(ops, component, len(pieces), side)
             where = ops.select((first < nought) & (nought <= last), where, component)
-            best = [*self._met(flight, self._gathered(ops, where, pieces), where), where]
-            t, p, q, along, _, where = best
-            return self._landed(ops, pieces, law, [where, p, q], v, along, t)
+            best = [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
+            return self._landed(flight, pieces, best, [first, last, below, above])
         sides = [plane.cross(v, (corner[0] - z0[0], corner[1] - z0[1])) for corner in corners]
         if self.outer:
             where = component
@@ -177,28 +176,58 @@ class Pieces(Family):
                 other = ops.number(0.25) < abs(component - ops.number(float(j)))
                 meets = other & (sides[j] <= nought) & (nought < sides[self.following[j]])
                 where = ops.select(meets, ops.number(float(j)), where)
-            best = [*self._met(flight, self._gathered(ops, where, pieces), where), where]
+            best = [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
         for j, piece in enumerate(pieces):
             if j in self.outer:
                 continue
             here = ops.number(float(j))
-            t, p, q, along, real = self._met(flight, piece, here)
+            t, p, q, along, left = self._met(flight, piece, here)
             crosses = (sides[j] <= nought) & (nought < sides[self.following[j]])
             if piece.kind != LINE:
                 own = abs(component - here) < ops.number(0.25)
-                turns = real if self.closed[j] else real & (nought < self._inside(ops, piece, (p, q), self.wide[j]))
+                turns = (nought if not self.bulges[j] else -self._slack(flight, pieces, piece)) < left
+                if not self.closed[j]:
+                    turns = turns & (nought < self._inside(ops, piece, (p, q), self.wide[j]))
                 same = ops.negated((nought < sides[j]) & (sides[self.following[j]] <= nought))
                 crosses = crosses | (same & (own | turns))
             meets = crosses & (nought < t)
             if best is None:
-                best = [ops.select(meets, t, ops.number(FAR)), p, q, along, real, here + nought * component]
+                best = [ops.select(meets, t, ops.number(FAR)), p, q, along, here + nought * component]
             else:
                 nearer = meets & (t < best[0])
-                new = t, p, q, along, best[4], here
+                new = t, p, q, along, here
                 best = [x if x is y else ops.select(nearer, x, y) for x, y in zip(new, best, strict=True)]
         assert best is not None
-        t, p, q, along, _, where = best
-        return self._landed(ops, pieces, law, [where, p, q], v, along, t)
+        return self._landed(flight, pieces, best, sides)
+
+    def _spans(self, ops: Any, pieces: list[Piece]) -> list[Pair]:
+        """What the points of every piece are added up from; constants, if there are no parameters."""
+        if self.boundary.shape:
+            return [span(piece) for piece in pieces]
+        return [(ops.number(float(x)), ops.number(float(y))) for x, y in map(span, self.known)]
+
+    def _size(self, ops: Any, pieces: list[Piece], component: Any, p: Any) -> Any:
+        """The sum of the moduli of the numbers that a point of a piece is added up from, or a bound of it."""
+        base, slope = self._pair(ops, component, self._spans(ops, pieces))
+        return base + slope * modulus(p)
+
+    def _farthest(self, ops: Any, pieces: list[Piece]) -> Any:
+        """A bound of this sum over the whole table."""
+        largest = ops.number(0.0)
+        for (base, slope), (low, high) in zip(
+            self._spans(ops, pieces), (piece.middle for piece in pieces), strict=True
+        ):
+            largest = ops.maximum(largest, base + slope * ops.maximum(modulus(low), modulus(high)))
+        return largest
+
+    def _slack(self, flight: "Flight", pieces: list[Piece], piece: Piece) -> Any:
+        """`(v x d)**2` below which rounding hides on which side of a tangent of an arc the line passes."""
+        ops, radius = flight.ops, piece.radius
+        if piece.kind != CIRCLE:
+            a, b = plane.cross(flight.v, piece.A), plane.cross(flight.v, piece.B)
+            radius = ops.sqrt(a * a + b * b)
+        size = self._size(ops, pieces, flight.component, flight.p) + span(piece)[0]
+        return ops.number(2 * UNSURE) * radius * size
 
     def _gathered(self, ops: Any, where: Any, pieces: list[Piece]) -> Piece:
         """The piece of every particle; its kind is `line`, `circle`, `ellipse`, or empty where there are several."""
@@ -240,7 +269,7 @@ class Pieces(Family):
         x, y = p * piece.A[0] + q * piece.B[0] - w[0], p * piece.A[1] + q * piece.B[1] - w[1]
         chord = (s + s) * piece.D * inverse
         t = ops.select(own, chord, v[0] * x + v[1] * y)
-        return t, p, q, along, nought < left
+        return t, p, q, along, left
 
     def _inside(self, ops: Any, piece: Piece, u: Pair, wide: bool) -> Any:
         """The sine of the angle from the nearer end of an arc, negative beyond it."""
@@ -248,36 +277,73 @@ class Pieces(Family):
         gap = piece.half[0] * c - piece.half[1] * s
         return ops.select(ops.number(0.0) < c, ops.number(1.0), gap) if wide else gap
 
-    def _landed(
-        self, ops: Any, pieces: list[Piece], law: str, position: Row, v: Pair, along: Any, t: Any
-    ) -> Landing[Any]:
-        where, p, q = position
-        nought, one = ops.number(0.0), ops.number(1.0)
+    def _landed(self, flight: "Flight", pieces: list[Piece], best: Row, sides: Row) -> Landing[Any]:
+        ops, v, (t, p, q, along, where) = flight.ops, flight.v, best
+        nought = ops.number(0.0)
         A, B = (self._pair(ops, where, column(pieces, i)) for i in (2, 3))
         d = p * B[0] - q * A[0], p * B[1] - q * A[1]
         across = plane.dot(d, v)
-        gaps = []
+        code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
+        farthest = self._farthest(ops, pieces)
+        near = ops.negated(ops.number(4 * UNSURE) * farthest * farthest < along * along) if any(self.bulges) else None
+        for side in sides:
+            by = ops.negated(ops.number(8 * UNSURE) * farthest < modulus(side))
+            near = by if near is None else near | by
+        doubt = ops.when(near, [nought + nought * t], lambda: [self._doubt(flight, pieces, best, d, sides)])[0]
+        code = ops.select(ops.number(0.5) < doubt, doubt, code)
+        if not self.outer:  # what passes between two pieces is at a join
+            code = ops.select(t < ops.number(FAR), code, ops.number(float(Status.JOIN.code)))
+        D = chosen(ops, where, [piece.D for piece in pieces])
+        return Landing([where, p, q], across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
+
+    def _doubt(self, flight: "Flight", pieces: list[Piece], best: Row, d: Pair, sides: Row) -> Any:
+        """`JOIN` or `GRAZING`, by number, where rounding hides on which side of a corner or a tangent the line passes."""
+        ops, (t, p, q, along, where) = flight.ops, best
+        nought, one = ops.number(0.0), ops.number(1.0)
+        speed, start = plane.dot(d, d), self._size(ops, pieces, flight.component, flight.p)
+        size = start + self._size(ops, pieces, where, p)
+        # how far aside the corner lies, against how far aside the line may; squares, lest there be a root
+        gap = self._gap(ops, pieces, where, (p, q))
+        aside, doubt = gap * along, size * size
+        aside = aside * aside
+        if self.arcs:
+            own = abs(flight.component - where) < ops.number(0.25)
+            doubt = ops.select(own, t * t * speed + along * along * doubt, doubt)
+            aside = aside * ops.select(own, speed, one)
+        sure = (nought < gap) & (ops.number(UNSURE * UNSURE) * doubt < aside) | (ops.number(0.5 * FAR) < gap)
+        for j in self.passed:
+            x, y = pieces[j].start
+            slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
+            ahead = plane.dot(flight.v, (x - flight.z0[0], y - flight.z0[1]))
+            sure = sure & ops.negated((modulus(sides[j]) <= slack) & (slack < ahead) & (ahead < t))
+        code = nought
+        if any(self.bulges):
+            slack = [
+                self._slack(flight, pieces, piece) if bulges else -one
+                for piece, bulges in zip(pieces, self.bulges, strict=True)
+            ]
+            touches = (along * along <= chosen(ops, where, slack)) & ops.negated(own)
+            code = ops.select(touches, ops.number(float(Status.GRAZING.code)), nought)
+        return ops.select(sure, code, ops.number(float(Status.JOIN.code)))
+
+    def _gap(self, ops: Any, pieces: list[Piece], where: Any, u: Pair) -> Any:
+        """How far a landing is from the nearer end of its piece, in units of the velocity; negative beyond it."""
+        far, gaps = ops.number(FAR), []
         if len(self.arcs) < len(self.kinds):
             low, high = self._pair(ops, where, [piece.middle for piece in pieces])
-            gaps.append(-ops.maximum(low - p, p - high))
+            gaps.append(-ops.maximum(low - u[0], u[0] - high))
         if self.arcs:
             M, half = (self._pair(ops, where, column(pieces, i)) for i in (7, 8))
-            gap = self._inside(ops, pieces[0]._replace(middle=M, half=half), (p, q), False)
+            gap = self._inside(ops, pieces[0]._replace(middle=M, half=half), u, False)
             if any(self.wide):
-                ahead = chosen_mask(ops, where, self.wide) & (nought < plane.dot(M, (p, q)))
-                gap = ops.select(ahead, one, gap)
+                ahead = chosen_mask(ops, where, self.wide) & (ops.number(0.0) < plane.dot(M, u))
+                gap = ops.select(ahead, far, gap)
             if any(self.closed):
-                gap = ops.select(chosen_mask(ops, where, self.closed), one, gap)
+                gap = ops.select(chosen_mask(ops, where, self.closed), far, gap)
             gaps.append(gap)
-        gap = gaps[0] if len(gaps) == 1 else ops.select(chosen_mask(ops, where, [k == LINE for k in self.kinds]), *gaps)
-        code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
-        # |d|*gap against NEAR, without a root: the gap's sign is kept
-        lands = ops.number(NEAR * NEAR) <= gap * abs(gap) * plane.dot(d, d)
-        if not self.outer:
-            lands = lands & (t < ops.number(FAR))  # what passes between two pieces is at a join
-        code = ops.select(lands, code, ops.number(float(Status.JOIN.code)))
-        D = chosen(ops, where, [piece.D for piece in pieces])
-        return Landing(list(position), across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
+        return (
+            gaps[0] if len(gaps) == 1 else ops.select(chosen_mask(ops, where, [k == LINE for k in self.kinds]), *gaps)
+        )
 
     def leave(self, ops: Any, shape: Row, law: str, lam: Any, landing: Landing[Any]) -> list[Any]:
         return reflected(self, ops, law, lam, landing)
@@ -309,90 +375,4 @@ class Flight(NamedTuple):
     z0: Pair
     v: Pair
     rate: Any
-
-
-def column(pieces: list[Piece], i: int) -> list[Any]:
-    """One entry of every piece."""
-    return [piece[i] for piece in pieces]
-
-
-def chosen(ops: Any, component: Any, values: list[Any]) -> Any:
-    """The value of the particle's piece; neighbours that are equal cost nothing."""
-    if len(values) > MANY and all(getattr(value, "value", 0.0) is not None for value in values):
-        return values[0] if all(same(value, values[0]) for value in values) else ops.look_up(values, component)
-    found = values[0]
-    for i in range(1, len(values)):
-        if not same(values[i], values[i - 1]):
-            found = ops.select(ops.number(i - 0.5) < component, values[i], found)
-    return found
-
-
-def chosen_mask(ops: Any, component: Any, values: list[bool]) -> Masks:
-    """Where the particle's piece is one of those marked."""
-    return ops.number(0.5) < chosen(ops, component, [ops.number(float(value)) for value in values])
-
-
-def same(x: Any, y: Any) -> bool:
-    """Are two values of an arithmetic known to be equal?"""
-    if x is y:
-        return True
-    if hasattr(x, "factors"):  # a vector of LLVM
-        return bool(x.value == y.value if None not in (x.value, y.value) else x.value is y.value and x.text == y.text)
-    return bool(np.all(x == y))
-
-
-def following(boundary: Boundary, pieces: list[Piece]) -> list[int]:
-    """The piece that begins where each one ends: the next one, or the first of a closed curve."""
-    found, first, count = [], 0, len(pieces)
-    size = max(abs(x) for piece in pieces for x in piece.start) + 1.0
-    for j in range(count):
-        x, y, *_ = boundary.curve(np.array([j]), np.array([boundary.ends[j][1]]))[:, 0]
-        after = (j + 1) % count
-        back = np.hypot(x - pieces[first].start[0], y - pieces[first].start[1]) <= 1e-9 * size
-        if back and (j > first or pieces[j].kind != LINE):
-            found.append(first)
-            first = j + 1
-        else:
-            found.append(after)
-    return found
-
-
-def loops(after: list[int]) -> list[list[int]]:
-    """The closed curves, each as the pieces in order."""
-    found, first = [], 0
-    for j, following in enumerate(after):
-        if following <= j:
-            found.append(list(range(first, j + 1)))
-            first = j + 1
-    return found
-
-
-def convex(boundary: Boundary, pieces: list[Piece], loop: list[int], after: list[int]) -> bool:
-    """Does every arc of the curve focus, and every corner bend inwards?"""
-    if any(pieces[j].kind != LINE and not pieces[j].D > 0 for j in loop):
-        return False
-    turning = 0.0
-    for j in loop:
-        arriving, leaving = _direction(boundary, j, 1), _direction(boundary, after[j], 0)
-        sine = float(plane.cross(arriving, leaving))
-        if sine < -TURNS or (abs(sine) <= TURNS and plane.dot(arriving, leaving) < 0):
-            return False
-        turning += float(np.arctan2(sine, plane.dot(arriving, leaving)))
-        low, high = boundary.ends[j]
-        turning += high - low if pieces[j].kind == CIRCLE else _turned(boundary, j)
-    return abs(turning - 2 * np.pi) < 1e-6
-
-
-def _direction(boundary: Boundary, j: int, end: int) -> Pair:
-    """The unit tangent at an end of a piece."""
-    _, _, dx, dy, _, _ = boundary.curve(np.array([j]), np.array([boundary.ends[j][end]]))[:, 0]
-    size = np.hypot(dx, dy)
-    return dx / size, dy / size
-
-
-def _turned(boundary: Boundary, j: int) -> float:
-    """The angle by which the tangent of a piece turns."""
-    low, high = boundary.ends[j]
-    theta = np.linspace(low, high, 257)
-    _, _, dx, dy, _, _ = boundary.curve(np.full(theta.shape, j), theta)
-    return float(np.ptp(np.unwrap(np.arctan2(dy, dx))))
+    p: Any  # of the point

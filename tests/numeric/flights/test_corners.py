@@ -1,0 +1,114 @@
+"""A landing is at a corner, or a tangent, when rounding hides on which side of it the flight passes: at every scale."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from sympy import Rational
+
+from numeric import PinballMap, phase_starts
+from numeric.flights.pieces import UNSURE
+from numeric.kernels.machine import KernelSpec
+from symbolic import tables
+from symbolic.tables.gallery import GALLERY
+from verification.measure.extremes.by_hand import hits, placed
+from verification.measure.extremes.by_hand import pieces as wide
+
+EPS = 2.0**-52
+NOTCHED = tables.polygon((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), name="notched")
+SMALL = Rational(1, 10**6)
+UNEQUAL = tables.polygon((0, 0), (SMALL, 0), (10**6, SMALL), (10**6, 1), (0, 1), name="unequal")
+AWAY = tables.polygon((10**6, 10**6), (10**6 + 1, 10**6), (10**6 + 1, 10**6 + 1), (10**6, 10**6 + 1), name="away")
+SIZES = {"1e-6": SMALL, "1": Rational(1), "1e6": Rational(10**6)}
+SCENES = [(name, size) for name in ["square", "sinai", "reuleaux", "diamond", "notched"] for size in SIZES]
+SCENES += [(name, "1") for name in ["stadium", "semi_ellipse", "mushroom", "unequal", "away"]]
+
+
+@cache
+def mapped(name, size="1", lam=0.9, kernels=False):
+    table = {"notched": NOTCHED, "unequal": UNEQUAL, "away": AWAY}.get(name) or GALLERY[name]()
+    parts = [
+        tables.arc(part.name, *(SIZES[size] * x for x in part.point), part.start, part.end) for part in table.components
+    ]
+    return PinballMap(tables.piecewise(*parts, name=name) if size != "1" else table, lam=lam, kernels=kernels)
+
+
+def aimed(map, count, seed):
+    """Flights that pass a corner, or a tangent of a dispersing arc of a circle, by some roundings or by more."""
+    rng = np.random.default_rng(seed)
+    family, ops = map.family, map.states.ops
+    known = family.pieces(ops, map.shape)
+    starts = phase_starts(map, count, seed=seed)
+    frame = map.states.frame(starts.component, starts.theta)
+    goals = [piece.start for j, piece in enumerate(known) if not family.closed[j]]
+    aim = np.array(goals)[rng.integers(0, len(goals), count)]
+    away = np.arctan2(aim[:, 1] - frame.y, aim[:, 0] - frame.x)
+    for piece in (piece for j, piece in enumerate(known) if family.bulges[j]):
+        x, y = piece.origin[0] - frame.x, piece.origin[1] - frame.y
+        with np.errstate(invalid="ignore"):
+            tangent = np.arctan2(y, x) + rng.choice([-1, 1], count) * np.arcsin(piece.radius / np.hypot(x, y))
+        away = np.where(np.isfinite(tangent) & (rng.random(count) < 0.3), tangent, away)
+    phi = frame.angle(ops, np.cos(away), np.sin(away))
+    size = np.where(rng.random(count) < 0.5, rng.integers(0, 40, count) * EPS / 2, 10 ** rng.uniform(-15, -3, count))
+    phi = phi + rng.choice([-1, 1], count) * size
+    good = np.abs(phi) < 1.5707
+    return [x[good] for x in (starts.component, starts.theta, phi)]
+
+
+def flown(map, component, theta, phi):
+    """Fields before and after, and the outcome."""
+    own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
+    lam = np.full(theta.size, float(map.lam))
+    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
+    return own, result.record[0], result.rows["code"]
+
+
+@pytest.mark.parametrize(("name", "size"), SCENES)
+def test_no_flight_past_a_corner_or_a_tangent_lands_on_the_wrong_side_and_only_those_near_one_stop(name, size):
+    map = mapped(name, size)
+    own, after, code = flown(map, *aimed(map, 400, seed=21))
+    truth = hits(map, own)
+    going = code == 0
+    landed, _, _ = placed(wide(map.family, map.shape), map.family, [*after[:3], 0 * after[0], 1 + 0 * after[0]])
+    aside = np.hypot(landed[0] - truth.x, landed[1] - truth.y).astype(float) * truth.straight / truth.size
+
+    assert 0.05 < np.mean(going) < 1 - 0.05
+    assert np.array_equal(after[0][going], truth.piece[going])
+    assert np.max(aside[going]) < EPS  # a bound of eight is promised
+    assert np.max(truth.aside[~going]) < 5 * UNSURE / EPS
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_along_the_normals_of_a_reuleaux_triangle_all_particles_end_in_the_opposite_corner(size):
+    map = mapped("reuleaux", size, 0.0)
+    starts = phase_starts(map, 250, seed=22)
+    step = map.step(starts.theta, 0.0, starts.component)
+
+    assert {status.name for status in step.status} == {"JOIN"}
+
+
+def test_a_flight_past_a_corner_that_bends_into_the_table_ends_there_on_both_sides_of_it():
+    """From the floor of the notched square to the corner (1, 1), which is passed on one side and met on the other."""
+    map = mapped("notched")
+    shifts = (-1e-12, -2 * EPS, 0, 2 * EPS, 1e-12)
+    steps = [map.step(0.25, np.arctan(0.5) + shift, 0) for shift in shifts]  # from (1/2, 0)
+
+    assert [step.status.name for step in steps] == ["REGULAR", "JOIN", "JOIN", "JOIN", "REGULAR"]
+    assert [float(steps[0].x), float(steps[-1].y)] == pytest.approx([1, 1], abs=1e-11)
+
+
+def test_a_short_flight_along_an_arc_is_no_landing_at_its_far_end():
+    """Chords of 2e-12 in a half disc, a hundredth from its end: the landing is known to the last bits."""
+    map = mapped("stadium", lam=1)
+    step = map.step(np.pi / 2 - 0.01, np.pi / 2 - 1e-12, 0)
+
+    assert step.status.name == "REGULAR"
+    assert step.theta - (np.pi / 2 - 0.01) == pytest.approx(2e-12, rel=1e-3)
+
+
+def test_kernels_and_arrays_stop_the_same_particles_up_to_rounding():
+    plain, compiled = mapped("sinai"), mapped("sinai", kernels=True)
+    starts = aimed(plain, 400, seed=23)
+    one, other = (flown(map, *starts)[2] for map in (plain, compiled))
+
+    assert np.mean(one != other) < 0.05

@@ -1,0 +1,135 @@
+"""First hits on tables of sides and arcs the slow way: every piece tried in 80 bits, nothing shared with the kernels.
+
+The judge of tests and of `benchmarks/adversarial.py`. It takes the particles as the doubles that a kernel is given and
+the table's numbers to 64 bits. No sign of a corner chooses a piece, no root is divided out; a landing is what is
+nearest of all that lies ahead. It also says how closely each line passes a corner or a tangent on its way, as a share
+of the numbers from which its ends are added up.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from numeric import PinballMap
+from numeric.flights.corners import LINE, Piece, piece_of
+from numeric.flights.pieces import Pieces
+from verification.measure.extremes.kernels import Wide
+
+WIDE = np.longdouble
+START = WIDE(2.0**-40)  # as a share of the table: what is nearer is where the particle leaves
+SKEW = WIDE(2.0**-20)  # the same: by so much a tangent lies beyond the landing of a line that all but touches
+
+
+class Hit(NamedTuple):
+    """The first hits of many particles."""
+
+    length: Any
+    piece: Any
+    x: Any
+    y: Any
+    aside: Any  # how closely the line passes a corner or a tangent, before or at the hit, in units of 2**-52 of `size`
+    straight: Any  # cosine of the incidence angle
+    size: Any  # sum of the moduli of the numbers from which the two ends are added up
+
+
+def pieces(family: Pieces, shape: Any) -> list[Piece]:
+    """The numbers of every piece in 80 bits, nothing looked up."""
+    ops: Any = Wide()
+    wide = [WIDE(float(x)) for x in shape]
+    return [
+        piece_of(kind, [WIDE(x) for x in program(ops, *wide)])
+        for kind, program in zip(family.kinds, family.programs, strict=True)
+    ]
+
+
+def placed(known: list[Piece], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
+    """Point, unit direction and `size` of the states that the fields of particles say."""
+    at, p, q = own[0].astype(int), own[1].astype(WIDE), own[2].astype(WIDE)
+    line = np.array([kind == LINE for kind in family.kinds])[at]
+    length = np.where(line, 1, np.hypot(p, q))
+    p, q = p / length, q / length
+    origin, A, B = (np.array([[*piece[i]] for piece in known])[at].T for i in (1, 2, 3))
+    z = p * A + q * B + origin
+    d = p * B - q * A
+    v = np.array([own[3], own[4]]).astype(WIDE) if len(own) > 3 else np.array([-d[1], d[0]])
+    size = np.sum(abs(origin) + abs(p * A) + abs(q * B), axis=0)
+    return z, v / np.hypot(*v), size
+
+
+def hits(map: PinballMap, own: list[Any]) -> Hit:
+    """The first hit of every particle."""
+    family = map.family
+    assert isinstance(family, Pieces)
+    known = pieces(family, map.shape)
+    z, v, size = placed(known, family, own)
+    table = max(float(np.max(np.abs([*piece.origin, *piece.start]))) for piece in known) + 1e-300
+    count = z.shape[1]
+    best, where = np.full(count, np.inf, dtype=WIDE), np.full(count, -1)
+    straight, weight = np.zeros(count, dtype=WIDE), np.zeros(count, dtype=WIDE)
+    near: list[tuple[Any, Any, Any]] = []  # how far ahead, how far aside, size
+    with np.errstate(all="ignore"):
+        for j, piece in enumerate(known):
+            corner = [piece.start[i] - z[i] for i in (0, 1)]
+            own_size = sum(abs(x) for x in piece.start)
+            if not family.closed[j]:
+                near.append((v[0] * corner[0] + v[1] * corner[1], abs(_cross(v, corner)), size + own_size))
+            for t, p, q, cosine, inside in _met(piece, family.closed[j], z, v):
+                there = sum(abs(piece.origin[i]) + abs(p * piece.A[i]) + abs(q * piece.B[i]) for i in (0, 1))
+                nearer = inside & (t > START * table) & (t < best) & (cosine > 0)
+                best, where = np.where(nearer, t, best), np.where(nearer, j, where)
+                straight, weight = np.where(nearer, cosine, straight), np.where(nearer, there, weight)
+            if piece.kind != LINE and piece.D < 0:
+                near.append(_tangent(piece, family.closed[j], z, v, size))
+        aside = np.full(count, np.inf, dtype=WIDE)
+        for ahead, miss, both in near:
+            on_the_way = (ahead > START * table) & (
+                ahead < best + START * table / np.minimum(straight, 1) + SKEW * table
+            )
+            aside = np.where(on_the_way, np.minimum(aside, miss / both / WIDE(2.0**-52)), aside)
+    x, y = (z[i] + best * v[i] for i in (0, 1))
+    return Hit(best, where, x, y, aside.astype(float), straight.astype(float), (size + weight).astype(float))
+
+
+def _cross(v: Any, w: Any) -> Any:
+    return v[0] * w[1] - v[1] * w[0]
+
+
+def _met(piece: Piece, closed: bool, z: Any, v: Any) -> list[tuple[Any, Any, Any, Any, Any]]:
+    """Where a line meets a piece's curve: length, `p`, `q`, cosine of the incidence, and whether it is on the piece."""
+    w = [z[i] - piece.origin[i] for i in (0, 1)]
+    a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
+    if piece.kind == LINE:
+        p = m / a
+        q = WIDE(-1) + 0 * p
+        t = _cross(piece.A, w) / a
+        return [(t, p, q, a / np.hypot(*piece.A), (p >= piece.middle[0]) & (p <= piece.middle[1]))]
+    square = a * a + b * b
+    root = np.sqrt(square - m * m)
+    found = []
+    for s in (root, -root):
+        p, q = (m * a + s * b) / square, (m * b - s * a) / square
+        t = sum(v[i] * (p * piece.A[i] + q * piece.B[i] - w[i]) for i in (0, 1))
+        speed = np.hypot(*(p * piece.B[i] - q * piece.A[i] for i in (0, 1)))
+        found.append((t, p, q, s / speed, _within(piece, closed, p, q)))
+    return found
+
+
+def _within(piece: Piece, closed: bool, p: Any, q: Any) -> Any:
+    """Is `(p, q)` on the arc? By the angle from its middle."""
+    if closed:
+        return np.isfinite(p)
+    c = piece.middle[0] * p + piece.middle[1] * q
+    s = piece.middle[0] * q - piece.middle[1] * p
+    return np.abs(np.arctan2(s, c)) <= np.arctan2(piece.half[0], piece.half[1])
+
+
+def _tangent(piece: Piece, closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
+    """How far ahead, and how far aside, the tangent of a piece along the line is; infinite where there is none."""
+    w = [z[i] - piece.origin[i] for i in (0, 1)]
+    a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
+    root = np.hypot(a, b)
+    p, q = np.sign(m) * a / root, np.sign(m) * b / root
+    ahead = sum(v[i] * (p * piece.A[i] + q * piece.B[i] - w[i]) for i in (0, 1))
+    there = sum(abs(piece.origin[i]) + abs(piece.A[i]) + abs(piece.B[i]) for i in (0, 1))
+    miss = abs(root - abs(m))
+    return ahead, np.where(_within(piece, closed, p, q), miss, np.inf), size + there

@@ -297,7 +297,7 @@ class Pieces(Family):
         return Landing([where, p, q], across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
 
     def _doubt(self, flight: "Flight", pieces: list[Piece], best: Row, d: Pair, sides: Row) -> Any:
-        """`JOIN` or `GRAZING`, by number, where rounding hides on which side of a corner or a tangent the line passes."""
+        """`JOIN` or `GRAZING`, by number, where rounding hides on which side of a corner or tangent the line passes."""
         ops, (t, p, q, along, where) = flight.ops, best
         nought, one = ops.number(0.0), ops.number(1.0)
         speed, start = plane.dot(d, d), self._size(ops, pieces, flight.component, flight.p)

@@ -326,3 +326,24 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
 def _read(value: Any) -> Any:
     """What an attribute says; those that hold JSON are read."""
     return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
+
+
+async def refusal(words: Sequence[str], seconds: float) -> str | None:
+    """Runs a command in a process of its own, and gives the sentence with which it fails; None when all is well.
+
+    It is ended after so many seconds. What it reads, proves and compiles is kept on disk for whoever asks next.
+    """
+    import asyncio
+
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "verification", *words, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE
+    )
+    try:
+        _, said = await asyncio.wait_for(process.communicate(), seconds)
+    except TimeoutError:
+        return f"this takes more than {seconds:g} seconds to read, prove and compile"
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+    return None if process.returncode == 0 else said.decode(errors="replace").strip().removeprefix("pinball: ")

@@ -1,13 +1,13 @@
 """The live table: a page in Panel with widgets on the left, the table and its phase space on the right.
 
-What is picked there is a map, a command line and a few lines of Python; what is drawn is the boundary, an orbit, its
-points in phase space, and the cycle near a point.
+What is picked there is a map, a command line and a few lines of Python. Drawn are an orbit and the cycle near a point.
 """
 
 import os
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from numeric.dynamics.recognition import Cycle, polished, shortest
 from numeric.pinball.sampling import boundary, interior_starts
 from symbolic.tables.definition import PAPER
 from symbolic.tables.scene import Scene
+from verification.app.cli import refusal
 from verification.app.scene import scene
 from verification.paper.figures.phase import arc_length, outline
 from verification.plots.sheet import Curve
@@ -67,7 +68,7 @@ class Choice:
         """
         table = ["--polar", self.formula] if self.table == OWN else [self.table]
         shape = [f"--{self.letter}", self.shape] if self.letter else []
-        part = ["--component", self._names()[self.component]] if self.component else []
+        part = ["--component", self.map().ir.parts[self.component].name] if self.component else []
         start = [f"--start={self.theta!r},{self.phi!r}", "--bounces", str(bounces)]
         return shlex.join(["pinball", "orbit", *table, *shape, "--lam", self.lam, *part, *start])
 
@@ -90,9 +91,6 @@ class Choice:
         body = [f'map = PinballMap({table}, lam="{self.lam}"{shape})']
         body.append(f"orbit = map.orbit({self.theta!r}, {self.phi!r}, {bounces}{part})")
         return "\n".join([*head, "", *body])
-
-    def _names(self) -> list[str]:
-        return [part.name for part in self.map().ir.parts]
 
 
 LONGEST = 64  # period of a cycle that is looked for
@@ -179,6 +177,7 @@ def cycle_near(map: PinballMap, particle: Particle) -> Cycle | None:
 
 
 INK, PARTICLE, CYCLE = "#30343a", "#c2410c", "#1d4ed8"
+PATIENCE = 20.0  # seconds for a formula
 PORTIONS = 25  # of phase space before it rests: what a browser draws without effort
 EVERY = 200  # milliseconds between two of them
 
@@ -191,6 +190,7 @@ class LiveTable:
         self.map: PinballMap = self.choice.map()
         self.portions: Iterator[Any] = iter(())
         self.left = 0
+        self.tried = ""  # the formula that another process has read
         self._widgets()
         self._figures()
         self.rebuild()
@@ -266,6 +266,23 @@ class LiveTable:
             self._other_table()
             return
         wanted = replace(self.choice, formula=self.formula.value, shape=self.shape.value, lam=f"{self.lam.value:.6g}")
+        if wanted.table == OWN and wanted.formula != self.tried:
+            self.said.object = "The formula is being read."
+            pn.state.execute(partial(self._try, wanted))
+        else:
+            self._take(wanted)
+
+    async def _try(self, wanted: Choice) -> None:
+        """Reads a new formula in another process, so that no other visitor waits for it."""
+        why = await refusal(shlex.split(wanted.command(1))[1:], PATIENCE)
+        if self.formula.value != wanted.formula or self.table.value != OWN:
+            return  # the visitor has typed on
+        self.said.object = why or ""
+        if why is None:
+            self.tried = wanted.formula
+            self.rebuild()
+
+    def _take(self, wanted: Choice) -> None:
         try:
             self.map = wanted.map()
             parts = len(self.map.ir.parts)
@@ -274,8 +291,7 @@ class LiveTable:
         except ValueError as error:
             self.said.object = str(error)
             return
-        x, y = outline(self.map)
-        self.wall.data = {"x": x, "y": y}
+        self.wall.data = dict(zip("xy", outline(self.map), strict=True))
         self.cloud.data = {"x": [], "y": []}
         self.portions, self.left = filling(self.map), PORTIONS
 
@@ -309,8 +325,7 @@ class LiveTable:
         """One more portion of phase space."""
         if self.left > 0:
             self.left -= 1
-            s, sine = next(self.portions)
-            self.cloud.stream({"x": s, "y": sine})
+            self.cloud.stream(dict(zip("xy", next(self.portions), strict=True)))
 
     def find_cycle(self) -> None:
         """The cycle near the particle, with its multipliers."""

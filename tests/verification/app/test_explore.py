@@ -1,5 +1,6 @@
 """The live table without a browser: what is picked, dragged and clicked, and what is said to it."""
 
+import asyncio
 import re
 import runpy
 import shlex
@@ -7,8 +8,8 @@ import shlex
 import numpy as np
 import pytest
 
-from verification.app.cli import main
-from verification.app.live import TABLES, Choice, LiveTable
+from verification.app.cli import main, refusal
+from verification.app.live import OWN, TABLES, Choice, LiveTable
 
 
 @pytest.fixture
@@ -74,6 +75,30 @@ def test_a_bad_shape_is_one_sentence_and_the_old_table_stays(live):
 
     assert "accepted" in live.said.object or "must lie in" in live.said.object
     assert live.choice == before
+
+
+def test_a_formula_that_takes_too_long_is_one_sentence_and_the_old_table_stays(live, monkeypatch):
+    monkeypatch.setattr("verification.app.live.PATIENCE", 0.05)
+    live.table.value, before = OWN, live.map
+    live.formula.value = "1 + cos(7*theta)/60"
+
+    assert live.said.object == "this takes more than 0.05 seconds to read, prove and compile"
+    assert live.map is before
+
+
+def test_nobody_waits_while_the_formula_of_another_is_read():
+    """The event loop turns on, many times, until the other process has read the formula or is ended."""
+
+    async def turns() -> int:
+        reading = asyncio.create_task(refusal(["orbit", "--polar", "1 + cos(9*theta)/90"], 60))
+        count = 0
+        while not reading.done():
+            await asyncio.sleep(0.01)
+            count += 1
+        assert "--start" in await reading
+        return count
+
+    assert asyncio.run(turns()) > 10
 
 
 def test_what_is_typed_is_never_executed(live):

@@ -10,9 +10,10 @@ import numpy as np
 
 from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel, law_kernel
+from symbolic.tables.definition import table_boundary
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
-from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic
+from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, between
 from verification.cycles.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
 from verification.maps.first_hit import convex
 
@@ -197,7 +198,7 @@ class Chords:
         for i in range(self.period):
             if parts[i] == parts[i + 1] and apart[i] < 1e-6:
                 return f"bounces {i} and {i + 1} met at theta = {x[i]:.6g}, where no chord is left"
-        return "" if self.table.shapes or convex(self.table) is True else self._obstructed(x, at)
+        return "" if _convex_throughout(self.table) else self._obstructed(x, at)
 
     def _obstructed(self, x: Array, at: Parameters) -> str:
         """The first chord that meets the boundary on its way, in a table that need not be convex."""
@@ -206,7 +207,9 @@ class Chords:
         out, _ = self.angles(x, at)
         if np.max(np.abs(out)) >= np.pi / 2:
             return f"the chord from bounce {int(np.argmax(np.abs(out)))} does not point into the table"
-        landed = _map_of(self.table, PinballMap).step(x, out, np.array(self.components))
+        shape: dict[str, Any] = {name: at[name] for name in self.shapes}
+        map = PinballMap(self.table, kernels=False, **shape) if shape else _map_of(self.table, PinballMap)
+        landed = map.step(x, out, np.array(self.components))
         after = np.roll(np.array(self.components), -1)
         expected = around(self.closure, x)[2:]
         for i in range(self.period):
@@ -237,6 +240,14 @@ class Chords:
                 for row, value in zip(found, angles(*pair, order)(here[chosen], there[chosen], *shape), strict=True):
                     row[chosen] = value
         return list(found)
+
+
+@cache
+def _convex_throughout(table: Table) -> bool:
+    """Is the table proved convex, whatever the numbers of its free shape parameters?"""
+    if not table.shapes or "table" in table_boundary(table)[0]:
+        return bool(table.shapes) or convex(table) is True
+    return convex(table, tuple(between(float(p.range.start), float(p.range.end)) for p in table.shapes)) is True
 
 
 @cache

@@ -17,10 +17,21 @@ from .curves import (
 from .events import curve_of, proof_of
 from .files import check, checked, document, read
 from .locate import GMPY2, WORDS, Located, certify, closed_form, lambda_star
-from .questions import BranchEvent, FollowedOrbit, PeriodicOrbit, PeriodicOrbits, find_cycles, follow, law_over
+from .questions import (
+    KINDS,
+    BranchEvent,
+    FollowedOrbit,
+    PeriodicOrbit,
+    PeriodicOrbits,
+    bifurcations,
+    find_cycles,
+    follow,
+    law_over,
+)
 
 __all__ = [
     "GMPY2",
+    "KINDS",
     "WORDS",
     "AccumulationCurve",
     "BifurcationCurve",
@@ -33,6 +44,7 @@ __all__ = [
     "PeriodicOrbits",
     "accumulation",
     "accumulation_curve",
+    "bifurcations",
     "cascade",
     "certificate",
     "certified_exponents",

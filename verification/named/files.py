@@ -12,25 +12,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz
-from sympy import Expr
+from sympy import Expr, S
 
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
 from symbolic.tables.definition import (
+    BOUNDARY,
     KINDS,
     POINTS,
     UNIFORM,
     boundary_of,
     built,
     known_entries,
+    range_ends,
     table_boundary,
     text_entry,
 )
 from symbolic.tables.formula import number
 from symbolic.tables.law import Law
+from symbolic.tables.scene import Scene
+from symbolic.tables.table import Table
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
-from verification.arithmetic.balls import working
+from verification.arithmetic.balls import bits_of, real_ball, working
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.locate import closed_form
@@ -87,6 +91,9 @@ def _problem_said(problem: Problem) -> dict[str, Any]:
     boundary, held = table_boundary(problem.table)
     scene = {key: value for key, value in boundary.items() if key != "name"}
     scene |= {"shape": {letter: str(value) for letter, value in held.items()}} if held else {}
+    if "table" not in boundary and problem.table.shapes:  # the free parameter of a table of one's own, by its range
+        (own,) = problem.table.shapes
+        scene |= {"shape": {own.symbol.name: f"{own.range.start}..{own.range.end}"}}
     scene |= {} if problem.law.uniform else _law_said(problem, scene)
     scene |= {} if problem.lam is None else {"lam": str(problem.lam)}
     said = {"kind": problem.kind.name.lower() if problem.kind else "cycle", "scene": scene, "free": problem.free}
@@ -112,7 +119,8 @@ def _title(scene: Mapping[str, Any]) -> str:
     title = scene["table"] if kind == "table" else f"{kind} {formulas}"
     points = f" of {scene['K']} points" if "K" in scene else ""
     law = [("phi", scene["law"])] if "law" in scene else []
-    said = [*law, *scene.get("shape", {}).items(), *_lam(scene)]
+    numbers = [(name, text) for name, text in scene.get("shape", {}).items() if ".." not in text]
+    said = [*law, *numbers, *_lam(scene)]
     return title + points + "".join(f", {k} = {v}" for k, v in said)
 
 
@@ -186,7 +194,7 @@ def claim_of(given: Mapping[str, Any]) -> Claim | CornerClaim:
             if _special(claim) != {key: said[key] for key in ("kind", "scene", "free", "components", "mirror")}:
                 raise ValueError(f"certificate: scene, components or mirror is not that of a {said['kind']}")
             return claim
-        problem = _problem(said, lam)
+        problem = _problem(said, lam, centre[-1] + arb(0, radius))
         _sized(centre, problem.period + bool(problem.free), "unknowns")
         return Claim(problem, centre, radius, bits, digits)
     except (KeyError, TypeError, AttributeError) as error:
@@ -206,18 +214,35 @@ def _of_first(given: Mapping[str, Any]) -> dict[str, Any]:
     return {**given, "scene": {"table": given["table"]} | points | shape | lam}
 
 
-def _problem(said: Mapping[str, Any], lam: Any) -> Problem:
+def _over(scene: Mapping[str, Any], parameter: str, text: str, box: arb) -> Table:
+    """The table over the range of its free parameter, in which the `box` must lie."""
+    low, high = range_ends(parameter, text)
+    boundary = {key: value for key, value in scene.items() if key in BOUNDARY}
+    table = Scene.of({**boundary, "shape": {parameter: f"{low}:{low}..{high}"}}).family
+    with working(bits_of(30)):
+        if not (box >= real_ball(S(low)) and box <= real_ball(S(high))):
+            raise ValueError(f"certificate: {parameter} is not proved to lie in its range {text}")
+    return table
+
+
+def _problem(said: Mapping[str, Any], lam: Any, box: arb) -> Problem:
     components = tuple(int(i) for i in said["components"])
     if not 2 <= len(components) <= LARGEST_PERIOD:
         raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
     scene = said["scene"]
     known_entries("certificate: scene", scene, (*KINDS, "K", "undefined", "origin", "shape", "law", "lam"))
     law = Law(text_entry("law", scene.get("law", UNIFORM)))
-    numbers = {letter: number(text, letter) for letter, text in scene.get("shape", {}).items()}
+    texts = scene.get("shape", {})
+    ranges = {letter: text for letter, text in texts.items() if isinstance(text, str) and ".." in text}
+    if set(ranges) - {said["free"]}:
+        raise ValueError(f"certificate: {', '.join(ranges)} has a range; accepted: for the free parameter alone")
+    numbers = {letter: number(text, letter) for letter, text in texts.items() if letter not in ranges}
     law = law.at(**{letter: numbers[letter] for letter in law.parameters if letter in numbers})
     if "table" in scene:
         shape = {letter: value for letter, value in numbers.items() if letter not in dict(law.numbers)}
         table = tables.named(scene["table"], int(scene.get("K", POINTS))).at(**shape)
+    elif ranges:
+        table = _over(scene, *next(iter(ranges.items())), box)
     else:
         table = built(boundary_of(scene, ()))
     if not set(components) <= set(range(len(table.components))):

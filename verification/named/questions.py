@@ -10,6 +10,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
@@ -279,3 +280,54 @@ def certify(event: BranchEvent, *, digits: int = 30) -> "Located":
     value, radius = decimal(proof.value, digits + 1)
     name = f"{event.kind} of period {event.orbit.period} in {event.parameter}"
     return Located(name, value, radius, digits, proof.checks, time.perf_counter() - started, proof.value, proof)
+
+
+KINDS = {"saddle-node": "fold", "doubling": "period doubling", "symmetry-breaking": "pitchfork"}  # of any scene
+SEARCHES = 3  # values of the parameter at which cycles are looked for
+ALIKE = 6  # decimals to which two events have one value, and two cycles the same multipliers
+
+
+def bifurcations(
+    scene: Scene,
+    kind: str,
+    *,
+    period: int,
+    digits: int = 30,
+    searches: int = SEARCHES,
+    tick: Tick | None = None,
+    **interval: Any,
+) -> "tuple[Located, ...]":
+    """Where cycles of one period fold, double their period or lose a symmetry, as one parameter varies; with proofs.
+
+    `kind` is `saddle-node`, `doubling` or `symmetry-breaking`; the interval is given as for `follow`. Cycles are looked
+    for at some values of the parameter and followed through all of the interval. So each value that comes back is
+    proved to be one, and that there are no others is not: a branch may lie between the values of the searches.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"locate: {kind} is not asked of a scene; accepted: {', '.join(KINDS)}")
+    if len(interval) != 1:
+        raise ValueError(f"locate: {', '.join(interval) or 'no parameter'} given; one parameter varies")
+    ((parameter, ends),) = interval.items()
+    _ends(parameter, ends)
+    low, high = (exact(parameter, end) for end in ends)
+    say, met = tick or (lambda said: None), dict[float, BranchEvent]()
+    for i in range(searches):
+        value: dict[str, Any] = {parameter: low + (high - low) * Fraction(2 * i + 1, 2 * searches)}
+        orbits = find_cycles(scene.at(**value), period=period)
+        say(f"{parameter} = {float(value[parameter]):.4g}")
+        for orbit in {_mark(orbit): orbit for orbit in orbits}.values():
+            try:
+                followed = follow(orbit, **interval)
+            except ValueError:
+                continue  # at a bifurcation to within rounding: its neighbours lead there too
+            met |= {round(event.value, ALIKE): event for event in followed.events if event.kind == KINDS[kind]}
+    found = []
+    for _, event in sorted(met.items()):
+        found.append(certify(event, digits=digits))
+        say(f"{parameter} = {event.value:.6g}")
+    return tuple(found)
+
+
+def _mark(orbit: PeriodicOrbit) -> tuple[complex, ...]:
+    """The multipliers, which images under a symmetry share."""
+    return tuple(complex(round(mu.real, ALIKE), round(abs(mu.imag), ALIKE)) for mu in orbit.multipliers)

@@ -1,6 +1,7 @@
 """The named values: against the paper, against closed forms, and against each other."""
 
 import json
+import re
 from itertools import pairwise
 
 import pytest
@@ -174,3 +175,33 @@ def test_digits_out_of_range_are_refused(digits):
     done = CliRunner().invoke(locate_command, ["lambda-c", "--digits", digits])
 
     assert done.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ("merging-crisis circle --lam 0.1:0.3 --period 2", "accepted with circle: saddle-node, doubling, symmetry-br"),
+        ("doubling circle --lam 0.1:0.3", "a table's cycles have a --period and no --n"),
+        ("doubling circle --period 2", "--lam is missing; accepted: LOW:HIGH"),
+        (
+            "doubling circle --lam 0.1 --period 2",
+            "--lam 0.1: one parameter varies; accepted: LOW:HIGH, or a number and",
+        ),
+        ("doubling egg --alpha 0.08 --shape b=0:1 --lam 0.1 --period 2", "b = 0 is no shape parameter of this table"),
+        ("doubling --alpha 0.08 --shape b=0:1", "--shape b=0:1 says something of a table, and none is given"),
+        ("saddle-node --alpha 0.08 --K 4", "--K 4 says something of a table; accepted: egg --K 4"),
+    ],
+)
+def test_what_cannot_be_asked_of_a_table_is_told_in_a_sentence(arguments, says):
+    with pytest.raises(ValueError, match=re.escape(says)):
+        CliRunner().invoke(locate_command, arguments.split(), standalone_mode=False, catch_exceptions=False)
+
+
+def test_a_bifurcation_of_a_table_s_cycles_is_located_and_its_certificate_checks(tmp_path, capsys):
+    certificate = tmp_path / "c.json"
+    given = ["doubling", "egg", "--alpha", "0.07", "--lam", "0.05:0.3", "--period", "2", "--searches", "1"]
+    done = CliRunner().invoke(locate_command, [*given, "--certificate", str(certificate)], standalone_mode=False)
+
+    assert done.return_value == 0
+    assert done.output.startswith("period doubling of period 2 in lam = 0.125678082249803028854")
+    assert CliRunner().invoke(check, [str(certificate)], standalone_mode=False).return_value == 0

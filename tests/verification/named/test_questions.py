@@ -1,14 +1,19 @@
 """Questions on a scene: what they answer agrees with closed forms, and a wrong one is told in a sentence."""
 
+import json
 from functools import cache
+from math import pi
 
+import numpy as np
 import pytest
 from sympy import Rational
 
 from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
 from symbolic.tables.table import alpha
-from verification.named.questions import certify, find_cycles, follow
+from verification.cycles.chords import Chords
+from verification.named.files import checked, document
+from verification.named.questions import bifurcations, certify, find_cycles, follow
 
 EGG = Scene("egg", alpha="2/25", lam="1/2")
 
@@ -43,11 +48,27 @@ def test_a_branch_is_followed_to_its_fold_and_the_fold_is_certified():
 def test_a_parameter_of_ones_own_varies_as_the_paper_s_do():
     """The egg written as a radius with a letter of its own: the same fold of the triangles, and the same proof."""
     own = Scene.of({"polar": "1 + b*cos(3*theta)", "shape": {"b": "2/25"}, "lam": "1/2"})
-    (fold,) = follow(find_cycles(own, period=3).stable[0], b=("0.03", "0.09")).folds
+    (fold,) = bifurcations(own, "saddle-node", period=3, digits=15, searches=1, b=("0.03", "0.09"))
     (eggs,) = follow(triangles()[0], alpha=("0.03", "0.09")).folds
 
-    assert fold.value == pytest.approx(eggs.value, abs=1e-12)
-    assert certify(fold, digits=15).certified
+    assert float(fold.value) == pytest.approx(eggs.value, abs=1e-12)
+    assert fold.certified
+    said = document(fold.proof)
+    assert said["scene"] == {"polar": "b*cos(3*theta) + 1", "shape": {"b": "3/100..9/100"}, "lam": "1/2"}
+    assert checked(json.loads(json.dumps(said))).certified
+    for wrong, says in (("1/100..1/20", "b is not proved to lie in its range"), ("1/100..3/2", "is not positive at")):
+        with pytest.raises(ValueError, match=says):
+            checked({**said, "scene": {**said["scene"], "shape": {"b": wrong}}})
+
+
+def test_a_chord_through_the_wall_is_no_cycle_for_any_shape():
+    """In a table bent in at the right the double normal along the axis leaves it, with its shape fixed or free."""
+    bean = Scene.of({"polar": "1 + b*cos(2*theta)", "shape": {"b": "0.1:0..9/10"}, "lam": "1/2"})
+    for table, at in ((bean.table, {}), (bean.over("b", "0", "0.9"), {"b": 0.6})):
+        ring = Chords(table, (0, 0))
+        near, far = (ring.obstacle(np.array(x), {"lam": 0.5, **at}) for x in ([0.0, pi], [0.6, pi - 0.6]))
+        assert near == ""
+        assert bool(at) == ("meets the boundary on its way" in far)
 
 
 def test_a_table_over_an_interval_is_proved_or_refused_with_a_value():
@@ -79,6 +100,8 @@ def test_a_shape_is_a_letter_too():
         (lambda: follow(triangles()[0], beta=(0, 1)), "accepted: lam, alpha"),
         (lambda: follow(triangles()[0], lam=("0.5", "0.4")), "first must be the smaller"),
         (lambda: follow(triangles()[0], lam="0.4"), "is no interval"),
+        (lambda: bifurcations(EGG, "lambda-c", period=2, lam=("0", "1")), "accepted: saddle-node, doubling, symmetry"),
+        (lambda: bifurcations(EGG, "doubling", period=2), "no parameter given; one parameter varies"),
     ],
 )
 def test_a_wrong_question_is_told_in_a_sentence(ask, says):

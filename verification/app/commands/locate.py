@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
+from verification.app.scene import optional_options
 
 if TYPE_CHECKING:
     from verification.named.locate import Located
@@ -22,20 +25,23 @@ LETTERS = ("lam", "alpha", "n", "period")
 
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
 @click.argument("name")
+@optional_options
 @click.option("--digits", type=click.IntRange(1, 20_000), default=30, show_default=True, help="Decimal digits.")
-@click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat.")
-@click.option("--alpha", metavar="NUMBER", help="The shape of the egg, for the names that need one.")
+@click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat; LOW:HIGH for a table.")
 @click.option("--n", metavar="INTEGER", help="Which doubling, of period 2^(n-1) to 2^n, or which interior crisis.")
-@click.option("--period", metavar="INTEGER", help="Of the attractors that a window, a family or bands began with.")
+@click.option("--period", metavar="INTEGER", help="Of a table's cycles; of the attractors that a window began with.")
+@click.option("--searches", type=click.IntRange(1, 100), default=3, show_default=True, help="For a table's cycles.")
 @click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
 @json_option
 def command(
     name: str,
+    scene: Scene | None,
+    axis: str | None,
+    bare: dict[str, Any],
     digits: int,
-    lam: str | None,
-    alpha: str | None,
     n: str | None,
     period: str | None,
+    searches: int,
     certificate: str | None,
     output: Output,
 ) -> int:
@@ -45,24 +51,106 @@ def command(
     merging-crisis, boundary-crisis, symmetry-restoring, band-merging, interior-crisis and, with --period, window-end,
     window-merging, family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes
     there, and nowhere before, is not.
+
+    With a table, saddle-node, doubling and symmetry-breaking are those of its cycles of one --period, as --lam
+    LOW:HIGH varies, or --shape NAME=LOW:HIGH and --lam is one number. Cycles are looked for at some values: each
+    bifurcation that is found is proved, and that there is no other is not.
     """
     from symbolic.tables.formula import number
-    from verification.named.locate import GMPY2, WORDS, locate
+    from verification.named.locate import locate
 
-    given = {letter: text for letter, text in zip(LETTERS, (lam, alpha, n, period), strict=True) if text is not None}
+    if certificate is not None:
+        writable(certificate)
+    if scene is not None:
+        if n is not None or period is None:
+            raise ValueError("a table's cycles have a --period and no --n; accepted: --period with an integer from 2")
+        return of_scene(scene, axis, name, bare["lam"], period, digits, searches, certificate, output)
+    if bare["K"] is not None:
+        raise ValueError(f"--K {bare['K']} says something of a table; accepted: egg --K {bare['K']}, with --period")
+    options = bare["lam"], bare["alpha"], n, period
+    given = {letter: text for letter, text in zip(LETTERS, options, strict=True) if text is not None}
     shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}
     if "n" in shape and not shape["n"].is_Integer:
         raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
     if "period" in shape and not shape["period"].is_Integer:
         raise ValueError(f"--period {period} is no integer; accepted: the period of a window, as in docs/crises.md")
-    if certificate is not None:
-        writable(certificate)
     with output.progress(f"Locating {name}", 1) as step:
         found = locate(name, digits, **shape)
         step(name)
     if certificate is not None:
         _write(certificate, found)
     output.write(found.to_dict())
+    show(output, found)
+    return DONE if found.certified else FAILED
+
+
+def of_scene(
+    scene: Scene,
+    axis: str | None,
+    name: str,
+    lam: str | None,
+    period: str,
+    digits: int,
+    searches: int,
+    certificate: str | None,
+    output: Output,
+) -> int:
+    """The bifurcations of the cycles of a table."""
+    from verification.named.questions import KINDS, bifurcations
+
+    if name not in KINDS:
+        known = ", ".join(KINDS)
+        raise ValueError(f"locate {name} knows its own table of the paper; accepted with {scene.name}: {known}")
+    if not period.isascii() or not period.isdigit() or int(period) < 2:
+        raise ValueError(f"--period {period} is no period; accepted: integers from 2")
+    scene, parameter, ends = interval_of(scene, axis, lam)
+    with output.progress(f"Locating {name}", searches) as step:
+        found = bifurcations(
+            scene, name, period=int(period), digits=digits, searches=searches, tick=step, **{parameter: ends}
+        )
+    if certificate is not None:
+        if len(found) != 1:
+            raise ValueError(
+                f"--certificate holds one value, and {len(found)} were found; accepted: a smaller interval"
+            )
+        _write(certificate, found[0])
+    document = {"name": name, "period": int(period), "parameter": parameter, "from": str(ends[0]), "to": str(ends[1])}
+    output.write({**document, "found": [one.to_dict() for one in found]})
+    for one in found:
+        show(output, one)
+    if not found:
+        output.console.print(f"no {name} of period {period} found for {parameter} from {ends[0]} to {ends[1]}")
+    return DONE if found and all(one.certified for one in found) else FAILED
+
+
+def interval_of(scene: Scene, axis: str | None, lam: str | None) -> tuple[Scene, str, tuple[str, str]]:
+    """The scene at its fixed contraction, what varies, and from where to where."""
+    if lam is None:
+        raise ValueError("--lam is missing; accepted: LOW:HIGH, or one number and --shape NAME=LOW:HIGH")
+    ends = (axis or "").rpartition("=")[2] or lam
+    low, colon, high = ends.partition(":")
+    if axis is None and not colon and len(scene.ranges) == 1:
+        ((name, (first, last)),) = scene.ranges.items()
+        return scene.at(lam=exact("--lam", lam)), name, (str(first), str(last))
+    if not colon or (axis is not None and ":" in lam):
+        raise ValueError(
+            f"--lam {lam}: one parameter varies; accepted: LOW:HIGH, or a number and --shape NAME=LOW:HIGH"
+        )
+    if axis is None:
+        return scene, "lam", (low, high)
+    name, known = axis.partition("=")[0] if "=" in axis else "", [*scene.shape, *dict(scene.law.numbers)]
+    name = name or (known[0] if len(known) == 1 else name)
+    if name not in known:
+        raise ValueError(
+            f"--shape {axis}: {name or 'this'} is no parameter here; accepted: {', '.join(known) or 'none'}"
+        )
+    return scene.at(lam=exact("--lam", lam)), name, (low, high)
+
+
+def show(output: Output, found: "Located") -> None:
+    """The value, the checklist and the notes, for people."""
+    from verification.named.locate import GMPY2, WORDS
+
     said = "certified" if found.certified else "not certified"
     output.console.print(f"{found.title} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
     for item, value in found.checks.items():
@@ -72,7 +160,6 @@ def command(
         notes["newton"] = ", ".join(f"1e{step.correction:.0f} ({step.digits} digits)" for step in found.steps)
     for item, text in notes.items():
         output.console.print(f"  {item.replace('_', ' '):28} {text}")
-    return DONE if found.certified else FAILED
 
 
 def writable(path: str) -> None:

@@ -19,7 +19,7 @@ from math import gcd
 from typing import Any
 
 from flint import arb
-from sympy import Expr, Interval, Matrix, S, Symbol, chebyshevt, simplify
+from sympy import Expr, Interval, Matrix, S, Symbol, chebyshevt, pi, simplify
 
 from symbolic.expressions.signs import nonnegative
 from symbolic.expressions.text import kernel, load
@@ -96,6 +96,18 @@ def _joined(table: Table) -> bool:
         if not simplify(Matrix([p.T, q.T]).det()).is_nonnegative or not simplify(p.dot(q)).is_positive:
             return len(table.components) == 1  # one closed part is smooth where it ends
     return True
+
+
+def closes_smoothly(table: Table) -> bool:
+    """Is the curve of a table of one component the same formula after a whole turn? False for more components.
+
+    >>> from symbolic.tables import cuspless, egg
+    >>> closes_smoothly(egg(3)), closes_smoothly(cuspless)
+    (True, False)
+    """
+    part = table.components[0]
+    turned = all(x.subs(theta, theta + 2 * pi) == x for x in part.point)
+    return len(table.components) == 1 and bool(part.end - part.start == 2 * pi) and turned
 
 
 def inside(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:

@@ -280,10 +280,13 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     inside = bool(ball.contains(made.value))
     checks |= {"tangency": True if made.proof.touches and inside else None}
     checks |= {item: made.checks[item] if inside else None for item in ("quadratic", "transversal")}
-    checks |= {"is_the_crisis": None}
     held = made.certified and inside
+    strange = held and all(made.strange.values())
+    checks |= {"strange_attractors": strange or None, "is_the_crisis": None}
     if held:
         notes["proved"] = f"the two manifolds touch, within {error} of the value; that the attractor ends there is not"
+    if strange:
+        notes["follows"] = "strange attractors for a set of contractions of positive measure, as near as one likes"
     return Found(ball, checks, made if held else None, notes)
 
 

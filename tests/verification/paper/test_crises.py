@@ -149,7 +149,7 @@ def test_a_located_crisis_names_its_mechanism_and_what_is_not_proved(kind, saddl
 
     assert found.checks.pop("is_the_crisis") is None
     assert found.checks == dict.fromkeys(
-        ("shadowing_fold", "two_methods_agree", "tangency", "quadratic", "transversal"), True
+        ("shadowing_fold", "two_methods_agree", "tangency", "quadratic", "transversal", "strange_attractors"), True
     )
     assert saddle in found.notes["mechanism"]
     assert found.ball.overlaps(arb(letter))  # the tangency to twenty digits

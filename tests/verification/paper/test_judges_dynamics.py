@@ -102,9 +102,11 @@ def test_a_natural_measure_that_is_not_proved_leaves_its_claims_open(monkeypatch
     assert verdict(on_defocusing.chaotic_attractor, "cardioid.chaotic_attractor") is Verdict.OPEN
 
 
-def test_ellipses_whose_limit_set_is_not_proved_do_not_support_that_the_egg_is_alone(monkeypatch):
-    assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.SUPPORTED
-    monkeypatch.setattr(on_attractors, "two_cycles", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+@pytest.mark.parametrize("step", ["two_cycles", "settles", "strange"])
+def test_the_egg_is_the_only_smooth_table_with_chaos_by_proofs_on_both_sides(step, monkeypatch):
+    assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.CONFIRMED
+    missing = Finding(Outcome.UNKNOWN, "a step is missing")
+    monkeypatch.setattr(on_attractors, step, lambda *_: (missing, arb(0)) if step == "strange" else missing)
 
     assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.OPEN
 

@@ -11,11 +11,13 @@ from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
 from numeric.dynamics.recognition import polished
 from symbolic.cycles.normal_forms import egg_diameter
+from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables import egg, ellipse
-from symbolic.tables.table import alpha
+from symbolic.tables.table import alpha, lam
 from verification.named.branches import cascade
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import elastic as on_elastic
+from verification.paper.egg import stability as on_stability
 from verification.paper.egg.elastic import elastic_mixed, isosceles, no_full_chaos
 from verification.paper.egg.stability import CASCADES, chaotic_interval, isolated_regions, no_chaos_below, periods_at
 from verification.paper.report.report import catalogue
@@ -91,13 +93,17 @@ def test_the_circle_at_the_end_of_the_printed_range_does_not_refute_mixed_phase_
     assert "(0, 1/10]" in found.derived
 
 
-def test_chaos_below_a_printed_limit_leaves_it_open_and_its_absence_supports_it():
+def test_strange_attractors_below_a_printed_limit_refute_it_and_their_absence_supports_it(monkeypatch):
     claim = CLAIMS["egg.no_chaos_below"]
 
     found = no_chaos_below(claim)
-    assert found.verdict is Verdict.OPEN
-    assert "alpha = 0.056, lam = 0.745" in found.printed.reason
+    assert found.verdict is Verdict.REFUTED
+    assert found.witness(claim)[alpha] == Rational(1, 20)
+    assert 0.9165 < found.witness(claim)[lam] < 0.9166
     assert no_chaos_below(replace(claim, printed="0.03")).verdict is Verdict.SUPPORTED
+
+    monkeypatch.setattr(on_stability, "strange", lambda shape: (Finding(Outcome.UNKNOWN, "not proved"), arb(0.9)))
+    assert no_chaos_below(claim).verdict is Verdict.OPEN
 
 
 def test_the_chaotic_interval_is_judged_by_both_ends():
@@ -133,5 +139,5 @@ def test_a_cascade_needs_a_cycle_to_start_from():
 
 def test_the_ratios_of_a_cascade_are_near_feigenbaum_s():
     # 4.6692: a second method, since nothing in the climb knows it but the first guess of the next rung
-    for shape, lam, period, step, _ in CASCADES:
-        assert cascade(Rational(shape), Rational(lam), period, step).ratios == pytest.approx([4.6692], rel=0.03)
+    for shape, start, period, step, _ in CASCADES:
+        assert cascade(Rational(shape), Rational(start), period, step).ratios == pytest.approx([4.6692], rel=0.03)

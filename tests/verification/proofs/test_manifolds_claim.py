@@ -23,7 +23,7 @@ def test_a_certificate_of_a_tangency_is_checked_without_the_search(tmp_path, cap
     assert found["certified"] is True
     assert found["name"] == "homoclinic tangency in the egg, alpha = 2/25"
     assert found["value"].startswith("0.66214427335822441948")
-    assert set(found["checks"].values()) == {True}
+    assert set(found["checks"].values()) == set(found["strange_attractors"].values()) == {True}
 
 
 def test_what_a_file_says_of_itself_is_not_believed():

@@ -10,12 +10,21 @@ import pytest
 from flint import arb, arb_mat
 from sympy import Rational
 
-from symbolic.tables import cardioid
+from symbolic.tables import cardioid, cuspless
 from verification.arithmetic.balls import FLOAT64, multiprecision, working
 from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
 from verification.proofs.manifolds.plane_map import Henon, Pinball
-from verification.proofs.manifolds.proof import ITEMS, admissible, settled, sharpened, tangency_proved
+from verification.proofs.manifolds.proof import (
+    ITEMS,
+    STRANGE,
+    admissible,
+    settled,
+    sharpened,
+    smooth,
+    strange_attractors,
+    tangency_proved,
+)
 from verification.proofs.manifolds.saddle import Orbit, local, saddle
 from verification.proofs.manifolds.tangency import Contact, Gap, Precision, tangency
 from verification.proofs.manifolds.touching import Point, Touching, flight
@@ -42,10 +51,11 @@ def proof(kind, shift):
 
 
 @pytest.mark.parametrize("kind", BY_CYCLES)
-def test_each_tangency_is_proved_where_the_cycles_say(kind):
+def test_each_tangency_is_proved_where_the_cycles_say_and_strange_attractors_follow(kind):
     found = proof(kind, 0)
 
     assert found.holds
+    assert strange_attractors(CONTACTS[kind], EGG, found) == dict.fromkeys(STRANGE, True)
     assert tuple(found.checks) == ITEMS
     with working(100):
         assert abs(found.parameter - arb(BY_CYCLES[kind])) < 1e-23
@@ -179,15 +189,51 @@ HENON = {
 }
 
 
-@pytest.mark.parametrize("name", HENON)
-def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(name):
-    where, b, (low, high) = HENON[name]
+@cache
+def published(name):
+    """The contact and its proof."""
+    where, b, _ = HENON[name]
     map = Henon(b)
     value = sharpened(where, map, str(tangency(where, map, 10).parameter), 20)
-    found = tangency_proved(where, map, value, 20)
+    return where, map, tangency_proved(where, map, value, 20)
+
+
+@pytest.mark.parametrize("name", HENON)
+def test_the_tangencies_of_the_henon_map_are_proved_where_they_were_published(name):
+    _, _, found = published(name)
+    low, high = HENON[name][2]
 
     assert found.holds
     assert low <= found.parameter <= high
+
+
+def test_the_henon_map_has_strange_attractors_next_to_its_homoclinic_tangencies_and_not_by_a_heteroclinic_one():
+    """[AraiMischaikow2006] call the first two generic; at the third two saddles take part, and the theorem has one."""
+    strange = {name: strange_attractors(*published(name)) for name in HENON}
+
+    assert set(strange["inner, homoclinic"].values()) == set(strange["outer, homoclinic"].values()) == {True}
+    assert [item for item in STRANGE if not strange["crisis"][item]] == ["homoclinic"]
+
+
+@pytest.mark.parametrize(
+    ("multipliers", "missing"),
+    [
+        (("0.5", "2.5"), {"dissipative": False}),  # expands areas
+        (("0.3 +/- 0.1", "3.3"), {"dissipative": None, "nonresonant": None}),  # keeps them, for all that is known
+        (("-0.0625", "4"), {"nonresonant": None}),  # stable*unstable**2 has size 1
+        ((), {"dissipative": None, "nonresonant": None}),  # no saddle was proved
+    ],
+)
+def test_no_strange_attractors_follow_from_a_saddle_that_may_break_a_hypothesis(multipliers, missing):
+    changed = replace(proof("boundary", 0), multipliers=tuple(map(arb, multipliers)))
+
+    assert strange_attractors(CONTACTS["boundary"], EGG, changed) == dict.fromkeys(STRANGE, True) | missing
+
+
+def test_no_strange_attractors_follow_beside_a_tangency_or_where_the_boundary_has_joins():
+    assert strange_attractors(CONTACTS["boundary"], EGG, proof("boundary", 3))["tangency"] is None
+    assert strange_attractors(CONTACTS["boundary"], Pinball(cuspless), proof("boundary", 0))["analytic"] is None
+    assert smooth(Pinball(cardioid)) is None
 
 
 @pytest.mark.parametrize(

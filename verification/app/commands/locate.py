@@ -199,6 +199,11 @@ def check_command(file: str, output: Output) -> int:
     seconds = time.perf_counter() - started
     name = str(given["name"])  # held to be what the equations say
     value, radius = decimal(proof.value, proof.claim.digits + 1)
+    strange = {}
+    if given["kind"] == "tangency":
+        from verification.proofs.manifolds.proof import TangencyProof  # NumPy, which no other certificate needs
+
+        strange = {"strange_attractors": proof.strange} if isinstance(proof, TangencyProof) else {}
     output.write(
         {
             "name": name,
@@ -209,11 +214,15 @@ def check_command(file: str, output: Output) -> int:
             "checks": proof.checks,
             "seconds": seconds,
         }
+        | strange
     )
     said = "certified" if proof.certified else "not certified"
     output.console.print(f"{name} = {value} +- {radius}  ({said}, {seconds:.2f} s)")
     for item, outcome in proof.checks.items():
         output.console.print(f"  {item.replace('_', ' '):28} {WORDS[outcome]}")
+    if strange:
+        held = all(strange["strange_attractors"].values()) or None
+        output.console.print(f"  {'strange attractors follow':28} {WORDS[held]}")
     return DONE if proof.certified else FAILED
 
 

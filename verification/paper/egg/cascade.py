@@ -251,7 +251,7 @@ def isolated_resolution(claim: Claim) -> Judgement:
         found = cascade(Rational(shape), Rational(lam), period, step)
         good = good and found.proved
         beyond = f"{found.limit + 1e-4:.6f}"
-        _, _, share, nu, error = chaos_at(shape, beyond)
+        share, nu, error = chaos_at(shape, beyond)
         good = good and share > 0
         said.append(
             f"at alpha = {shape} the doublings of period {period} are certified and accumulate near {found.limit:.6f}; "

@@ -10,6 +10,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from flint import arb
 from sympy import Rational, Symbol, limit, oo, pi
 
 from numeric import PinballMap
@@ -26,6 +27,7 @@ from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges
 from verification.paper.judges.ellipse import settles, two_cycles
 from verification.paper.judges.exponents import sampled
+from verification.proofs.manifolds.known import boundary
 
 SEED, STARTS, FEW = 1, 200, 40
 SHAPE = "0.08"
@@ -68,6 +70,19 @@ def proved_at(contraction: str, period: int, name: str = "egg", alpha: str = SHA
     good = bool(proofs) and all(proof.proved for proof in proofs)
     said = f"{len(some)} attracting cycles of period {period} are proved at lam = {contraction}"
     return Finding(Outcome.PROVED if good else Outcome.UNKNOWN, said)
+
+
+@cache
+def strange(alpha: str) -> tuple[Finding, arb]:
+    """That the egg of a shape has strange attractors near its boundary tangency, and the contraction there."""
+    found = boundary(Rational(alpha))
+    held = found.certified and all(found.strange.values())
+    said = (
+        f"in every neighbourhood of lam = {found.value.str(9, radius=False)}, at alpha = {alpha}, strange attractors "
+        "exist for a set of contractions of positive measure: manifolds of the dissipative triangle touch there, "
+        "quadratically, and the theorem of Mora and Viana applies"
+    )
+    return answer(held or None, said), found.value
 
 
 @judges("map.two_attractor_types")
@@ -284,23 +299,22 @@ def vertices(attractor: Attractor) -> set[int]:
 
 @judges("egg.only_smooth_chaos")
 def only_smooth(claim: Claim) -> Judgement:
-    """In the circle and the ellipses only cycles of period 2 attract: proved. The egg's chaos is sampled."""
+    """In the circle and the ellipses only cycles of period 2 attract, and the egg has strange attractors: proved."""
     others = by(
         "for 0 < lam < 1 every orbit of an ellipse converges to one of two cycles, and every orbit of the circle to a "
         "diameter, since |phi| falls by the factor lam",
         two_cycles(),
         settles(),
     )
-    least = min((a.nu_plus for a in chaotic(egg("0.45"))), default=-1.0)
-    said = (
-        "proved: in the circle and in every ellipse only cycles of period 2 attract, for 0 < lam < 1; the cardioid has "
-        "a cusp and the cuspless one jumps of curvature. The egg's chaotic attractor is sampled: nu_+ >= "
-        f"{least:.3f} at alpha = {SHAPE}, lam = 0.45"
-    )
-    return sampled(
-        "no chaotic attractor in the circle nor in any ellipse, for 0 < lam < 1: proved; one in the egg: sampled",
-        said,
-        bool(others) and least > 0.01,
+    return Judgement(
+        by(
+            "the circle and the ellipses have no chaotic attractor; the cardioid has a cusp and the cuspless one jumps "
+            "of curvature; the egg has strange attractors",
+            others,
+            strange(SHAPE)[0],
+        ),
+        "no chaotic attractor in the circle nor in any ellipse, for 0 < lam < 1; strange attractors in the egg at "
+        f"alpha = {SHAPE}, for a set of lam of positive measure",
     )
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.maps.first_hit import convex
+from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.global_dynamics.boxes import (
     ArrayOps,
     BallArray,
@@ -91,7 +91,7 @@ class PinballImages:
         shape = [Fraction(x) for x in self.map.exact_shape]
         self.shape = [exactly(x) for x in shape]
         self.closed = len(self.map.ir.parts) == 1
-        if self.closed and not _smooth(self.map.table):
+        if self.closed and not closes_smoothly(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
         self.top = float((self.lam * self.ops.pi / 2).upper())
@@ -346,13 +346,3 @@ def spread(value: Any, like: Array) -> BallArray:
     value = value if isinstance(value, BallArray) else BallArray(value)
     m, r = np.broadcast_arrays(value.m, value.r, like)[:2]
     return BallArray(m, r)
-
-
-def _smooth(table: Any) -> bool:
-    """Is the curve of a table of one component the same formula after a whole turn? Then it closes smoothly."""
-    from sympy import pi
-
-    from symbolic.tables.table import theta
-
-    part = table.components[0]
-    return bool(part.end - part.start == 2 * pi) and all(x.subs(theta, theta + 2 * pi) == x for x in part.point)

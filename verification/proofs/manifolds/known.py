@@ -182,6 +182,12 @@ CONTACTS = {
 } | WINDOWS
 CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # as those of periods 8 and 16 are called
 
+FLATTER = Orbit(TRIANGLE.name, (-0.053420925,), TRIANGLE.closure)
+BOUNDARY = {  # the boundary tangency at two shapes, and its contraction there
+    SHAPE: (CONTACTS["boundary"], "0.66214427335822441948"),
+    Rational(1, 20): (Contact(FLATTER, FLATTER, 5, 1, 0.04529252, -0.06772806, 0.91652073), "0.91652073292391123465"),
+}
+
 
 def table(alpha: Expr) -> Pinball:
     """The map of the three-pointed egg."""
@@ -313,6 +319,15 @@ def proof(found: Crisis, alpha: Expr, digits: int) -> TangencyProof:
     except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
         value = str(touch.parameter)
     return worked_through(TangencyClaim(touch.contact, alpha, value, digits))
+
+
+def boundary(alpha: Expr) -> TangencyProof:
+    """The proof of the boundary tangency at one of the shapes of `BOUNDARY`, within 1e-12 of its contraction.
+
+    >>> all(boundary(Rational(1, 20)).strange.values())
+    True
+    """
+    return worked_through(TangencyClaim(BOUNDARY[alpha][0], alpha, BOUNDARY[alpha][1], 12))
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

@@ -9,6 +9,11 @@ unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and th
 
 The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the parameter varies.
 
+`strange_attractors` checks what Mora and Viana ask for beside that. Then in every neighbourhood of the parameter there
+is a set of positive measure for whose parameters the map has a strange attractor: it attracts an open set, and holds a
+dense orbit along which vectors grow exponentially [MoraViana1993]. docs/global.md states the theorem, each hypothesis
+and why symmetries of the table and signs of multipliers do no harm.
+
 `TangencyClaim` is what a proof claims, as a document: enough to work the proof through anew, with nothing of it
 believed.
 """
@@ -27,7 +32,7 @@ from verification.arithmetic.balls import working
 from verification.arithmetic.iteration import Stop, iterated
 from verification.cycles.chain import dot
 from verification.cycles.recurrence import Closure
-from verification.maps.first_hit import convex
+from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Orbit
@@ -156,6 +161,48 @@ def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:
             parameter, before = found, moved
 
 
+RESONANCES = 100  # up to this order they are excluded; linearising coordinates of any class need finitely many
+STRANGE = ("tangency", "homoclinic", "analytic", "dissipative", "nonresonant")
+
+
+def strange_attractors(contact: Contact, map: PlaneMap, proof: Proof) -> Checks:
+    """The hypotheses of Mora and Viana, item by item; with all of them proved strange attractors are.
+
+    `nonresonant` excludes `abs(stable)**i * abs(unstable)**j = 1` for all `j` and `1 <= i <= RESONANCES`.
+
+    >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
+    >>> triangle, egg = CONTACTS["boundary"], table(SHAPE)
+    >>> set(strange_attractors(triangle, egg, tangency_proved(triangle, egg, "0.66214427335822441948", 10)).values())
+    {True}
+    """
+    found: dict[str, bool | None] = dict.fromkeys(STRANGE)
+    found["tangency"] = True if proof.holds else None
+    found["homoclinic"] = contact.kind == "homoclinic"  # the same start leads to the same cycle
+    found["analytic"] = smooth(map)
+    if proof.multipliers:
+        with working(Precision(LEAST_DIGITS).bits):
+            stable, unstable = (abs(x) for x in proof.multipliers)
+            found["dissipative"] = True if stable * unstable < 1 else False if stable * unstable > 1 else None
+            found["nonresonant"] = nonresonant(stable, unstable)
+    return found
+
+
+def smooth(map: PlaneMap) -> bool | None:
+    """True when the map is analytic with an analytic inverse: in a convex table whose one curve closes smoothly."""
+    return True if admissible(map) and (not isinstance(map, Pinball) or closes_smoothly(map.table)) else None
+
+
+def nonresonant(stable: arb, unstable: arb) -> bool | None:
+    """Is no product of powers of two sizes of multipliers 1, up to the order of `RESONANCES`? None where not proved.
+
+    >>> nonresonant(arb("0.3"), arb(2)), nonresonant(arb("0.25"), arb(2))
+    (True, None)
+    """
+    ratio = -stable.log() / unstable.log()
+    apart = all(not (i * ratio).contains_integer() for i in range(1, RESONANCES + 1))
+    return True if ratio.is_finite() and apart else None
+
+
 LARGEST_DIGITS, LARGEST_PERIOD, LARGEST_FLIGHT = 600, 64, 1000
 FARTHEST = 1000.0  # along an eigenvector, in radians
 DECIMAL = re.compile(r"0\.\d{1,1000}")
@@ -217,6 +264,11 @@ class TangencyProof:
     def certified(self) -> bool:
         """Is the whole checklist proved?"""
         return self.proof.holds
+
+    @property
+    def strange(self) -> Checks:
+        """The hypotheses of the theorem by which strange attractors exist near the contraction."""
+        return strange_attractors(self.claim.contact, self.claim.map, self.proof)
 
 
 def worked_through(claim: TangencyClaim) -> TangencyProof:

@@ -3,13 +3,14 @@
 from . import strategies
 from .enclosed import EnclosedMap, Refusal, in_balls, in_multiprecision
 from .exact import Ball, ExactMap, errors, exact_ball
-from .first_hit import convex, first_hits, inside, minimal
+from .first_hit import closes_smoothly, convex, first_hits, inside, minimal
 
 __all__ = [
     "Ball",
     "EnclosedMap",
     "ExactMap",
     "Refusal",
+    "closes_smoothly",
     "convex",
     "errors",
     "exact_ball",

@@ -3,7 +3,7 @@
 from . import proof
 from .enclosed import complex_balls
 from .grow import branch
-from .known import CONTACTS, SHAPE, Crisis, contact, crisis, decimals, table
+from .known import CONTACTS, SHAPE, Crisis, boundary, contact, crisis, decimals, table
 from .proof import TangencyClaim, TangencyProof
 from .saddle import local
 from .tangency import Gap
@@ -15,6 +15,7 @@ __all__ = [
     "Gap",
     "TangencyClaim",
     "TangencyProof",
+    "boundary",
     "branch",
     "complex_balls",
     "contact",

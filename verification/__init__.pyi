@@ -14,6 +14,7 @@ from .named.questions import (
     follow,
 )
 from .paper.report.report import verify
+from .reports.report import report
 
 __all__ = [
     "BranchEvent",
@@ -29,6 +30,7 @@ __all__ = [
     "find_cycles",
     "follow",
     "locate",
+    "report",
     "strategies",
     "verify",
 ]

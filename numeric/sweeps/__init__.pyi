@@ -4,7 +4,7 @@ from . import fields
 from .fields import attractors_of, basins, bifurcation, egg, parameter_space
 from .run import UnfinishedError, on_threads
 from .store import Memory
-from .sweep import Array, Cost, Measured, Sweep, cores, cost, floor_of, map_of, measured, text_of
+from .sweep import Array, Cost, Measured, Sweep, cores, cost, floor_of, map_of, measured, text_of, versions
 
 __all__ = [
     "Array",
@@ -26,4 +26,5 @@ __all__ = [
     "on_threads",
     "parameter_space",
     "text_of",
+    "versions",
 ]

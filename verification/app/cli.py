@@ -139,6 +139,7 @@ json_option = click.option(
 
 COMMANDS = {
     "verify": "Is each claim of the paper true?",
+    "report": "What becomes of this table? One page for all questions.",
     "locate": "Where does it happen, to N certified digits?",
     "check": "Does a certificate still hold, without the search?",
     "orbit": "Where does this particle go?",

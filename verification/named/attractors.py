@@ -180,7 +180,11 @@ def row(map: PinballMap, starts: int, seed: int) -> Row:
     >>> [(m.kind.name, m.period, m.symmetry, m.copies) for m in found.members], found.attractors
     ([('CYCLE', 4, 'D1', 3)], 3)
     """
-    found = find(map, starts, seed, images=True)
+    return joined(find(map, starts, seed, images=True), starts, float(map.lam.flat[0]))
+
+
+def joined(found: Sequence[Attractor], starts: int, lam: float) -> Row:
+    """The row of attractors that were found with their images: each family a member."""
     members = []
     for family in sorted({a.family for a in found}):
         images = [a for a in found if a.family == family]
@@ -188,7 +192,7 @@ def row(map: PinballMap, starts: int, seed: int) -> Row:
         first = images[0]
         share = wilson(count, starts)
         members.append(Member(first.kind, first.period, first.symmetry, len(images), share, first.nu_plus, first))
-    return Row(float(map.lam.flat[0]), tuple(members), starts - sum(m.share.count for m in members))
+    return Row(lam, tuple(members), starts - sum(m.share.count for m in members))
 
 
 def branches(map: PinballMap, table: Table, rows: Sequence[Row], longest: int = FOLLOWED) -> Iterator[Branch]:

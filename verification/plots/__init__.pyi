@@ -2,6 +2,7 @@
 
 from .dynamics import morse_sets, plotted
 from .sheet import (
+    AXES,
     BLACK,
     CROSS,
     DARK,
@@ -24,6 +25,7 @@ from .sheet import (
 )
 
 __all__ = [
+    "AXES",
     "BLACK",
     "CROSS",
     "DARK",

@@ -2,6 +2,7 @@
 
 from . import report
 from .changed import codes
+from .mathml import formula, remark
 from .page import Picture, diagrams, markdown
 from .report import Result, tables, verify
 from .workers import Lost, in_processes
@@ -12,8 +13,10 @@ __all__ = [
     "Result",
     "codes",
     "diagrams",
+    "formula",
     "in_processes",
     "markdown",
+    "remark",
     "report",
     "tables",
     "verify",

@@ -1,0 +1,175 @@
+"""The report of a scene: it fits its time, goes on where it was stopped, and says the same in each form."""
+
+import json
+import re
+from math import pi
+
+import pytest
+
+from symbolic import Scene
+from symbolic.cycles.thresholds import flip_contraction, stability_number
+from symbolic.tables.gallery import GALLERY
+from verification.app.cli import main
+from verification.named.files import checked
+from verification.named.questions import PeriodicOrbit
+from verification.paper.report.mathml import remark
+from verification.reports import lives
+from verification.reports.asked import Asked, Parts
+from verification.reports.blocks import Certificate, Known, Listing, Number, Picture, Section
+from verification.reports.report import FIRST, composed, report
+from verification.reports.scene import double_normals, inflections
+
+ELLIPSE = Scene("ellipse", a="3/2")
+SMALL = {"at": ("1/2",), "period": 2, "digits": 10}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A report that is stopped at its census, asked for again, and out of time once a cycle has been followed."""
+    out = tmp_path_factory.mktemp("report") / "ellipse.html"
+    first, second = [], []
+
+    def stopped(step):
+        first.append(step)
+        if step.startswith("census"):
+            raise KeyboardInterrupt
+
+    def clock():
+        return 1e6 if any(step.startswith("life") for step in second) else 0.0
+
+    with pytest.raises(KeyboardInterrupt):
+        report(ELLIPSE, out, clock=clock, tick=stopped, **SMALL)
+    half = out.read_text()
+    done = report(ELLIPSE, out, clock=clock, tick=second.append, latex=out.with_suffix(".tex"), **SMALL)
+    return out, done, first, second, half
+
+
+def test_a_report_that_was_stopped_is_a_report_and_goes_on_without_doing_a_step_twice(made):
+    _, done, first, second, half = made
+
+    assert "Bifurcation diagram and exponents" in half
+    assert "Cycles from birth to death" not in half
+    assert set(first) & set(second) == {"census-0-0"}  # the one that was stopped
+    assert [section.name for section in done.sections][:4] == ["scene", "derivation", "slap", "portrait"]
+    assert {"cycles", "census"} <= {section.name for section in done.sections}
+
+
+def test_what_does_not_fit_the_time_is_left_and_the_page_says_so(made):
+    out, done, *_ = made
+
+    assert done.left
+    assert all(name in out.read_text() for name in done.left)
+
+
+def test_the_page_shows_what_the_json_says_and_needs_no_network(made):
+    out, done, *_ = made
+    page, document = out.read_text(), json.loads(json.dumps(done.document()))
+
+    assert not re.search(r"(src|href)=\"(?!data:|#)", page)
+    assert [Section.read(section) for section in document["sections"]] == list(done.sections)
+    for block in (block for section in done.sections for block in section.blocks):
+        if isinstance(block, Listing):
+            cells = [cell for row in block.rows for cell in row]
+            said = [remark(cell if isinstance(cell, str) else cell.words) for cell in cells if _plain(cell)]
+            assert str(remark(block.caption)) in page
+            assert all(str(words) in page for words in said)
+        if isinstance(block, Picture):
+            assert f'id="figure-{block.name}"' in page
+            assert f'alt="{block.alt}"' in page
+
+
+def _plain(cell):
+    return isinstance(cell, str) or cell.known is not Known.EXACT
+
+
+def test_every_number_is_exact_or_has_an_error_or_says_that_it_is_sampled_or_not_proved(made):
+    _, done, *_ = made
+    numbers = [
+        cell
+        for section in done.sections
+        for block in section.blocks
+        if isinstance(block, Listing)
+        for row in block.rows
+        for cell in row
+        if isinstance(cell, Number)
+    ]
+
+    assert {number.known for number in numbers} >= {Known.SAMPLED, Known.PROVED, Known.FLOAT}
+    for number in numbers:
+        assert number.known is not Known.PROVED or number.error or not re.match(r"[-\d]", number.value), number
+
+
+def test_the_article_holds_every_section_and_balances_its_braces(made):
+    out, done, *_ = made
+    text = out.with_suffix(".tex").read_text()
+
+    assert all(rf"\section{{{section.title}}}" in text for section in done.sections)
+    bare = re.sub(r"\\[{}]", "", text)
+    assert bare.count("{") == bare.count("}")
+
+
+def test_the_parts_of_another_question_are_not_taken_for_its_own(made):
+    out, *_ = made
+    parts = Parts(out.with_suffix(".parts"), Asked(ELLIPSE, at=("1/3",), period=2, digits=10).digest)
+
+    assert parts.read("scene") is None
+    assert composed(Asked(ELLIPSE, at=("1/3",)), parts, ()).sections == ()
+
+
+def test_a_threshold_in_closed_form_lies_in_the_ball_of_the_certified_event(tmp_path):
+    """Two ways to one number: symmetry and algebra, and a branch followed to its flip."""
+    flower = Asked(Scene.of({"polar": "1 + cos(5*theta)/40"}), at=("1/10",), period=2, digits=15)
+    axis = PeriodicOrbit(flower.scene.at(lam="1/10"), (0, 0), (0.0, pi), (0.0, 0.0), (0.5, 0.02))
+    parts = Parts(tmp_path / "parts", flower.digest)
+    parts.made(flower)
+    blocks, _, data = lives.life(flower, parts, "1/10", lives.said_of(axis), 0)
+    (chord,) = double_normals(flower.scene.table)
+    closed = flip_contraction(stability_number(chord))
+    (event,) = [row[1] for block in blocks if isinstance(block, Listing) for row in block.rows if "doubling" in row[0]]
+    (file,) = [block for block in blocks if isinstance(block, Certificate)]
+
+    assert event.known is Known.PROVED
+    assert abs(closed.evalf(30) - float(event.value)) < 1e-15
+    assert str(closed.evalf(30)).startswith(event.value[:15])
+    assert checked(json.loads(json.dumps(file.document))).certified
+    assert data["events"][0][1] == "period doubling 2"
+
+
+def test_a_limacon_with_a_dent_has_two_inflections_where_its_curvature_vanishes():
+    dented = Scene.of({"polar": "1 + 3*cos(theta)/5"}).table
+    round_ = Scene.of({"polar": "1 + 2*cos(theta)/5"}).table
+
+    left, right = (float(value) for value in inflections(dented))
+    assert left == pytest.approx(-right, abs=1e-6)
+    assert inflections(round_) == []
+
+
+def test_the_commands_of_a_report_name_the_scene():
+    stadium = Asked(Scene(GALLERY["stadium"]()))
+
+    assert Asked(ELLIPSE).command("slap") == "pinball slap ellipse --a 3/2"
+    assert stadium.command("slap") == "pinball slap --scene scene.toml"
+    assert Scene.parse(stadium.scene_file()) == stadium.scene
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--minutes", "0"], "minutes = 0.0 is no time"),
+        (["--lam", "1:0"], "lam from 1 to 0 is no interval"),
+        (["--lam", "1"], "accepted: LOW:HIGH"),
+        (["--at", "2"], "lam = 2 is no contraction"),
+        (["--out", "/no/such/place.html"], "/no/such/place.html cannot be written"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments, said, tmp_path, capsys):
+    out = [] if "--out" in arguments else ["--out", str(tmp_path / "page.html")]
+
+    assert main(["report", "ellipse", "--a", "3/2", *out, *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert len(error.splitlines()) == 1
+
+
+def test_a_first_guess_of_the_seconds_exists_for_each_kind_of_later_step():
+    assert {"census", "search", "life", "cascade"} <= set(FIRST)

@@ -1,0 +1,237 @@
+"""What particles do: the slap map, phase portraits, the bifurcation diagram with exponents, and the attractors."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import S
+
+from numeric import PinballMap
+from numeric.dynamics.attractors import Attractor, Kind, find
+from numeric.sweeps.fields import basins, bifurcation
+from numeric.sweeps.run import run
+from numeric.sweeps.sweep import text_of
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
+from verification.named.attractors import Member, certificate, joined
+from verification.named.questions import PeriodicOrbit
+from verification.reports import pictures
+from verification.reports.asked import Asked, Parts
+from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Words
+from verification.reports.lives import said_of
+
+Found = tuple[list[Block], list[Effort], dict[str, Any]]
+POINTS = 1200  # of the graph of the slap map
+COLUMNS, ROWS = 240, 160  # cells of a phase portrait
+LONGEST = 12  # period of an attracting cycle that is followed, whatever was asked for
+LISTED = 11  # contractions of a diagram whose exponents are listed
+
+
+def slap(asked: Asked, parts: Parts) -> Found:
+    """The map at contraction 0: where a particle lands that leaves along the normal."""
+    if not asked.scene.law.uniform:
+        return [Words("The slap map is the limit of the law phi = -lam*eta; this scene has another law.")], [], {}
+    map = PinballMap(asked.scene, lam=0)
+    ends = np.array(map.states.ends)
+    each = POINTS // len(ends)
+    component = np.repeat(np.arange(len(ends)), each)
+    share = (np.tile(np.arange(each), len(ends)) + 0.5) / each
+    theta = ends[component, 0] + (ends[component, 1] - ends[component, 0]) * share
+    found = map.slap(theta, 1, component)
+    half = map.arclength.perimeter / 2
+    s, image = (
+        wrapped(map.arclength.s(at, on), half) for at, on in ((theta, component), (found.theta[1], found.component[1]))
+    )
+    order = np.argsort(s)
+    good = found.code[1] == 0
+    slope = np.where(good, found.slope, np.nan)
+    pictures.slap(parts, "slap", s[order], np.where(good, image, np.nan)[order], slope[order], half)
+    steep = float(np.mean(np.abs(slope[good]) > 1)) if np.any(good) else float("nan")
+    caption = (
+        "The slap map, the limit of contraction 0, and its derivative, both over arc length. In the grey band the map "
+        f"contracts; it expands at {steep:.0%} of {good.sum()} points of an even grid in the parameter."
+    )
+    alt = "Graphs of the slap map and of its derivative"
+    return [Picture("slap", caption, alt, asked.command("slap", "--json slap.json"))], [], {}
+
+
+def wrapped(s: Any, half: float) -> Any:
+    """Arc length modulo the perimeter, from `-half` to `half`."""
+    return np.remainder(np.asarray(s) + half, 2 * half) - half
+
+
+def portrait(asked: Asked, parts: Parts, level: int) -> Found:
+    """Where random particles are after a transient, as a density over arc length and the sine of the exit angle."""
+    from numeric.pinball.sampling import interior_starts
+
+    orbits, bounces = 100 << level, 400 << level
+    clouds, half = [], 1.0
+    for text in asked.at:
+        map = PinballMap(asked.scene.at(lam=text))
+        half = map.arclength.perimeter / 2
+        starts = interior_starts(map, orbits, asked.seed)
+        end = map.exponents(starts.theta, starts.phi, 1, 1000, starts.component)
+        alive = end.code == 0
+        orbit = map.orbit(end.theta[alive], end.phi[alive], bounces, end.component[alive])
+        s = wrapped(map.arclength.s(orbit.theta, orbit.component), half)
+        good = orbit.code == 0
+        counts, _, _ = np.histogram2d(np.sin(orbit.phi[good]), s[good], (ROWS, COLUMNS), ((-1, 1), (-half, half)))
+        clouds.append((text, counts))
+    pictures.portraits(parts, f"portrait-{level}", clouds, half)
+    caption = (
+        f"Phase portraits: {bounces} bounces of each of {orbits} random particles after 1000 that are not drawn, the "
+        f"darker the more often a cell is met (logarithm of the count). Sampled, seed {asked.seed}."
+    )
+    alt = "Densities of bounces in phase space at " + ", ".join(f"lambda = {text}" for text in asked.at)
+    command = asked.command("attractor", f"--orbits {orbits} --seed {asked.seed} --json FILE", lam=asked.at[0])
+    effort = Effort("phase portraits", f"{orbits} particles, {bounces} bounces", 0.0)
+    return [Picture(f"portrait-{level}", caption, alt, command)], [effort], {}
+
+
+def diagram(asked: Asked, parts: Parts, level: int) -> Found:
+    """The attractors against the contraction, and the exponents of the same orbits; kept as arrays to be drawn."""
+    low, high = asked.ends
+    columns, orbits, points = 150 * 2**level, 12 + 6 * level, 120
+    values = np.linspace(low, high, columns)
+    transient, bounces = 1000 * 2**level, 512 * 2**level
+    found = run(bifurcation(text_of(asked.scene), values, orbits, points, bounces, transient, asked.seed))
+    half = PinballMap(asked.scene).arclength.perimeter / 2
+    s = wrapped(found.s.values, half)
+    cells = 240
+    counts = np.stack([np.histogram(row[np.isfinite(row)], cells, (-half, half))[0] for row in s.reshape(columns, -1)])
+    nu, error = found.nu_plus.values, found.nu_plus_error.values
+    best = np.nanargmax(np.where(np.isfinite(nu), nu, -np.inf), axis=1)
+    rows = np.arange(columns)
+    arrays = {
+        "values": values,
+        "half": np.array(half),
+        "counts": counts.T.astype(np.int32),
+        "largest": nu[rows, best],
+        "error": np.nan_to_num(error[rows, best]),
+        "least": np.nanmin(np.where(np.isfinite(nu), nu, np.inf), axis=1),
+        "chaotic": found.chaotic.values.mean(axis=1),
+    }
+    parts.keep(f"diagram-{level}", arrays)
+    options = f"--orbits {orbits} --points {points} --transient {transient} --bounces {bounces} --seed {asked.seed}"
+    command = asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:{columns} {options} --json FILE")
+    size = f"{columns} contractions, {orbits} particles, {bounces} bounces"
+    effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.nanmedian(arrays['error'])):.1g} (median of nu_plus)")
+    said = {"level": level, "command": command, "size": size, "rows": exponent_rows(arrays)}
+    return [], [effort], said
+
+
+def exponent_rows(arrays: dict[str, NDArray[Any]]) -> list[list[Any]]:
+    """A few contractions: the share of chaotic orbits, and the largest exponent with its error."""
+    at = np.linspace(0, len(arrays["values"]) - 1, LISTED).round().astype(int)
+    return [[float(arrays[name][i]) for name in ("values", "chaotic", "largest", "error")] for i in at]
+
+
+def diagram_blocks(asked: Asked, parts: Parts, said: dict[str, Any], events: list[tuple[float, str]]) -> list[Block]:
+    """The diagram with the events known so far, drawn unless it is there, and the exponents along it."""
+    name = f"diagram-{said['level']}-{len(events)}"
+    if not parts.picture(name).exists():
+        pictures.diagram(parts, name, parts.arrays(f"diagram-{said['level']}"), asked.parameter, events)
+    caption = (
+        f"Bifurcation diagram: {said['size']} after a transient. Above, arc length of the bounces, the darker the more "
+        "often a cell is met (logarithm of the count), and the located events as lines; below, the largest exponent "
+        "per bounce over the orbits, with its standard error, and the smallest. Sampled: an attractor that no start "
+        "reached is not drawn."
+    )
+    picture = Picture(name, caption, "Bifurcation diagram as a density, above exponents", said["command"])
+    rows = tuple(
+        (
+            f"{value:.6g}",
+            Number(f"{share:.0%}", known=Known.SAMPLED),
+            Number(f"{nu:.5f}", f"{error:.1g}", Known.SAMPLED),
+        )
+        for value, share, nu, error in said["rows"]
+    )
+    caption = "Along the diagram: the share of orbits with an exponent positive beyond its error, and the largest one."
+    return [picture, Listing(caption, (asked.parameter, "chaotic orbits", "largest nu_plus"), rows, said["command"])]
+
+
+def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
+    """The attractors that random starts reach at one contraction, and which start reaches which."""
+    text = asked.at[which]
+    starts = 200 * 4**level
+    scene = asked.scene.at(lam=text)
+    map = PinballMap(scene)
+    found = find(map, starts, asked.seed, images=True)
+    row = joined(found, starts, float(exact("--at", text)))
+    rows = tuple(_member(scene, member) for member in row.members)
+    missed = 3 / starts
+    command = asked.command("attractor", f"--orbits {starts} --seed {asked.seed} --certify", lam=text)
+    caption = (
+        f"lambda = {text}: attractors that {starts} random starts reach, images under the symmetries together; shares "
+        f"with 95 % intervals (Wilson). {row.unsettled} starts did not settle. An attractor whose basin is smaller "
+        f"than about {missed:.2g} of the starts is likely to be missed."
+    )
+    columns = ("attractor", "symmetry", "copies", "share of the starts", "nu_plus", "nu_minus", "existence")
+    blocks: list[Block] = [Listing(caption, columns, rows, command)]
+    attracting = [a for a in found if a.kind in (Kind.CYCLE, Kind.CHAOTIC)]
+    if len(attracting) > 1:
+        blocks.append(_basins(asked, parts, text, attracting, f"basins-{which}-{level}", level))
+    wide = max((m.share.high - m.share.low for m in row.members), default=0.0) / 2
+    effort = Effort(f"census at lambda = {text}", f"{starts} starts", 0.0, f"{wide:.2g} (half the widest interval)")
+    cycles = [_cycle(scene, m.first) for m in row.members if m.kind is Kind.CYCLE and m.period <= LONGEST]
+    return blocks, [effort], {"cycles": cycles}
+
+
+def _cycle(scene: Scene, attractor: Attractor) -> dict[str, Any]:
+    """An attracting cycle as plain data, for whoever follows it."""
+    points, multipliers = attractor.points, attractor.multipliers or (0j, 0j)
+    component, theta, phi = (tuple(row.tolist()) for row in points)
+    return said_of(PeriodicOrbit(scene, component, theta, phi, multipliers))
+
+
+def _member(scene: Scene, member: Member) -> tuple[str | Number, ...]:
+    first, share = member.first, member.share
+    chaotic = member.kind is Kind.CHAOTIC
+    name = {Kind.CYCLE: f"cycle of period {member.period}", Kind.CHAOTIC: "chaotic", Kind.NEUTRAL: "neutral"}
+    half = (share.high - share.low) / 2
+    known = Known.SAMPLED if chaotic else Known.FLOAT
+    plus, minus = (
+        Number(f"{nu:.5f}", f"{error:.1g}" if chaotic else "", known) if np.isfinite(nu) else "-"
+        for nu, error in zip((first.nu_plus, first.nu_minus), first.errors, strict=True)
+    )
+    return (
+        name.get(member.kind, f"stopped: {first.status.name.lower()}"),
+        member.symmetry,
+        str(member.copies),
+        Number(f"{(share.low + share.high) / 2:.3f}", f"{half:.3f}", Known.SAMPLED),
+        plus,
+        minus,
+        _existence(scene, first),
+    )
+
+
+def _existence(scene: Scene, attractor: Attractor) -> Number:
+    """Of a cycle, what balls prove; of anything else, that it was seen."""
+    if attractor.kind is not Kind.CYCLE:
+        return Number("seen", known=Known.SAMPLED)
+    try:
+        proof = certificate(scene.table, S(scene.lam), attractor.points, law=scene.law)
+    except (ValueError, ZeroDivisionError):
+        return Number("in float64", known=Known.FLOAT)
+    open_ = [name for name, value in proof.checks.items() if value is not True]
+    if open_:
+        return Number(f"open: {', '.join(open_)}", known=Known.FLOAT)
+    return Number("exists and attracts", known=Known.PROVED)
+
+
+def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], name: str, level: int) -> Picture:
+    columns, rows = 120 * 2**level, 60 * 2**level
+    scene = asked.scene.at(lam=text)
+    sweep = basins(text_of(scene), float(scene.lam), columns, rows, None, 0, 500, asked.seed, True, tuple(attractors))
+    label = run(sweep).label.values
+    half = PinballMap(scene).arclength.perimeter / 2
+    order = sorted(range(len(attractors)), key=lambda i: (attractors[i].family, i))
+    colours = [order.index(i) for i in range(len(attractors))]
+    pictures.basins(parts, name, label, colours, half, rf"$\lambda = {text}$")
+    shares = ", ".join(f"{np.mean(label == i):.0%}" for i in order[:8])
+    caption = (
+        f"Basins at lambda = {text}: the attractor that each of {columns} x {rows} starts reaches, a colour for "
+        f"each of {len(attractors)}; shares of the cells {shares}. Sampled at the centres of the cells."
+    )
+    command = asked.command("basins", f"--columns {columns} --rows {rows} --seed {asked.seed} --json FILE", lam=text)
+    return Picture(name, caption, f"Basins of attraction at lambda = {text}", command)

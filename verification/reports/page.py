@@ -1,0 +1,113 @@
+"""The report as one page of HTML that needs no network: formulas as MathML, pictures and certificates inside."""
+
+import base64
+import json
+from importlib.resources import files
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup, escape
+
+from verification.paper.report.mathml import formula, mathml, remark
+from verification.reports.asked import FILE, Parts
+from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Number, Picture, Words
+from verification.reports.report import Report
+
+MEANINGS = {
+    Known.EXACT: "a closed form, or an exact fact",
+    Known.PROVED: "enclosed in balls, with a proof; the radius is an upper bound",
+    Known.FLOAT: "solved for in float64 to rounding, and not proved",
+    Known.SAMPLED: "from random or gridded samples; the error is a standard error or half a 95 % interval",
+}
+
+
+def page(report: Report, parts: Parts) -> str:
+    """The whole page. Two runs differ in seconds, and in how far they got."""
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters |= {"block": lambda block: shown(block, parts), "remark": remark}
+    template = environment.from_string((files("verification.reports") / "page.html").read_text(encoding="utf-8"))
+    asked = report.asked
+    return template.render(
+        title=asked.scene.name,
+        scene=asked.scene.text,
+        file=FILE,
+        address=address("application/toml", asked.scene_file().encode()),
+        report=report,
+        asked=asked,
+        meanings=[(tag(known), words) for known, words in MEANINGS.items()],
+        made=", ".join(f"{name} {number}" for name, number in report.versions.items()),
+        again=asked.command("report", *again(report)),
+    )
+
+
+def again(report: Report) -> list[str]:
+    """The options that ask for the same report."""
+    asked = report.asked
+    looked = [f"--at {','.join(asked.at)}", f"--period {asked.period}", f"--digits {asked.digits}"]
+    return [f"--lam {asked.low}:{asked.high}", *looked, f"--seed {asked.seed}", "--out FILE.html"]
+
+
+def address(kind: str, content: bytes) -> str:
+    """An address that holds the content whole."""
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
+
+
+def tag(known: Known) -> Markup:
+    """The mark that says how a number is known."""
+    return Markup('<span class="known {}">{}</span>').format(known.name.lower(), known.value.split(",")[0])
+
+
+def shown(block: Block, parts: Parts) -> Markup:
+    """A block as HTML."""
+    if isinstance(block, Words):
+        return Markup("<p>{}</p>").format(remark(block.text))
+    if isinstance(block, Formula):
+        head = Markup('<p class="name">{} {}</p>').format(remark(block.name), tag(block.known))
+        return head + Markup('<div class="formula">{}</div>').format(mathml(block.latex, display=True))
+    if isinstance(block, Listing):
+        return _table(block)
+    if isinstance(block, Picture):
+        return _figure(block, parts)
+    return _certificate(block)
+
+
+def _command(text: str) -> Markup:
+    return Markup('<p class="command"><code>{}</code></p>').format(text) if text else Markup("")
+
+
+def _table(block: Listing) -> Markup:
+    head = Markup("").join(Markup('<th scope="col">{}</th>').format(remark(name)) for name in block.columns)
+    rows = Markup("").join(
+        Markup("<tr>{}</tr>").format(Markup("").join(Markup("<td>{}</td>").format(_cell(cell)) for cell in row))
+        for row in block.rows
+    )
+    caption = Markup('<p class="caption">{}</p>').format(remark(block.caption))
+    table = Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(head, rows)
+    framed = Markup('<div class="table" tabindex="0" role="region" aria-label="{}">{}</div>')
+    return caption + framed.format(block.caption.split(":")[0][:60], table) + _command(block.command)
+
+
+def _cell(cell: str | Number) -> Markup:
+    if isinstance(cell, str):
+        return remark(cell)
+    exact = formula(cell.value) if cell.known is Known.EXACT else None
+    return Markup("{} {}").format(exact or remark(cell.words), tag(cell.known))
+
+
+def _figure(block: Picture, parts: Parts) -> Markup:
+    path = parts.picture(block.name)
+    if not path.exists():
+        return Markup("<p>{}</p>").format(f"The picture {block.name} is not among the parts.")
+    image = Markup('<img src="{}" alt="{}">').format(address("image/svg+xml", path.read_bytes()), block.alt)
+    button = Markup('<button type="button" class="enlarge">enlarge</button>')
+    caption = Markup("<figcaption>{}</figcaption>").format(remark(block.caption))
+    return Markup('<figure id="figure-{}">{}</figure>').format(
+        block.name, image + button + caption + _command(block.command)
+    )
+
+
+def _certificate(block: Certificate) -> Markup:
+    document = json.dumps(dict(block.document), indent=1)
+    return Markup(
+        '<p class="certificate"><a download="{0}.json" href="{1}">certificate {0}.json</a>: {2} '
+        "<code>pinball check {0}.json</code></p>"
+    ).format(block.name, address("application/json", document.encode()), remark(str(escape(block.document["name"]))))

@@ -1,0 +1,214 @@
+"""The first sections of a report: what the table is, what is proved of it, and where its double normals bifurcate."""
+
+from collections.abc import Iterator
+
+from sympy import Expr, Integral, Symbol, cos, pi, simplify, sqrt
+
+from numeric import PinballMap
+from symbolic.cycles.cycle import Cycle, is_double_normal
+from symbolic.cycles.thresholds import flip_contraction, focus_contraction, stability_number
+from symbolic.expressions.signs import Outcome
+from symbolic.expressions.text import kernel, load
+from symbolic.motion.chords import convexity
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables.curves import LONG, size
+from symbolic.tables.geometry import Symmetry, arc_length, curvature, group, perimeter, turning
+from symbolic.tables.scene import Scene
+from symbolic.tables.table import Table, eta, latex, theta
+from symbolic.tables.validity import enclosed_area, radius_sign
+from verification.arithmetic.balls import ARRAYS, FLOAT64, decimal
+from verification.maps.enclosed import EnclosedMap
+from verification.maps.enclosed import perimeter as enclosed_perimeter
+from verification.maps.first_hit import convex
+from verification.reports.asked import Asked
+from verification.reports.blocks import Block, Cell, Formula, Known, Listing, Number, Words
+
+SHOWN = 4  # components whose formulas are shown
+DIGITS = 15
+GRID = 2001  # parameters of a piece at which the sign of the curvature is looked at
+WIDE = 400  # letters of a formula in LaTeX that is still shown
+
+
+def definition(asked: Asked) -> list[Block]:
+    """The table, its law and its curvature as formulas."""
+    table, law = asked.scene.table, asked.scene.law
+    shown = [part for part in table.components[:SHOWN] if size(part.point[0]) + size(part.point[1]) <= LONG]
+    blocks: list[Block] = []
+    for number, part in enumerate(shown):
+        name = "boundary" if len(table.components) == 1 else f"boundary, {part.name}"
+        blocks.append(Formula(name, rf"\left(x,\, y\right) = {latex(part)}"))
+        bent = latex(curvature(part))
+        if len(bent) <= WIDE:
+            blocks.append(Formula(name.replace("boundary", "curvature"), rf"\kappa\left(\theta\right) = {bent}"))
+        if number + 1 == SHOWN < len(table.components):
+            blocks.append(Words(f"{len(table.components) - SHOWN} more pieces are in the scene's file."))
+    if not shown:
+        blocks.append(
+            Words(f"The boundary has {len(table.components)} pieces; their formulas are in the scene's file.")
+        )
+    blocks.append(Formula("reflection law", rf"\varphi = {latex(law.phi)}"))
+    return blocks
+
+
+def facts(asked: Asked) -> list[Block]:
+    """Arc length, area, symmetry, and which of the properties of a table are proved."""
+    table = asked.scene.table
+    rows: list[tuple[Cell, ...]] = [("perimeter", length(asked.scene))]
+    area = enclosed_area(table)
+    if area is not None and area.is_number:
+        rows.append(("area", Number(str(area))))
+    symmetries = group(table)
+    mirrors = sum(symmetry.sign < 0 for symmetry in symmetries)  # a dihedral group has as many turns
+    rows.append(("symmetries", Number(f"D{mirrors}" if mirrors else f"C{len(symmetries)}", known=Known.PROVED)))
+    rows += [(what, Number(said, known=known)) for what, said, known in properties(table)]
+    caption = "What is known of the table. A closed formula is exact; what is proved is proved for the exact boundary."
+    return [Listing(caption, ("property", "value"), tuple(rows))]
+
+
+def length(scene: Scene) -> Number:
+    """The perimeter: in closed form where there is one, else enclosed by integration in balls."""
+    table = scene.table
+    if (
+        not any(arc_length(part).has(Integral) for part in table.components[: SHOWN + 1])
+        and len(table.components) <= SHOWN + 1
+    ):
+        return Number(str(perimeter(table)))
+    value, radius = decimal(enclosed_perimeter(EnclosedMap(PinballMap(scene), scene.lam, 100), DIGITS), DIGITS)
+    return Number(value, radius, Known.PROVED)
+
+
+def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
+    """Closed, simple, convex: what is said of each, and how it is known."""
+    yield "closed", "yes", Known.PROVED
+    rho = table.components[0].radius if len(table.components) == 1 else None
+    if rho is not None and radius_sign(rho) is Outcome.PROVED:
+        yield "simple", "yes: the radius is positive for every angle", Known.PROVED
+    else:
+        yield "simple", "no crossing was found; how far that is proved depends on its pieces", Known.SAMPLED
+    if convex(table):
+        yield "convex", "yes", Known.PROVED
+        return
+    where = inflections(table)
+    if where:
+        yield "convex", f"no: the curvature changes sign at theta = {', '.join(where)}", Known.FLOAT
+    elif convexity(table).outcome is Outcome.REFUTED:
+        yield "convex", "no: a point with positive curvature is known", Known.PROVED
+    else:
+        yield "convex", "not decided", Known.FLOAT
+
+
+def inflections(table: Table) -> list[str]:
+    """Where the curvature of the first pieces changes sign, to six digits: found on a grid, so a pair may be missed.
+
+    >>> from symbolic.tables import cuspless
+    >>> inflections(cuspless)
+    []
+    """
+    import numpy as np
+    from scipy.optimize import brentq
+
+    found = []
+    for part in table.components[:SHOWN]:
+        bend = turning(part)
+        if bend.is_number or bend.free_symbols - {theta} or size(bend) > LONG:
+            continue
+        text = kernel("turning", [theta], {"bend": bend})
+        one, many = load(text, FLOAT64), load(text, ARRAYS)
+        at = np.linspace(float(part.start), float(part.end), GRID)
+        values = np.broadcast_to(many(at)[0], at.shape)
+        for i in np.flatnonzero(values[:-1] * values[1:] < 0):
+            found.append(f"{brentq(lambda x, f=one: f(x)[0], at[i], at[i + 1]):.6f}")
+    return found
+
+
+def derivation(asked: Asked) -> list[Block]:
+    """The derivative of the map, and the double normals on the axes of symmetry with their thresholds."""
+    law = asked.scene.law
+    matrix = derivative_matrix() if law.uniform else derivative_matrix(lam=Symbol("f'", real=True))
+    name = "derivative in (s, phi), one flight and one reflection"
+    blocks: list[Block] = [Formula(name, rf"\mathrm{{D}}T = {latex(matrix)}")]
+    if not law.uniform:
+        blocks.append(Formula("slope of the law", rf"f'\left(\eta\right) = {latex(law.phi.diff(eta) * -1)}"))
+        blocks.append(
+            Words("Closed thresholds of period 2 are known for the law phi = -lam*eta; this scene has another.")
+        )
+        return blocks
+    cycles = list(double_normals(asked.scene.table))
+    if not cycles:
+        blocks.append(
+            Words(
+                "No axis of symmetry meets the table in two smooth points: no cycle of period 2 has a closed form here."
+            )
+        )
+    for cycle in cycles:
+        blocks += thresholds(cycle)
+    return blocks
+
+
+def double_normals(table: Table) -> Iterator[Cycle]:
+    """The chords along axes of symmetry whose ends are smooth: cycles of period 2 for every contraction.
+
+    Those that a symmetry exchanges count once.
+
+    >>> from symbolic.tables import ellipse
+    >>> [cycle.bounces for cycle in double_normals(ellipse.at(a=2))]
+    [((0, 0), (0, pi)), ((0, pi/2), (0, 3*pi/2))]
+    """
+    seen: set[tuple[float, ...]] = set()
+    for symmetry in group(table):
+        ends = [] if symmetry.sign > 0 else _on_axis(table, symmetry)
+        if len(ends) != 2 or any(_marked(table, *end) for end in ends):
+            continue
+        look = _look(table, ends)
+        if look not in seen:
+            seen.add(look)
+            cycle = Cycle(f"axis at {symmetry.angle / 2}", table, tuple(ends))
+            if is_double_normal(cycle):
+                yield cycle
+
+
+def _on_axis(table: Table, mirror: Symmetry) -> list[tuple[int, Expr]]:
+    """The boundary points that a reflection keeps, ends of pieces left out."""
+    fixed = [(i, mirror.shift[i] / 2) for i, onto in enumerate(mirror.onto) if onto == i]
+    if len(table.components) == 1:
+        return [*fixed, *((i, at + pi) for i, at in fixed)]
+    return [(i, at) for i, at in fixed if table.components[i].start < at < table.components[i].end]
+
+
+def _look(table: Table, ends: list[tuple[int, Expr]]) -> tuple[float, ...]:
+    """The length of a chord and the curvatures at its ends, rounded: the same for chords that a symmetry exchanges."""
+    (x0, y0), (x1, y1) = (table.components[i].at(at) for i, at in ends)
+    length = float(sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2))
+    bent = sorted(float(curvature(table.components[i]).subs(theta, at)) for i, at in ends)
+    return tuple(round(value, 9) for value in (length, *bent))
+
+
+def _marked(table: Table, index: int, at: Expr) -> bool:
+    """Is the map undefined there?"""
+    return any(mark.component == index and cos(mark.theta - at) == 1 for mark in table.undefined)
+
+
+def thresholds(cycle: Cycle) -> list[Block]:
+    """The stability number of a double normal, and the contraction at which it doubles its period or is a focus."""
+    number = stability_number(cycle)
+    value = number.evalf(20)
+    blocks: list[Block] = [Formula(f"{cycle.name}: stability number P = (1 + t*K0)*(1 + t*K1)", f"P = {latex(number)}")]
+    decimals = f"P = {value.evalf(12)}"
+    if number < -1 or number > 1:
+        blocks.append(Words(f"{decimals}: unstable for every contraction."))
+    elif number < 0:
+        exact = simplify(flip_contraction(number))
+        blocks.append(Formula(f"{cycle.name}: period doubling", rf"\lambda = {approximated(exact)}"))
+        blocks.append(Words(f"{decimals}: stable below this contraction, unstable above it."))
+    elif number == 1:
+        blocks.append(Words("P = 1: one of a family of parallel chords, with a multiplier 1 for every contraction."))
+    else:
+        exact = simplify(focus_contraction(number))
+        blocks.append(Formula(f"{cycle.name}: complex multipliers", rf"\lambda > {approximated(exact)}"))
+        blocks.append(Words(f"{decimals}: stable for every lam < 1, a focus above this contraction."))
+    return blocks
+
+
+def approximated(exact: Expr) -> str:
+    """An exact number and its decimals, in LaTeX."""
+    return rf"{latex(exact)} \approx {exact.evalf(DIGITS)}"

@@ -113,12 +113,6 @@ def _law(formula: str) -> Law:
         raise ValueError(f"--{error}") from None
 
 
-def uniform_only(scene: Scene, what: str) -> None:
-    """Refuses a law of another kind for a question that is answered for the paper's law alone."""
-    if not scene.law.uniform:
-        raise ValueError(f"{what} knows the paper's law phi = -lam*eta only, and not {scene.law}; leave --law out")
-
-
 def _shape_value(text: str) -> tuple[str, str]:
     """`NAME=VALUE`, or `NAME=VALUE:LOW..HIGH` with its range, as a pair."""
     name, equals, value = text.partition("=")

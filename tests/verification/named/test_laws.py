@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import arb
 from sympy import S
 
 from numeric import PinballMap
@@ -16,7 +17,6 @@ from verification.app.cli import main
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.named.files import _problem, _problem_said
-from verification.proofs.global_dynamics.images import PinballImages
 
 BENT = "-lam*eta - b*sin(2*eta)"
 SCENE = Scene("ellipse", a="3/2", lam="1/2", law=BENT, b="1/20")
@@ -85,7 +85,7 @@ def test_a_certificate_says_its_law_and_reads_it_back():
     said = _problem_said(problem)
 
     assert said["scene"]["law"] == Law(BENT).formula
-    assert _problem(said, problem.lam) == problem
+    assert _problem(said, problem.lam, arb(0)) == problem
 
 
 def test_a_mirror_asks_for_an_odd_law():
@@ -94,9 +94,18 @@ def test_a_mirror_asks_for_an_odd_law():
         replace(problem, closure=replace(problem.closure, turn=-1), law=Law("-eta/2 + eta**2/9"))
 
 
-def test_what_knows_one_law_only_says_so():
-    with pytest.raises(ValueError, match="-lam\\*eta only"):
-        PinballImages(SCENE)
+def test_the_slap_map_is_that_of_every_law_that_vanishes_with_lam(capsys):
+    said = []
+    for law in ([], ["--law", "-lam*sin(eta)"]):
+        assert main(["slap", "egg", "--alpha", "0.08", "--points", "4", *law]) == 0
+        said.append(capsys.readouterr().out)
+
+    assert said[0] == said[1]
+
+
+def test_the_count_on_cells_agrees_with_the_search_for_another_law(capsys):
+    assert main(["cycles", *EGG, "--law", "-lam*sin(eta)", "--period", "2", "--count", "2"]) == 0
+    assert "cells: T^2 has 6 + 6 fixed points, agrees with the search" in capsys.readouterr().out
 
 
 EGG = ["egg", "--alpha", "0.08", "--lam", "0.5"]
@@ -107,8 +116,9 @@ EGG = ["egg", "--alpha", "0.08", "--lam", "0.5"]
     [
         (["orbit", *EGG, "--start", "0.4,0.3", "--bounces", "2", "--law", "-2*eta"], "at eta = -0.785398"),
         (["orbit", *EGG, "--start", "0.4,0.3", "--bounces", "2", "--law", "-eta +"], "--law: the end at column 7"),
-        (["slap", "egg", "--alpha", "0.08", "--law", "-eta/3"], "slap, the map of exits along the normal, knows"),
-        (["cycles", *EGG, "--period", "2", "--prove", "2", "--law", "-eta/3"], "--prove knows the paper's law"),
+        (["slap", "egg", "--alpha", "0.08", "--law", "-eta/3"], "-eta/3 does not exit along the normal at lam = 0"),
+        (["cycles", *EGG, "--period", "2", "--prove", "2", "--law", "-eta/3"], "not for -eta/3; leave --prove"),
+        (["cycles", "stadium", "--lam", "0.5", "--period", "2", "--prove", "2"], "stadium is not proved to be one"),
     ],
 )
 def test_a_command_refuses_a_law_in_one_sentence(arguments, said, capsys):

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.tables.definition import UNIFORM
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option
-from verification.app.scene import scene_options, start_of, table_options, uniform_only
+from verification.app.scene import scene_options, start_of, table_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -149,8 +150,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
 
     from numeric import PinballMap
 
-    uniform_only(scene, "slap, the map of exits along the normal,")
-    map = PinballMap(scene, lam=0)
+    map = PinballMap(normal_exits(scene), lam=0)
     names = [part.name for part in map.ir.parts]
     component = np.repeat(np.arange(len(names)), points)
     ends = np.array(map.states.ends)
@@ -181,6 +181,19 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
         [(float(theta[i]), [float(x) for x in values.theta[1:, i]], float(values.slope[i])) for i in rows],
     )
     return DONE
+
+
+def normal_exits(scene: Scene) -> Scene:
+    """The scene with the paper's law, whose slap map is that of every law with `phi = 0` at `lam = 0`."""
+    if scene.law.uniform:
+        return scene
+    from symbolic.expressions.signs import vanishes
+    from symbolic.tables.table import lam
+
+    if not vanishes(scene.law.phi.subs(lam, 0)):
+        said = "does not exit along the normal at lam = 0, as every law does that has a slap map"
+        raise ValueError(f"--law: {scene.law} {said}; accepted: laws that vanish there")
+    return scene.at(law=UNIFORM)
 
 
 def show_slap(console: "Console", rows: list[tuple[float, list[float], float]]) -> None:
@@ -214,9 +227,8 @@ def cycles_command(
     from verification.cycles.problem import Problem
     from verification.cycles.search import ROUNDS, all_cycles
 
-    for option, given_one in (("--count", count), ("--prove", prove)):
-        if given_one:
-            uniform_only(scene, option)
+    if prove:
+        provable(scene)
     table, lam = scene.table, S(scene.lam)
     with output.progress("Searching", ROUNDS) as tick:
         found = all_cycles(table, lam, period, seed, tick, scene.law)
@@ -285,8 +297,11 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
     from verification.maps.first_hit import convex
 
     if len(catalogue.table.components) > 1 or convex(catalogue.table) is not True:
-        raise ValueError(f"--count: {catalogue.table.name} is not convex and smooth; leave --count out")
-    map = PinballMap(catalogue.table, lam=catalogue.lam)
+        raise ValueError(
+            f"--count needs a map that is continuous, and {catalogue.table.name} is not proved to be one smooth convex "
+            "curve; leave --count out"
+        )
+    map = PinballMap(catalogue.table, lam=catalogue.lam, law=catalogue.law)
     rows = []
     with output.progress("Counting", highest - 1) as tick:
         for n in range(2, highest + 1):
@@ -305,6 +320,22 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
             )
             tick(f"period {n}")
     return rows
+
+
+def provable(scene: Scene) -> None:
+    """Refuses --prove, in a sentence that says why, where its theorem asks for more than the scene has."""
+    from verification.maps.first_hit import convex
+
+    if not scene.law.uniform:
+        raise ValueError(
+            "--prove excludes chords steeper than lam*pi/2, by a rule that is linear in both angles: true of the "
+            f"paper's law and not for {scene.law}; leave --prove out"
+        )
+    if len(scene.table.components) > 1 or convex(scene.table) is not True:
+        raise ValueError(
+            f"--prove covers all closed chains of chords of one smooth convex curve, and {scene.name} is not proved to "
+            "be one: chains that a wall cuts could not be told from cycles; leave --prove out"
+        )
 
 
 def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, output: Output) -> list[dict[str, Any]]:

@@ -3,15 +3,16 @@
 A ball with midpoint `m` and radius `r` holds every real number within `r` of `m`. Two facts are used of float64: the
 sum, difference, product, quotient and square root are the doubles nearest to the true ones, and adding two doubles
 never gets the sign wrong. So an operation on midpoints errs by at most `ROUNDING` times its result, and by `TINY`
-where that underflows; the few roundings in the radius itself are covered by `GROWTH`. Sine and cosine are our own
-polynomials, since nobody proves a bound for those of a library: `UNIT_ERROR` bounds reduction, Taylor remainder and
-rounding together (docs/global.md has the count). A radius of infinity, or nan, says that nothing is known; every
-question here asks for what is certain, so that nan answers no.
+where that underflows; the few roundings in the radius itself are covered by `GROWTH`. Sine, cosine and exponential
+are our own polynomials, since nobody proves a bound for those of a library: `UNIT_ERROR` and `EXPONENTIAL_ERROR` bound
+reduction, Taylor remainder and rounding together (docs/global.md has the count). A radius of infinity, or nan, says
+that nothing is known; every question here asks for what is certain, so that nan answers no.
 
 A map is named by its charts, rectangles with two coordinates each; one of the plane is given by a formula in balls
 and that of its derivative, and takes a box by the mean-value theorem.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple, Protocol
@@ -27,6 +28,9 @@ UNIT_ERROR = 2.0**-49  # of sine and cosine at a double below LARGEST
 LARGEST = 64.0
 HALF_PI = tuple(map(float.fromhex, ("0x1.921fb54400000p+0", "0x1.0b4611a600000p-34", "0x1.3198a2e037073p-69")))
 SINE = [(-1.0) ** k / float(np.prod(np.arange(1.0, 2 * k + 2))) for k in range(10)]
+LN2 = tuple(map(float.fromhex, ("0x1.62e42fee00000p-1", "0x1.a39ef35793c76p-33")))
+EXPONENTIAL = [1.0 / float(np.prod(np.arange(1.0, k + 1))) for k in range(15)]
+EXPONENTIAL_ERROR = 2.0**-48  # of the exponential at a double below LARGEST, relative
 COSINE = [(-1.0) ** k / float(np.prod(np.arange(1.0, 2 * k + 1))) for k in range(11)]
 
 
@@ -138,7 +142,10 @@ def hull(low: Any, high: Any) -> BallArray:
 
 
 class ArrayOps:
-    """What a program of `numeric.lowering` needs of ball arrays: constants, roots, sine and cosine."""
+    """What a program of `numeric.lowering` needs of ball arrays: constants, roots and the functions of a formula.
+
+    Of a library's logarithm or root only a guess is used, which the exponential or a power then judges.
+    """
 
     def q(self, p: int, n: int) -> BallArray:
         """`p/n`, enclosed."""
@@ -163,6 +170,61 @@ class ArrayOps:
     def cos(self, x: BallArray) -> BallArray:
         """The cosine."""
         return turned(x)[0]
+
+    def exp(self, x: BallArray) -> BallArray:
+        """The exponential: of the midpoint, by powers of 2 and Taylor's sum, times `exp(r) <= 1 + r + r**2`."""
+        m, r = np.broadcast_arrays(np.asarray(x.m, dtype=float), x.r)
+        with np.errstate(all="ignore"):
+            k = np.rint(m / LN2[0])
+            value = np.ldexp(_horner(EXPONENTIAL, m - k * LN2[0] - k * LN2[1]), np.nan_to_num(k).astype(int))
+            radius = value * (r * (1 + r) + EXPONENTIAL_ERROR * (1 + r) ** 2) * GROWTH
+        return BallArray(value, np.where((np.abs(m) < LARGEST) & (r <= 1), radius, np.inf))
+
+    def log(self, x: BallArray) -> BallArray:
+        """The logarithm: a guess `w`, and `y - 1` with `y = x*exp(-w)`, within `(y - 1)**2` while that is small."""
+        with np.errstate(all="ignore"):
+            w = np.log(np.asarray(x.m, dtype=float))
+            gap = x * self.exp(BallArray(-w)) - 1
+            size = gap.magnitude()
+        return BallArray(w + 0 * size, np.where(size <= 0.5, size**2 * GROWTH, np.inf)) + gap
+
+    def atan(self, x: BallArray) -> BallArray:
+        """The angle of the vector `(1, x)`."""
+        return direction(BallArray(np.ones_like(x.m)), x)
+
+    def sinh(self, x: BallArray) -> BallArray:
+        """The hyperbolic sine."""
+        up = self.exp(x)
+        return (up - 1 / up) / 2
+
+    def cosh(self, x: BallArray) -> BallArray:
+        """The hyperbolic cosine."""
+        up = self.exp(x)
+        return (up + 1 / up) / 2
+
+    def tanh(self, x: BallArray) -> BallArray:
+        """The hyperbolic tangent."""
+        return 1 - 2 / (self.exp(x * 2) + 1)
+
+    def Abs(self, x: BallArray) -> BallArray:
+        """The absolute value, which moves by no more than its argument."""
+        return BallArray(np.abs(x.m), x.r)
+
+    def __getattr__(self, word: str) -> Callable[[BallArray], BallArray]:
+        """`root3`, `root4` and so on."""
+        if not word.startswith("root") or not word[4:].isdigit():
+            raise AttributeError(word)
+        return lambda x: self._root(x, int(word[4:]))
+
+    def _root(self, x: BallArray, n: int) -> BallArray:
+        """A guess `w`, times `(1 + d)**(1/n)` with `1 + d = x/w**n`, within `d**2` of `1 + d/n` while `d` is small."""
+        with np.errstate(all="ignore"):
+            w = power = BallArray(np.asarray(x.m, dtype=float) ** (1 / n))
+            for _ in range(n - 1):
+                power = power * w
+            d = x / power - 1
+            size = d.magnitude()
+        return w * (1 + d / n + BallArray(0.0, np.where(size <= 0.5, size**2 * GROWTH, np.inf)))
 
 
 def turned(x: BallArray) -> tuple[BallArray, BallArray]:

@@ -6,7 +6,9 @@ the landings of a whole box as soon as one is proved to lie to the right of ever
 the left: two signs of a cross product, and no equation is solved. Within that arc the mean-value theorem encloses the
 image more closely. The exit angle needs no more than the angles `tau` of the tangents,
 
-    phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi.
+    phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi,
+
+or another law of `eta` and `lam`.
 
 Where the arc holds a join, the image is given for both sides of it. Paper: section 2.
 """
@@ -18,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.lowering.lower import lower_law
 from symbolic.tables.scene import Scene
 from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.global_dynamics.boxes import (
@@ -38,6 +41,8 @@ from verification.proofs.global_dynamics.boxes import (
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 TRIES = 7  # widenings of a guessed arc
+STEPS = 1 << 12  # pieces of the incidence angles, for the steepest exit
+QUARTER = 1.5707963267948966  # below pi/2
 CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
 
 
@@ -52,22 +57,24 @@ class Piece(NamedTuple):
 
 
 class Slopes(NamedTuple):
-    """The landing's derivatives by `theta` and by `phi`, and how fast the tangent turns where it starts and lands.
+    """The landing's derivatives by `theta` and `phi`, how fast the tangent turns at start and landing, the law's slope.
 
-    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`.
+    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = -law*d eta1`.
     """
 
     by_theta: BallArray
     by_phi: BallArray
     bend_here: BallArray
     bend_there: BallArray
+    law: BallArray
 
 
 class PinballImages:
     """The map of a scene whose table is proved convex, for every contraction from `lam[0]` to `lam[1]`.
 
-    Phase space is the strip `|phi| <= lam*pi/2`, in which every particle is after one bounce. An orbit that lands on
-    a join has no next bounce; its images here are those of both sides.
+    Phase space is the strip `|phi| <= top`, in which every particle is after one bounce: `lam*pi/2` for the paper's
+    law, and what balls bound for another one. An orbit that lands on a join has no next bounce; its images here are
+    those of both sides.
 
     >>> egg = PinballImages(Scene("egg", alpha="0.08", lam="1/2"))
     >>> egg.label
@@ -75,8 +82,8 @@ class PinballImages:
     """
 
     def __init__(self, scene: Scene, lam: tuple[Fraction, Fraction] | None = None) -> None:
-        if not scene.law.uniform:
-            raise ValueError(f"law = {scene.law}: boxes are mapped by the paper's law -lam*eta only; leave the law out")
+        if scene.law.placed:
+            raise ValueError(f"law = {scene.law} depends on the place; boxes are mapped by laws of eta and lam")
         self.scene = scene
         low, high = lam or (Fraction(str(scene.lam)), Fraction(str(scene.lam)))
         if not 0 <= low <= high < 1 or high == 0:
@@ -94,7 +101,33 @@ class PinballImages:
         if self.closed and not closes_smoothly(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
-        self.top = float((self.lam * self.ops.pi / 2).upper())
+        self.law = None if scene.law.uniform else lower_law(scene.law)
+        self.top = float((self.lam * self.ops.pi / 2).upper()) if self.law is None else self._steepest()
+
+    def _steepest(self) -> float:
+        """A bound below a quarter turn for the exit angles of the law, over all incidence angles and contractions."""
+        scene, (low, high) = self.scene, self.range
+        scene.law.check((low, high))
+        ends = np.linspace(-1, 1, STEPS + 1) * float((self.ops.pi / 2).upper())
+        size = float(np.max(self.exit(hull(ends[:-1], ends[1:])).magnitude()))
+        if not size < QUARTER:
+            raise ValueError(f"law = {scene.law}: |phi| is not proved to stay below pi/2 by a margin, as boxes need it")
+        return size
+
+    def exit(self, eta: BallArray) -> BallArray:
+        """The exit angles, by the mean-value theorem about the middles of the incidence angles."""
+        if self.law is None:
+            return -(self.lam * eta)
+        with np.errstate(all="ignore"):
+            middle = BallArray(np.asarray(eta.m))
+            at = spread(self.law.exit(self.ops, middle, self.lam, BallArray(0.0))[0], middle.m)
+            return at - self.slope(eta) * (eta - middle)
+
+    def slope(self, eta: BallArray) -> BallArray:
+        """`-d phi/d eta` over incidence angles."""
+        if self.law is None:
+            return self.lam
+        return spread(self.law.slopes(self.ops, eta, self.lam, BallArray(0.0))[0], np.asarray(eta.m))
 
     @property
     def charts(self) -> tuple[Chart, ...]:
@@ -108,7 +141,8 @@ class PinballImages:
     def label(self) -> str:
         shape = "".join(f", {name} = {value}" for name, value in self.scene.shape.items())
         low, high = self.range
-        return f"{self.scene.name}{shape}, lam = {low}" + ("" if low == high else f" to {high}")
+        law = "" if self.law is None else f", phi = {self.scene.law}"
+        return f"{self.scene.name}{shape}{law}, lam = {low}" + ("" if low == high else f" to {high}")
 
     # ---- places on the boundary
 
@@ -269,7 +303,7 @@ class _Flights:
         if smooth:
             theta, eta = self._mean_value(on, chart, arc, eta)
             theta = _both(arc, theta)
-        phi = -(self.map.lam * eta)
+        phi = self.map.exit(eta)
         top = self.map.top
         low_y, high_y = np.maximum(phi.lower(), -top), np.minimum(phi.upper(), top)
         known = np.isfinite(phi.r) & (low_y <= high_y)
@@ -284,7 +318,7 @@ class _Flights:
 
     def _mean_value(self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray) -> tuple[BallArray, BallArray]:
         """Landing and angle of incidence by the mean-value theorem, about the landing of the midpoint."""
-        by_theta, by_phi, here, there = self.slopes(on, chart, arc)
+        by_theta, by_phi, here, there, _ = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
         middle = self._midpoint(on, chart, arc)
         theta = middle + by_theta * reach[0] + by_phi * reach[1]
@@ -300,7 +334,10 @@ class _Flights:
         slope = at["v"] * dy - at["w"] * dx
         slope = BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
         by_theta = (at["bend"] * along - at["cos"] * at["speed"]) / slope
-        return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy))
+        law = self.map.lam
+        if self.map.law is not None:
+            law = self.map.slope(_incidence(self.phis[on] + _turn(self._tangent(on, self.thetas), [dx, dy])))
+        return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy), law)
 
     def _midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
         """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""

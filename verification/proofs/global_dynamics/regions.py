@@ -13,8 +13,8 @@ walks of `n` steps, and over any number of bounces by that mean per bounce. One 
 no long walk does. The boundary parameter takes the place of arc length: that multiplies lengths by bounded factors,
 which no mean over a long time sees.
 
-With `p = bend0 - slope0` the derivative takes a slope to `-lam*(bend1 - p/(by_theta + by_phi*slope0))`, the mirror
-equation of this law.
+With `p = bend0 - slope0` the derivative takes a slope to `-sigma*(bend1 - p/(by_theta + by_phi*slope0))`, the mirror
+equation of a law with the slope `-sigma`, which is `-lam` for the paper's.
 """
 
 from collections.abc import Iterator, Mapping
@@ -197,6 +197,7 @@ class Derivatives(NamedTuple):
     by_phi: BallArray
     bend_here: BallArray
     bend_there: BallArray
+    law: BallArray
 
 
 @dataclass(frozen=True)
@@ -261,7 +262,7 @@ def _arriving(
     slope = hull(*cones)[found.source]
     with np.errstate(all="ignore"):
         stretch = found.by_theta + found.by_phi * slope
-        new = -(map.lam * (found.bend_there - (found.bend_here - slope) / stretch))
+        new = -(found.law * (found.bend_there - (found.bend_here - slope) / stretch))
         known = np.isfinite(new.r)
         ends = np.where(known, new.lower(), -np.inf), np.where(known, new.upper(), np.inf)
     low, high = np.full(count * charts, np.inf), np.full(count * charts, -np.inf)

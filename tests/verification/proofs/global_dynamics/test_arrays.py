@@ -110,3 +110,22 @@ def test_a_hull_holds_all_between_its_ends(ends, share):
     low, high = ends
     with working(400):
         assert holds(hull(np.array(low), np.array(high)), arb(low) + (arb(high) - arb(low)) * share / 16)
+
+
+FUNCTIONS = {"exp": arb.exp, "log": arb.log, "atan": arb.atan, "sinh": arb.sinh, "cosh": arb.cosh, "tanh": arb.tanh}
+FUNCTIONS |= {"Abs": abs, "root3": lambda x: x.root(3), "root5": lambda x: x.root(5)}
+
+
+@pytest.mark.parametrize("word", FUNCTIONS)
+@given(x=st.floats(-30, 30), r=st.sampled_from([0.0, 1e-12, 1e-3, 0.1]), p=SHARES)
+def test_the_functions_of_a_formula_are_enclosed(word, x, r, p):
+    x = abs(x) + 0.5 if word in ("log", "root3", "root5") else x
+    found = getattr(ArrayOps(), word)(BallArray(np.array(x), np.array(r)))
+    with working(200):
+        assert holds(found, FUNCTIONS[word](arb(x) + arb(r) * p / 16))
+        assert r or found.r < 2.0**-44 * max(1.0, abs(float(found.m)), np.exp(abs(x)) * (word in ("sinh", "cosh")))
+
+
+def test_of_a_logarithm_of_no_positive_number_and_of_a_vast_exponential_nothing_is_known():
+    for word, x, r in (("log", -1.0, 0.0), ("log", 1.0, 1.0), ("exp", 700.0, 0.0), ("root3", -1.0, 0.0)):
+        assert not np.isfinite(getattr(ArrayOps(), word)(BallArray(np.array(x), np.array(r))).r)

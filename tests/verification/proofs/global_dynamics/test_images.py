@@ -21,7 +21,10 @@ SCENES = [
     Scene("ellipse", a="3/2", lam="0.99"),
     Scene("circle", lam="0.7"),
     LIMACON,
+    Scene("egg", alpha="0.08", lam="1/2", law="-lam*sin(eta) - b*atan(eta)", b="1/4"),
 ]
+EXPONENTIAL = Scene.of({"polar": "exp(cos(2*theta)/40)", "lam": "1/2"})
+SIZED = [(scene, size) for scene in SCENES for size in (1e-3, 0.05, 0.4) if scene.law.uniform or size == 0.05]
 
 
 def boxes(map: PinballImages, count: int, size: float, seed: int) -> Boxes:
@@ -49,8 +52,7 @@ def holds(images, index: int, chart: int, theta: arb, phi: arb) -> bool:
     return False
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: f"{scene.name} {scene.lam}")
-@pytest.mark.parametrize("size", [1e-3, 0.05, 0.4])
+@pytest.mark.parametrize(("scene", "size"), [*SIZED, (EXPONENTIAL, 0.05)])
 def test_images_hold_the_landings_that_balls_prove(scene, size):
     map = PinballImages(scene)
     chosen = boxes(map, 24, size, 3)
@@ -108,3 +110,22 @@ def test_a_table_that_is_not_proved_convex_is_refused():
 def test_contractions_outside_the_range_are_refused(lam):
     with pytest.raises(ValueError, match="accepted: 0 <= LOW <= HIGH"):
         PinballImages(Scene("egg", alpha="0.08", lam="1/2"), tuple(map(Fraction, lam)))
+
+
+def test_the_slope_of_a_law_is_enclosed_where_boxes_land():
+    map = PinballImages(SCENES[-1])
+    chosen = boxes(map, 24, 1e-3, 5)
+    middles = [(low + high) / 2 for low, high in (chosen.x, chosen.y)]
+    landed = map.map.step(*middles, chosen.chart)
+    slope = np.cos(landed.eta) / 2 + 1 / (4 * (1 + landed.eta**2))  # of lam*sin + atan/4
+
+    assert 0.5 + np.arctan(np.pi / 2) / 4 <= map.top < 0.751
+    for piece, slopes in map.derivatives(chosen):
+        assert np.all(np.abs(slopes.law.m - slope[piece.on]) <= slopes.law.r + 1e-12)
+        assert np.all(slopes.law.r < 0.02)
+
+
+def test_a_law_that_boxes_cannot_hold_is_refused_with_why():
+    for law, says in (("-lam*eta*cos(theta)", "depends on the place"), ("-eta", "by a margin, as boxes need it")):
+        with pytest.raises(ValueError, match=says):
+            PinballImages(Scene("egg", alpha="0.08", lam="1/2", law=law))

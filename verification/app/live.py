@@ -1,7 +1,4 @@
-"""The live table: a page in Panel with widgets on the left, the table and its phase space on the right.
-
-What is picked there is a map, a command line and a few lines of Python. Drawn are an orbit and the cycle near a point.
-"""
+"""The live table: a page in Panel with widgets on the left, the table and its phase space on the right."""
 
 import os
 import shlex
@@ -275,8 +272,10 @@ class LiveTable:
     async def _try(self, wanted: Choice) -> None:
         """Reads a new formula in another process, so that no other visitor waits for it."""
         why = await refusal(shlex.split(wanted.command(1))[1:], PATIENCE)
-        if self.formula.value != wanted.formula or self.table.value != OWN:
-            return  # the visitor has typed on
+        if self.formula.value == wanted.formula and self.table.value == OWN:  # the visitor has not typed on
+            in_turn(partial(self._tried, wanted, why))
+
+    def _tried(self, wanted: Choice, why: str | None) -> None:
         self.said.object = why or ""
         if why is None:
             self.tried = wanted.formula

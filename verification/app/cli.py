@@ -171,7 +171,7 @@ HOMES = {  # commands that share a module
     "explore": ("verify", "explore_command"),
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
-EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline"}
+EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}
 EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
 LONGEST = 600  # characters of a sentence; a reader sees the end of it
 

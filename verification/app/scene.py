@@ -204,7 +204,7 @@ TABLE = (
     click.option("--polar", metavar="FORMULA", help="Your own table: the radius, a formula in theta."),
     click.option("--parametric", nargs=2, metavar="X Y", help="Your own table: a closed curve in theta on [-pi, pi)."),
     click.option("--scene", "file", metavar="FILE", help="A scene file: any table, its shape, law and contraction."),
-    click.option("--data", metavar="FILE", help="A measured table: points in CSV; or a drawn one: paths in SVG."),
+    click.option("--data", metavar="FILE", help="A measured table: points in CSV; or a drawn one: SVG or DXF."),
     click.option("--smoothness", type=click.IntRange(0, 2), help="Of the spline through the points of --data; or 2."),
     click.option("--degree", type=click.IntRange(1, 64), help="Of a Fourier sum near the points of --data, instead."),
     click.option("--law", metavar="FORMULA", help="The exit angle: a formula in eta, lam, theta; or else -lam*eta."),

@@ -7,7 +7,7 @@ from sympy import Rational, pi
 
 from symbolic.tables.validity import enclosed_area
 from verification.app.cli import main
-from verification.app.outline import of_points, of_svg
+from verification.app.outline import of_dxf, of_points, of_svg
 
 ROWS = ["2,0", "1.2,0.8", "0,1", "-2,0.1", "0,-1"]
 
@@ -71,6 +71,71 @@ def test_a_drawn_circle_is_one_within_a_ten_millionth_of_its_radius_and_a_smalle
 def test_what_is_no_drawing_of_a_table_is_refused_in_one_sentence(tmp_path, text, says):
     with pytest.raises(ValueError, match=says):
         of_svg(written(tmp_path, "bad.svg", text))
+
+
+def dxf(tmp_path, draw):
+    """A drawing of ezdxf, written to a file."""
+    import ezdxf
+
+    document, path = ezdxf.new(), str(tmp_path / "drawn.dxf")
+    draw(document.modelspace())
+    document.saveas(path)
+    return path
+
+
+def stadium(model):
+    """Sides and half circles in no order, some the other way round, and a hole."""
+    model.add_line((-1, -1), (1, -1))
+    model.add_line((-1, 1), (1, 1))
+    model.add_arc((1, 0), 1, 270, 90)
+    model.add_arc((-1, 0), 1, 90, 270)
+    model.add_circle((0, 0), 0.25)
+
+
+@pytest.mark.parametrize(
+    ("draw", "pieces", "area"),
+    [
+        (stadium, 66, 4 + 15 * pi / 16),
+        (lambda m: m.add_lwpolyline([(0, 0, 0), (2, 0, 1), (2, 2, 0), (0, 2, 0)], "xyb", close=True), 19, 4 + pi / 2),
+        (lambda m: m.add_polyline2d([(0, 0), (3, 0), (0, 4)], close=True), 3, 6),
+        (lambda m: m.add_ellipse((0, 0), (2, 0), 0.5), 32, 2 * pi),
+        (lambda m: m.add_spline(dxfattribs={"degree": 3}).set_open_uniform(LEAF), 6, None),
+    ],
+    ids=["lines and arcs", "bulge", "polyline", "ellipse", "spline"],
+)
+def test_outlines_of_a_dxf_file_are_joined_to_closed_curves(tmp_path, draw, pieces, area):
+    table = of_dxf(dxf(tmp_path, draw))
+
+    assert len(table.components) == pieces
+    assert area is None or abs(float(enclosed_area(table) - area)) < 1e-5
+
+
+LEAF = [(0, 0), (1, -1), (3, -1), (4, 0), (4, 2), (3, 3), (1, 3), (0, 2), (0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("draw", "says"),
+    [
+        (lambda m: [m.add_line((0, 0), (1, 0)), m.add_line((1, 0), (1, 1))], r"is open at \(1, 1\); accepted: closed"),
+        (lambda m: [m.add_line(p, (1, 0)) for p in ((0, 0), (1, 1), (2, 1))], r"branches at \(1, 0\)"),
+        (lambda m: m.add_text("no outline"), "has no outline; accepted: LINE, ARC, CIRCLE, ELLIPSE, LWPOLYLINE"),
+    ],
+    ids=["open", "branching", "none"],
+)
+def test_what_bounds_no_table_in_a_dxf_file_is_refused_in_one_sentence(tmp_path, draw, says):
+    with pytest.raises(ValueError, match=says):
+        of_dxf(dxf(tmp_path, draw))
+
+
+def test_what_is_no_dxf_file_is_refused_in_one_sentence(tmp_path):
+    with pytest.raises(ValueError, match="is no DXF file"):
+        of_dxf(written(tmp_path, "bad.dxf", "no drawing"))
+
+
+def test_a_dxf_file_without_its_package_is_one_sentence_with_the_way_to_it(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    with pytest.raises(ValueError, match=r"needs the package ezdxf; install it with: pip install 'pinball"):
+        of_dxf(written(tmp_path, "any.dxf", ""))
 
 
 def test_without_the_package_one_sentence_says_how_to_get_it(tmp_path, monkeypatch, capsys):

@@ -110,16 +110,17 @@ def of_dxf(path: str) -> "Table":
     """The table that the outlines of a DXF file bound: the largest is the boundary, the others are holes."""
     _text("--data", path, "latin-1")  # what cannot be opened, or is too large
     try:
-        import ezdxf
         from ezdxf.disassemble import recursive_decompose
+        from ezdxf.filemanagement import readfile
+        from ezdxf.lldxf.const import DXFError
         from ezdxf.path import make_path
     except ModuleNotFoundError:
         raise ValueError(
             "--data needs the package ezdxf; install it with: pip install 'pinball-billiards[outline]'"
         ) from None
     try:
-        model = ezdxf.readfile(path).modelspace()
-    except (OSError, ezdxf.DXFError, UnicodeDecodeError, ValueError) as error:
+        model = readfile(path).modelspace()
+    except (OSError, DXFError, UnicodeDecodeError, ValueError) as error:
         raise ValueError(f"--data {path!r} is no DXF file: {error}") from None
     runs = []
     for entity in recursive_decompose(model):

@@ -1,4 +1,5 @@
 # `make verify` judges the paper, `make test` tests the package; both make .venv first.
+# `make quick` leaves out the tests listed in tests/slow.txt: less than a minute, for the work in between.
 # On another machine: make PYTHON=python3.12, make test JOBS=8.
 
 PYTHON ?= python3
@@ -6,7 +7,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test browser check-all formal lint docs dist bench mutation torture clean
+.PHONY: verify test quick browser check-all formal lint docs dist bench mutation torture clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -15,8 +16,14 @@ verify: $(VENV)/main.stamp
 	@status=0; $(BIN)/pinball verify --report report --work benchmarks/records/work_precision.json || status=$$?; \
 	test $$status -le 1 && test -f report/report.json
 
+# File by file, the dearest first: what a file computes for several tests is computed once.
+PYTEST := $(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile --no-loadscope-reorder
+
 test: lint
-	$(BIN)/python -m pytest -q -n $(JOBS)
+	$(PYTEST)
+
+quick: $(VENV)/test.stamp
+	$(PYTEST) -m "not slow"
 
 # The pages in a headless Chromium, which must be on the path or named by CHROMIUM.
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp

@@ -26,26 +26,27 @@ SHARE = 0.3  # of a group's seconds: claims that share more stay together howeve
 DIGITS = 2  # of the seconds
 
 judged = ""  # the claim that is being judged
-found_by: dict[tuple[str, Any], tuple[str, float]] = {}  # who computed a result, and how long it took
+seen: set[tuple[str, Any]] = set()  # results that this claim took from others
 taken: dict[tuple[str, str], float] = {}  # what a claim was saved by another
 
 
 def noting(function: Callable[..., Any]) -> Callable[..., Any]:
     """As `functools.cache`, with notes of who computed what."""
-    kept: dict[Any, Any] = {}
     name = f"{function.__module__}.{function.__qualname__}"
+    kept: dict[Any, tuple[Any, str, float]] = {}  # a result, the claim that computed it, and how long that took
 
     @functools.wraps(function)
     def called(*arguments: Any, **named: Any) -> Any:
-        key = (arguments, tuple(sorted(named.items())))
-        if key not in kept:
+        key = (arguments, *named.items()) if named else arguments
+        found = kept.get(key)
+        if found is None:
             start = time.process_time()
-            kept[key] = function(*arguments, **named)
-            found_by[name, key] = (judged, time.process_time() - start)
-        first, seconds = found_by[name, key]
-        if first != judged:
+            found = kept[key] = function(*arguments, **named), judged, time.process_time() - start
+        result, first, seconds = found
+        if first != judged and (name, key) not in seen:
+            seen.add((name, key))
             taken[first, judged] = taken.get((first, judged), 0.0) + seconds
-        return kept[key]
+        return result
 
     called.cache_clear = kept.clear  # type: ignore[attr-defined]
     return called
@@ -93,6 +94,7 @@ def measure() -> None:
     seconds = {}
     for claim in report.catalogue():
         judged, start = claim.id, time.process_time()
+        seen.clear()
         report.judge(claim)
         seconds[judged] = round(time.process_time() - start, DIGITS)
         sys.stdout.write(f"{seconds[judged]:8.2f}  {judged}\n")

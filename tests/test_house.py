@@ -99,7 +99,21 @@ def test_the_readme_is_true():
     assert result.failed == 0
 
 
-def test_the_two_commands_of_the_readme_exist():
+def test_what_is_listed_as_slow_is_there_and_only_make_quick_leaves_it_out():
+    """`python benchmarks/slow_tests.py` writes the list; a few may have another name since."""
+    listed = [line.split()[1].split("::") for line in (ROOT / "tests" / "slow.txt").read_text().splitlines()]
+    text = {path: (ROOT / path).read_text() for path, _ in listed if (ROOT / path).is_file()}
+    there = [name for path, name in listed if name.rpartition(".")[2] in text.get(path, "")]
+    assert len(there) > 0.8 * len(listed)
+
+    makefile, ci = (ROOT / "Makefile").read_text(), (ROOT / ".ci" / "run").read_text()
+    recipes = dict(re.findall(r"^(\w+):.*\n\t(.*)$", makefile, re.MULTILINE))
+    assert (recipes["quick"], recipes["test"]) == ('$(PYTEST) -m "not slow"', "$(PYTEST)")
+    assert makefile.count("slow") == 2  # once where make quick is explained
+    assert "make test" in ci
+
+
+def test_the_commands_of_the_readme_exist():
     makefile = (ROOT / "Makefile").read_text()
     for target in re.findall(r"^    make (\w+)", (ROOT / "README.md").read_text(), re.MULTILINE):
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)

@@ -94,9 +94,13 @@ def balls(bits: int) -> Words[arb]:
     True False
     """
 
+    constants: dict[tuple[int, int], arb] = {}
+
     def rational(p: int, n: int) -> arb:
-        with ctx.workprec(bits):
-            return arb(fmpq(p, n))
+        if (p, n) not in constants:  # a kernel has few, and asks for them at every call
+            with ctx.workprec(bits):
+                constants[p, n] = arb(fmpq(p, n))
+        return constants[p, n]
 
     with ctx.workprec(bits):
         pi = arb.pi()

@@ -1,5 +1,7 @@
 """The derivative and the exponents of the kernels, against the symbolic matrix and the 50-digit map."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -13,14 +15,18 @@ from verification.maps import strategies
 from verification.maps.exact import ExactMap
 
 EPS = 2.0**-52
-SYMBOLIC = lambdify((K0, K1, t, cos_phi0, cos_eta1, lam), derivative_matrix().tolist(), "math")
+
+
+@cache
+def symbolic():
+    return lambdify((K0, K1, t, cos_phi0, cos_eta1, lam), derivative_matrix().tolist(), "math")
 
 
 def by_formula(map, where, theta, phi, step):
     """The paper's matrix, from the two ends of a flight."""
     x, y = map.states.point(where, theta)
     curvature = map.states.curvature
-    matrix = SYMBOLIC(
+    matrix = symbolic()(
         float(curvature(where, theta)),
         float(curvature(step.component, step.theta)),
         float(np.hypot(step.x - x, step.y - y)),

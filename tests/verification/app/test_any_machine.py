@@ -57,15 +57,14 @@ def usual():
 
 
 MACHINES = {
-    "without assertions": {"PYTHONOPTIMIZE": "1"},
-    "without docstrings": {"PYTHONOPTIMIZE": "2"},
-    "without a locale": {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
-    "without a home": {"without": ("HOME", "XDG_CACHE_HOME", "USER", "LOGNAME")},
-    "64 threads": {"threads": 64},
-    "a fork after threads": {"after": FORK},
+    "without assertions, docstrings, a locale and a home": {
+        "PYTHONOPTIMIZE": "2", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0",
+        "without": ("HOME", "XDG_CACHE_HOME", "USER", "LOGNAME"),
+    },
+    "64 threads, and a fork after them": {"threads": 64, "after": FORK},
     "2 GB of addresses": {"prepare": lambda: resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))},
     "read-only Python": {"PYTHONDONTWRITEBYTECODE": "1", "PINBALL_CACHE": "/proc/nowhere"},
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("machine", MACHINES)

@@ -1,6 +1,7 @@
 """What Newton's solutions say of themselves: against the inverted matrix, and against a hundred digits."""
 
 import json
+from functools import partial
 
 import mpmath
 import numpy as np
@@ -27,10 +28,17 @@ from verification.cycles.newton import (
 from verification.cycles.problem import Problem
 from verification.measure.extremes import near
 
-FINE = near.nearly_round(near.FINE_GAP)
-ONCE = near.nearly_flipped(near.FLIP_GAP, twice=False)
-TWICE = near.nearly_flipped(near.FLIP_GAP, twice=True)
-SOLVED = [near.folded(4), near.folded(None), near.nearly_round(near.COARSE_GAP), near.in_the_cascade(4)]
+FINE = partial(near.nearly_round, near.FINE_GAP)
+TWICE = partial(near.nearly_flipped, near.FLIP_GAP, twice=True)
+ONCE = partial(near.nearly_flipped, near.FLIP_GAP, twice=False)
+TOUCHING = partial(near.touching, near.FOLD_GAP)
+SOLVED = {
+    "a cycle": partial(near.folded, 4),
+    "a fold": partial(near.folded, None),
+    "nearly round": partial(near.nearly_round, near.COARSE_GAP),
+    "in the cascade": partial(near.in_the_cascade, 4),
+}
+NEAR = {"almost round": FINE, "almost a flip": ONCE, "almost a fold": TOUCHING}
 
 
 def row_sum(problem: Problem, z: list[float]) -> float:
@@ -38,8 +46,9 @@ def row_sum(problem: Problem, z: list[float]) -> float:
     return float(np.abs(np.array([problem.solved(FLOAT64, z, unit) for unit in units])).sum(axis=0).max())
 
 
-@pytest.mark.parametrize(("problem", "start"), SOLVED)
-def test_the_estimate_is_a_row_sum_of_the_inverse_and_no_less_than_a_third_of_the_largest(problem, start):
+@pytest.mark.parametrize("made", SOLVED.values(), ids=SOLVED)
+def test_the_estimate_is_a_row_sum_of_the_inverse_and_no_less_than_a_third_of_the_largest(made):
+    problem, start = made()
     z = in_floats(problem, start).z
     exact, estimate = row_sum(problem, z), norm_of_inverse(problem, FLOAT64, z)
 
@@ -60,17 +69,16 @@ def test_the_ascent_finds_the_largest_row_sum_of_a_matrix_without_signs(matrix):
     assert found == pytest.approx(np.abs(matrix).sum(axis=1).max(), rel=1e-14)  # the first step of the ascent is exact
 
 
-@pytest.mark.parametrize(
-    ("problem", "start"), [*SOLVED, FINE, near.nearly_flipped(near.FLIP_GAP, twice=False), near.touching(near.FOLD_GAP)]
-)
-def test_the_digits_called_sure_are_right(problem, start):
+@pytest.mark.parametrize("made", [*SOLVED.values(), *NEAR.values()], ids=[*SOLVED, *NEAR])
+def test_the_digits_called_sure_are_right(made):
+    problem, start = made()
     found, truth = in_floats(problem, start), near.solution(problem, start)
 
     assert max(abs(x - y) for x, y in zip(found.z, truth, strict=True)) < 10.0**-found.digits_sure
 
 
 def test_next_to_a_fold_newtons_method_names_its_condition_and_more_digits_cure_it():
-    problem, start = FINE
+    problem, start = FINE()
     rough, sharp = in_floats(problem, start), refined(problem, start, 50)
 
     assert rough.conditioning is Conditioning.SENSITIVE
@@ -102,7 +110,7 @@ def test_the_fold_itself_is_well_conditioned_where_its_cycle_is_singular():
 def test_a_cycle_run_twice_is_named_where_it_settles_and_where_it_does_not():
     diameter = Problem(egg(3).at(alpha="2/25"), (0,) * 4, lam=Rational(1, 3))
     settled = in_floats(diameter, [0.0, 3.14159] * 2)
-    problem, start = TWICE
+    problem, start = TWICE()
 
     assert (settled.conditioning, settled.shorter) == (Conditioning.REPEATED, 2)
     with pytest.raises(UnsettledError, match=r"a shorter cycle run through several times.*after 2 bounces") as caught:

@@ -83,6 +83,18 @@ def test_a_claim_whose_process_dies_is_open_and_says_so(monkeypatch):
     assert second == found
 
 
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_claims_are_told_in_the_catalogues_order_whatever_order_they_are_judged_in(monkeypatch, jobs):
+    def backwards(claims, digits, jobs):
+        yield from (report.judge(claim) for claim in (claims if jobs == 1 else claims[::-1]))
+
+    wanted = [claim.id for claim in report.catalogue() if claim.id.startswith("ellipse.P")]
+    monkeypatch.setattr(report, "judged", report.judged if jobs == 1 else backwards)
+
+    assert [result.id for result in report.verify("ellipse.P*", jobs=jobs)] == wanted
+    assert len(wanted) > 3
+
+
 def test_claims_that_share_results_are_judged_by_one_process_and_the_dearest_begin():
     groups = report.shared_out(report.catalogue())
     costs = [report.seconds(group) for group in groups]

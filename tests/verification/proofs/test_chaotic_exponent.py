@@ -25,7 +25,20 @@ HALF = np.pi / 2
 DIGITS = 8
 BITS = bits_of(DIGITS, 64) + 2 * DIGITS
 GRID = np.concatenate([np.linspace(0, HALF, 40_001)[:-1], HALF - np.geomspace(1e-5, 1e-14, 50)])
-below, above = (load(branch(form), ARRAYS) for form in (False, True))
+
+
+@cache
+def kernels():
+    """Where a particle leaves, below the cusp and above it; made once, and not where nobody asks."""
+    return tuple(load(branch(form), ARRAYS) for form in (False, True))
+
+
+def below(x):
+    return kernels()[0](x)
+
+
+def above(x):
+    return kernels()[1](x)
 
 
 def transferred(f, x):

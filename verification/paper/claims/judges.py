@@ -77,14 +77,15 @@ def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
                 findings.append(replace(finding, reason=where + finding.reason))
         return conjunction(*findings)
     difference = left - right
-    if vanishes(difference):
-        return Finding(Outcome.PROVED, "exact reduction to 0")
+    # A ball that excludes 0 is cheaper than a reduction, and there is none where the two agree.
     for point in witnesses(difference.free_symbols, box):
         ball = enclose(difference, point)
         if ball.is_finite() and not ball.contains(0):
             where = ", ".join(f"{x} = {v}" for x, v in point.items()) or "this number"
             reason = f"at {where} the two differ by {ball.str(6, radius=False)}"
             return placed(Finding(Outcome.REFUTED, reason, tuple(point.items())), box)
+    if vanishes(difference):
+        return Finding(Outcome.PROVED, "exact reduction to 0")
     return Finding(Outcome.UNKNOWN, "neither reduced to 0 nor told apart at a witness")
 
 

@@ -12,7 +12,7 @@ import json
 import platform
 import re
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -77,11 +77,12 @@ def verify(only: str = "*", digits: int = 15, jobs: int = 1) -> Iterator[Result]
     """
     claims = [claim for claim in catalogue() if fnmatchcase(claim.id, only)]
     found: dict[str, Result] = {}
+    order = deque(claim.id for claim in claims)
     with closing(judged(claims, digits, jobs)) as results:
         for result in results:
             found[result.id] = result
-            while claims and claims[0].id in found:
-                yield found[claims.pop(0).id]
+            while order and order[0] in found:
+                yield found[order.popleft()]
 
 
 def judged(claims: Sequence[Claim], digits: int, jobs: int) -> Generator[Result, None, None]:

@@ -21,7 +21,7 @@ SLOW = {name: float(seconds) for seconds, name in (line.split() for line in LINE
 def pytest_collection_modifyitems(items):
     names = {item: item.nodeid.partition("[")[0] for item in items}
     files = Counter()
-    for name in {*names.values()}:
+    for name in dict.fromkeys(names.values()):  # in one order, so that workers agree
         files[name.partition("::")[0]] += SLOW.get(name, 0.0)
     for item, name in names.items():
         if name in SLOW:

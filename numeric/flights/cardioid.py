@@ -50,6 +50,14 @@ class Cardioid(Family):
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return ops.number(0.0), ops.number(2.0) * ops.atan2(position[1], position[0])
 
+    def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N]:
+        sigma = position[0], position[1]
+        tx, ty = plane.times(sigma, plane.squared(sigma))
+        return Frame(*self.point(ops, position), -ty, tx)
+
+    def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
+        return ops.number(1.0), ops.number(-0.75) / position[0]
+
     def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         return [ops.cos(phi), ops.sin(phi)]
 

@@ -23,6 +23,13 @@ class Circle(Family):
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return ops.number(0.0), position[0]
 
+    def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N]:
+        x, y = ops.cos(position[0]), ops.sin(position[0])
+        return Frame(x, y, -y, x)
+
+    def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
+        return ops.number(1.0), ops.number(-1.0)
+
     def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         return [phi]
 

@@ -61,6 +61,16 @@ class Cuspless(Cardioid):
         _, theta = super().place(ops, [p, q])
         return component, ops.select(ops.number(0.5) < component, -p, theta)
 
+    def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N]:
+        wall, sigma = ops.number(0.5) < position[0], (position[1], position[2])
+        tx, ty = plane.times(sigma, plane.squared(sigma))
+        tangent = ops.select(wall, ops.number(0.0), -ty), ops.select(wall, ops.number(-1.0), tx)
+        return Frame(*self.point(ops, position), *tangent)
+
+    def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
+        rate, curvature = super().curving(ops, shape, position[1:])
+        return rate, ops.select(ops.number(0.5) < position[0], ops.number(0.0), curvature)
+
     def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
         return theta if component == 1 else super().arclength(ops, component, theta)
 

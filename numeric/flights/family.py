@@ -83,8 +83,7 @@ class Boundary:
     def __init__(self, ir: TableIR, shape: list[float]) -> None:
         self.ir, self.shape, self.ops = ir, shape, ArrayBackend()
         self.numbers = [self.ops.number(x) for x in shape]
-        ends = [part.ends(self.ops, *self.numbers) for part in ir.parts]
-        self.ends = [(float(low), float(high)) for low, high in ends]
+        self.ends = [(float(x), float(y)) for x, y in (part.ends(self.ops, *self.numbers) for part in ir.parts)]
 
     @property
     def closed(self) -> bool:
@@ -128,8 +127,7 @@ class Boundary:
         return speed, -(dx * ay - dy * ax) / speed**3
 
 
-SLAP, ELASTIC, PINBALL = "slap", "elastic", "pinball"  # the uniform contraction, at 0, at 1, and between
-FORMULA = "formula"  # any other law
+SLAP, ELASTIC, PINBALL, FORMULA = "slap", "elastic", "pinball", "formula"  # lam = 0, 1, between; any other law
 GRAZE = 2.0**-50  # cos(eta) below this is a tangency
 NEAR = 2.0**-50  # a landing closer than this to a join or a cusp is one
 
@@ -209,6 +207,14 @@ class Family(ABC):
     @abstractmethod
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         """Component, as a number, and parameter of position fields."""
+
+    def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N] | None:
+        """The frame at position fields, on any number system: a family that has it tells orbits in its kernels."""
+        return None
+
+    def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
+        """As `bending`, at position fields; beside `framed`."""
+        raise NotImplementedError(self.name)
 
     def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         """The exit fields of the exit angle `phi`."""
@@ -311,10 +317,15 @@ class Family(ABC):
         self, ops: Backend[N, M], law: str, shape: Fields[N], lam: N, state: Fields[N]
     ) -> tuple[list[N], N | None]:
         """One flight and one reflection: the new state, and the code of the outcome or None."""
-        position, exit = self._split(ops, shape, law, state)
-        landing = self.fly(ops, shape, law, position, exit)
-        leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
+        landing, leaving = self.flown(ops, law, shape, lam, state)
         return landing.position + leaving, landing.code
+
+    def flown(
+        self, ops: Backend[N, M], law: str, shape: Fields[N], lam: N, state: Fields[N]
+    ) -> tuple[Landing[N], list[N]]:
+        """As `bounce`: the landing, and the exit fields after it."""
+        landing = self.fly(ops, shape, law, *self._split(ops, shape, law, state))
+        return landing, [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
 
     def rate(self, ops: Backend[N, M], shape: Fields[N], law: str, state: Fields[N]) -> N:
         """`N0` of a particle that is about to leave."""
@@ -352,8 +363,7 @@ class Family(ABC):
         n0 = self.leaving_rate(ops, shape, landing, leaving)
         rise = n0 * below
         counted = up * rise if law != FORMULA else up * rise * modulus(slope)
-        rows = [moved * rise, turned, growth, counted, down, volume, n0]
-        return landing.position + leaving, landing.code, rows, end
+        return landing.position + leaving, landing.code, [moved * rise, turned, growth, counted, down, volume, n0], end
 
     def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
         """`departure` at a landing, whose frame is known already."""

@@ -6,7 +6,7 @@ needs come from `symbolic.motion.flight` through the table IR.
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair
-from numeric.flights.family import SLAP, Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing, Status, grazing, reflected
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
 
@@ -35,6 +35,17 @@ class Harmonic(Family):
 
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return ops.number(0.0), ops.atan2(position[1], position[0])
+
+    def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N]:
+        d = self.velocity(ops, *position, *shape)
+        x, y = self.point(ops, *position, *shape)
+        return Frame(x, y, *plane.normalised(ops, (d[0], d[1])))
+
+    def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
+        d, a = self.velocity(ops, *position, *shape), self.acceleration(ops, *position, *shape)
+        square = plane.dot((d[0], d[1]), (d[0], d[1]))
+        rate = ops.sqrt(square)
+        return rate, plane.cross((a[0], a[1]), (d[0], d[1])) / (square * rate)
 
     def landed(self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N]) -> Landing[N]:
         """The landing at `u` of a particle that flies along `v`."""

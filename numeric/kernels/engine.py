@@ -5,7 +5,7 @@ Every lane computes what it would compute alone, so results depend neither on th
 
 import itertools
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family
 from numeric.kernels import machine
-from numeric.kernels.machine import KernelSpec, fields, rescaled
+from numeric.kernels.machine import START, KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
 PART = 1 << 17  # doubles recorded at a time: a page that stays in the cache
+ALONE = 4  # particles that are run in narrow blocks: it takes less long to wait for
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
 
@@ -51,12 +52,14 @@ class Engine(NamedTuple):
         bounces: int,
         tangent: Sequence[Array] = (),
         threads: int | None = None,
+        outcome: Sequence[Array] = (),
     ) -> Result:
-        """Bounce every particle `bounces` times. `own` and `tangent` are the starting rows."""
+        """Bounce every particle `bounces` times. `own` and `tangent` are the starting rows, `outcome` code and lost."""
         names = fields(self.family, spec)
         count = own[0].size
         width = -(-count // self.width) * self.width
-        start: list[Array | float] = [*own, *([0.0, 0.0] if self.family.stops else []), *tangent]
+        none: list[Array | float] = [0.0, 0.0] if self.family.stops else []
+        start: list[Array | float] = [*own, *(outcome or none), *tangent]
         state = np.empty((len(names), width))
         for row, values in zip(state, start, strict=True):
             row[:count] = values
@@ -75,6 +78,16 @@ class Engine(NamedTuple):
         rows = {name: row[:count] for name, row in zip(names, state, strict=True)}
         return Result(rows, record)
 
+    def course(
+        self, law: str, told: Sequence[str], start: Sequence[Array], lam: Array, shape: Sequence[float]
+    ) -> "Course | None":
+        """Particles that start at component, parameter and exit angle, told by kernels; None where there are none."""
+        if not self.kernels or type(self.family).framed is Family.framed:
+            return None
+        width = ALONE if start[0].size <= ALONE else self.width
+        found = Course(self, law, tuple(told), width, start, lam, shape)
+        return found if found.kernel(starts=True) is not None else None
+
     def _advance(
         self,
         spec: KernelSpec,
@@ -92,18 +105,92 @@ class Engine(NamedTuple):
         if function is None:
             _run_arrays(self.family, spec, state, contraction, list(shape), bounces, page)
             return
-        width = state.shape[1]
         parameters = np.array([*shape, 0.0])
         pointers = [x.ctypes.data if x is not None else None for x in (state, contraction, parameters, page)]
-        pieces = _pieces(width // self.width, width * bounces, threads)
-        calls = [(*pointers, width, first * self.width, last * self.width, bounces) for first, last in pieces]
-        if len(calls) == 1:
-            function(*calls[0])
-            return
-        from concurrent.futures import ThreadPoolExecutor
+        shared(function, pointers, state.shape[1], self.width, bounces, threads)
 
-        with ThreadPoolExecutor(len(calls)) as pool:
-            list(pool.map(lambda call: function(*call), calls))
+
+class Course:
+    """Particles on their way: `advance` bounces them on and tells each bounce, where their state is at hand."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        law: str,
+        told: tuple[str, ...],
+        width: int,
+        start: Sequence[Array],
+        lam: Array,
+        shape: Sequence[float],
+    ) -> None:
+        self.engine, self.law, self.told, self.width, self.count = engine, law, told, width, lam.size
+        columns = -(-self.count // width) * width
+        self.names = fields(engine.family, KernelSpec(law))
+        self.state = np.zeros((len(self.names) + len(START), columns))
+        self.lam, self.shape = np.empty(columns), np.array([*shape, 0.0])
+        for row, values in zip((*self.state[-len(START) :], self.lam), (*start, lam), strict=True):
+            row[: self.count], row[self.count :] = values, values[-1]
+        self.begun = False
+
+    @property
+    def rows(self) -> dict[str, Array]:
+        """The rows of the state, by name."""
+        return {name: row[: self.count] for name, row in zip(self.names, self.state, strict=False)}
+
+    def kernel(self, starts: bool = False, told: bool = True) -> machine.Run | None:
+        """The kernel that starts or goes on, and tells or does not."""
+        engine = self.engine
+        spec = KernelSpec(self.law, told=self.told if told else (), starts=starts)
+        return machine.compiled(engine.family, engine.identity, engine.names, spec, self.width)
+
+    def advance(
+        self, bounces: int, out: Mapping[str, Array], top: int, every: int = 1, threads: int | None = 1
+    ) -> None:
+        """Bounces all particles, and writes what is told of every so many-th bounce into rows from `top` on."""
+        columns = self.lam.size
+        most = 1 if every > 1 else min(bounces, max(1, PART // (max(1, len(self.told)) * columns)))
+        page = np.empty((most, len(self.told), columns))
+        for done in range(0, bounces // every, most):
+            part = min(most, bounces // every - done)
+            if every > 1:
+                self._run(every - 1, None, threads)
+            self._run(part, page[:part], threads)
+            for i, name in enumerate(self.told):
+                out[name][top + done : top + done + part] = page[:part, i, : self.count]
+
+    def start(self) -> "Course":
+        """Makes the fields of the state, unless they are made."""
+        if not self.begun:
+            self._call(self.kernel(starts=True, told=False), 0, None, 1)
+        return self
+
+    def _run(self, bounces: int, page: Array | None, threads: int | None) -> None:
+        """Bounces all particles, and tells each bounce if there is a page for it."""
+        told = page is not None and bool(self.told)
+        if not told:
+            self.start()
+        self._call(self.kernel(starts=not self.begun, told=told), bounces, page, threads)
+
+    def _call(self, run: machine.Run | None, bounces: int, page: Array | None, threads: int | None) -> None:
+        assert run is not None
+        self.begun = True
+        pointers = [x.ctypes.data if x is not None else None for x in (self.state, self.lam, self.shape, page)]
+        shared(run, pointers, self.lam.size, self.width, bounces, threads)
+
+
+def shared(
+    run: machine.Run, pointers: Sequence[int | None], columns: int, width: int, bounces: int, threads: int | None
+) -> None:
+    """A kernel on all columns, shared out to threads."""
+    pieces = _pieces(columns // width, columns * bounces, threads)
+    calls = [(*pointers, columns, first * width, last * width, bounces) for first, last in pieces]
+    if len(calls) == 1:
+        run(*calls[0])
+        return
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(len(calls)) as pool:
+        list(pool.map(lambda call: run(*call), calls))
 
 
 def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]]:

@@ -19,6 +19,9 @@ from numeric.flights.family import Array, Family
 from numeric.lowering import cache
 
 TANGENT = ("shift", "omega", "growth", "up", "down", "volume", "n0")
+TOLD = ("component", "theta", "phi", "eta", "x", "y")
+MATRIX = ("moved by s", "moved by phi", "bent by s", "bent by phi")  # ds1, and K1*ds1 - K0*ds0 - dphi0, of both inputs
+START = ("first component", "first theta", "first phi")  # the last rows of a kernel that starts by them
 FAR = 2.0**100  # a double holds 2**1000
 
 
@@ -28,16 +31,19 @@ class KernelSpec(NamedTuple):
     law: str
     record: bool = False
     exponents: bool = False
+    told: tuple[str, ...] = ()  # what is recorded in place of the state, of `TOLD` and `MATRIX`
+    starts: bool = False  # from component, parameter and exit angle, in place of a state
 
     @property
     def text(self) -> str:
         """The question as part of a name."""
-        return "-".join([self.law, *(["record"] if self.record else []), *(["exponents"] if self.exponents else [])])
+        words = [word for word in ("record", "exponents", "starts") if getattr(self, word)]
+        return "-".join([self.law, *words, *self.told])
 
 
 def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:
     """The rows of `state`."""
-    extra = TANGENT if spec.exponents else ()
+    extra = (TANGENT if spec.exponents else ()) + (START if spec.starts else ())
     return (*family.fields(spec.law), *(("code", "lost") if family.stops else ()), *extra)
 
 

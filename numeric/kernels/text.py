@@ -4,8 +4,9 @@
              int64 width, int64 first, int64 last, int64 bounces)
 
 `state` holds one row of `width` doubles for each field: the particle's own, then `code` and `lost` when the
-family has outcomes, then the tangent vector's when exponents are asked for. Columns `first` to `last` are
-worked on. `record`, when orbits are asked for, receives the particle's own rows after every bounce.
+family has outcomes, then the tangent vector's when exponents are asked for, or component, parameter and exit angle
+that a particle starts from. Columns `first` to `last` are worked on. `record`, when orbits are asked for, receives
+after every bounce the particle's own rows, or what was asked for in their place: parameter, angles, point.
 
 Inside, the processor takes numbers below 2**-1022 for zero: a particle at rest on a cycle ends up there, and many
 processors take such an operation for an exception, sixty times as long. The caller's mode is restored on the way out.
@@ -17,8 +18,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from numeric.backends.llvm import LLVMBackend, LLVMVector
-from numeric.flights.family import ELASTIC, SLAP, Family
-from numeric.kernels.machine import TANGENT, KernelSpec, fields, rescaled
+from numeric.flights.family import ELASTIC, SLAP, Family, Landing
+from numeric.kernels.machine import MATRIX, START, TANGENT, KernelSpec, fields, rescaled
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
 HEAD = (
@@ -79,6 +80,11 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     ops.open()
     addresses = [_address(ops, "state", ops.emit(f"mul i64 %width, {i}")) for i in range(len(names))]
     loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
+    if spec.starts:
+        loaded = _started(ops, family, spec.law, parameters, loaded[-len(START) :]) + loaded[own : -len(START)]
+        names, addresses = names[: -len(START)], addresses[: -len(START)]
+    if spec.starts and not spec.told:
+        return _module(ops, family, spec, _stored(ops, loaded, addresses), mode)
     lam = _contraction(ops, spec.law)
     particle = [LLVMVector(ops, name) for name in loaded[:own]]
     place = particle[: len(family.position)]
@@ -96,9 +102,12 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     slot = len(ops.lines)
     ops.open()
     state = [ops.fresh() for _ in [*names, *carried]]
-    new = _bounced(ops, family, spec, parameters, lam, [LLVMVector(ops, name) for name in state])
+    new, landed = _bounced(ops, family, spec, parameters, lam, [LLVMVector(ops, name) for name in state])
     texts = [x.text for x in new]
-    if spec.record:
+    if spec.told:
+        particle = [LLVMVector(ops, name) for name in state[:own]]
+        _record(ops, [x.text for x in _told(ops, family, spec, parameters, lam, particle, landed)])
+    elif spec.record:
         _record(ops, texts[:own])
     ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %until"]
     ops.lines.append("  br i1 %more, label %bounce, label %measured")
@@ -118,15 +127,22 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     finals = [ops.fresh() for _ in names]
     for name, begin, end in zip(finals, loaded, texts[: len(names)], strict=True):
         ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
-    for name, address in zip(finals, addresses, strict=True):
-        ops.lines.append(f"  store {ops.type} {name}, ptr {address}, align 8")
-    ops.lines += ["  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column", "exit:"]
-    ops.lines += [f"  {line}" for line in mode.exit]
+    return _module(ops, family, spec, _stored(ops, finals, addresses), mode)
+
+
+def _stored(ops: LLVMBackend, rows: Sequence[str], addresses: Sequence[str]) -> list[str]:
+    """The end of a block of lanes: its rows go to memory, and the next one begins."""
+    stores = [f"  store {ops.type} {row}, ptr {address}, align 8" for row, address in zip(rows, addresses, strict=True)]
+    return [*stores, "  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column"]
+
+
+def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], mode: Mode) -> str:
+    """The whole text, from the lines that were written."""
+    lines = [*ops.lines, *end, "exit:", *(f"  {line}" for line in mode.exit)]
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
-    return "\n".join(
-        [title, *arrays, HEAD, *alive(ops.lines), "  ret void", "}", *sorted(ops.called), *mode.declared, TAIL, ""]
-    )
+    declared = [*sorted(ops.called), *mode.declared]
+    return "\n".join([title, *arrays, HEAD, *alive(lines), "  ret void", "}", *declared, TAIL, ""])
 
 
 def _joined(
@@ -152,6 +168,61 @@ def _broadcast(ops: LLVMBackend, i: int, name: str) -> LLVMVector:
 def _address(ops: LLVMBackend, base: str, row: str) -> str:
     """Where this column's block of a row begins; `row` counts doubles."""
     return ops.emit(f"getelementptr double, ptr %{base}, i64 {ops.emit(f'add i64 {row}, %at')}")
+
+
+def _started(ops: LLVMBackend, family: Family, law: str, shape: list[LLVMVector], rows: list[str]) -> list[str]:
+    """The fields of particles that leave a component at a parameter, at an exit angle."""
+    component, theta, phi = (LLVMVector(ops, row) for row in rows)
+    position = family.enter(ops, component, theta)
+    if law == SLAP:
+        return [x.text for x in position]
+    frame = family.framed(ops, shape, position)
+    assert frame is not None, family.name
+    return [x.text for x in (*position, *family.aim(ops, frame, phi))]
+
+
+def _told(
+    ops: LLVMBackend,
+    family: Family,
+    spec: KernelSpec,
+    shape: list[LLVMVector],
+    lam: LLVMVector,
+    before: list[LLVMVector],
+    landing: Landing[LLVMVector] | None,
+) -> list[LLVMVector]:
+    """What people ask of a landing: the angles are those that the reflection used; of a particle that stops, anything.
+
+    What is not recorded is not computed: nothing depends on it, so its lines are left out of the text.
+    """
+    assert landing is not None
+    component, theta = family.place(ops, landing.position)
+    frame = family.framed(ops, shape, landing.position)
+    assert frame is not None, family.name
+    incidence = family.incidence(ops, landing)
+    phi = ops.number(0.0) if spec.law == SLAP else family.exit_angle(ops, spec.law, lam, landing)
+    known = {"component": component, "theta": theta, "phi": phi, "eta": -incidence, "x": frame.x, "y": frame.y}
+    if MATRIX[0] in spec.told:
+        known |= zip(MATRIX, _matrix(ops, family, spec.law, shape, before, landing), strict=True)
+    return [known[name] for name in spec.told]
+
+
+def _matrix(
+    ops: LLVMBackend,
+    family: Family,
+    law: str,
+    shape: list[LLVMVector],
+    before: list[LLVMVector],
+    landing: Landing[LLVMVector],
+) -> list[LLVMVector]:
+    """The derivative of a bounce, as `MATRIX` has it, by the tangent map of `numeric.flights.family`."""
+    position, exit = before[: len(family.position)], before[len(family.position) :]
+    n0, (rate, curvature) = family.departure(ops, shape, position, exit), family.curving(ops, shape, position)
+    ends = family.kept(ops, shape, position), family.kept(ops, shape, landing.position)
+    t = family.length(ops, shape, n0, *ends, landing)
+    rate1, curvature1 = family.curving(ops, shape, landing.position)
+    turned, scale = (curvature, ops.number(1.0)), -rate1 / landing.along
+    moved = [(t * curvature + n0 / rate) * scale, t * scale]
+    return [*moved, *(curvature1 * x - y for x, y in zip(moved, turned, strict=True))]
 
 
 def _record(ops: LLVMBackend, texts: list[str]) -> None:
@@ -216,21 +287,24 @@ def _bounced(
     shape: list[LLVMVector],
     lam: LLVMVector,
     state: list[LLVMVector],
-) -> list[LLVMVector]:
-    """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost."""
+) -> tuple[list[LLVMVector], Landing[LLVMVector] | None]:
+    """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost.
+
+    And the landing, where there is no tangent vector.
+    """
     count = len(family.fields(spec.law))
     own, rest = state[:count], state[count:]
     outcome, rest = (rest[:2], rest[2:]) if family.stops else ([], rest)
     if spec.exponents:
         vector, kept = rest[: len(TANGENT)], rest[len(TANGENT) :]
         particle, code, rows, kept = family.bounce_with_tangent(ops, spec.law, shape, lam, own, vector, kept)
-        rest_new = rows + kept
+        rest_new, landing = rows + kept, None
     else:
-        particle, code = family.bounce(ops, spec.law, shape, lam, own)
-        rest_new = []
+        landing, leaving = family.flown(ops, spec.law, shape, lam, own)
+        particle, code, rest_new = landing.position + leaving, landing.code, []
     new = [*particle, *rest_new]
     if code is None or not family.stops:
-        return [*particle, *outcome, *rest_new]
+        return [*particle, *outcome, *rest_new], landing
     stopped = ops.number(0.5) < code
 
     def frozen() -> list[LLVMVector]:
@@ -239,4 +313,4 @@ def _bounced(
         return [first, outcome[1] + ops.select(stopped, ops.number(1.0), ops.number(0.0)), *kept]
 
     code_row, lost_row, *new = ops.when(stopped, [*outcome, *new], frozen)
-    return [*new[:count], code_row, lost_row, *new[count:]]
+    return [*new[:count], code_row, lost_row, *new[count:]], landing

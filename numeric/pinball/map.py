@@ -1,20 +1,22 @@
 """`PinballMap`: a table with its shape and contraction, asked for steps, orbits, derivatives and exponents."""
 
+from collections.abc import Iterator, Sequence
 from copy import copy
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from numeric.flights.family import FORMULA, NEAR, PINBALL, SLAP, Boundary, law_of
 from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
-from numeric.kernels.machine import KernelSpec, starting
+from numeric.kernels.machine import MATRIX, TOLD, KernelSpec, starting
 from numeric.lowering.cache import key_of
 from numeric.lowering.program import TableIR, table_ir
 from numeric.pinball.coordinates import States
+from numeric.pinball.orbits import PIECE, Course, Single, derivatives
 from numeric.pinball.sampling import Growth
 from numeric.pinball.states import (
     Contraction,
@@ -66,6 +68,7 @@ class PinballMap:
         self.reflection = law if isinstance(law, Law) else Law() if law is None else Law(law)
         self.ir: TableIR = table_ir(table, K)
         self.lam = contraction(1 if lam is None else lam)
+        self._singles: dict[tuple[str, ...], Single] = {}
         self._given = table, K
         self.exact_shape = self._shape(shape)
         self.shape = [float(value) for value in self.exact_shape]
@@ -113,26 +116,85 @@ class PinballMap:
 
     def step(self, theta: ArrayLike, phi: ArrayLike = 0.0, component: ArrayLike = 0) -> Orbit:
         """One bounce; all fields have the shape of the arguments."""
-        whole = self.orbit(theta, phi, 1, component)
-        return Orbit(*(rows[-1] for rows in whole))
+        if (told := self._single(TOLD).told(theta, phi, component)) is not None:
+            where, *rest = told if len(told) == len(TOLD) else (0, *told)
+            return Orbit(*(np.asarray(where, np.int64)[()], *np.array(rest), np.int64(0)))
+        course = Course(self, theta, phi, component, Orbit._fields)
+        return Orbit(**{name: rows[0].reshape(course.shape) for name, rows in course.advance(1, threads=None).items()})
 
+    @overload
     def orbit(
         self, theta: ArrayLike, phi: ArrayLike, bounces: int, component: ArrayLike = 0, threads: int | None = None
-    ) -> Orbit:
-        """The start and `bounces` bounces after it."""
-        where, theta, phi = self._start(theta, phi, component)
-        bounces = counted("bounces", bounces)
-        law = self._law(phi)
-        start, lam = (where.ravel(), theta.ravel(), phi.ravel()), self._lams(theta)
-        frame = self.states.frame(*start[:2])
-        own = self.states.enter(*start, law, frame)
-        result = self.engine.run(KernelSpec(law, record=True), own, lam, self.shape, bounces, threads=threads)
-        assert result.record is not None
-        told = self.states.told(result.record, start, frame, own, lam, law)
-        code = self._codes(result.rows, bounces, theta.size)
-        told[3][code != 0] = np.nan
-        shape = (bounces + 1, *theta.shape)
-        return Orbit(*(a.reshape(shape) for a in (*told, code)))
+    ) -> Orbit: ...
+
+    @overload
+    def orbit(
+        self,
+        theta: ArrayLike,
+        phi: ArrayLike,
+        bounces: int,
+        component: ArrayLike = 0,
+        threads: int | None = None,
+        *,
+        fields: Sequence[str],
+        every: int = 1,
+        dtype: DTypeLike = np.float64,
+    ) -> dict[str, NDArray[Any]]: ...
+
+    def orbit(
+        self,
+        theta: ArrayLike,
+        phi: ArrayLike,
+        bounces: int,
+        component: ArrayLike = 0,
+        threads: int | None = None,
+        *,
+        fields: Sequence[str] | None = None,
+        every: int = 1,
+        dtype: DTypeLike = np.float64,
+    ) -> "Orbit | dict[str, NDArray[Any]]":
+        """The start and `bounces` bounces after it.
+
+        With `fields`, of those of an `Orbit` and `s` for the arc length, these alone are computed, for every
+        so many-th bounce, as float64 or float32, and come in a dictionary.
+
+        >>> told = PinballMap("ellipse", lam=0.5, a=2).orbit([0.1, 0.2], 0.3, 6, fields=("phi", "s"), every=3)
+        >>> {name: rows.shape for name, rows in told.items()}
+        {'phi': (3, 2), 's': (3, 2)}
+        """
+        course = Course(self, theta, phi, component, Orbit._fields if fields is None else fields, every, dtype)
+        told = course.advance(counted("bounces", bounces), begin=True, threads=threads)
+        found = {name: rows.reshape(len(rows), *course.shape) for name, rows in told.items()}
+        return Orbit(**found) if fields is None else found
+
+    def orbit_pieces(
+        self,
+        theta: ArrayLike,
+        phi: ArrayLike,
+        bounces: int,
+        component: ArrayLike = 0,
+        threads: int | None = None,
+        *,
+        fields: Sequence[str] = ("theta", "phi"),
+        every: int = 1,
+        dtype: DTypeLike = np.float64,
+        piece: int = PIECE,
+    ) -> Iterator[dict[str, NDArray[Any]]]:
+        """`orbit` in pieces of at most `piece` numbers to a field, for orbits that do not fit in memory.
+
+        The first piece begins with the start; one after the other they are what `orbit` gives at once, to the last bit.
+
+        >>> pieces = PinballMap("egg", lam=0.5, alpha=0.08).orbit_pieces(0.3, 0.2, 100, fields=("theta",), piece=40)
+        >>> [len(rows["theta"]) for rows in pieces]
+        [41, 40, 20]
+        """
+        course = Course(self, theta, phi, component, fields, every, dtype, keep=True)
+        rows = counted("bounces", bounces) // course.every
+        most = max(1, counted("piece", piece) // course.theta.size)
+        for done in range(0, max(rows, 1), most):
+            part = min(most, rows - done) * course.every
+            told = course.advance(part, begin=done == 0, threads=threads)
+            yield {name: found.reshape(len(found), *course.shape) for name, found in told.items()}
 
     def derivative(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> Array:
         """`d(s1, phi1)/d(s0, phi0)`, a matrix for each particle. Paper: eq. (derivative_of_map).
@@ -140,11 +202,17 @@ class PinballMap:
         The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is. A law
         of another kind has its slope there, and what it changes along the boundary times `ds1`.
         """
+        if self.reflection.uniform and (single := self._single(MATRIX).told(theta, phi, component)) is not None:
+            x, y, *second = single
+            return np.array([[x, y], [float(self.lam.flat[0]) * bent for bent in second]])
         where, theta, phi = self._start(theta, phi, component)
         law, states, count = self._law(phi), self.states, theta.size
         law = PINBALL if law == SLAP else law
-        own = states.enter(where.ravel(), theta.ravel(), phi.ravel(), law)
-        n0, lam = states.departure(own, law), self._lams(theta)
+        start, lam = (where.ravel(), theta.ravel(), phi.ravel()), self._lams(theta)
+        if law != FORMULA and (told := derivatives(self, law, start, lam)) is not None:
+            return told.reshape(*theta.shape, 2, 2)
+        own = states.enter(*start, law)
+        n0 = states.departure(own, law)
         rate, curvature = states.bending(where.ravel(), theta.ravel())
         q, omega = np.append(n0 / rate, np.zeros(count)), np.append(curvature, np.ones(count))  # of ds, then of dphi
         particles, tangent = [np.tile(field, 2) for field in own], starting(q, omega, np.tile(n0, 2))
@@ -214,7 +282,7 @@ class PinballMap:
     def at(self, lam: Contraction) -> "PinballMap":
         """The same table with another contraction."""
         other = copy(self)
-        other.lam = contraction(lam)
+        other.lam, other._singles = contraction(lam), {}
         if not self.reflection.uniform:
             other._check_law()
         return other
@@ -222,7 +290,7 @@ class PinballMap:
     def uniform(self, lam: Contraction) -> "PinballMap":
         """The same table with the paper's law, `phi = -lam*eta`."""
         other = copy(self)
-        other.lam, other.reflection = contraction(lam), Law()
+        other.lam, other.reflection, other._singles = contraction(lam), Law(), {}
         return other
 
     def slopes(self, eta: Array, theta: Array) -> tuple[Array, Array]:
@@ -287,18 +355,26 @@ class PinballMap:
                     name = self.ir.parts[index].name
                     lies = f"there theta lies in [{low:.17g}, {high:.17g}]"
                     raise ValueError(f"theta = {theta[off].flat[0]} is not on the {name}; {lies}")
-        return where, np.array(theta), np.array(phi)
+        return where, theta, phi
+
+    def _single(self, names: tuple[str, ...]) -> Single:
+        """What takes one particle through one bounce and tells these things."""
+        found = self._singles.get(names)
+        if found is None or not found.serves(self):
+            law = PINBALL if names is MATRIX and self.law == SLAP else self.law
+            asked = names[1:] if names is TOLD and len(self.states.ends) == 1 else names
+            found = self._singles[names] = Single(self, law, asked)
+        return found
+
+    def _entered(self, start: tuple[NDArray[np.int64], Array, Array], law: str, lam: Array) -> list[Array]:
+        """The fields of particles that leave a boundary point at an exit angle: those with which orbits begin."""
+        course = self.engine.course(law, (), (start[0].astype(float), *start[1:]), lam, self.shape)
+        if course is None:
+            return self.states.enter(*start, law)
+        return [course.start().rows[name].copy() for name in self.family.fields(law)]
 
     def _lams(self, theta: Array) -> Array:
         return np.broadcast_to(self.lam, theta.shape).ravel().astype(float)
-
-    def _codes(self, rows: dict[str, Array], bounces: int, count: int) -> NDArray[np.int64]:
-        codes = np.zeros((bounces + 1, count), dtype=np.int64)
-        if "code" in rows:
-            first = bounces + 1 - rows["lost"].astype(np.int64)
-            stopped = np.arange(bounces + 1)[:, None] >= first[None]
-            codes[stopped] = np.broadcast_to(rows["code"].astype(np.int64), codes.shape)[stopped]
-        return codes
 
 
 def _unpacked(

@@ -176,7 +176,7 @@ class Growth:
         where, at, angle = map._start(theta, phi, component)
         self.component, self.theta, self.phi = where.ravel(), at.ravel(), angle.ravel()
         self.law, self.lam = map._law(angle), map._lams(at)
-        self.own = map.states.enter(self.component, self.theta, self.phi, self.law)
+        self.own = map._entered((self.component, self.theta, self.phi), self.law, self.lam)
         self.bounces: NDArray[np.int64] = np.zeros(at.size, dtype=np.int64)
         self.code: NDArray[np.int64] = np.zeros(at.size, dtype=np.int64)
         self.began()

@@ -30,7 +30,7 @@ def real(name: str, given: ArrayLike) -> Array:
             raise ValueError(f"{name} = {given!r} is not a number or an array of numbers") from None
     if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
         raise ValueError(f"{name} has dtype {array.dtype}; give real numbers that fit float64")
-    array = array.astype(np.float64)
+    array = array.astype(np.float64, copy=False)
     if not np.all(np.isfinite(array)):
         bad = array[~np.isfinite(array)].flat[0]
         raise ValueError(f"{name} contains {bad}; every value must be finite")

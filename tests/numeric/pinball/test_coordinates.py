@@ -147,8 +147,8 @@ def test_a_ball_on_the_wall_is_told_as_a_landing_there_leaves_it():
 
 @pytest.mark.parametrize("lam", [0, 0.4, 1])
 @pytest.mark.parametrize("tile", [1, 7, 30, 64])
-def test_tiles_of_an_orbit_have_no_seam(table, lam, tile, monkeypatch):
-    map = table.map(lam)
+def test_tiles_of_an_orbit_that_is_translated_have_no_seam(table, lam, tile, monkeypatch):
+    map = PinballMap(table.name, lam=lam, kernels=False, **table.shape)
     component, theta, phi = table.starts(map, 10, seed=10, steepest=0.9 * (lam != 0))
     whole = map.orbit(theta, phi, 12, component)
     monkeypatch.setattr(coordinates, "TILE", tile)

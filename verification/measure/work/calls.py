@@ -6,11 +6,15 @@ Seconds differ between machines, ratios hardly: the two times of a ratio are the
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from numeric import PinballMap
+from numeric.kernels.machine import TOLD, KernelSpec, starting
 from numeric.pinball.sampling import phase_starts
 from verification.measure.extremes.orbits import SCENES
-from verification.measure.work.bench import best
+from verification.measure.work.bench import LAWS, attracted, best
 
+LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
 REST = 512, 1_000, 100_000  # balls at rest: how many, bounces of a short run, of a long one
 
 
@@ -46,7 +50,73 @@ def taking_turns(one: Callable[[], object], other: Callable[[], object], runs: i
 
 def call_rows(name: str, runs: int) -> Iterable[Call]:
     """The calls on one of the paper's tables."""
+    yield from single_rows(name, runs)
+    yield from batch_rows(name, runs)
     yield at_rest(name, min(runs, 3))
+
+
+def single_rows(name: str, runs: int) -> Iterable[Call]:
+    """Calls for one particle, in microseconds, and its orbit beside the kernel's latency."""
+    map = made(name)
+    starts = phase_starts(map, 1, seed=1)
+    one = float(starts.theta[0]), float(starts.phi[0]), int(starts.component[0])
+    for call, action, bar in (("step", map.step, 8.0), ("derivative", map.derivative, 10.0)):
+        action(*one)
+        seconds = best(lambda action=action: [action(*one) for _ in range(LOOP)], 20 * runs) / LOOP  # type: ignore[misc]
+        yield Call(name, f"{call} of one, in a Python loop", seconds, "a microsecond", 1e-6, bar)
+    yield Call(name, "PinballMap, made again", best(lambda: made(name), 5 * runs), "a millisecond", 1e-3, 1.0)
+    if name == "circle":  # a bounce of two sums and a product: angles and points cost more than it, whoever tells them
+        return
+    own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
+    lam = np.full(1, float(map.lam))
+
+    def told() -> object:
+        return map.orbit(one[0], one[1], LONG, one[2])
+
+    def alone() -> object:
+        return map.engine.run(KernelSpec(map.law), own, lam, map.shape, LONG, threads=1)
+
+    told(), alone()
+    seconds, reference = taking_turns(told, alone, runs)
+    yield Call(name, f"orbit of one x {LONG:,}", seconds / LONG, "its kernel, a bounce", reference / LONG, 1.3)
+
+
+def batch_rows(name: str, runs: int) -> Iterable[Call]:
+    """Calls for many particles, beside the kernel; the circle's takes less time than any number to be written."""
+    map = made(name)
+    starts = phase_starts(map, MANY, seed=1)
+    at, phi, where = starts.theta, starts.phi, starts.component
+    few = at[:WIDE], phi[:WIDE], where[:WIDE]
+    own, lam = attracted(map, WIDE), np.full(WIDE, float(map.lam))
+    tangent = tuple(starting(np.ones(WIDE), np.zeros(WIDE), np.ones(WIDE)))
+
+    def kernel(exponents: bool = False) -> object:
+        spec = KernelSpec(map.law, exponents=exponents)
+        return map.engine.run(spec, own, lam, map.shape, WIDE, tangent if exponents else (), threads=1)
+
+    calls: tuple[tuple[str, Callable[[], object], int, bool, float], ...] = (
+        (f"step of {MANY:,}", lambda: map.step(at, phi, where), MANY, False, 60.0),
+        (f"derivative of {MANY:,}", lambda: map.derivative(at, phi, where), MANY, True, 3.0),
+        ("orbits, parameter and angle", lambda: told(("theta", "phi")), WIDE**2, False, 3.0),
+        ("orbits, angles and points", lambda: told(TOLD), WIDE**2, False, 3.0),
+    )
+
+    def told(fields: tuple[str, ...]) -> object:
+        return map.orbit(few[0], few[1], WIDE, few[2], threads=1, fields=fields)
+
+    for call, action, count, exponents, bar in calls[:1] if name == "circle" else calls:
+        action(), kernel(exponents)
+        seconds, reference = taking_turns(action, lambda: kernel(exponents), runs)  # noqa: B023
+        if bar > 10:
+            yield Call(name, call, seconds / count, "a nanosecond", 1e-9, bar)
+            continue
+        against = "the kernel with exponents" if exponents else "the kernel"
+        yield Call(name, call, seconds / count, against, reference / WIDE**2, bar)
+
+
+def made(name: str) -> PinballMap:
+    """The map of a table at the contraction of the benchmark."""
+    return PinballMap(name, lam=LAWS["pinball"], **dict(SCENES[name]))
 
 
 def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST) -> Call:

@@ -1,0 +1,258 @@
+"""Particles on their way, told bounce by bounce in people's coordinates: by the kernel in lanes, or translated later.
+
+The paper's tables, and other ellipses and finite sums, have kernels that tell component, parameter, angles and point
+themselves, as far as they are asked. Of other tables, and without kernels, the recorded states are translated.
+"""
+
+import ctypes
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from numeric.flights.family import NEAR, SLAP
+from numeric.kernels.engine import ALONE
+from numeric.kernels.engine import Course as KernelCourse
+from numeric.kernels.machine import MATRIX, START, TOLD, KernelSpec
+from numeric.pinball.states import Orbit, counted
+
+if TYPE_CHECKING:
+    from numeric.pinball.map import PinballMap
+
+Array = NDArray[np.float64]
+HALF_PI = math.pi / 2
+SIDE_BY_SIDE = 1 << 13  # particles at a time
+PIECE = 1 << 20  # numbers to a field of a piece of an orbit
+FIELDS = (*Orbit._fields, "s")
+
+
+class Course:
+    """Particles that start somewhere; `advance` takes them on and tells some fields of every so many-th bounce."""
+
+    def __init__(
+        self,
+        map: "PinballMap",
+        theta: ArrayLike,
+        phi: ArrayLike,
+        component: ArrayLike,
+        names: Sequence[str],
+        every: int = 1,
+        dtype: DTypeLike = np.float64,
+        keep: bool = False,
+    ) -> None:
+        """`keep` is for those that advance more than once."""
+        where, at, angle = map._start(theta, phi, component)
+        self.map, self.shape, self.law = map, at.shape, map._law(angle)
+        self.where, self.theta, self.phi = where.ravel(), at.ravel(), angle.ravel()
+        self.lam, self.names, self.every, self.dtype = (
+            map._lams(at),
+            _known(names),
+            counted("every", every),
+            _real(dtype),
+        )
+        needed = {*self.names, *(("component", "theta") if "s" in self.names else ())}
+        if len(map.states.ends) == 1:
+            needed -= {"component"}
+        self.needed = tuple(name for name in TOLD if name in needed)
+        self.done, self.last = 0, dict[str, NDArray[Any]]()
+        self.keep, self.kernels = keep, dict[int, KernelCourse | None]()
+        self.own: list[Array] = []
+        self.code: NDArray[np.int64] = np.zeros(self.lam.size, dtype=np.int64)
+        self.bad = np.zeros(self.lam.size, dtype=np.int64)  # the first bounce that a particle did not make
+
+    def advance(self, bounces: int, begin: bool = False, threads: int | None = None) -> dict[str, NDArray[Any]]:
+        """What is told of the next bounces; from the start on, if it is asked for."""
+        rows, top = bounces // self.every + begin, int(begin)
+        kinds = {"component": np.int64, "code": np.int64}
+        shape = rows, self.lam.size
+        out: dict[str, NDArray[Any]] = {n: np.empty(shape, kinds.get(n, self._kind(n))) for n in self.needed}
+        for name, values in out.items() if begin else ():
+            values[0] = self._first()[name]
+        code, lost = self._advanced(bounces, out, top, threads)
+        made = self.done + (1 - top + np.arange(rows)) * self.every  # bounces before each row
+        if np.any(code):
+            self._stopped(code, lost, bounces, out, made)
+        self.done += bounces
+        self.last = {name: values[-1] for name, values in out.items()} if rows else self.last
+        return self._chosen(out, made)
+
+    # ---- within
+
+    def _kind(self, name: str) -> Any:
+        return np.float64 if name == "theta" and "s" in self.names else self.dtype
+
+    def _first(self) -> dict[str, NDArray[Any]]:
+        """The start, or what was told last: nothing landed at a start, so `eta` is no number."""
+        if self.last:
+            return self.last
+        known: dict[str, NDArray[Any]] = {"component": self.where, "theta": self.theta, "phi": self.phi}
+        if {"x", "y"} & {*self.needed}:
+            known["x"], known["y"] = self.map.states.point(self.where, self.theta)
+        self.last = known | {"eta": np.full(self.lam.size, np.nan)}
+        return self.last
+
+    def _advanced(
+        self, bounces: int, out: dict[str, NDArray[Any]], top: int, threads: int | None
+    ) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Some thousand particles at a time, which stay in the cache; codes of outcomes, and bounces that were lost."""
+        ends: tuple[NDArray[Any], NDArray[Any]] = np.zeros(self.lam.size), np.zeros(self.lam.size)
+        for left in range(0, self.lam.size, SIDE_BY_SIDE):
+            part = slice(left, left + SIDE_BY_SIDE)
+            kernel = self.kernels[left] if left in self.kernels else self._kernel(part)
+            if kernel is None:
+                rows = self._translated(bounces, out, top, threads)
+                return (rows["code"], rows["lost"]) if "code" in rows else ends
+            if self.keep:
+                self.kernels[left] = kernel
+            kernel.advance(bounces, {name: values[:, part] for name, values in out.items()}, top, self.every, threads)
+            rows = kernel.rows
+            if "code" in rows:
+                ends[0][part], ends[1][part] = rows["code"], rows["lost"]
+        return ends
+
+    def _kernel(self, part: slice) -> KernelCourse | None:
+        start = self.where[part].astype(float), self.theta[part], self.phi[part]
+        return self.map.engine.course(self.law, self.needed, start, self.lam[part], self.map.shape)
+
+    def _stopped(
+        self,
+        code: NDArray[Any],
+        lost: NDArray[Any],
+        bounces: int,
+        out: dict[str, NDArray[Any]],
+        made: NDArray[np.int64],
+    ) -> None:
+        """Particles that stopped repeat what was told of their last good bounce; nothing lands any more."""
+        self.code = code.astype(np.int64)
+        missed = np.flatnonzero(self.code)
+        self.bad[missed] = self.done + bounces + 1 - lost[missed].astype(np.int64)
+        first = self._first()
+        for particle in missed:
+            row = int(np.searchsorted(made, self.bad[particle]))
+            for name, values in out.items():
+                kept = values[row - 1, particle] if row else first[name][particle]
+                values[row:, particle] = np.nan if name == "eta" else kept
+
+    def _translated(
+        self, bounces: int, out: dict[str, NDArray[Any]], top: int, threads: int | None
+    ) -> dict[str, Array]:
+        """Records the states, and translates them."""
+        map, states = self.map, self.map.states
+        frame = states.frame(self.where, self.theta)
+        if not self.own:
+            self.own = states.enter(self.where, self.theta, self.phi, self.law, frame)
+            self.rest = [np.zeros(self.lam.size)] * (2 * map.family.stops)
+        engine, spec = map.engine, KernelSpec(self.law, record=True)
+        result = engine.run(spec, self.own, self.lam, map.shape, bounces, threads=threads, outcome=self.rest)
+        assert result.record is not None
+        told = states.told(result.record, (self.where, self.theta, self.phi), frame, self.own, self.lam, self.law)
+        for name, values in zip(TOLD, told, strict=True):
+            if name in out:
+                out[name][top:] = values[self.every :: self.every]
+        self.own = [result.rows[name] for name in map.family.fields(self.law)]
+        self.rest = [result.rows[name] for name in ("code", "lost") if name in result.rows]
+        self.where, self.theta, self.phi = (values[-1] for values in told[:3])
+        return result.rows
+
+    def _chosen(self, out: dict[str, NDArray[Any]], made: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+        """The fields that were asked for, in their order."""
+        shape = len(made), self.lam.size
+        if "component" not in out and {"component", "s"} & {*self.names}:
+            out["component"] = np.zeros(shape, dtype=np.int64)
+        if "code" in self.names:
+            out["code"] = np.zeros(shape, dtype=np.int64)
+            for particle in np.flatnonzero(self.code):
+                out["code"][np.searchsorted(made, self.bad[particle]) :, particle] = self.code[particle]
+        if "s" in self.names:
+            out["s"] = self.map.arclength.s(out["theta"], out["component"]).astype(self.dtype, copy=False)
+        return {n: out[n] if n in ("component", "code") else out[n].astype(self.dtype, copy=False) for n in self.names}
+
+
+def _known(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of fields, each of them known."""
+    names = (names,) if isinstance(names, str) else tuple(names)
+    for name in names:
+        if name not in FIELDS:
+            raise ValueError(f"no field is called {name!r}; an orbit has: {', '.join(FIELDS)}")
+    return names
+
+
+def _real(dtype: DTypeLike) -> Any:
+    """float64 or float32."""
+    if (found := np.dtype(dtype)) not in (np.dtype(np.float64), np.dtype(np.float32)):
+        raise ValueError(f"dtype = {found} is not possible; give float64 or float32")
+    return found
+
+
+def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Array, Array], lam: Array) -> Array | None:
+    """The derivative of one bounce of each particle as kernels tell it; None without them, or where one stops."""
+    found = np.empty((1, lam.size, 2, 2))
+    for left in range(0, lam.size, SIDE_BY_SIDE):
+        part = slice(left, left + SIDE_BY_SIDE)
+        begun = start[0][part].astype(float), start[1][part], start[2][part]
+        kernel = map.engine.course(law, MATRIX, begun, lam[part], map.shape)
+        if kernel is None:
+            return None
+        kernel.advance(1, {name: found[:, part, i // 2, i % 2] for i, name in enumerate(MATRIX)}, 0)
+        if np.any(kernel.rows.get("code", 0)):
+            return None
+    found[0, :, 1] *= lam[:, None]
+    return found
+
+
+REALS, WHOLES = frozenset({float, int, np.float64}), frozenset({int, np.int64})
+
+
+class Single:
+    """One bounce of one particle in some microseconds: what does not depend on the particle is prepared.
+
+    `told` is None for what only the general way can say: a particle that stops, bad input, an angle to be taken modulo
+    the whole turn. Buffers are taken from a list and put back, so threads, and a call within a call, have their own.
+    """
+
+    def __init__(self, map: "PinballMap", law: str, names: tuple[str, ...]) -> None:
+        self.lam, self.reflection, self.law, self.names = map.lam, map.reflection, law, names
+        self.ends, self.cusped = map.states.ends, map.family.cusped
+        low, high = self.ends[0]
+        start = np.array([0.0]), np.array([0.4 * low + 0.6 * high]), np.array([0.1 * (law != SLAP)])
+        lam = np.array([float(map.lam.flat[0])])
+        course = map.engine.course(law, names, start, lam, map.shape) if map.lam.size == 1 else None
+        self.course, self.run = course, course.kernel(starts=True) if course is not None else None
+        self.free: list[Any] = []
+
+    def serves(self, map: "PinballMap") -> bool:
+        """Whether it was made for this map as it is now."""
+        return self.lam is map.lam and self.reflection is map.reflection
+
+    def told(self, theta: Any, phi: Any, component: Any) -> list[float] | None:
+        """What the kernel tells of the bounce, in the order of the names."""
+        if not (self.run is not None and type(theta) in REALS and type(phi) in REALS and type(component) in WHOLES):
+            return None
+        if not (-HALF_PI < phi < HALF_PI and 0 <= component < len(self.ends)):
+            return None
+        low, high = self.ends[component]
+        if not low <= theta <= high or (self.cusped and math.cos(theta / 2) < NEAR) or (self.law == SLAP and phi != 0):
+            return None
+        free = self.free
+        buffer = free.pop() if free else self._buffer()
+        arguments, state, record, first, code = buffer
+        state[first], state[first + ALONE], state[first + 2 * ALONE] = component, theta, phi
+        self.run(*arguments)
+        if code and state[code] != 0:
+            return None  # and the buffer is thrown away
+        found: list[float] = record[::ALONE]
+        free.append(buffer)
+        return found
+
+    def _buffer(self) -> tuple[tuple[int, ...], Any, Any, int, int]:
+        """Arguments of the kernel, state and record; where the start begins, and where the outcome stands or 0."""
+        assert self.course is not None
+        rows, code = self.course.state.shape[0], "code" in self.course.names
+        state = (ctypes.c_double * (rows * ALONE))(*self.course.state.ravel())
+        record = (ctypes.c_double * (len(self.names) * ALONE))()
+        kept = self.course.lam.ctypes.data, self.course.shape.ctypes.data
+        arguments = ctypes.addressof(state), *kept, ctypes.addressof(record), ALONE, 0, ALONE, 1
+        place = self.course.names.index("code") * ALONE if code else 0
+        return arguments, state, record, (rows - len(START)) * ALONE, place

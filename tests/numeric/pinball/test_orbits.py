@@ -1,0 +1,187 @@
+"""Orbits told by kernels: exact to rounding, the same bits however they are asked for, in full where a ball stops."""
+
+import re
+from concurrent.futures import ThreadPoolExecutor
+
+import mpmath
+import numpy as np
+import pytest
+from sympy import Rational, cos
+
+from numeric import PinballMap
+from numeric.backends.scalars import ScalarBackend
+from numeric.kernels.machine import TOLD
+from numeric.pinball.orbits import FIELDS, SIDE_BY_SIDE, Course
+from symbolic import tables
+from symbolic.tables.table import theta
+
+EPS = 2.0**-52
+CONTEXT = mpmath.MPContext()
+CONTEXT.dps = 40
+LAWS = [0, 0.7, 1]
+
+
+def same(one, other):
+    return all(np.array_equal(a, b, equal_nan=np.asarray(a).dtype.kind == "f") for a, b in zip(one, other, strict=True))
+
+
+def started(table, lam, count=40):
+    where, at, phi = table.starts(map := table.map(lam), count, seed=5, steepest=0.98)
+    return map, (at, phi * (lam != 0)), where
+
+
+@pytest.mark.parametrize("lam", LAWS)
+def test_what_a_kernel_tells_of_its_state_is_exact_to_rounding(table, lam):
+    """Against the same state in forty digits; the direction that is kept is itself rounded."""
+    map, (at, phi), where = started(table, lam)
+    course = Course(map, at, phi, where, TOLD, keep=True)
+    told, rows = course.advance(1), course.kernels[0].rows
+    ops = ScalarBackend(CONTEXT)
+    shape = [CONTEXT.mpf(x) for x in map.shape]
+    for i in np.flatnonzero(course.code == 0):
+        state = [CONTEXT.mpf(float(rows[name][i])) for name in map.family.fields(map.law)]
+        position, leaving = state[: len(map.family.position)], state[len(map.family.position) :]
+        frame, place = map.family.framed(ops, shape, position), map.family.place(ops, position)
+        exit = map.family.exit(ops, frame, leaving) if lam else 0
+
+        assert max(abs(told[n][0, i] - x) for n, x in (("component", place[0]), ("theta", place[1]))) <= 3 * EPS
+        assert max(abs(told[n][0, i] - x) for n, x in (("x", frame.x), ("y", frame.y))) <= 3 * EPS
+        assert abs(told["phi"][0, i] - exit) <= 6 * EPS
+        if lam:
+            assert abs(told["eta"][0, i] + exit / lam) <= 6 / lam * EPS
+
+
+@pytest.mark.parametrize("lam", LAWS)
+def test_kernels_and_arrays_tell_the_same_bounce(table, lam):
+    map, start, where = started(table, lam)
+    arrays = PinballMap(table.name, lam=lam, kernels=False, **table.shape)
+    for name, one, other in zip(TOLD, map.step(*start, where), arrays.step(*start, where), strict=False):
+        assert np.allclose(one, other, rtol=0, atol=1e-12, equal_nan=True), name
+
+
+def test_the_bits_do_not_depend_on_how_an_orbit_is_asked_for(table):
+    map, (at, phi), where = started(table, 0.7)
+    whole = map.orbit(at, phi, 12, where)
+    few = map.orbit(at, phi, 12, where, fields=("phi", "s", "eta", "code"), every=4)
+    alone = map.orbit(at[3], phi[3], 12, int(where[3]))
+    pieces = [*map.orbit_pieces(at, phi, 12, where, fields=Orbit, piece=5 * at.size)]
+
+    assert same(map.step(at, phi, where), (rows[1] for rows in whole))
+    assert same((few["phi"], few["eta"], few["code"]), (whole.phi[::4], whole.eta[::4], whole.code[::4]))
+    assert same((few["s"],), (map.arclength.s(whole.theta, whole.component)[::4],))
+    assert same(alone, (rows[:, 3] for rows in whole))
+    assert [len(piece["theta"]) for piece in pieces] == [6, 5, 2]
+    assert same((np.concatenate([piece[name] for piece in pieces]) for name in Orbit), whole)
+    assert same(map.orbit(at, phi, 12, where, threads=3), whole)
+
+
+def test_one_particle_by_itself_is_told_with_the_bits_that_it_has_among_others(table):
+    map, (at, phi), where = started(table, 0.7)
+    steps, slopes = map.step(at, phi, where), map.derivative(at, phi, where)
+    for i in range(6):
+        alone = float(at[i]), float(phi[i]), int(where[i])
+        step = map.step(*alone)
+
+        assert all(isinstance(value, np.generic) for value in step)
+        assert same(step, (rows[i] for rows in steps))
+        assert np.array_equal(map.derivative(*alone), slopes[i])
+
+
+def test_threads_that_step_at_once_do_not_disturb_each_other():
+    map = PinballMap("egg", lam=0.9, alpha=0.08)
+    starts = [(0.1 * i, 0.02 * i) for i in range(40)] * 50
+    known = [map.step(*start) for start in starts[:40]] * 50
+    with ThreadPoolExecutor(4) as pool:
+        assert all(same(*pair) for pair in zip(pool.map(lambda start: map.step(*start), starts), known, strict=True))
+
+
+def test_a_particle_by_itself_follows_its_map_and_not_one_made_before():
+    map = PinballMap("ellipse", lam=0.9, a=2)
+    for lam in (0.9, 0.3, 0, 1):
+        other = map.at(lam)
+        for start in ((0.3, 0.0), (0.3, 0.2), (7.0, 0.1)):  # the last one is taken modulo the turn
+            assert same(other.step(*start), (rows[0] for rows in other.step(*(np.array([x]) for x in start))))
+
+
+@pytest.mark.parametrize("start", [(np.nan, 0.1), (0.1, 1.6), (0.1, -np.inf), (0.1, 0.2, 2), (np.pi, 0.1)])
+def test_bad_input_of_one_particle_is_refused_in_the_words_for_many(start):
+    map = PinballMap("cardioid", lam=0.9)
+    for question in (map.step, map.derivative):
+        with pytest.raises(ValueError, match=r"theta|phi|component") as many:
+            question(*(np.array([x]) for x in start))
+        with pytest.raises(ValueError, match=f"^{re.escape(str(many.value))}$"):
+            question(*start)
+
+
+def test_a_large_step_in_parts_is_each_part_by_itself():
+    map = PinballMap("cuspless", lam=0.5)
+    at = np.linspace(-2, 2, 2 * SIDE_BY_SIDE + 3)
+    whole, slopes, part = map.step(at, 0.3), map.derivative(at, 0.3), at[SIDE_BY_SIDE - 2 :: SIDE_BY_SIDE]
+
+    assert same(map.step(part, 0.3), (rows[SIDE_BY_SIDE - 2 :: SIDE_BY_SIDE] for rows in whole))
+    assert np.array_equal(map.derivative(part, 0.3), slopes[SIDE_BY_SIDE - 2 :: SIDE_BY_SIDE])
+
+
+Orbit = ("component", "theta", "phi", "eta", "x", "y", "code")
+
+
+@pytest.mark.parametrize(
+    "map",
+    [
+        PinballMap("egg", lam=0.6, kernels=False, alpha=0.08),
+        PinballMap("circle", lam=0, kernels=False),
+        PinballMap(tables.polar(1 + Rational(3, 5) * cos(theta), name="limacon"), lam=0.6),
+    ],
+)
+def test_orbits_that_are_translated_and_those_of_other_tables_come_in_pieces_too(map):
+    at, phi = np.linspace(-1, 1, 6).reshape(2, 3), 0.3 * (map.law != "slap")
+    whole = map.orbit(at, phi, 10)
+    pieces = [*map.orbit_pieces(at, phi, 10, fields=Orbit, piece=24, every=2)]
+
+    assert whole.theta.shape == (11, 2, 3)
+    assert same((np.concatenate([piece[name] for piece in pieces]) for name in Orbit), (rows[::2] for rows in whole))
+
+
+@pytest.mark.parametrize("kernels", [True, False])
+def test_a_ball_that_stops_repeats_its_last_bounce_however_it_is_told(kernels):
+    """From the middle of the cardioid into the cusp at once, after one bounce, and never."""
+    map = PinballMap("cardioid", lam=1, kernels=kernels)
+    cusp = np.array([0.5, 2.0])
+    before = map.step(cusp, -cusp / 2)  # a ball flown backwards from where it aims at the cusp
+    at, phi = np.array([0.5, before.theta[1], 0.7]), np.array([0.25, -before.phi[1], 0.1])
+    whole = map.orbit(at, phi, 9)
+    stopped = whole.code[-1] != 0
+
+    assert stopped[0]
+    assert not stopped[2]
+    for particle in np.flatnonzero(stopped):
+        first = int(np.argmax(whole.code[:, particle] != 0))
+        assert np.all(np.isnan(whole.eta[first:, particle]))
+        for rows in (whole.theta, whole.phi, whole.x, whole.y):
+            assert np.all(rows[first:, particle] == rows[first - 1, particle])
+    pieces = [*map.orbit_pieces(at, phi, 9, fields=Orbit, piece=6)]
+    assert same((np.concatenate([piece[name] for piece in pieces]) for name in Orbit), whole)
+    thinned = map.orbit(at, phi, 9, fields=Orbit, every=3)
+    assert same((thinned[name] for name in Orbit), (rows[::3] for rows in whole))
+
+
+def test_float32_is_the_rounding_of_what_is_told():
+    map = PinballMap("cuspless", lam=0.8)
+    whole, single = (map.orbit([0.1, 0.2], 0.3, 20, fields=FIELDS, dtype=kind) for kind in ("float64", "float32"))
+    for name in FIELDS:
+        kind = np.int64 if name in ("component", "code") else np.float32
+        assert single[name].dtype == kind
+        assert np.array_equal(single[name], whole[name].astype(kind), equal_nan=kind == np.float32)
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"fields": ("theta", "z")}, "no field is called 'z'; an orbit has: component, theta"),
+        ({"fields": ("theta",), "dtype": np.int32}, "dtype = int32 is not possible; give float64 or float32"),
+        ({"fields": ("theta",), "every": 0}, "every = 0 is not possible; give a whole number of at least 1"),
+    ],
+)
+def test_what_cannot_be_told_is_refused(given, reason):
+    with pytest.raises(ValueError, match=reason):
+        PinballMap("circle", lam=0.5).orbit(0.1, 0.2, 5, **given)

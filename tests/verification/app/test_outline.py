@@ -133,7 +133,8 @@ def test_what_is_no_dxf_file_is_refused_in_one_sentence(tmp_path):
 
 
 def test_a_dxf_file_without_its_package_is_one_sentence_with_the_way_to_it(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    for module in ("ezdxf", "ezdxf.disassemble"):
+        monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ValueError, match=r"needs the package ezdxf; install it with: pip install 'pinball"):
         of_dxf(written(tmp_path, "any.dxf", ""))
 

@@ -13,7 +13,7 @@ itself.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from itertools import pairwise
 from math import gcd
 from typing import Any
@@ -23,6 +23,7 @@ from sympy import Expr, Interval, Matrix, S, Symbol, chebyshevt, pi, simplify
 
 from symbolic.expressions.signs import nonnegative
 from symbolic.expressions.text import kernel, load
+from symbolic.tables.curves import is_periodic
 from symbolic.tables.geometry import coefficients, turning, velocity
 from symbolic.tables.table import Component, Table, theta
 from verification.arithmetic.balls import balls, working
@@ -112,10 +113,10 @@ def closes_smoothly(table: Table) -> bool:
 
 def inside(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
     """True when every bounce is proved to lie in the interior of its component, or on a closed one."""
-    if len(table.components) == 1:
-        return True
     for index, value in zip(components, zero, strict=False):
         part = table.components[index]
+        if len(table.components) == 1 or _whole(part):
+            continue
         if not (value > _ball(part.start) and value < _ball(part.end)):
             return False if value < _ball(part.start) or value > _ball(part.end) else None
     return True
@@ -135,8 +136,14 @@ def _apart(table: Table, components: tuple[int, ...], zero: list[arb], i: int, j
     if components[i] != components[j]:
         return True
     gap = zero[i] - zero[j]
-    closed = len(table.components) == 1
+    closed = len(table.components) == 1 or _whole(table.components[components[i]])
     return not ((gap / 2).sin() if closed else gap).contains(0)
+
+
+@cache
+def _whole(component: Component) -> bool:
+    """Is a component a closed curve that runs through a whole turn of its parameter, as a round hole does?"""
+    return bool(component.end - component.start == 2 * pi) and all(map(is_periodic, component.point))
 
 
 def _ball(x: Expr) -> arb:
@@ -157,10 +164,21 @@ Place = Callable[[arb], Frame]
 
 @dataclass(frozen=True)
 class Boundary:
-    """A closed chain of components: point and velocity at a parameter of each, and the ends of its parameter."""
+    """Closed chains of components: point and velocity at a parameter of each, and the ends of its parameter."""
 
     places: Sequence[Place]
     ends: Sequence[tuple[arb, arb]]
+
+    @cached_property
+    def closed(self) -> tuple[bool, ...]:
+        """Which components end where they begin. The boundary is made of closed chains, so nothing else can be near."""
+        if len(self.ends) == 1:
+            return (True,)
+        found = []
+        for place, (low, high) in zip(self.places, self.ends, strict=True):
+            first, last = place(low), place(high)
+            found.append(bool(first[0].overlaps(last[0]) and first[1].overlaps(last[1])))
+        return tuple(found)
 
 
 def first_hits(table: Table, components: tuple[int, ...], zero: list[arb], shape: tuple[arb, ...] = ()) -> bool | None:
@@ -232,7 +250,7 @@ def _between(boundary: Boundary, index: int, at: arb, piece: arb) -> list[arb]:
     """Parameters that lead from a bounce to a piece: through the seam of a closed boundary where that is shorter."""
     low, high = boundary.ends[index]
     gap = piece.mid() - at.mid()
-    if len(boundary.ends) > 1 or abs(gap) < (high - low) / 2:
+    if not boundary.closed[index] or abs(gap) < (high - low) / 2:
         return [piece.union(at)]
     return [piece.union(low), at.union(high)] if gap < 0 else [piece.union(high), at.union(low)]
 

@@ -6,12 +6,12 @@ import pytest
 from flint import arb
 from sympy import Rational, cos
 
-from symbolic.tables import cardioid, cuspless, egg, polar
+from symbolic.tables import cardioid, cuspless, egg, polar, sinai
 from symbolic.tables.table import theta
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
-from verification.maps.first_hit import first_hits
+from verification.maps.first_hit import first_hits, inside, minimal
 from verification.proofs.periodic.bifurcation import Claim, proved
 
 WAISTED = polar(1 + cos(2 * theta) / 2)  # the waist at theta = +-pi/2 has radius 1/2
@@ -43,3 +43,19 @@ def test_the_cardioids_vertical_orbit_is_certified_though_the_table_is_not_conve
         claim = Claim(problem, tuple(exact_balls(solution.z)), arb("1e-22").mid(), 150, 20)
 
     assert proved(claim).certified
+
+
+def test_a_bounce_at_the_seam_of_a_round_hole_is_one_like_any_other():
+    """Between the left side of Sinai's cell and the disc, whose parameter begins and ends where it is met."""
+    table = sinai()
+    with working(96):
+        seam, other = arb.pi(), -arb.pi()
+        side = 3
+        middle = arb("0.5")
+
+        for there in (seam, other, seam + arb("0.001")):
+            assert inside(table, (side, 4), [middle, there]) is True
+        assert first_hits(table, (side, 4), [middle, seam]) is True
+        assert first_hits(table, (side, 4), [middle, other]) is True
+        assert first_hits(table, (side, 1), [middle, middle]) is None  # the disc is between
+        assert minimal(table, (side, 4, side, 4), [middle, seam, middle, other]) is None  # the same point twice

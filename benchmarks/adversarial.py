@@ -9,14 +9,24 @@ with 50 digits. `judge` is how far the reference moves when the state is rounded
 tell. A point is beyond only where that does not explain it.
 
     python benchmarks/adversarial.py [POINTS [WORD]]        only the cases whose label has the word
+
+Tables of sides and arcs are judged otherwise (`verification/measure/extremes/by_hand.py`: every piece tried, in 80
+bits), at every size, and so are tables given by a radius once more, by points along each flight that must be inside:
+
+    python benchmarks/adversarial.py pieces [POINTS [WORD]]     the table of docs/tables.md
+    python benchmarks/adversarial.py inside [POINTS]
 """
 
 import sys
 
 import numpy as np
+from sympy import Rational
 
+from numeric import PinballMap
+from symbolic import tables
+from verification.measure.extremes.by_hand import hard, judged
 from verification.measure.extremes.kernels import Wide, made_unit
-from verification.measure.extremes.orbits import RADII, bounced, cases, conditions, own_cases
+from verification.measure.extremes.orbits import LAM, RADII, bounced, cases, conditions, own_cases
 
 EPS = 2.0**-52
 
@@ -86,5 +96,83 @@ def apart(map, one, other):
     return np.max(gaps[:half], axis=0), np.max([*gaps[half:], 0 * gaps[0]], axis=0)
 
 
+SIZES = {"": Rational(1), "1e-6 of ": Rational(1, 10**6), "1e6 of ": Rational(10**6)}
+UNEQUAL = [(0, 0), (SIZES["1e-6 of "], 0), (10**6, SIZES["1e-6 of "]), (10**6, 1), (0, 1)]
+NOTCHED = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+OWN = {
+    "square": tables.square,
+    "stadium": tables.stadium,
+    "reuleaux": tables.reuleaux,
+    "lemon": tables.lemon,
+    "semi-ellipse": tables.semi_ellipse,
+    "mushroom": tables.mushroom,
+    "sinai": tables.sinai,
+    "diamond": tables.diamond,
+    "notched": lambda: tables.polygon(*NOTCHED, name="notched"),
+    "sides of 1e-6 and 1e6": lambda: tables.polygon(*UNEQUAL, name="unequal"),
+}
+BLOCK = 50_000
+
+
+def by_hand(count, word):
+    """The tables of sides and arcs."""
+    say(f"{count} points a case; errors sideways in units of 2**-52 of the numbers added up")
+    say("| table | flights | points | stopped | wrong | largest error | farthest reason to stop |")
+    say("|---|---|---|---|---|---|---|")
+    for name, made in OWN.items():
+        for size, factor in SIZES.items():
+            if (word and word not in name) or (size and "1e" in name):
+                continue
+            parts = [
+                tables.arc(part.name, *(factor * x for x in part.point), part.start, part.end)
+                for part in made().components
+            ]
+            map = PinballMap(tables.piecewise(*parts, name=name), lam=LAM)
+            for label, row in summed(map, count).items():
+                say(f"| {size}{name} | {label} | {row[0]} | {row[1]} | {row[2]} | {row[3]:.2g} | {row[4]:.3g} |")
+
+
+def summed(map, count):
+    """Points, how many stopped, how many are wrong, the largest error and the weakest reason to stop, of every kind."""
+    rows = {}
+    for seed in range(-(-count // BLOCK)):
+        for label, starts in hard(map, min(count, BLOCK), seed).items():
+            found = judged(map, starts)
+            old = rows.get(label, (0, 0, 0, 0.0, 0.0))
+            sums = starts[1].size, int(np.sum(found.stopped)), int(np.sum(found.wrong))
+            largest = float(np.max(np.where(found.wrong, 0, found.error))), float(np.max(found.reason))
+            rows[label] = (*(x + y for x, y in zip(old, sums, strict=False)), *map_max(old[3:], largest))
+    return rows
+
+
+def map_max(old, new):
+    """The larger of each two."""
+    return [max(x, y) for x, y in zip(old, new, strict=True)]
+
+
+def inside(count, word):
+    """Flights on tables given by a radius: 64 points of each must lie inside, to 64 units."""
+    say("| table | flights | points | stopped | outside |")
+    say("|---|---|---|---|---|")
+    part = (np.arange(64) + 0.5)[:, None] / 64
+    for name in RADII:
+        for case in own_cases(name, count) if not word or word in name else ():
+            own, found, going = bounced(case)
+            ops, family = case.map.states.ops, case.map.family
+            out = 0
+            for block in range(0, own[0].size, BLOCK):
+                cut = slice(block, block + BLOCK)
+                (x0, y0), (x1, y1) = (family.point(ops, *(row[cut] for row in rows[:2])) for rows in (own, found))
+                x, y = x0 + part * (x1 - x0), y0 + part * (y1 - y0)
+                away = np.hypot(x, y)
+                beyond = away - family.radius(ops, x / away, y / away)[0] > 64 * EPS * (1 + away)
+                out += int(np.sum(np.any(beyond, axis=0) & going[cut]))
+            label = case.label.partition(", ")[2]
+            say(f"| {name} | {label} | {own[0].size} | {int(np.sum(~going))} | {out} |")
+
+
 if __name__ == "__main__":
-    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 1_000_000, sys.argv[2] if len(sys.argv) > 2 else "")
+    words = sys.argv[1:]
+    ways = {"pieces": by_hand, "inside": inside}
+    way = ways[words.pop(0)] if words and words[0] in ways else main
+    way(int(float(words[0])) if words else 1_000_000, words[1] if len(words) > 1 else "")

@@ -8,11 +8,9 @@ from sympy import Rational
 
 from numeric import PinballMap, phase_starts
 from numeric.flights.pieces import UNSURE
-from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from symbolic.tables.gallery import GALLERY
-from verification.measure.extremes.by_hand import hits, placed
-from verification.measure.extremes.by_hand import pieces as wide
+from verification.measure.extremes.by_hand import bounced, hard, judged
 
 EPS = 2.0**-52
 NOTCHED = tables.polygon((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), name="notched")
@@ -33,49 +31,22 @@ def mapped(name, size="1", lam=0.9, kernels=False):
     return PinballMap(tables.piecewise(*parts, name=name) if size != "1" else table, lam=lam, kernels=kernels)
 
 
-def aimed(map, count, seed):
-    """Flights that pass a corner, or a tangent of a dispersing arc of a circle, by some roundings or by more."""
-    rng = np.random.default_rng(seed)
-    family, ops = map.family, map.states.ops
-    known = family.pieces(ops, map.shape)
-    starts = phase_starts(map, count, seed=seed)
-    frame = map.states.frame(starts.component, starts.theta)
-    goals = [piece.start for j, piece in enumerate(known) if not family.closed[j]]
-    aim = np.array(goals)[rng.integers(0, len(goals), count)]
-    away = np.arctan2(aim[:, 1] - frame.y, aim[:, 0] - frame.x)
-    for piece in (piece for j, piece in enumerate(known) if family.bulges[j]):
-        x, y = piece.origin[0] - frame.x, piece.origin[1] - frame.y
-        with np.errstate(invalid="ignore"):
-            tangent = np.arctan2(y, x) + rng.choice([-1, 1], count) * np.arcsin(piece.radius / np.hypot(x, y))
-        away = np.where(np.isfinite(tangent) & (rng.random(count) < 0.3), tangent, away)
-    phi = frame.angle(ops, np.cos(away), np.sin(away))
-    size = np.where(rng.random(count) < 0.5, rng.integers(0, 40, count) * EPS / 2, 10 ** rng.uniform(-15, -3, count))
-    phi = phi + rng.choice([-1, 1], count) * size
-    good = np.abs(phi) < 1.5707
-    return [x[good] for x in (starts.component, starts.theta, phi)]
-
-
-def flown(map, component, theta, phi):
-    """Fields before and after, and the outcome."""
-    own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
-    lam = np.full(theta.size, float(map.lam))
-    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
-    return own, result.record[0], result.rows["code"]
-
-
 @pytest.mark.parametrize(("name", "size"), SCENES)
 def test_no_flight_past_a_corner_or_a_tangent_lands_on_the_wrong_side_and_only_those_near_one_stop(name, size):
     map = mapped(name, size)
-    own, after, code = flown(map, *aimed(map, 400, seed=21))
-    truth = hits(map, own)
-    going = code == 0
-    landed, _, _ = placed(wide(map.family, map.shape), map.family, [*after[:3], 0 * after[0], 1 + 0 * after[0]])
-    aside = np.hypot(landed[0] - truth.x, landed[1] - truth.y).astype(float) * truth.straight / truth.size
+    for starts in hard(map, 300, seed=21).values():
+        found = judged(map, starts)
 
-    assert 0.05 < np.mean(going) < 1 - 0.05
-    assert np.array_equal(after[0][going], truth.piece[going])
-    assert np.max(aside[going]) < EPS  # a bound of eight is promised
-    assert np.max(truth.aside[~going]) < 5 * UNSURE / EPS
+        assert not np.any(found.wrong)
+        assert np.max(found.error) < 1  # a bound of eight is promised
+        assert np.max(found.reason) < 5 * UNSURE / EPS
+
+
+def test_flights_to_corners_and_tangents_are_stopped_as_often_as_not():
+    for name, kind in (("square", "at corners"), ("sinai", "at tangents"), ("notched", "at corners")):
+        found = judged(mapped(name), hard(mapped(name), 300, seed=24)[kind])
+
+        assert 0.2 < np.mean(found.stopped) < 0.8
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -108,7 +79,7 @@ def test_a_short_flight_along_an_arc_is_no_landing_at_its_far_end():
 
 def test_kernels_and_arrays_stop_the_same_particles_up_to_rounding():
     plain, compiled = mapped("sinai"), mapped("sinai", kernels=True)
-    starts = aimed(plain, 400, seed=23)
-    one, other = (flown(map, *starts)[2] for map in (plain, compiled))
+    starts = hard(plain, 400, seed=23)["at tangents"]
+    one, other = (bounced(map, starts)[2] for map in (plain, compiled))
 
     assert np.mean(one != other) < 0.05

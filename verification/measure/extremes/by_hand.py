@@ -1,9 +1,9 @@
 """First hits on tables of sides and arcs the slow way: every piece tried in 80 bits, nothing shared with the kernels.
 
 The judge of tests and of `benchmarks/adversarial.py`. It takes the particles as the doubles that a kernel is given and
-the table's numbers to 64 bits. No sign of a corner chooses a piece, no root is divided out; a landing is what is
-nearest of all that lies ahead. It also says how closely each line passes a corner or a tangent on its way, as a share
-of the numbers from which its ends are added up.
+the table's numbers to 64 bits. No sign of a corner chooses a piece; a landing is what is nearest of all that lies
+ahead, and on the arc that a particle leaves it is the other point where its line meets the ellipse. It also says how
+closely each line passes a corner or a tangent on its way, as a share of the numbers from which its ends are added up.
 """
 
 from typing import Any, NamedTuple
@@ -11,12 +11,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from numeric import PinballMap
-from numeric.flights.corners import LINE, Piece, piece_of
+from numeric.flights.corners import CIRCLE, LINE, Piece, piece_of
 from numeric.flights.pieces import Pieces
+from numeric.kernels.machine import KernelSpec
+from numeric.pinball.sampling import phase_starts
 from verification.measure.extremes.kernels import Wide
 
 WIDE = np.longdouble
-START = WIDE(2.0**-40)  # as a share of the table: what is nearer is where the particle leaves
+START = WIDE(2.0**-58)  # as a share of the table: of another piece, what is nearer is rounding
+NEARBY = WIDE(2.0**-40)  # the same: of corners and tangents, what may lie behind the start
 SKEW = WIDE(2.0**-20)  # the same: by so much a tangent lies beyond the landing of a line that all but touches
 
 
@@ -56,12 +59,13 @@ def placed(known: list[Piece], family: Pieces, own: list[Any]) -> tuple[Any, Any
     return z, v / np.hypot(*v), size
 
 
-def hits(map: PinballMap, own: list[Any]) -> Hit:
+def hits(map: PinballMap, fields: list[Any]) -> Hit:
     """The first hit of every particle."""
     family = map.family
     assert isinstance(family, Pieces)
     known = pieces(family, map.shape)
-    z, v, size = placed(known, family, own)
+    z, v, size = placed(known, family, fields)
+    at, p0, q0 = fields[0].astype(int), fields[1].astype(WIDE), fields[2].astype(WIDE)
     table = max(float(np.max(np.abs([*piece.origin, *piece.start]))) for piece in known) + 1e-300
     count = z.shape[1]
     best, where = np.full(count, np.inf, dtype=WIDE), np.full(count, -1)
@@ -73,20 +77,23 @@ def hits(map: PinballMap, own: list[Any]) -> Hit:
             own_size = sum(abs(x) for x in piece.start)
             if not family.closed[j]:
                 near.append((v[0] * corner[0] + v[1] * corner[1], abs(_cross(v, corner)), size + own_size))
-            for t, p, q, cosine, inside in _met(piece, family.closed[j], z, v):
+            own = at == j
+            depart = abs(_cross(v, [p0 * piece.B[i] - q0 * piece.A[i] for i in (0, 1)]))
+            for t, p, q, cosine, inside in _met(piece, family.closed[j], z, v, own, depart):
                 there = sum(abs(piece.origin[i]) + abs(p * piece.A[i]) + abs(q * piece.B[i]) for i in (0, 1))
-                nearer = inside & (t > START * table) & (t < best) & (cosine > 0)
+                nearer = inside & (t > np.where(own, 0, START * table)) & (t < best) & (cosine > 0)
+                nearer = nearer & ~(own & (piece.kind == LINE))
                 best, where = np.where(nearer, t, best), np.where(nearer, j, where)
                 straight, weight = np.where(nearer, cosine, straight), np.where(nearer, there, weight)
             if piece.kind != LINE and piece.D < 0:
                 near.append(_tangent(piece, family.closed[j], z, v, size))
         aside = np.full(count, np.inf, dtype=WIDE)
         for ahead, miss, both in near:
-            on_the_way = (ahead > START * table) & (
-                ahead < best + START * table / np.minimum(straight, 1) + SKEW * table
-            )
+            beyond = (NEARBY / np.minimum(straight, 1) + SKEW) * table
+            on_the_way = (ahead > -NEARBY * table) & (ahead < best + beyond)
             aside = np.where(on_the_way, np.minimum(aside, miss / both / WIDE(2.0**-52)), aside)
-    x, y = (z[i] + best * v[i] for i in (0, 1))
+    with np.errstate(invalid="ignore"):
+        x, y = (z[i] + best * v[i] for i in (0, 1))
     return Hit(best, where, x, y, aside.astype(float), straight.astype(float), (size + weight).astype(float))
 
 
@@ -94,7 +101,7 @@ def _cross(v: Any, w: Any) -> Any:
     return v[0] * w[1] - v[1] * w[0]
 
 
-def _met(piece: Piece, closed: bool, z: Any, v: Any) -> list[tuple[Any, Any, Any, Any, Any]]:
+def _met(piece: Piece, closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, Any, Any, Any, Any]]:
     """Where a line meets a piece's curve: length, `p`, `q`, cosine of the incidence, and whether it is on the piece."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
@@ -106,7 +113,7 @@ def _met(piece: Piece, closed: bool, z: Any, v: Any) -> list[tuple[Any, Any, Any
     square = a * a + b * b
     root = np.sqrt(square - m * m)
     found = []
-    for s in (root, -root):
+    for s in (np.where(own, depart, root), np.where(own, np.nan, -root)):
         p, q = (m * a + s * b) / square, (m * b - s * a) / square
         t = sum(v[i] * (p * piece.A[i] + q * piece.B[i] - w[i]) for i in (0, 1))
         speed = np.hypot(*(p * piece.B[i] - q * piece.A[i] for i in (0, 1)))
@@ -133,3 +140,92 @@ def _tangent(piece: Piece, closed: bool, z: Any, v: Any, size: Any) -> tuple[Any
     there = sum(abs(piece.origin[i]) + abs(piece.A[i]) + abs(piece.B[i]) for i in (0, 1))
     miss = abs(root - abs(m))
     return ahead, np.where(_within(piece, closed, p, q), miss, np.inf), size + there
+
+
+Starts = tuple[Any, Any, Any]  # component, parameter, exit angle
+STRAIGHT = 1.5707  # exit angles beyond are no aim
+
+
+def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
+    """Particles by what makes their flights hard, about `count` of each kind that the table has."""
+    rng, family = np.random.default_rng(seed), map.family
+    assert isinstance(family, Pieces)
+    known = family.pieces(map.states.ops, map.shape)
+    starts = phase_starts(map, count, seed=seed)
+    where, at = starts.component, starts.theta
+    frame = map.states.frame(where, at)
+    side = rng.choice([-1, 1], count)
+    ulps = rng.integers(0, 40, count) * 2.0**-53  # about the roundings of an angle, or more
+    off = side * np.where(rng.random(count) < 0.5, ulps, 10 ** rng.uniform(-15, -3, count))
+    goals = np.array([piece.start for j, piece in enumerate(known) if not family.closed[j]])
+    goal = goals[rng.integers(0, len(goals), count)]
+    found = {
+        "anywhere": (where, at, starts.phi),
+        "grazing": (where, at, side * (np.pi / 2 - 10 ** rng.uniform(-12, -1, count))),
+        "at corners": _aim(map, starts, np.arctan2(goal[:, 1] - frame.y, goal[:, 0] - frame.x), off),
+        "along sides": _along(map, starts, off),
+    }
+    bulges = [known[j] for j in range(len(known)) if family.bulges[j] and known[j].kind == CIRCLE]
+    if bulges:
+        x, y, radius = np.array([[*piece.origin, float(piece.radius)] for piece in bulges])[
+            rng.integers(0, len(bulges), count)
+        ].T
+        x, y = x - frame.x, y - frame.y
+        with np.errstate(invalid="ignore"):
+            away = np.arctan2(y, x) + rng.choice([-1, 1], count) * np.arcsin(radius / np.hypot(x, y))
+        found["at tangents"] = _aim(map, starts, away, off)
+    return found
+
+
+def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
+    """Those of the particles that can fly in the direction `away`, turned by `off`."""
+    frame = map.states.frame(starts.component, starts.theta)
+    phi = frame.angle(map.states.ops, np.cos(away), np.sin(away)) + off
+    good = np.abs(phi) < STRAIGHT  # not where there is no such direction either
+    return starts.component[good], starts.theta[good], phi[good]
+
+
+def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
+    """From one end of a piece, or beside it, to the other: nowhere else can a flight run along a side or a chord."""
+    where = starts.component
+    ends = np.array(map.states.ends)[where]
+    at = np.where(off > 0, ends[:, 0], ends[:, 1])
+    at = at + (ends.sum(axis=1) / 2 - at) * np.abs(off)
+    here, there = (map.states.frame(where, theta) for theta in (at, ends.sum(axis=1) - at))
+    away = np.arctan2(there.y - here.y, there.x - here.x)
+    phi = here.angle(map.states.ops, np.cos(away), np.sin(away))
+    phi = np.clip(phi + off[::-1], -np.pi / 2 + 1e-14, np.pi / 2 - 1e-14)
+    return where, at, phi
+
+
+def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
+    """Fields before and after one bounce, and the code of the outcome."""
+    component, theta, phi = starts
+    own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
+    lam = np.full(theta.size, float(map.lam))
+    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
+    assert result.record is not None
+    return own, result.record[0], result.rows["code"]
+
+
+class Verdict(NamedTuple):
+    """Of one bounce of many particles: which stopped, which landed on a wrong piece, errors to the side of the line."""
+
+    stopped: Any
+    wrong: Any
+    error: Any  # in units of 2**-52 of `size`; 0 where a particle stopped
+    reason: Any  # of those that stopped: how closely the line passes a corner or a tangent, in the same units
+
+
+def judged(map: PinballMap, starts: Starts) -> Verdict:
+    """What the kernel made of particles, against every piece tried by hand."""
+    own, after, code = bounced(map, starts)
+    truth = hits(map, own)
+    assert isinstance(map.family, Pieces)
+    there = [*after[:3], 0 * after[0], 1 + 0 * after[0]]
+    landed, _, _ = placed(pieces(map.family, map.shape), map.family, there)
+    stopped = code != 0
+    wrong = ~stopped & (after[0] != truth.piece)
+    with np.errstate(invalid="ignore"):
+        aside = np.hypot(landed[0] - truth.x, landed[1] - truth.y).astype(float) * truth.straight / truth.size
+    return Verdict(stopped, wrong, np.where(stopped, 0, aside / 2.0**-52), np.where(stopped, truth.aside, 0))

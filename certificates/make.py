@@ -47,6 +47,8 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         "saddle-node": value("saddle-node", alpha=EGG),
         "symmetry-breaking": value("symmetry-breaking", alpha=EGG),
         **{f"doubling-{n}": value("doubling", LONG.get(n, DIGITS), alpha=EGG, n=Integer(n)) for n in range(3, 7)},
+        "merging-crisis": value("merging-crisis", alpha=EGG),
+        "boundary-crisis": value("boundary-crisis", alpha=EGG),
         "minor-axis": cycle(tables.ellipse.at(a=2), [pi / 2, -pi / 2], THIRD),
         "cardioid": cycle(tables.cardioid, [pi / 3, -pi / 3], THIRD),
         "egg-triangle": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF),

@@ -26,6 +26,7 @@ HERE = Path(__file__).parent
 KEPT = HERE.parent / "report" / "mutants.json"
 # short cycles: a thousand mutants of each are a matter of minutes
 SAMPLES = ("minor-axis", "five-waves", "saddle-node", "lambda-c", "alpha-tilde", "alpha-hat", "lambda-star", "phi-star")
+TOUCH = "boundary-crisis"  # of the kind of its own; the damage to manifolds and orbit stands for that to bounces
 Document = dict[str, Any]
 NAMES = (
     "lambda-star",
@@ -147,16 +148,46 @@ def entry(given: Document, dice: random.Random) -> None:
         given[key] = dice.choice(ODD)
 
 
+def manifold(given: Document, dice: random.Random) -> None:
+    """One number of a manifold, or of the orbit, is another, or has another power of two."""
+    side = given[dice.choice(("unstable", "stable"))]
+    pair = dice.choice([*(pair for pairs in side.values() for pair in pairs), dice.choice(given["orbit"])])
+    if dice.random() < 0.5:
+        place = dice.randrange(len(pair[0]))
+        pair[0] = pair[0][:place] + dice.choice("0123456789") + pair[0][place + 1 :]
+    else:
+        pair[1] = str(int(pair[1]) + dice.choice((-20, -3, -1, 1, 3, 20)))
+
+
+def swapped(given: Document, dice: random.Random) -> None:
+    """The manifolds changed, a list longer or shorter, or the flights meet elsewhere."""
+    what = dice.randrange(4)
+    if what == 0:
+        given["unstable"], given["stable"] = given["stable"], given["unstable"]
+    elif what == 1:
+        pairs = given[dice.choice(("unstable", "stable"))][
+            dice.choice(("bounces", "frame", "drift", "range", "bounds"))
+        ]
+        del pairs[dice.randrange(len(pairs))]
+    elif what == 2:
+        del given["orbit"][dice.randrange(len(given["orbit"]))]
+    else:
+        given["meets"] += dice.choice((-40, -2, -1, 1, 2, 40))
+
+
 DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
     digit, digit, exponent, bound, bound, moved, moved, order, scene, scene, scene,
     about, about, about, item, words, entry,
 )  # fmt: skip
 
 
+TOUCHING = (digit, exponent, bound, moved, manifold, manifold, manifold, swapped, scene, item, words, entry)
+
+
 def mutant(name: str, given: Document, k: int) -> Document:
     """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
     dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
-    damage = dice.choice(DAMAGE)
+    damage = dice.choice(TOUCHING if given["kind"] == "tangency" else DAMAGE)
     damage(found, dice)
     return repaired(found) if damage in (scene, about) and dice.random() < 0.5 else found
 
@@ -208,7 +239,7 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
     (name, value, error), (known, true, small) = told(line), told(first)
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
-    same = all(given[key] == original[key] for key in ("kind", "scene", "free", "mirror"))
+    same = all(given[key] == original.get(key) for key in ("kind", "scene", "free", *({"mirror"} & set(given))))
     if not same:  # a cycle that the damaged file names rightly: of the same place in another scene
         return given["kind"] == "cycle" and name != known
     ends = [check.exact(pair) for pair in original["centre"]]  # an order of the same bounces is the same cycle
@@ -233,7 +264,7 @@ def main() -> int:
     given = asked.parse_args()
     kept: dict[str, list[str]] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
     false = 0
-    for name in [given.only] if given.only else SAMPLES:
+    for name in [given.only] if given.only else (*SAMPLES, TOUCH):
         original = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
         first, found = check.checked(original).splitlines()[0], kept.setdefault(name, [])
         for k in range(len(found), given.each):

@@ -3,7 +3,8 @@
 A ball is `[mantissa, exponent]` of its exact midpoint, in decimal text; the radius is one such pair.
 Reading builds the problem from the scene, so that a file can claim anything and prove nothing: `checked` works the
 whole checklist through again. `docs/certificate_format.md` says what each entry means, so that others can read them;
-files of the first version, which had the scene in several entries and no statement in words, are read as well.
+files of the first version, which had the scene in several entries and no statement in words, and of the second, in
+which a tangency had no orbit, are read as well.
 """
 
 import json
@@ -45,8 +46,9 @@ from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 if TYPE_CHECKING:
     from verification.proofs.manifolds.proof import TangencyClaim, TangencyProof
 
-SCHEMA, FIRST = 2, 1
+SCHEMA, SECOND, FIRST = 3, 2, 1
 LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
+CHAIN = ("bits", "centre", "radius", "unstable", "stable", "orbit", "meets")  # of a tangency, bounce by bounce
 WORDS = {  # the statement of each kind, which docs/certificate_format.md spells out
     "cycle": "{scene}: exactly one cycle has {n} in the box.",
     "fold": "{scene}: exactly one cycle with {n} and {free} in the box has the multiplier 1: a fold.",
@@ -65,9 +67,9 @@ def document(proof: "Proof | CornerProof | TangencyProof") -> dict[str, Any]:
     claim = proof.claim
     first = {"schema": SCHEMA, "name": name_of(claim)}
     if not isinstance(claim, Claim | CornerClaim):
-        said = claim.to_dict()
         words = WORDS["tangency"].format(scene=f"egg, alpha = {claim.alpha}")
-        return first | {"statement": words} | said | {"checks": dict(proof.checks)}
+        chain = claim.chain() if proof.certified else {}
+        return first | {"statement": words} | _contact_said(claim) | chain | {"checks": dict(proof.checks)}
     what = _special(claim) if isinstance(claim, CornerClaim) else _problem_said(claim.problem)
     return (
         first
@@ -76,6 +78,21 @@ def document(proof: "Proof | CornerProof | TangencyProof") -> dict[str, Any]:
         | {"bits": claim.bits, "digits": claim.digits, "centre": [_pair(x) for x in claim.centre]}
         | {"radius": _pair(claim.radius), "checks": proof.checks}
     )
+
+
+def _contact_said(claim: "TangencyClaim") -> dict[str, Any]:
+    """What a tangency is about; its value stands among the starts that a reader with series takes."""
+    said = claim.to_dict()
+    scene = {"table": said["table"], "shape": said["shape"]}
+    contact = said["contact"] | {"value": said["value"]}
+    return {"kind": said["kind"], "scene": scene, "free": "lam", "digits": said["digits"], "contact": contact}
+
+
+def _contact_of(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a claim in a document of this version."""
+    scene, contact = given["scene"], dict(given["contact"])
+    said = {"table": scene["table"], "points": scene.get("K", POINTS), "shape": scene["shape"]}
+    return said | {"value": contact.pop("value"), "contact": contact, "digits": given["digits"]}
 
 
 def _special(claim: CornerClaim) -> dict[str, Any]:
@@ -142,9 +159,7 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
             "alpha-hat" if _in_box(claim, thresholds.alpha_hat().subs(lam_symbol, claim.lam)) else "equal multipliers"
         )
     if not isinstance(claim, Claim):
-        contact = claim.contact
-        kind = "homoclinic" if contact.unstable == contact.stable else "heteroclinic"
-        return f"{kind} tangency in the egg, alpha = {claim.alpha}"
+        return f"tangency of two manifolds: egg, alpha = {claim.alpha}"
     problem = claim.problem
     table, plain = problem.table, not problem.mirror
     what = table.name, problem.period, problem.kind, problem.free
@@ -176,15 +191,15 @@ def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
 def claim_of(given: Mapping[str, Any]) -> Claim | CornerClaim:
     """The claim of a document; `ValueError` with the entry that is wrong."""
     try:
-        if given["schema"] not in (FIRST, SCHEMA):
+        if given["schema"] not in (FIRST, SECOND, SCHEMA):
             raise ValueError(
-                f"certificate: schema = {given['schema']} is unknown; this version reads {FIRST} and {SCHEMA}"
+                f"certificate: schema = {given['schema']} is unknown; this version reads {FIRST} to {SCHEMA}"
             )
         bits, digits = int(given["bits"]), int(given["digits"])
         if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
             raise ValueError(f"certificate: bits = {bits} or digits = {digits} is out of range")
         centre, radius = tuple(_ball(pair) for pair in given["centre"]), _ball(given["radius"])
-        said = given if given["schema"] == SCHEMA else _of_first(given)
+        said = _of_first(given) if given["schema"] == FIRST else given
         lam = number(said["scene"]["lam"], "lam") if "lam" in said["scene"] else None
         if lam is not None and not 0 <= lam <= 1:
             raise ValueError(f"certificate: lam = {lam} is no contraction; accepted: numbers in [0, 1]")
@@ -275,18 +290,21 @@ def checked(given: Mapping[str, Any]) -> "Proof | CornerProof | TangencyProof":
     Name and statement must be those that the equations have, and the list of checks must be whole.
     """
     proof: Proof | CornerProof | TangencyProof
-    if given.get("kind") == "tangency" and given.get("schema") in (FIRST, SCHEMA):
+    if given.get("kind") == "tangency" and given.get("schema") in (FIRST, SECOND, SCHEMA):
         from verification.proofs.manifolds import proof as tangency  # NumPy, which no other certificate needs
 
-        contact = tangency.claim_of(given)
+        try:
+            contact = tangency.claim_of(_contact_of(given) if given["schema"] == SCHEMA else given)
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
         _rightly_named(given, contact)
         proof = tangency.worked_through(contact)
     else:
         claim = claim_of(given)
         _rightly_named(given, claim)
         proof = corner_proved(claim) if isinstance(claim, CornerClaim) else proved(claim)
-    if given["schema"] == SCHEMA:
-        _rightly_said(given, json.loads(json.dumps(document(proof))))
+    if given["schema"] == SCHEMA or (given["schema"] == SECOND and given["kind"] != "tangency"):
+        _rightly_said(given, json.loads(json.dumps(document(proof) | {"schema": given["schema"]})))
     return proof
 
 
@@ -297,8 +315,16 @@ def check(path: Path | str) -> "Proof | CornerProof | TangencyProof":
 
 def _rightly_named(given: Mapping[str, Any], claim: "Claim | CornerClaim | TangencyClaim") -> None:
     said, true = given.get("name"), name_of(claim)
+    if given["schema"] != SCHEMA and given["kind"] == "tangency":
+        true = _name_before(claim)
     if said != true:
         raise ValueError(f"certificate: name = {ascii(said)[:80]} is not what it states, which is {true!r}")
+
+
+def _name_before(claim: Any) -> str:
+    """The name of a tangency in documents of earlier versions."""
+    kind = "homoclinic" if claim.contact.unstable == claim.contact.stable else "heteroclinic"
+    return f"{kind} tangency in the egg, alpha = {claim.alpha}"
 
 
 def _rightly_said(given: Mapping[str, Any], true: Mapping[str, Any]) -> None:
@@ -309,7 +335,8 @@ def _rightly_said(given: Mapping[str, Any], true: Mapping[str, Any]) -> None:
         raise ValueError(f"certificate: {wrong[0]} = {said} is not what its equations say, which is {meant}")
     if not isinstance(given.get("checks"), Mapping) or set(given["checks"]) != set(true["checks"]):
         raise ValueError(f"certificate: checks must list just these: {', '.join(true['checks'])}")
-    if unknown := set(given) - set(true):
+    own = set(CHAIN) if true["kind"] == "tangency" else set()  # of a tangency that is not proved no orbit is known
+    if unknown := set(given) - set(true) - own:
         raise ValueError(f"certificate: the entry {ascii(min(unknown))[:60]} is unknown; accepted: {', '.join(true)}")
 
 

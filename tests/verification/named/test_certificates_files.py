@@ -153,7 +153,7 @@ def test_a_contraction_beyond_one_is_refused():
 @pytest.mark.parametrize(
     ("entry", "value", "message"),
     [
-        ("schema", 3, "schema = 3 is unknown"),
+        ("schema", 4, "schema = 4 is unknown"),
         ("bits", 10**9, "out of range"),
         ("scene", EGG | {"table": "egg; import os"}, "no table is called"),
         ("scene", EGG | {"shape": {"alpha": "__import__('os').system('true')"}}, "."),

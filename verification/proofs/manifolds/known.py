@@ -55,6 +55,7 @@ from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, TangencyClaim, TangencyProof, sharpened, worked_through
 from verification.proofs.manifolds.saddle import Orbit, horner
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
+from verification.proofs.manifolds.touching import composed
 from verification.proofs.manifolds.windows import WINDOWS
 
 
@@ -119,15 +120,6 @@ def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
         extend([horner(c, end.c[0] * gap.into.factor**k) for c in gap.into.coefficients])
         image = composed(image, once)
     return points, bent, image
-
-
-def composed(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
-    """The symmetry `x -> sign*x + turns` after another.
-
-    >>> composed((-1, 2), (-1, 5))
-    (1, -3)
-    """
-    return first[0] * second[0], first[0] * second[1] + first[1]
 
 
 TRIED = 1500

@@ -37,7 +37,7 @@ from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact, Precision
-from verification.proofs.manifolds.touching import Linear, Point, Touching, Vector
+from verification.proofs.manifolds.touching import Chain, Linear, Point, Touching, Vector
 from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
 
 LEAST_DIGITS = 24
@@ -222,6 +222,10 @@ class TangencyClaim:
     def map(self) -> Pinball:
         """The map of the table, with its rotations."""
         return Pinball(tables.egg(3).at(alpha=self.alpha), turn=3)
+
+    def chain(self) -> dict[str, Any]:
+        """The orbit bounce by bounce, for a reader that knows no series; a few seconds, not proved."""
+        return Chain(self.contact, self.map, self.value, self.digits).entries()
 
     def to_dict(self) -> dict[str, Any]:
         """The entries of a document that state the claim.

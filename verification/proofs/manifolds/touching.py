@@ -16,16 +16,17 @@ the map in between.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
+import mpmath
 from flint import arb, arb_mat
 
-from verification.arithmetic.balls import FLOAT64, balls
+from verification.arithmetic.balls import FLOAT64, balls, multiprecision
 from verification.arithmetic.series import Jet
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import PlaneMap
-from verification.proofs.manifolds.saddle import Local, horner
-from verification.proofs.manifolds.tangency import Contact, Near, Pair, Precision, rounds, scale, smaller
+from verification.proofs.manifolds.saddle import Local, direction, horner, saddle, slopes
+from verification.proofs.manifolds.tangency import Contact, Gap, Near, Pair, Precision, rounds, scale, smaller
 
 
 @dataclass(frozen=True)
@@ -213,3 +214,143 @@ def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_parameter: 
         matrix.append(row)
     for column, x in zip((made.by_parameter, made.bent_by_parameter), by_parameter, strict=True):
         column.append(x)
+
+
+MIDDLE = 20  # digits beyond those asked for, with which a chain is computed
+LEAST = 0.125  # of a curvature
+LOST = 4  # bits with each bounce, for who follows the orbit
+SLACK = 4  # times what is seen at one place near a saddle: a bound of the local manifold
+Image = tuple[int, int]  # the symmetry `x -> sign*x + turns*unit`
+
+
+def composed(first: Image, second: Image) -> Image:
+    """A symmetry after another.
+
+    >>> composed((-1, 2), (-1, 5))
+    (1, -3)
+    """
+    return first[0] * second[0], first[0] * second[1] + first[1]
+
+
+def exact_number(x: Any, bits: int) -> list[str]:
+    """`[m, e]`, with `m*2**e` the multiple of `2**-bits` next to an mpmath number."""
+    m = int(x.context.nint(x.context.ldexp(x, bits)))
+    zeros = min(bits, (m & -m).bit_length() - 1) if m else bits
+    return [str(m >> zeros), str(zeros - bits)]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A saddle's bounces in the order of the flight, the angle at which it leaves the first, and two slopes there.
+
+    `along` is the angle by the place on the manifold, `across` the place by the angle on the other; a round makes
+    distances on the manifold `stretch` times as long.
+    """
+
+    saddle: list[Any]
+    angle: Any
+    along: Any
+    across: Any
+    stretch: Any
+
+
+class Chain:
+    """A contact bounce by bounce, for a reader that knows no series: docs/certificate_format.md says what entries are.
+
+    The orbit begins and ends so near to the saddles that their manifolds are parabolas there, and the map does the
+    rest. Nothing of it is proved; whoever reads it proves it.
+    """
+
+    def __init__(self, contact: Contact, map: PlaneMap, value: str, digits: int) -> None:
+        context = mpmath.MPContext()
+        context.dps = digits + MIDDLE
+        self.map, self.digits, self.near = map.over(multiprecision(context)), digits, 10.0 ** -(digits / 2 + 2)
+        self.bits = math.ceil(-2 * math.log2(self.near)) + 40
+        self.lam, self.unit = context.mpf(value), 2 * context.pi / map.turn
+        self.gap = Gap(contact, self.map, self.lam, 12 + digits, 10.0 ** -(digits + 12))
+        self.z, _, end = self.gap.extremum()
+        self.end = end.c[0]
+
+    def entries(self) -> dict[str, Any]:
+        """The entries of a document that say where the contact is."""
+        bounces, meets, arrived = self._orbit()
+        sides, centre = {}, []
+        for name, image, chain in (("unstable", (1, 0), bounces), ("stable", arrived, bounces[::-1])):
+            sides[name], place = self._side(name == "stable", image, chain)
+            centre.append(exact_number(place, self.bits))
+        bits = self.bits + LOST * len(bounces)
+        said = {"bits": bits, "digits": self.digits, "centre": [*centre, exact_number(self.lam, self.bits)]}
+        radius = ["1", str(-math.ceil(self.digits * math.log2(10)))]
+        orbit = [exact_number(self._whole(x), MIDDLE * 2) for x in bounces]
+        return said | {"radius": radius} | sides | {"orbit": orbit, "meets": meets}
+
+    def _whole(self, x: Any) -> Any:
+        """An angle without its whole turns."""
+        turns = x / (2 * self.map.words.pi)
+        return 2 * self.map.words.pi * (turns - turns.context.nint(turns))
+
+    def _orbit(self) -> tuple[list[Any], int, Image]:
+        """The bounces from one saddle to the other, one of them that is far from both, and the image of the second."""
+        gap, out, into = self.gap, self.gap.out, self.gap.into
+        image, found = (1, 0), list[Any]()
+
+        def extend(points: Sequence[Any]) -> None:
+            found.extend(image[0] * x + image[1] * self.unit for x in points)
+
+        for k in range(rounds(float(self.z) * out.unit / self.near, float(out.factor)), 0, -1):
+            extend([horner(c, self.z / out.factor**k) for c in out.coefficients])
+            image = composed(image, self._once(out))
+        flight, before = gap.orbit(self.z), len(found)
+        extend([jet.c[0] for jet in flight[: gap.bounces]])
+        apart = flight[-2].c[0] - gap.sign * into.points(self.end)[0]
+        image, meets = composed(image, (gap.sign, round(float(apart / self.unit)))), (before + len(found)) // 2
+        late = rounds(float(self.end) * into.unit / self.near, 1 / float(into.factor))
+        for k in range(late):
+            extend([horner(c, self.end * into.factor**k) for c in into.coefficients])
+            image = composed(image, self._once(into))
+        extend([horner(into.coefficients[0], self.end * into.factor**late)])
+        return found, meets, image
+
+    def _once(self, local: Local) -> Image:
+        """What a saddle's bounces are moved by after a round."""
+        closure = local.saddle.orbit.closure
+        p, q = closure.shift
+        return closure.turn, p * self.map.turn // q
+
+    def _frame(self, side: Local, lam: Any, image: Image, back: bool) -> Frame:
+        """The frame of a saddle; with `back` time runs back, and its stable direction is the one that stretches."""
+        made = saddle(side.saddle.orbit, self.map, lam)
+        rows, points, here, count = slopes(made.orbit, self.map, made.points, lam), list[Any](), image, 0
+        while not count or here[0] != image[0] or (here[1] - image[1]) % self.map.turn:
+            points += [here[0] * x + here[1] * self.unit for x in made.points]
+            here, count = composed(here, self._once(side)), count + 1
+        angle, by_here, by_there = self.map.angle(points[0], points[-1 if back else 1])[:3]
+        tilts = []
+        for factor in (made.unstable, made.stable):
+            vector, sign = direction(made, rows, factor), self._once(side)[0]
+            moves = [(sign * factor) ** k * v for k in range(count) for v in vector]
+            there = moves[-1] / (sign * factor) ** count if back else moves[1]
+            tilts.append(by_here + by_there * there / moves[0])
+        along, other = tilts[::-1] if back else tilts
+        stretch = 1 / made.stable**count if back else made.unstable**count
+        order = [points[0], *points[:0:-1]] if back else points
+        return Frame([self._whole(x) for x in order], angle, along, 1 / other, stretch)
+
+    def _side(self, back: bool, image: Image, chain: Sequence[Any]) -> tuple[dict[str, Any], Any]:
+        """What is said of one manifold, and where on it the orbit begins that runs along `chain`."""
+        side, step = self.gap.into if back else self.gap.out, self.lam.context.mpf(10) ** -(self.digits // 2)
+        frame, after, before = (self._frame(side, self.lam + move, image, back) for move in (0, step, -step))
+        a, b = self._whole(chain[0] - frame.saddle[0]), self.map.angle(chain[0], chain[1])[0] - frame.angle
+        whole = 1 - frame.along * frame.across
+        x, y = (a - b * frame.across) / whole, (b - a * frame.along) / whole
+        bend, turn = abs(y / x**2), abs((after.along - before.along) / (2 * step * whole))
+        bend, turn, reach = SLACK * max(bend, LEAST), SLACK * max(turn, LEAST), abs(x) * 9 / 8
+        said = {
+            "bounces": frame.saddle,
+            "frame": (frame.saddle[0], frame.angle, frame.along, frame.across),
+            "drift": ((after.saddle[0] - before.saddle[0]) / (2 * step), (after.angle - before.angle) / (2 * step)),
+            "range": (reach, reach / abs(frame.stretch) * 17 / 16),
+            "bounds": (2 * bend * reach**2, 2 * bend * reach, turn * reach, bend, turn),
+        }
+        exact = {name: [exact_number(self.lam * 0 + number, self.bits) for number in said[name]] for name in said}
+        return exact, x

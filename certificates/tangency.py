@@ -1,0 +1,93 @@
+"""Tangencies, for `check.py`, which says what a contact of two manifolds is read from: nothing else is imported.
+
+Why this proves that the manifolds touch: docs/certificate_format.md.
+"""
+
+from fractions import Fraction
+
+from check import I, Jet, Wrong, algebra, exact, function, need, newton, value
+
+
+class Manifold:
+    """The unstable manifold of a saddle, for each lam of a box; or, with time running back, the stable one.
+
+    It is a graph y = w(x, lam), abs(x) <= reach, in the frame of a file, which moves with lam. The file has bounds of
+    w, w_x, w_lam, w_xx/2 and w_x_lam. A round maps such graphs (0 is one) over abs(x) <= inner to such graphs, and any
+    two closer. So one is mapped to itself, and along it a round expands: it is the manifold of a saddle on it."""
+
+    def __init__(self, table, given, lam, back):
+        p, self.table, self.lam, self.own, self.other = table.p, table, lam, int(back), int(not back)
+        point = lambda pair: I.of(exact(pair), p)
+        names = ("bounces", "frame", "drift", "range", "bounds")
+        saddle, (*self.zero, along, across), self.drift, (self.reach, inner), radii = (
+            [point(x) for x in given[name]] for name in names
+        )
+        self.along, self.across, self.w = along, across, [I.of(0, p).wide(r) for r in radii]
+        near = [(0, x.wide(I.of(Fraction(1, 1000), p))) for x in saddle]
+        run = lambda x, d: table.orbit(self.launch, self.boxes(x, lam), near + near[:1], d, view=self.framed)
+        *self.states, (x, y) = run(I.of(0, p).wide(inner), 2)
+        (x1, y1), (x0, _) = map(self.on, (x, y)), run(I.of(0, p), 1)[-1]
+        slope = y1.diff(self.own) * function("inverse", x1.diff(self.own), p)
+        s, g, (*_, turn), shift = value(slope), x1.gradient(p)[self.own], slope.gradient(p), x1.gradient(p)[2]
+        bend = slope.gradient(p)[self.own] / g
+        new = [value(y1), s, y1.gradient(p)[2] - s * shift, bend / 2, turn - bend * shift]
+        need(len(radii) == 5 and all(map(I.inside, new, self.w)), "remainder: the manifold is not enclosed")
+        fy, gy = (f.gradient(p)[self.other].size() for f in (x, y))
+        fits = (inner - self.reach).hi <= 0
+        grows = fits and (value(x0).size() + self.reach) * (1 / g).size() - inner < 0 and (1 / g).size() < 1
+        need(grows and gy + self.w[1].size() * fy < 1, "saddle: a round may not expand, or not bring graphs closer")
+
+    boxes = lambda self, x, lam: [self.w[0], x, lam] if self.own else [x, self.w[0], lam]
+
+    def launch(self, *letters):
+        (x, y, lam), (theta, psi) = (letters[self.own], letters[self.other], letters[2]), self.centred(letters[2])
+        names = {"lam": function("inverse", lam, self.table.p) if self.own else lam}
+        return y * self.across + x + theta, x * self.along + y + psi, self.table.letters | names
+
+    def centred(self, lam):
+        """The middle of the frame."""
+        return [(lam - self.lam.mid()) * move + zero for zero, move in zip(self.zero, self.drift)]
+
+    def framed(self, theta, psi, lam):
+        """The coordinates of a state."""
+        (a, b), one = (x - zero for x, zero in zip((theta, psi), self.centred(lam))), 1 / (1 - self.along * self.across)
+        return (a - b * self.across) * one, (b - a * self.along) * one
+
+    def on(self, f):
+        """A jet along the manifold, as one in x and lam, to second order."""
+        (_, x, lam, xx, mixed), letters, total = self.w, [Jet.of(0, 2, k) for k in range(3)], Jet.of(0, 2)
+        w = [0, lam, x, 0, 0, mixed, xx, 0, 0, 0] if self.own else [0, lam, 0, x, 0, 0, 0, mixed, 0, xx]
+        letters[self.other] = Jet(w, 2)
+        for e, c in zip(algebra(2)[0], f.c):
+            for letter in (letter for letter, n in zip(letters, e) for _ in range(n)):
+                c = letter * c
+            total = total + c
+        return total
+
+
+def touching(given, table, box):
+    """Exactly one contact of two manifolds in a box: where, and lam.
+
+    The particle that came and the one that goes are at one place, at angles that obey the law; tangents are parallel.
+    Where the derivative of these equations is regular, the contact is quadratic and passes with non-zero speed."""
+    p, meets = table.p, given["meets"]
+    sides = [Manifold(table, given[key], box[2], key == "stable") for key in ("unstable", "stable")]
+    orbit = [(0, I.of(exact(pair), p).wide(I.of(Fraction(1, 10**5), p))) for pair in given["orbit"]]
+    need(type(meets) is int and 0 < meets < len(orbit) - 1, "meets is out of range", Wrong)
+    ways = orbit[: meets + 1], orbit[: meets - 1 : -1]
+    need(all((x.size() - side.reach).hi <= 0 for side, x in zip(sides, box)), "exists: a start beyond the manifold")
+
+    def runs(box, d):
+        sought = zip(sides, box, ways)
+        return [table.orbit(side.launch, side.boxes(x, box[2]), way, d) for side, x, way in sought]
+
+    def equations(box, d):
+        (a, b), (u, v) = ([side.on(Jet(f.c[:10], 2)) for f in run[-1]] for side, run in zip(sides, runs(box, d + 2)))
+        v = -v * Jet.of(box[2], 2, 2)
+        return a - u, b - v, a.diff(0) * v.diff(1) - b.diff(0) * u.diff(1)
+
+    image = newton(equations, box, p)
+    for chain in (*(side.states for side in sides), *runs(image, 1)):
+        for here, there in zip(chain, chain[1:]):
+            table.free([(0, value(here[0]))], [(0, value(there[0]))], table.letters)
+    return image

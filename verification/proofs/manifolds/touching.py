@@ -24,7 +24,7 @@ from flint import arb, arb_mat
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision
 from verification.arithmetic.series import Jet
 from verification.proofs.manifolds.enclosed import TooWideError
-from verification.proofs.manifolds.plane_map import PlaneMap
+from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Local, direction, horner, saddle, slopes
 from verification.proofs.manifolds.tangency import Contact, Gap, Near, Pair, Precision, rounds, scale, smaller
 
@@ -261,7 +261,7 @@ class Chain:
     rest. Nothing of it is proved; whoever reads it proves it.
     """
 
-    def __init__(self, contact: Contact, map: PlaneMap, value: str, digits: int) -> None:
+    def __init__(self, contact: Contact, map: Pinball, value: str, digits: int) -> None:
         context = mpmath.MPContext()
         context.dps = digits + MIDDLE
         self.map, self.digits, self.near = map.over(multiprecision(context)), digits, 10.0 ** -(digits / 2 + 2)

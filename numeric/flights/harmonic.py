@@ -4,11 +4,14 @@ State: the unit numbers `u = exp(i*theta)` and `v`, the particle's direction. Th
 needs come from `symbolic.motion.flight` through the table IR.
 """
 
+from typing import ClassVar
+
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair
 from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing, Status, grazing, reflected
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
+MOST_KNOWN = 256  # tables of which it is remembered whether they are convex
 
 
 class Harmonic(Family):
@@ -149,9 +152,18 @@ class Fourier(Harmonic):
         super().__init__(boundary)
         self.chord = boundary.ir.program("chord")
 
+    known: ClassVar[dict[tuple[str | float, ...], bool]] = {}  # which tables were found convex: it takes a millisecond
+
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.ir.has("chord") and boundary.convex
+        if not boundary.ir.has("chord"):
+            return False
+        table: tuple[str | float, ...] = (boundary.ir.as_text(), *boundary.shape)
+        if table not in cls.known:
+            if len(cls.known) >= MOST_KNOWN:
+                cls.known.clear()
+            cls.known[table] = boundary.convex
+        return cls.known[table]
 
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         v = exit[0], exit[1]

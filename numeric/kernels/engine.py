@@ -126,7 +126,8 @@ class Course:
         self.engine, self.law, self.told, self.width, self.count = engine, law, told, width, lam.size
         columns = -(-self.count // width) * width
         self.names = fields(engine.family, KernelSpec(law))
-        self.state = np.zeros((len(self.names) + len(START), columns))
+        self.state = np.empty((len(self.names) + len(START), columns))
+        self.state[len(engine.family.fields(law)) : -len(START)] = 0.0  # no outcome yet
         self.lam, self.shape = np.empty(columns), np.array([*shape, 0.0])
         for row, values in zip((*self.state[-len(START) :], self.lam), (*start, lam), strict=True):
             row[: self.count], row[self.count :] = values, values[-1]

@@ -335,11 +335,10 @@ class PinballMap:
         theta, phi, where = np.broadcast_arrays(theta, phi, where)
         if theta.size == 0:
             raise ValueError("theta and phi are empty; give at least one particle")
-        steep = np.abs(phi) >= np.pi / 2
-        if np.any(steep):
+        if phi.max() >= np.pi / 2 or phi.min() <= -np.pi / 2:
+            steep = np.abs(phi) >= np.pi / 2
             raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
-        at_cusp = self.family.cusped & (np.cos(theta / 2) < NEAR)
-        if np.any(at_cusp):
+        if self.family.cusped and np.any(at_cusp := np.cos(theta / 2) < NEAR):
             raise ValueError(f"theta = {theta[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
         if self.lam.size > 1 and self.lam.shape != theta.shape:
             raise ValueError(
@@ -347,6 +346,8 @@ class PinballMap:
                 "give one lam for each particle, or one"
             )
         for index, (low, high) in enumerate(self.states.ends):
+            if low <= theta.min() and theta.max() <= high:
+                continue
             off = (where == index) & ~((low <= theta) & (theta <= high))
             if np.any(off):
                 if self.states.boundary.closed:

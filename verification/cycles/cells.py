@@ -216,7 +216,10 @@ class Corrector:
         try:
             step = np.linalg.solve(matrix, value[:, :, None])
         except np.linalg.LinAlgError:
-            step = np.linalg.solve(matrix + 1e-13 * np.eye(n), value[:, :, None])
+            matrix += 1e-13 * np.eye(n)
+            lost = np.linalg.slogdet(matrix)[0] == 0  # entries so large that this changes nothing
+            matrix[lost], value[lost] = np.eye(n), np.nan
+            step = np.linalg.solve(matrix, value[:, :, None])
         return np.asarray(step[:, :, 0], dtype=np.float64)
 
     def exits(self, components: tuple[int, ...], x: Array) -> Array:

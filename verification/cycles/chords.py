@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symbolic.expressions.text import load
-from symbolic.motion.chords import chord_kernel, law_kernel
+from symbolic.motion.chords import chord_angle, chord_kernel, law_kernel
 from symbolic.tables.definition import table_boundary
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
@@ -45,7 +45,7 @@ class ChordAngles:
 
 @cache
 def _places(table: Table, order: int) -> dict[str, int]:
-    return {name: i for i, name in enumerate(chord_kernel(table, 0, 0, order).results)}
+    return {name: i for i, name in enumerate(chord_angle(table, 0, 0, order).values)}
 
 
 def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:

@@ -1,6 +1,7 @@
 """All cycles: known counts, laws of index, a second count, and proofs of completeness."""
 
 import json
+from math import pi
 
 import numpy as np
 import pytest
@@ -8,10 +9,13 @@ from click.testing import CliRunner
 from sympy import Rational
 
 from numeric import PinballMap
+from numeric.dynamics.phase_points import phase_points
+from symbolic import tables
 from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.app.commands.orbit import cycles_command as cycles
 from verification.cycles.cells import Corrector, fixed_points
 from verification.cycles.search import Catalogue, all_cycles
+from verification.named.attractors import certificate
 from verification.proofs.periodic.interval_newton import no_others
 from verification.proofs.slap_map.exponent import periodic_points
 
@@ -149,3 +153,35 @@ def test_the_count_says_what_it_cannot_tell_apart():
 
     assert said.startswith("cycles of period 3 nearer than about 3e-07 radians count as one")
     assert said.endswith("a pair so near its fold is missed, and the index sums vanish without it")
+
+
+@pytest.mark.parametrize(
+    ("table", "components", "theta"),
+    [
+        (tables.sinai(), [1, 4], [0.5, 0.0]),  # a side and the disc within
+        (tables.stadium(), [0, 2], [0.0, 0.0]),
+        (tables.mushroom(), [0, 3], [pi / 2, 0.0]),
+        (tables.diamond(), [0, 2], [3 * pi / 4, -pi / 4]),  # cusps
+        (tables.polar("1 + 3*cos(theta)/5", "limacon"), [0, 0], [0.0, pi]),  # not convex
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_a_double_normal_is_proved_on_tables_with_holes_cusps_corners_and_dents(table, components, theta):
+    found = certificate(table, Rational(1, 2), phase_points(components, theta, 0.0))
+
+    checks = dict(found.checks)
+    assert checks.pop("attracting") is None
+    assert set(checks) >= {"exists", "unique", "admissible", "minimal_period"}
+    assert all(value is True for value in checks.values())
+    assert found.determinant.contains(0.25)  # det DT = lam at each of two bounces
+
+
+def test_a_row_of_seeds_with_a_singular_matrix_is_dropped_and_the_others_are_kept(monkeypatch):
+    # the first row's matrix is 1e9 everywhere, so that a small number on its diagonal is rounded away
+    large, unit = np.full((2, 2), [[1e9], [1.0]]), np.array([[1.0, 1.0], [0.0, 0.0]])
+    rows = (np.ones((2, 2)), large / 2 * unit, large, large / 2 * unit)
+    monkeypatch.setattr(Corrector, "diagonals", lambda self, components, x: rows)
+    step = Corrector(TABLE, 0.5)._correction((0, 0), np.zeros((2, 2)))
+
+    assert np.all(np.isnan(step[0]))
+    assert np.allclose(step[1], 1.0)

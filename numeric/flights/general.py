@@ -13,7 +13,7 @@ import numpy as np
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
-from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.family import NEAR, UNSURE, Boundary, Family, Landing, Status, grazing, reflected
 
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
@@ -79,26 +79,39 @@ class General(Family):
             piece = number(float(index)), number(low), number(high), number(high - low)
             curve = self._curve_of(ops, shape, index)
             best = self._hits(ops, curve, piece, (component, theta), (x0, y0), v, best)
-        return self._landed(ops, shape, best, v)
+        return self._landed(ops, shape, best, v, (component, x0, y0))
 
     def _curve_of(self, ops: Backend[N, M], shape: Fields[N], index: int) -> Callable[[N], list[N]]:
         """Point, velocity and acceleration on one component."""
         return lambda at: self.parts[index].curve(ops, at, *shape)
 
-    def _landed(self, ops: Backend[N, M], shape: Fields[N], best: list[N], v: Pair[N]) -> Landing[N]:
-        """The landing at the nearest of all arrivals: length, component and parameter."""
+    def _landed(
+        self, ops: Backend[N, M], shape: Fields[N], best: list[N], v: Pair[N], start: tuple[N, N, N]
+    ) -> Landing[N]:
+        """The landing at the nearest of all arrivals: length, component and parameter.
+
+        It is at a join where rounding hides on which side of it the line passes. The line is moved sideways by at most
+        `UNSURE` times the sum of the moduli of the numbers that go into its ends; on the component from which a
+        particle leaves, a short flight moves along with its start.
+        """
         t, where, at = best
         far = ops.number(FAR)
-        _x, _y, dx, dy, _, _ = self.curve(ops, shape, where, at)
+        x, y, dx, dy, _, _ = self.curve(ops, shape, where, at)
         across, along = dx * v[0] + dy * v[1], dy * v[0] - dx * v[1]
-        nought, one = ops.number(0.0), ops.number(1.0)
+        nought = ops.number(0.0)
         code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
         speed = ops.sqrt(dx * dx + dy * dy)
+        own = modulus(where - start[0]) < ops.number(0.25)
+        size = modulus(start[1]) + modulus(start[2]) + modulus(x) + modulus(y) + modulus(at) * speed
+        doubt = ops.number(UNSURE) * size
+        straight = ops.select(own, speed, modulus(along))
+        if getattr(ops, "context", None) is not None:  # with more digits, which leave no such doubt: one distance
+            straight, doubt = speed, ops.number(NEAR)
         for index, (low, high) in enumerate(self.joins):
             here = ops.number(0.25) < modulus(where - ops.number(float(index)))
             gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
-            gap = ops.select(here, one, gap * speed)
-            code = ops.select(gap < ops.number(NEAR), ops.number(float(Status.JOIN.code)), code)
+            aside = ops.select(here, far, gap * straight)
+            code = ops.select(aside < doubt, ops.number(float(Status.JOIN.code)), code)
         nowhere = ops.number(
             float((Status.LOST if self.closed else Status.JOIN).code)
         )  # what is lost between two components is at a join

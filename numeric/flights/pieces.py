@@ -48,12 +48,11 @@ from numeric.flights.corners import (
     piece_of,
     span,
 )
-from numeric.flights.family import Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.family import UNSURE, Boundary, Family, Landing, Status, grazing, reflected
 from numeric.flights.general import refuse_long
 from numeric.flights.spline import halved
 
 FAR = 2.0**100  # as far as nothing was met
-UNSURE = 2.0**-49  # how far a line is moved sideways by rounding, as a share of the numbers it is made of
 Masks = Any
 Row = Sequence[Any]
 

@@ -72,7 +72,7 @@ class Spline(General):
             best = self._across(ops, (component, theta), row, (x0, y0), v)
         else:
             best = self._nearest(ops, self.tree, (component, theta), (x0, y0), v)
-        return self._landed(ops, shape, best, v)
+        return self._landed(ops, shape, best, v, (component, x0, y0))
 
     def _across(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
         """Length, component and parameter of the only landing on a convex curve."""

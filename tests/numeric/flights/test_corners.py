@@ -7,9 +7,10 @@ import pytest
 from sympy import Rational
 
 from numeric import PinballMap, phase_starts
-from numeric.flights.pieces import UNSURE
+from numeric.flights.family import UNSURE
 from symbolic import tables
 from symbolic.tables.gallery import GALLERY
+from symbolic.tables.table import theta
 from verification.measure.extremes.by_hand import bounced, hard, judged
 
 EPS = 2.0**-52
@@ -83,3 +84,26 @@ def test_kernels_and_arrays_stop_the_same_particles_up_to_rounding():
     one, other = (bounced(map, starts)[2] for map in (plain, compiled))
 
     assert np.mean(one != other) < 0.05
+
+
+@pytest.mark.parametrize("factor", [1, SMALL, 10**6])
+def test_a_table_of_any_two_arcs_has_its_corners_told_in_the_same_way(factor):
+    """A lens of two parabolas, which have no closed form: one of them on each side of a corner."""
+    lower = tables.arc("lower", factor * theta, factor * (theta**2 - 1) / 2, -1, 1)
+    upper = tables.arc("upper", -factor * theta, factor * (1 - theta**2) / 2, -1, 1)
+    map = PinballMap(tables.piecewise(lower, upper, name="lens"), lam=0.9, kernels=False)
+    rng, count, wide = np.random.default_rng(25), 300, np.longdouble
+    where, at = rng.integers(0, 2, count), rng.uniform(-0.9, 0.9, count)
+    frame = map.states.frame(where, at)
+    right = rng.choice([-1, 1], count)
+    away = np.arctan2(-frame.y, float(factor) * right - frame.x)
+    phi = frame.angle(map.states.ops, np.cos(away), np.sin(away)) + rng.integers(-40, 41, count) * EPS / 2
+    own, after, code = bounced(map, (where, at, phi))
+    x, y = own[1].astype(wide) * (1 - 2 * where), (own[1].astype(wide) ** 2 - 1) / 2 * (1 - 2 * where)
+    aside = own[2].astype(wide) * (0 - y) - own[3].astype(wide) * (right - x)  # of the corner, as a share of the size
+    going = code == 0
+    above = right * aside < 0  # the line passes the corner on its upper side
+
+    assert 0.2 < np.mean(going) < 0.8
+    assert np.array_equal(after[0][going] == 1, above[going])
+    assert np.max(np.abs(aside[~going])) < 5 * UNSURE * 2

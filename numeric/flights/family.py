@@ -130,7 +130,6 @@ class Boundary:
 SLAP, ELASTIC, PINBALL, FORMULA = "slap", "elastic", "pinball", "formula"  # lam = 0, 1, between; any other law
 GRAZE = 2.0**-50  # cos(eta) below this is a tangency
 NEAR = 2.0**-50  # on the paper's tables a landing closer than this to a join or a cusp is one
-UNSURE = 2.0**-49  # on others: how far a line is moved sideways by rounding, as a share of the numbers it is made of
 
 
 def law_of(lam_low: float, lam_high: float) -> str:

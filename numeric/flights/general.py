@@ -13,8 +13,9 @@ import numpy as np
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
-from numeric.flights.family import NEAR, UNSURE, Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
 
+UNSURE = 2.0**-49  # how far a line is moved sideways by rounding, as a share of the numbers it is made of
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
 LONG = 2.0**20  # a parameter, whose rounding moves the point

@@ -48,8 +48,8 @@ from numeric.flights.corners import (
     piece_of,
     span,
 )
-from numeric.flights.family import UNSURE, Boundary, Family, Landing, Status, grazing, reflected
-from numeric.flights.general import refuse_long
+from numeric.flights.family import Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.general import UNSURE, refuse_long
 from numeric.flights.spline import halved
 
 FAR = 2.0**100  # as far as nothing was met

@@ -7,7 +7,7 @@ import pytest
 from sympy import Rational
 
 from numeric import PinballMap, phase_starts
-from numeric.flights.family import UNSURE
+from numeric.flights.general import UNSURE
 from symbolic import tables
 from symbolic.tables.gallery import GALLERY
 from symbolic.tables.table import theta

@@ -109,7 +109,7 @@ class Kinked:
     """In the place of flights, a map of the arc with a kink at 0, where it is 0.002 below the diagonal."""
 
     def __init__(self):
-        self.ends = {ARC: arb(1), WALL: arb(1)}
+        self.ends, self.odd = {ARC: arb(1), WALL: arb(1)}, False
 
     def iterated(self, pieces, n):
         (piece,) = pieces

@@ -29,6 +29,7 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
+from verification.cycles.problem import mirrored
 from verification.proofs.corner.corner import (
     ARC,
     BITS,
@@ -76,6 +77,11 @@ class Flights:
     def __init__(self, lam: arb | int = 0) -> None:
         self.lam = lam
         self.balls, self.floats, self.ends = _loaded()
+
+    @property
+    def odd(self) -> bool:
+        """Is it proved that the map takes `-theta` to the negative of what it takes `theta` to?"""
+        return all(mirrored(part) for part in cuspless.components)
 
     def iterated(self, pieces: list[Piece], n: int) -> list[Piece] | None:
         """The images under `n` flights; None when one could not be enclosed."""

@@ -203,14 +203,17 @@ class PeriodicPoints:
 def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> PeriodicPoints:
     """Where `T0**n(x) = x` on the cuspless cardioid, in stretches of the arc and of the wall.
 
+    The mirror `y -> -y` takes `theta` to `-theta` and commutes with `T0`: solutions are sought on the upper half alone.
+
     >>> [(c, round(a, 2), round(b, 2)) for c, a, b in periodic_points(2).stretches or []]
     [(0, -1.12, -0.99), (0, -0.02, 0.02), (0, 0.99, 1.12), (1, -0.01, 0.01)]
     """
     with working(BITS):
         slap = Flights()
         found: list[tuple[int, float, float, int]] = []
-        queue = [(ARC, *_halves(slap.ends[ARC])), (WALL, *_halves(slap.ends[WALL]))]
-        boxes = 0
+        ends = {component: _end(slap.ends[component]) for component in (ARC, WALL)}
+        queue = [(part, end / 2, end / 2) if slap.odd else (part, 0.0, end) for part, end in ends.items()]
+        whole, boxes = sum(half for *_, half in queue), 0
         while queue:
             component, middle, half = queue.pop()
             boxes += 1
@@ -223,14 +226,15 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
             if sign and not apart:
                 found.append((component, middle - half, middle + half, sign))
             if apart or sign:
-                tick(half / sum(_halves(end)[1] for end in slap.ends.values()))
+                tick(half / whole)
                 continue
             queue += [(component, middle - half / 2, half / 2), (component, middle + half / 2, half / 2)]
+        found += [(part, -high, -low, sign) for part, low, high, sign in found if slap.odd]
         return PeriodicPoints(_joined(sorted(found)), boxes)
 
 
-def _halves(end: arb) -> tuple[float, float]:
-    return 0.0, float(end.upper()) * (1 + 2.0**-40)
+def _end(end: arb) -> float:
+    return float(end.upper()) * (1 + 2.0**-40)
 
 
 def _sign(x: arb) -> int:

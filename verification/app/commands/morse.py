@@ -54,7 +54,7 @@ def command(
     """
     from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
     from verification.proofs.global_dynamics.images import PinballImages
-    from verification.proofs.global_dynamics.regions import region, shares
+    from verification.proofs.global_dynamics.regions import region, sampled_share, shares
 
     if certificates is not None and not Path(certificates).is_dir():
         raise ValueError(f"--certificates {certificates!r} is no directory; create it first")
@@ -78,7 +78,7 @@ def command(
         "sets": [entry(graph, index) for index in range(len(graph.sets))],
         "regions": [
             {"set": index, "name": found.name, "boxes": int(found.cells.chart.size), "basin": shares(graph, index)}
-            | {"nu_plus_least": least[index]}
+            | {"basin_sampled": sampled_share(map, graph, index), "nu_plus_least": least[index]}
             for index, found in zip(graph.attracting, regions, strict=True)
             if found is not None
         ],
@@ -152,6 +152,9 @@ def show(console: "Console", label: str, document: dict[str, Any]) -> None:
         low, high = found["basin"]
         console.print(f"proved: {found['name']}, about set {found['set']}")
         console.print(f"        its basin holds between {low:.2%} and {high:.2%} of phase space, by area")
+        if found["basin_sampled"] is not None:
+            share, error = found["basin_sampled"]
+            console.print(f"        sampled: {share:.2%} +- {error:.2%} of random starts are in it after 2000 bounces")
         if found["nu_plus_least"] is not None:
             console.print(
                 f"        nu_plus >= {found['nu_plus_least']:.6f} for every orbit there that never lands on a join"

@@ -2,7 +2,7 @@
 
 from .graph import Cells, Grid, MorseGraph, morse_graph, refined
 from .images import PinballImages
-from .regions import Region, checked, expansion, region, shares
+from .regions import Region, checked, expansion, region, sampled_share, shares
 
 __all__ = [
     "Cells",
@@ -15,5 +15,6 @@ __all__ = [
     "morse_graph",
     "refined",
     "region",
+    "sampled_share",
     "shares",
 ]

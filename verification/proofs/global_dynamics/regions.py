@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, hull
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Images, hull
 from verification.proofs.global_dynamics.graph import (
     BLOCK,
     LARGEST,
@@ -44,6 +44,7 @@ from verification.proofs.global_dynamics.graph import (
 from verification.proofs.global_dynamics.images import PinballImages
 
 KIND, SCHEMA = "trapping region", 1
+SEED, STARTS, LONG = 1, 2000, 2000
 MOST_PARTS, MOST_BOXES = 16, 1 << 24
 
 
@@ -140,6 +141,28 @@ def shares(graph: MorseGraph, index: int) -> tuple[float, float]:
     slack = 1e-9  # far more than a sum of at most 2**28 positive doubles errs by, relatively
     low, high = (float(area[some].sum() / area.sum()) for some in (sure, maybe))
     return max(0.0, low - slack), min(1.0, high + slack)
+
+
+def sampled_share(map: PinballImages, graph: MorseGraph, index: int) -> tuple[float, float] | None:
+    """The share of random starts, by area, that are in a trapping region after `LONG` bounces; with its standard error.
+
+    A sample, to set beside the bounds of `shares`. None for a range of contractions.
+    """
+    if map.range[0] != map.range[1]:
+        return None
+    rng, grid = np.random.default_rng(SEED), graph.transitions.grid
+    areas = np.array([(c.x[1] - c.x[0]) * (c.y[1] - c.y[0]) for c in grid.charts])
+    chart = rng.choice(areas.size, STARTS, p=areas / areas.sum())
+    place = [np.array([getattr(c, side) for c in grid.charts])[chart].T for side in ("x", "y")]
+    theta, phi = (low + (high - low) * rng.random(STARTS) for low, high in place)
+    end = map.map.exponents(theta, phi, 1, LONG, chart)
+    known = np.isfinite(end.theta) & np.isfinite(end.phi)
+    last = Boxes(end.component[known], *((x[known], x[known]) for x in (end.theta, end.phi)))
+    met = grid.met(Images(np.arange(int(known.sum())), last, np.zeros(0, dtype=np.int64)))
+    block = graph.transitions.chosen(graph.trapping(index))
+    member = grid.painted(block, np.ones(block.chart.size, dtype=bool))
+    share = float(member[met.chart, met.left % grid.columns, met.bottom].sum()) / STARTS
+    return share, float(np.sqrt(max(share * (1 - share), 1 / STARTS) / STARTS))
 
 
 def _proved(held: Any) -> bool | None:

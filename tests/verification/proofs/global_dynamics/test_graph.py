@@ -13,7 +13,7 @@ from verification.app.cli import main
 from verification.proofs.global_dynamics.boxes import ArrayOps, BallArray, Chart, PlaneImages
 from verification.proofs.global_dynamics.graph import Cells, Grid, inside, mapped, morse_graph, refined, transitions
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.global_dynamics.regions import Region, checked, region, shares
+from verification.proofs.global_dynamics.regions import Region, checked, region, sampled_share, shares
 
 EGG = Scene("egg", alpha="0.08", lam="1/2")
 
@@ -134,6 +134,9 @@ def small_region() -> Region:
     assert len(found) == 3  # attractors at least, since no point is in two regions
     assert None not in found
     assert sum(low for low, _ in (shares(graph, i) for i in graph.attracting)) < 1
+    for index in graph.attracting:  # a sample is in the bounds but for what its size explains
+        (low, high), (share, error) = shares(graph, index), sampled_share(map, graph, index)
+        assert low - 4 * error <= share <= high + 4 * error
     return min(found, key=lambda block: block.cells.chart.size)
 
 

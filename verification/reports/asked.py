@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.lowering.cache import sources
 from numeric.sweeps.sweep import versions
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
@@ -50,19 +51,35 @@ class Asked:
         for text in self.at:
             if not 0 <= exact("--at", text) <= 1:
                 raise ValueError(f"report: --at {text} is no contraction; accepted: numbers in [0, 1]")
+        if self.parameter != "lam" and len(self.at) != 1:
+            raise ValueError(f"report: {self.parameter} varies at one contraction, and --at has {len(self.at)}")
         if not 2 <= self.period <= 12:
             raise ValueError(f"report: period {self.period} is out of range; accepted: 2 to 12")
 
     @cached_property
     def digest(self) -> str:
-        """Of the question, and of the versions that the last bits depend on."""
-        said = {**asdict(self), "scene": self.scene.text, "versions": versions()}
+        """Of the question, the program and the versions: what the bits of the answers depend on."""
+        program = sources("symbolic", "numeric", "verification")
+        said = {**asdict(self), "scene": self.scene.text, "versions": versions(), "program": program}
         return sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
 
     @property
     def ends(self) -> tuple[float, float]:
         """The interval in float64."""
         return float(exact(self.parameter, self.low)), float(exact(self.parameter, self.high))
+
+    @property
+    def title(self) -> str:
+        """The table in a few words: its name, or the radius."""
+        said = self.scene.document
+        return f"r = {said['polar']}" if "polar" in said and "name" not in said else self.scene.name
+
+    @property
+    def varied(self) -> str:
+        """What varies, as options of a command that follows."""
+        if self.parameter == "lam":
+            return f"--lam {self.low}:{self.high}"
+        return f"--lam {self.at[0]} --shape {self.parameter}={self.low}:{self.high}"
 
     def command(self, name: str, *options: str, lam: str | None = None) -> str:
         """A command line that asks the scene, at `lam` if it is given.

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter
 from sympy import S
 
 from numeric import PinballMap
@@ -23,6 +24,8 @@ from verification.reports.lives import said_of
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
 POINTS = 1200  # of the graph of the slap map
 COLUMNS, ROWS = 240, 160  # cells of a phase portrait
+SHAPES = 40  # values of another parameter than the contraction: each is a table of its own
+FEW = 0.02  # of them
 LONGEST = 12  # period of an attracting cycle that is followed, whatever was asked for
 LISTED = 11  # contractions of a diagram whose exponents are listed
 
@@ -76,7 +79,8 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
         s = wrapped(map.arclength.s(orbit.theta, orbit.component), half)
         good = orbit.code == 0
         counts, _, _ = np.histogram2d(np.sin(orbit.phi[good]), s[good], (ROWS, COLUMNS), ((-1, 1), (-half, half)))
-        clouds.append((text, counts))
+        few = np.count_nonzero(counts) < FEW * counts.size  # cycles, whose points would be too small to be seen
+        clouds.append((text, maximum_filter(counts, 3) if few else counts))
     pictures.portraits(parts, f"portrait-{level}", clouds, half)
     caption = (
         f"Phase portraits: {bounces} bounces of each of {orbits} random particles after 1000 that are not drawn, the "
@@ -91,10 +95,12 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
 def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     """The attractors against the contraction, and the exponents of the same orbits; kept as arrays to be drawn."""
     low, high = asked.ends
-    columns, orbits, points = 150 * 2**level, 12 + 6 * level, 120
+    columns, orbits, points = (150 if asked.parameter == "lam" else SHAPES) * 2**level, 12 + 6 * level, 120
     values = np.linspace(low, high, columns)
     transient, bounces = 1000 * 2**level, 512 * 2**level
-    found = run(bifurcation(text_of(asked.scene), values, orbits, points, bounces, transient, asked.seed))
+    text, lam = text_of(asked.scene), float(asked.scene.lam)
+    sweep = bifurcation(text, values, orbits, points, bounces, transient, asked.seed, asked.parameter, lam)
+    found = run(sweep)
     half = PinballMap(asked.scene).arclength.perimeter / 2
     s = wrapped(found.s.values, half)
     cells = 240
@@ -113,8 +119,11 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     }
     parts.keep(f"diagram-{level}", arrays)
     options = f"--orbits {orbits} --points {points} --transient {transient} --bounces {bounces} --seed {asked.seed}"
-    command = asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:{columns} {options} --json FILE")
-    size = f"{columns} contractions, {orbits} particles, {bounces} bounces"
+    over = f"--lams {asked.low}:{asked.high}:{columns}"
+    if asked.parameter != "lam":
+        over = f"--lams {asked.at[0]} --shape {asked.parameter}={asked.low}:{asked.high}:{columns}"
+    command = asked.command("bifurcation", over, options, "--json FILE")
+    size = f"{columns} values of {asked.parameter}, {orbits} particles, {bounces} bounces"
     effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.nanmedian(arrays['error'])):.1g} (median of nu_plus)")
     said = {"level": level, "command": command, "size": size, "rows": exponent_rows(arrays)}
     return [], [effort], said

@@ -35,7 +35,7 @@ GREEK = re.compile(r"(?<![A-Za-z\\])(lambda|lam|theta|alpha|phi|eta|kappa|nu)(?!
 def latex(report: Report, parts: Parts) -> str:
     """The whole document."""
     asked = report.asked
-    lines = [HEAD, r"\begin{document}", rf"\section*{{What becomes of {words(asked.scene.name)}}}"]
+    lines = [HEAD, r"\begin{document}", rf"\section*{{What becomes of {words(asked.title)}}}"]
     lines += [rf"\url{{{_address(asked.scene.text)}}}", ""]
     for section in report.sections:
         lines += [rf"\section{{{words(section.title)}}}", *(block(each, parts) for each in section.blocks)]

@@ -11,7 +11,7 @@ from sympy import S
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal
-from verification.cycles.arc import LostError, Steps
+from verification.cycles.arc import End, LostError, Steps
 from verification.cycles.branch import Branch, Event, spectrum_of
 from verification.cycles.cascade import FEIGENBAUM
 from verification.cycles.recurrence import BifurcationKind
@@ -205,9 +205,11 @@ COLUMNS = "what happens", "at", "branch that is born", "checklist"
 def _listing(asked: Asked, branch: Branch, orbit: PeriodicOrbit, events: list[Located], text: str) -> Listing:
     """Birth, death and what happens between."""
     rows: list[tuple[Cell, ...]] = []
-    for point, (_, why) in zip((branch.points[0], branch.points[-1]), branch.ends, strict=True):
-        end = f"branch ends: {why.removesuffix(' was reached')}"
-        rows.append((end, Number(f"{point.z[-1]:.9g}", known=Known.FLOAT), "", "-"))
+    for point, (end, why) in zip((branch.points[0], branch.points[-1]), branch.ends, strict=True):
+        known = Known.EXACT if end is End.INTERVAL else Known.FLOAT
+        rows.append(
+            (f"branch ends: {why.removesuffix(' was reached')}", Number(f"{point.z[-1]:.9g}", known=known), "", "-")
+        )
     rows[1:1] = [event.row for event in events]
     stable = np.array([spectrum_of(point).stable for point in branch.points])
     share = f"attracts at {stable.mean():.0%} of the points of its branch" if stable.any() else "attracts nowhere"
@@ -224,10 +226,8 @@ def command(asked: Asked, orbit: PeriodicOrbit, text: str) -> str:
     start = f"--start={','.join(f'{x:.9f}' for x in orbit.theta)}"
     if len(names) > 1:
         start += f" --components {','.join(names[i] for i in orbit.components)}"
-    over = f"--lam {asked.low}:{asked.high} --at {text}"
-    if asked.parameter != "lam":
-        over = f"--lam {text} --shape {asked.parameter}={asked.low}:{asked.high}"
-    return asked.command("follow", over, start, f"--digits {asked.digits}")
+    over = [asked.varied, f"--at {text}"] if asked.parameter == "lam" else [asked.varied]
+    return asked.command("follow", *over, start, f"--digits {asked.digits}")
 
 
 def cascade(asked: Asked, said: Document, number: int, longest: int) -> Made:

@@ -2,6 +2,7 @@
 
 import base64
 import json
+from functools import partial
 from importlib.resources import files
 
 from jinja2 import Environment, StrictUndefined
@@ -23,11 +24,12 @@ MEANINGS = {
 def page(report: Report, parts: Parts) -> str:
     """The whole page. Two runs differ in seconds, and in how far they got."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {"block": lambda block: shown(block, parts), "remark": remark}
+    environment.filters |= {"remark": remark, "said": said}
+    environment.filters["block"] = partial(shown, parts=parts)
     template = environment.from_string((files("verification.reports") / "page.html").read_text(encoding="utf-8"))
     asked = report.asked
     return template.render(
-        title=asked.scene.name,
+        title=asked.title,
         scene=asked.scene.text,
         file=FILE,
         address=address("application/toml", asked.scene_file().encode()),
@@ -39,11 +41,17 @@ def page(report: Report, parts: Parts) -> str:
     )
 
 
+def said(text: str) -> Markup:
+    """A formula as MathML, anything else in words."""
+    return formula(text) or remark(text)
+
+
 def again(report: Report) -> list[str]:
     """The options that ask for the same report."""
     asked = report.asked
-    looked = [f"--at {','.join(asked.at)}", f"--period {asked.period}", f"--digits {asked.digits}"]
-    return [f"--lam {asked.low}:{asked.high}", *looked, f"--seed {asked.seed}", "--out FILE.html"]
+    at = [f"--at {','.join(asked.at)}"] if asked.parameter == "lam" else []
+    looked = [*at, f"--period {asked.period}", f"--digits {asked.digits}"]
+    return [asked.varied, *looked, f"--seed {asked.seed}", "--out FILE.html"]
 
 
 def address(kind: str, content: bytes) -> str:
@@ -89,8 +97,8 @@ def _table(block: Listing) -> Markup:
 def _cell(cell: str | Number) -> Markup:
     if isinstance(cell, str):
         return remark(cell)
-    exact = formula(cell.value) if cell.known is Known.EXACT else None
-    return Markup("{} {}").format(exact or remark(cell.words), tag(cell.known))
+    shown = said(cell.value) if cell.known is Known.EXACT else remark(cell.words)
+    return Markup("{} {}").format(shown, tag(cell.known))
 
 
 def _figure(block: Picture, parts: Parts) -> Markup:

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.reports import scene as exactly
 from verification.reports.asked import Asked, Parts
@@ -83,6 +84,7 @@ def report(
     *,
     minutes: float = 2.0,
     lam: tuple[Any, Any] = ("0", "1"),
+    vary: tuple[str, Any, Any] | None = None,
     at: tuple[str, ...] = ("1/10", "1/2", "9/10"),
     period: int = 3,
     digits: int = 20,
@@ -93,15 +95,36 @@ def report(
 ) -> Report:
     """What becomes of a scene as the contraction varies, as one page of HTML; parts are kept in `out` with `.parts`.
 
+    With `vary=("b", low, high)` it is a parameter of the table or of the law that varies, at the one contraction in
+    `at`; there cycles are searched for, at the middle of the interval.
+
     The page is useful after its first steps and refined until the `minutes` are over. Asked again, it goes on.
     """
-    asked = Asked(scene.at(lam=at[len(at) // 2]), "lam", str(lam[0]), str(lam[1]), tuple(at), period, digits, seed)
+    parameter, low, high = ("lam", *lam) if vary is None else vary
+    if parameter != "lam":
+        scene = _midway(scene, parameter, low, high)
+    here = scene.at(lam=at[len(at) // 2])
+    asked = Asked(here, parameter, str(low), str(high), tuple(at), period, digits, seed)
     if not minutes > 0:
         raise ValueError(f"report: minutes = {minutes} is no time; give a positive number such as 2")
     page = Path(out)
     parts = Parts(page.with_suffix(".parts"), asked.digest)
     parts.made(asked)
     return worked(asked, parts, page, clock() + 60 * minutes, clock, tick, latex)
+
+
+def _midway(scene: Scene, parameter: str, low: Any, high: Any) -> Scene:
+    """The scene at the middle of an interval of one of its parameters, proved to be a table over all of it."""
+    ends = [exact(parameter, end) for end in (low, high)]
+    if parameter not in (*scene.shape, *dict(scene.law.numbers)):
+        accepted = ", ".join(["lam", *scene.shape, *dict(scene.law.numbers)])
+        raise ValueError(f"report: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
+    if not ends[0] < ends[1]:
+        raise ValueError(f"report: {parameter} from {low} to {high} is no interval; the first must be the smaller")
+    middle = (ends[0] + ends[1]) / 2
+    ranged = "table" not in scene.document or parameter not in scene.shape  # a table of the paper has its own
+    value: dict[str, Any] = {parameter: f"{middle}:{ends[0]}..{ends[1]}" if ranged else middle}
+    return scene.at(**value)
 
 
 def worked(

@@ -156,6 +156,8 @@ def test_the_commands_of_a_report_name_the_scene():
     ("arguments", "said"),
     [
         (["--minutes", "0"], "minutes = 0.0 is no time"),
+        (["--vary", "b=0:1", "--lam", "1/2"], "b is no parameter that varies"),
+        (["--vary", "a=2:1", "--lam", "1/2"], "a from 2 to 1 is no interval"),
         (["--lam", "1:0"], "lam from 1 to 0 is no interval"),
         (["--lam", "1"], "accepted: LOW:HIGH"),
         (["--at", "2"], "lam = 2 is no contraction"),

@@ -1,21 +1,50 @@
 """`pinball report`: what becomes of this table? One page, useful first and refined in the time given."""
 
+from functools import wraps
 from pathlib import Path
+from typing import Any
 
 import click
 
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, Output, json_option
-from verification.app.scene import table_options
+from verification.app.scene import Command, varied_options
 
 STEPS = 45  # about; of a bar
 
 
+def as_shape(command: Command) -> Command:
+    """Takes `--vary NAME=LOW:HIGH` for `--shape NAME=LOW:HIGH`, which says the same."""
+
+    @wraps(command)
+    def called(vary: str | None, given: tuple[str, ...], **others: Any) -> Any:
+        return command(given=given if vary is None else (*given, vary), **others)
+
+    return called
+
+
+def varied(text: str) -> tuple[str, str, str]:
+    """What varies, from where and to where.
+
+    >>> varied("b=0:1/30")
+    ('b', '0', '1/30')
+    """
+    name, equals, ends = (part.strip() for part in text.partition("="))
+    low, colon, high = (part.strip() for part in ends.partition(":"))
+    if not equals or not colon or ":" in high:
+        raise ValueError(f"{text} is no interval; accepted: LOW:HIGH such as 0:1, or NAME=LOW:HIGH")
+    return name, low, high
+
+
 @click.command(epilog="Example: pinball report --polar '1 + cos(5*theta)/40' --minutes 2 --out flower.html")
-@table_options
+@click.option("--vary", metavar="NAME=LOW:HIGH", help="Vary a parameter of the table or of the law, at one --lam.")
+@as_shape
+@varied_options
 @click.option("--out", required=True, metavar="FILE", help="The page; what is kept lies beside it, in FILE.parts.")
 @click.option("--minutes", type=float, default=2.0, show_default=True, help="Time for all; asked again, it goes on.")
-@click.option("--lam", "interval", default="0:1", show_default=True, metavar="LOW:HIGH", help="The contractions.")
+@click.option(
+    "--lam", "interval", default="0:1", show_default=True, metavar="LOW:HIGH", help="Contractions; one with --vary."
+)
 @click.option(
     "--at", default="1/10,1/2,9/10", show_default=True, metavar="LAM,...", help="Where portraits and censuses are made."
 )
@@ -26,6 +55,7 @@ STEPS = 45  # about; of a bar
 @json_option
 def command(
     scene: Scene,
+    axis: str | None,
     out: str,
     minutes: float,
     interval: str,
@@ -47,16 +77,14 @@ def command(
     for path in (page, Path(latex) if latex else page):
         if path.is_dir() or not path.parent.is_dir():
             raise ValueError(f"{path} cannot be written; accepted: a file in a directory that is there")
-    ends = interval.split(":")
-    if len(ends) != 2:
-        raise ValueError(f"--lam {interval!r} is no interval; accepted: LOW:HIGH such as 0:1")
-    places = tuple(text.strip() for text in at.split(","))
+    name, low, high = varied(axis or f"lam={interval}")
+    places = tuple(text.strip() for text in (at if axis is None else interval).split(","))
     with output.progress("Reporting", STEPS) as step:
         made = report(
             scene,
             page,
             minutes=minutes,
-            lam=(ends[0], ends[1]),
+            vary=(name, low, high),
             at=places,
             period=period,
             digits=digits,

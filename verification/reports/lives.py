@@ -18,7 +18,7 @@ from verification.cycles.recurrence import BifurcationKind
 from verification.cycles.switching import switched
 from verification.named.events import proof_of
 from verification.named.files import document
-from verification.named.questions import PeriodicOrbit, find_cycles, follow
+from verification.named.questions import PeriodicOrbit, Tick, find_cycles, follow
 from verification.plots.dynamics import plotted
 from verification.plots.sheet import styled
 from verification.proofs.periodic.bifurcation import Proof
@@ -34,9 +34,9 @@ MARK = 5  # decimals of trace and determinant by which cycles are told apart
 LAWS = {True: "vanish", False: "do not vanish", None: "no such law here"}
 
 
-def search(asked: Asked, text: str) -> Made:
-    """The cycles up to the asked period at one contraction, as far as a search finds them."""
-    found = find_cycles(asked.scene.at(lam=text), up_to=asked.period, seed=asked.seed)
+def search(asked: Asked, text: str, heard: Tick = lambda said: None) -> Made:
+    """The cycles up to the asked period at one contraction, as far as a search finds them; `heard` after each round."""
+    found = find_cycles(asked.scene.at(lam=text), up_to=asked.period, seed=asked.seed, tick=heard)
     searched = found.searched
     assert searched is not None
     data = {
@@ -129,7 +129,7 @@ def life(asked: Asked, parts: Parts, text: str, said: Document, number: int) -> 
     certified = sum(event.certificate is not None for event in events)
     size = f"{len(branch.points)} points, {certified} certificates"
     data = {
-        "passes": {text: [said["mark"]], **_passing(asked, branch, text)},
+        "passes": _passing(asked, branch, text, said["mark"]),
         "events": [[event.value, event.label] for event in events],
         "flips": [i for i, event in enumerate(branch.events) if event.kind is BifurcationKind.FLIP],
         "cycle": said,
@@ -144,17 +144,18 @@ def followed(asked: Asked, orbit: PeriodicOrbit) -> Branch:
     return follow(orbit, points=MOST, **interval).branch
 
 
-def _passing(asked: Asked, branch: Branch, text: str) -> dict[str, list[list[float]]]:
-    """The marks of the cycles where a branch passes the other contractions that are looked at."""
-    if asked.parameter != "lam":
-        return {}
-    system, found = branch.system, {}
-    for other in asked.at:
+def _passing(asked: Asked, branch: Branch, text: str, own: list[float]) -> dict[str, list[list[float]]]:
+    """The marks of the cycles where a branch passes the contractions that are looked at, its `own` among them."""
+    system, found = branch.system, {text: [own]}
+    for other in asked.at if asked.parameter == "lam" else ():
         value = float(exact("--at", other))
-        if other == text or not branch.values.min() <= value <= branch.values.max():
+        try:
+            tests = [system.tests(z) for z in branch.at(value)]
+        except LostError:  # between two points where the branch turns
             continue
-        tests = [system.tests(np.append(x, value) if len(x) < len(branch.points[0].z) else x) for x in branch.at(value)]
-        found[other] = [mark(system.recurrence.period, (t["minus_one"] - t["one"]) / 2, t["volume"] + 1) for t in tests]
+        found.setdefault(other, []).extend(
+            mark(system.recurrence.period, (t["minus_one"] - t["one"]) / 2, t["volume"] + 1) for t in tests
+        )
     return found
 
 

@@ -139,7 +139,12 @@ def worked(
     """Does the steps that fit until a time, each of them once, and writes the report after each."""
     left: list[str] = []
     done = composed(asked, parts, ())
-    for step in plan(asked, parts):
+
+    def heard(_: str) -> None:
+        if clock() > until:
+            raise TimeoutError
+
+    for step in plan(asked, parts, heard):
         if parts.read(step.name) is not None:
             continue
         begun = clock()
@@ -147,7 +152,11 @@ def worked(
             left.append(step.name)
             continue
         tick(step.name)
-        blocks, efforts, data = step.work()
+        try:
+            blocks, efforts, data = step.work()
+        except TimeoutError:  # it will have to begin again
+            left.append(step.name)
+            continue
         spent = clock() - begun
         efforts = [replace(effort, seconds=round(spent / len(efforts), 2)) for effort in efforts]
         section = Section(step.section, TITLES[step.section], tuple(blocks), tuple(efforts))
@@ -171,8 +180,11 @@ def written(done: Report, parts: Parts, page: Path, latex: str | Path | None = N
         Path(latex).write_text(article.latex(done, parts), encoding="utf-8")
 
 
-def plan(asked: Asked, parts: Parts) -> Iterator[Step]:
-    """The steps in the order of their use; later ones are planned from what earlier ones found."""
+def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterator[Step]:
+    """The steps in the order of their use; later ones are planned from what earlier ones found.
+
+    `heard` is called from within a long search, and may end it with a `TimeoutError`.
+    """
     from verification.reports import dynamics, lives
 
     def seconds(name: str, kind: str) -> float:
@@ -188,7 +200,7 @@ def plan(asked: Asked, parts: Parts) -> Iterator[Step]:
         yield Step(f"census-{i}-0", "census", FIRST["census"], partial(dynamics.census, asked, parts, i, 0))
     yield Step("derivation", "derivation", FIRST["derivation"], lambda: (exactly.derivation(asked), [], {}))
     for i, text in enumerate(asked.at):
-        yield Step(f"search-{i}", "cycles", FIRST["search"], partial(lives.search, asked, text))
+        yield Step(f"search-{i}", "cycles", FIRST["search"], partial(lives.search, asked, text, heard))
     yield from _lives(asked, parts)
     yield from _cascades(asked, parts, 0)
     for level in range(1, LEVELS):

@@ -2,6 +2,7 @@
 
 import json
 import re
+from fractions import Fraction
 from math import pi
 
 import pytest
@@ -156,7 +157,7 @@ def test_the_commands_of_a_report_name_the_scene():
     ("arguments", "said"),
     [
         (["--minutes", "0"], "minutes = 0.0 is no time"),
-        (["--vary", "b=0:1", "--lam", "1/2"], "b is no parameter that varies"),
+        (["--vary", "b=0:1", "--lam", "1/2"], "--b = 0 is no shape parameter"),
         (["--vary", "a=2:1", "--lam", "1/2"], "a from 2 to 1 is no interval"),
         (["--lam", "1:0"], "lam from 1 to 0 is no interval"),
         (["--lam", "1"], "accepted: LOW:HIGH"),
@@ -175,3 +176,16 @@ def test_bad_input_is_one_sentence(arguments, said, tmp_path, capsys):
 
 def test_a_first_guess_of_the_seconds_exists_for_each_kind_of_later_step():
     assert {"census", "search", "life", "cascade"} <= set(FIRST)
+
+
+def test_another_parameter_varies_at_one_contraction_and_in_the_middle_cycles_are_searched_for(tmp_path):
+    flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/100"}})
+    done = report(flower, tmp_path / "b.html", vary=("b", "0", "1/30"), at=("1/10",), minutes=1e-9)
+    asked = done.asked
+
+    assert asked.scene.shape["b"] == Fraction(1, 60)
+    assert asked.scene.ranges["b"] == (0, Fraction(1, 30))
+    assert asked.varied == "--lam 1/10 --shape b=0:1/30"
+    assert done.document()["asked"]["vary"] == "b"
+    with pytest.raises(ValueError, match="varies at one contraction, and --at has 2"):
+        report(flower, tmp_path / "b.html", vary=("b", "0", "1/30"), at=("1/10", "1/2"))

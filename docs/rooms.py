@@ -156,6 +156,8 @@ def _stub(room: str, used: dict[str, set[str]], files: dict[str, Path]) -> str:
         broken = [line.partition("import ")[0] + "import (", *(f"    {name}," for name in found), ")"]
         lines += [] if not found else [line] if len(line) <= COLUMNS else broken
     listed = [f"    {name!r}," for name in sorted(names, key=rank)]
+    if not lines:
+        return f"{STUB}\n\n__all__ = []\n"
     return "\n".join([STUB, "", *lines, "", "__all__ = [", *listed, "]", ""]).replace("'", '"')
 
 

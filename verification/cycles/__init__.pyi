@@ -37,7 +37,7 @@ from .newton import (
     refined,
     settled,
 )
-from .problem import Linearised, NormalForm, Problem
+from .problem import Linearised, NormalForm, Problem, mirrored
 from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
 from .switching import Curve, Degenerate, curve, switched
@@ -102,6 +102,7 @@ __all__ = [
     "in_floats",
     "landing",
     "levels",
+    "mirrored",
     "named",
     "norm_of_inverse",
     "polygon",

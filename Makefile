@@ -1,5 +1,5 @@
 # `make verify` judges the paper, `make test` tests the package; both make .venv first.
-# `make quick` leaves out the tests listed in tests/slow.txt: less than a minute, for the work in between.
+# `make quick` leaves out the tests listed in tests/slow.txt, for the work in between.
 # On another machine: make PYTHON=python3.12, make test JOBS=8.
 
 PYTHON ?= python3

@@ -155,11 +155,13 @@ MODULE = re.compile(r"`((?:symbolic|numeric|verification)(?:\.[a-z_0-9]+)+)")
 
 
 def exists(name):
-    """Is there a module of that dotted name, or a name of its last part written in one?"""
+    """Is there a module of that dotted name, or a name of its last part written in one or exported by a room?"""
     path = ROOT.joinpath(*name.split("."))
     if path.is_dir() or path.with_suffix(".py").is_file():
         return True
-    home = path.parent.with_suffix(".py")
+    home = path.parent / "__init__.pyi" if path.parent.is_dir() else path.parent.with_suffix(".py")
+    if home.suffix == ".pyi":
+        return re.search(rf"import .*\b{path.name}\b", home.read_text()) is not None
     return home.is_file() and re.search(rf"^(?:def |class )?{path.name}\b", home.read_text(), re.MULTILINE) is not None
 
 

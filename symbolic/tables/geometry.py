@@ -3,22 +3,17 @@
 Signs: the boundary runs counterclockwise, the normal points inwards, and the curvature of a
 focusing component is negative (the paper's convention; textbooks use the opposite sign).
 
-Arc length: a closed form where the speed allows one, the exact integral otherwise.
+Arc length: a closed form where the speed allows one, else the exact integral. Where `speed**2 = p + q*cos(n*theta)`
+it is an incomplete elliptic integral of the second kind; at parameter 1 (the cardioid) it degenerates to a sine.
 
-Where `speed**2 = p + q*cos(n*theta)` the length is an incomplete elliptic integral of the second
-kind; at parameter 1 (the cardioid) it degenerates to a sine.
-
-The symmetries of a table, found and proved: rotations and reflections about the origin that keep its boundary.
-
-They form a cyclic or a dihedral group. One that turns the boundary parameter into `+theta + shift` keeps
-exit angles, one that turns it into `-theta + shift` negates them, and both take orbits of the pinball map to
-orbits: an attractor has images, and a stabiliser.
-
-A boundary as a finite Fourier sum `z = x + i*y = sum_k c_k exp(i*k*theta)`, when it is one.
+Symmetries: the rotations and reflections about the origin that are found and proved to keep the boundary; a cyclic or a
+dihedral group. One that turns the parameter into `+theta + shift` keeps exit angles, `-theta + shift` negates them, and
+both take orbits of the pinball map to orbits: an attractor has images, and a stabiliser.
 """
 
 from dataclasses import dataclass
 from functools import cache, reduce
+from itertools import pairwise
 from math import gcd
 
 from sympy import (
@@ -230,6 +225,12 @@ class Symmetry:
         c, s = cos(self.angle), sin(self.angle)
         return Matrix([[c, -s * self.sign], [s, c * self.sign]])
 
+    def then(self, other: "Symmetry") -> "Symmetry":
+        """This symmetry, followed by another."""
+        sign, angle = self.sign * other.sign, (other.angle + other.sign * self.angle) % (2 * pi)
+        shift = [other.sign * by + other.shift[on] for on, by in zip(self.onto, self.shift, strict=True)]
+        return Symmetry(_name(sign, angle), sign, angle, tuple(other.onto[on] for on in self.onto), tuple(shift))
+
 
 @cache
 def group(table: Table) -> tuple[Symmetry, ...]:
@@ -296,23 +297,22 @@ def _turned(c: Expr, half_turns: Expr, sign: int) -> bool:
 
 
 def _of_many(table: Table) -> tuple[list[Symmetry], list[Symmetry]]:
-    """The identity, and reflections in the two axes that permute the components, ends to ends."""
+    """The identity, reflections in the two axes that permute the components, ends to ends, and both together."""
     parts = table.components
     same = Symmetry("identity", 1, S.Zero, tuple(range(len(parts))), (S.Zero,) * len(parts))
+    places = [
+        (i, by) for i, image in enumerate(parts) for by in ((0, pi) if image.end - image.start == 2 * pi else (0,))
+    ]
     axes = []
     for angle in (S.Zero, pi):
         found = Symmetry(_name(-1, angle), -1, angle, (), ())
-        onto, shifts = [], []
+        onto = []
         for part in parts:
-            for index, image in enumerate(parts):
-                shift = simplify(part.start + image.end)
-                if _keeps(part, image, found.matrix, -1, shift):
-                    onto.append(index)
-                    shifts.append(shift)
-                    break
-        if len(onto) == len(parts):
-            axes.append(Symmetry(found.name, -1, angle, tuple(onto), tuple(shifts)))
-    return [same], axes
+            tried = ((i, simplify(part.start + parts[i].end) + by) for i, by in places)
+            onto += [next(((i, by) for i, by in tried if _keeps(part, parts[i], found.matrix, -1, by)), None)]
+        if None not in onto:
+            axes.append(Symmetry(found.name, -1, angle, *map(tuple, zip(*onto, strict=True))))
+    return [same, *(first.then(second) for first, second in pairwise(axes))], axes
 
 
 def _keeps(part: Component, image: Component, matrix: Matrix, sign: int, shift: Expr) -> bool:
@@ -372,9 +372,8 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
 def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
     """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
 
-    None where the expression is no such polynomial, or has harmonics above HIGHEST.
-
-    Here `x = g*theta` with `g` the common divisor of the frequencies.
+    None where the expression is no such polynomial, or has harmonics above HIGHEST. Here `x = g*theta` with `g` the
+    common divisor of the frequencies.
 
     >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
     >>> p.subs(T, 0), value

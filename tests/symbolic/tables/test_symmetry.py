@@ -4,6 +4,7 @@ import pytest
 from sympy import Matrix, Rational, S, cos, eye, pi, simplify, sin
 
 from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
+from symbolic.tables.gallery import diamond, sinai, stadium
 from symbolic.tables.geometry import group, order_of_rotation
 from symbolic.tables.table import alpha, theta
 
@@ -30,7 +31,7 @@ def test_a_symmetry_takes_the_point_at_a_parameter_to_the_point_at_its_image(tab
                 assert max(abs(complex(x)) for x in (moved - there).subs(alpha, S(1) / 60).evalf(30)) < 1e-25
 
 
-@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.name)
+@pytest.mark.parametrize("table", [*TABLES, stadium(), sinai(), diamond()], ids=lambda table: table.name)
 def test_two_symmetries_make_a_third(table):
     matrices = [symmetry.matrix for symmetry in group(table)]
 
@@ -79,6 +80,7 @@ def test_the_mirrors_of_a_rectangle_exchange_opposite_sides():
     found = {symmetry.name: (symmetry.sign, symmetry.onto, symmetry.shift) for symmetry in group(table)}
     assert found == {
         "identity": (1, (0, 1, 2, 3), (0, 0, 0, 0)),
+        "rotation by pi": (1, (2, 3, 0, 1), (0, 0, 0, 0)),
         "reflection in the line at 0": (-1, (2, 1, 0, 3), (0, 0, 0, 0)),
         "reflection in the line at pi/2": (-1, (0, 3, 2, 1), (0, 0, 0, 0)),
     }

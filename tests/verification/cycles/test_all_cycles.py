@@ -121,7 +121,7 @@ def test_a_count_on_cells_is_refused_for_a_table_with_joins():
     )
 
     assert isinstance(result.exception, ValueError)
-    assert "not convex and smooth" in str(result.exception)
+    assert "is not proved to be one smooth convex curve" in str(result.exception)
 
 
 def test_deflation_leads_away_from_known_cycles():

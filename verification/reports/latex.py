@@ -2,6 +2,7 @@ r"""The report as a LaTeX article that stands alone; its pictures are the PDF fi
 
 import re
 
+from verification.paper.report.report import escaped
 from verification.reports.asked import Parts
 from verification.reports.blocks import Block, Certificate, Formula, Listing, Number, Picture, Words
 from verification.reports.report import Report
@@ -13,22 +14,6 @@ HEAD = r"""\documentclass{article}
 \usepackage{textcomp}
 \setlength{\parindent}{0pt}\setlength{\parskip}{4pt}
 """
-SIGNS = {
-    "\\": r"\textbackslash{}",
-    "{": r"\{",
-    "}": r"\}",
-    "$": r"\$",
-    "&": r"\&",
-    "#": r"\#",
-    "_": r"\_",
-    "%": r"\%",
-    "^": r"\textasciicircum{}",
-    "~": r"\textasciitilde{}",
-    "±": r"$\pm$",
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "|": r"\textbar{}",
-}
 GREEK = re.compile(r"(?<![A-Za-z\\])(lambda|lam|theta|alpha|phi|eta|kappa|nu)(?![A-Za-z])")
 
 
@@ -50,7 +35,7 @@ def words(text: str) -> str:
     >>> words("lambda = 1/2, 50 %")
     '$\\lambda$ = 1/2, 50 \\%'
     """
-    safe = "".join(SIGNS.get(letter, letter) for letter in text)
+    safe = escaped(text).replace("±", r"$\pm$")
     return GREEK.sub(lambda found: rf"$\{ {'lam': 'lambda', 'phi': 'varphi'}.get(found[1], found[1]) }$", safe)
 
 

@@ -4,7 +4,7 @@ from . import report
 from .changed import codes
 from .mathml import formula, remark
 from .page import Picture, diagrams, markdown
-from .report import Result, tables, verify
+from .report import Result, escaped, tables, verify
 from .workers import Lost, in_processes
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Result",
     "codes",
     "diagrams",
+    "escaped",
     "formula",
     "in_processes",
     "markdown",

@@ -13,6 +13,7 @@ sampling has to say.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -169,19 +170,28 @@ def candidates(orbit: Orbit, map: PlaneMap, parameter: float, rounds: int, any_b
     at = saddle(orbit, map.over(FLOAT64), parameter)
     out, into = local(at, True), local(at, False)
     found: list[tuple[float, Contact]] = []
-    grid = np.exp(np.linspace(-math.log(abs(at.unstable)), 0, POINTS))
+    for z, count, here, following in carried(out, map, parameter, rounds * len(orbit.start)):
+        whole = (orbit.closure.turn ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
+        for sign in ((1, -1) if map.turn else (1,)) if any_bounce else whole:
+            gap, end = gaps(into, sign * here, sign * following)
+            for i in turning(gap):
+                place = float(z[i]) * out.unit, float(end[i]) * into.unit
+                least = gap[i] - (gap[i + 1] - gap[i - 1]) ** 2 / 8 / (gap[i - 1] - 2 * gap[i] + gap[i + 1])
+                found.append((abs(float(least)), Contact(orbit, orbit, count, sign, *place, parameter)))
+    return [contact for _, contact in sorted(found, key=lambda pair: pair[0])]
+
+
+def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterator[tuple[Array, int, Array, Array]]:
+    """A fundamental domain of each branch of an unstable manifold, bounce by bounce.
+
+    Parameters on the manifold, how many bounces were made, and where the points are then, with what follows there.
+    """
+    grid = np.exp(np.linspace(-math.log(abs(out.saddle.unstable)), 0, POINTS))
     for z in (grid, -grid):
         here, following = out.points(z)
-        for count in range(1, rounds * len(orbit.start) + 1):
+        for count in range(1, bounces + 1):
             here, following = following, map.over(ARRAYS).following(here, following, parameter)
-            whole = (orbit.closure.turn ** (count // len(orbit.start)),) if count % len(orbit.start) == 0 else ()
-            for sign in ((1, -1) if map.turn else (1,)) if any_bounce else whole:
-                gap, end = gaps(into, sign * here, sign * following)
-                for i in turning(gap):
-                    place = float(z[i]) * out.unit, float(end[i]) * into.unit
-                    least = gap[i] - (gap[i + 1] - gap[i - 1]) ** 2 / 8 / (gap[i - 1] - 2 * gap[i] + gap[i + 1])
-                    found.append((abs(float(least)), Contact(orbit, orbit, count, sign, *place, parameter)))
-    return [contact for _, contact in sorted(found, key=lambda pair: pair[0])]
+            yield z, count, here, following
 
 
 def gaps(into: Local, here: Array, following: Array) -> tuple[Array, Array]:

@@ -28,8 +28,8 @@ from itertools import pairwise
 import numpy as np
 from flint import arb
 
-from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, working
-from verification.proofs.manifolds.grow import POINTS, gaps
+from verification.arithmetic.balls import FLOAT64, balls, working
+from verification.proofs.manifolds.grow import carried, gaps
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.proof import smooth
 from verification.proofs.manifolds.saddle import Local, Orbit, Saddle, local, saddle
@@ -259,21 +259,17 @@ def crossings(orbit: Orbit, map: PlaneMap, parameter: float, passes: int) -> lis
     at = saddle(orbit, map.over(FLOAT64), parameter)
     out, into = local(at, True), local(at, False)
     found: list[tuple[int, Contact]] = []
-    grid = np.exp(np.linspace(-math.log(abs(at.unstable)), 0, POINTS))
-    for z in (grid, -grid):
-        here, following = out.points(z)
-        for count in range(1, passes * len(orbit.start) + 1):
-            here, following = following, map.over(ARRAYS).following(here, following, parameter)
-            sign = orbit.closure.turn ** (count // len(orbit.start))
-            if count % len(orbit.start):
-                continue
-            gap, end = gaps(into, sign * here, sign * following)
-            for i in np.nonzero(gap[:-1] * gap[1:] < 0)[0]:
-                share = gap[i] / (gap[i] - gap[i + 1])
-                places = [float(x[i] + share * (x[i + 1] - x[i])) for x in (z, end)]
-                found.append(
-                    (count, Contact(orbit, orbit, count, sign, places[0] * out.unit, places[1] * into.unit, parameter))
-                )
+    for z, count, here, following in carried(out, map, parameter, passes * len(orbit.start)):
+        if count % len(orbit.start):
+            continue
+        sign = orbit.closure.turn ** (count // len(orbit.start))
+        gap, end = gaps(into, sign * here, sign * following)
+        for i in np.nonzero(gap[:-1] * gap[1:] < 0)[0]:
+            share = gap[i] / (gap[i] - gap[i + 1])
+            places = [float(x[i] + share * (x[i + 1] - x[i])) for x in (z, end)]
+            found.append(
+                (count, Contact(orbit, orbit, count, sign, places[0] * out.unit, places[1] * into.unit, parameter))
+            )
     return [contact for _, contact in sorted(found, key=lambda pair: pair[0])]
 
 

@@ -87,18 +87,18 @@ def test_a_formula_that_takes_too_long_is_one_sentence_and_the_old_table_stays(l
 
 
 def test_nobody_waits_while_the_formula_of_another_is_read():
-    """The event loop turns on, many times, until the other process has read the formula or is ended."""
+    """The event loop turns on meanwhile; a call that held it would let it turn once."""
 
     async def turns() -> int:
         reading = asyncio.create_task(refusal(["orbit", "--polar", "1 + cos(9*theta)/90"], 60))
         count = 0
         while not reading.done():
-            await asyncio.sleep(0.01)
+            await asyncio.sleep(0.001)
             count += 1
         assert "--start" in await reading
         return count
 
-    assert asyncio.run(turns()) > 10
+    assert asyncio.run(turns()) > 1
 
 
 def test_what_is_typed_is_never_executed(live):

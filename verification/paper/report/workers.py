@@ -6,9 +6,10 @@ are found, whatever became of the process: one that dies is replaced, and what i
 
 import signal
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from multiprocessing import get_all_start_methods, get_context
+from multiprocessing import get_all_start_methods, get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
@@ -56,8 +57,8 @@ def in_processes(
     workers: list[_Worker[Item]] = []
     tried: dict[int, int] = {}  # by identity: an item need not be hashable
     try:
-        for _ in range(min(jobs, len(queue))):
-            workers.append(_started(context, work))
+        with _undisturbed():
+            workers.extend(_started(context, work) for _ in range(min(jobs, len(queue))))
         while workers:
             for pipe in wait([each.pipe for each in workers]):
                 worker = next(each for each in workers if each.pipe is pipe)
@@ -67,7 +68,8 @@ def in_processes(
                     workers.remove(worker)
                     yield from _mourned(worker, queue, tried)
                     if queue:
-                        workers.append(_started(context, work))
+                        with _undisturbed():
+                            workers.append(_started(context, work))
                     continue
                 if worker.ready:
                     if isinstance(told, BaseException):
@@ -95,6 +97,24 @@ def _context(modules: Sequence[str]) -> BaseContext:
     context = get_context("forkserver")
     context.set_forkserver_preload([__name__, *modules])
     return context
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Ctrl-C waits until processes have started: a half started one would find nobody and die of a traceback.
+
+    They inherit the mask, so that Ctrl-C goes to the one that asks, from their first instruction on. The tracker of
+    multiprocessing's resources, where its start is left to a later moment, lets the signal through again.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[Item]:

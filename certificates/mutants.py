@@ -1,10 +1,10 @@
 """Damages certificates and asks the second reader: `python certificates/mutants.py [--each N] [--only NAME]`.
 
-Mutant `k` of a file depends on its name and on `k` alone. Where one changes what a file is about (scene, kind, letter,
-components, mirror), name and statement are written anew in half of the cases, so that only the mathematics can refuse
-it. What is proved all the same must be true: the value that it tells lies within its error of the undamaged one's, and
-the scene, the kind and the letter are the undamaged ones. Results are kept in `report/mutants.json`, and a second run
-goes on from there. Exit status 1 where something false was proved.
+Mutant `k` of a file depends on its name and on `k` alone. Where one changes what a file is about (scene, kind,
+parameter, components, mirror), name and statement are written anew in half of the cases, so that only the mathematics
+can refuse it. What is proved all the same must be true: the value that it tells lies within its error of the undamaged
+one's, and the scene, the kind and the parameter are the undamaged ones. Results are kept in `report/mutants.json`, and
+a second run goes on from there. Exit status 1 where something false was proved.
 """
 
 import argparse
@@ -111,7 +111,7 @@ def scene(given: Document, dice: random.Random) -> None:
 
 
 def about(given: Document, dice: random.Random) -> None:
-    """Another kind, letter, component or mirror."""
+    """Another kind, parameter, component or mirror."""
     key = dice.choice(("kind", "free", "components", "mirror"))
     if key == "kind":
         given["kind"] = dice.choice([*check.KINDS, "tangency"])

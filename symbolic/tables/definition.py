@@ -21,7 +21,7 @@ GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of t
 )  # fmt: skip
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law
-LAW_LETTERS = ("eta", "lam", "theta")  # what every law may speak of
+LAW_NAMES = ("eta", "lam", "theta")  # what every law may speak of
 RESERVED = frozenset({  # names in a formula that are functions or constants; all others are parameters
     "Abs", "E", "abs", "atan", "cos", "cosh", "exp", "log", "pi", "sin", "sinh", "sqrt", "tan", "tanh"
 })  # fmt: skip
@@ -179,22 +179,22 @@ def _points(table: "Table") -> int:
     return max(2, max(waves) - 1) if waves else POINTS
 
 
-def boundary_of(said: Mapping[str, Any], letters: tuple[str, ...]) -> dict[str, Any]:
+def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[str, Any]:
     """A boundary as a document says it, each formula read and written again, so that equal ones are the same text."""
     if "table" in said:
         known_entries("scene with a named table", said, ("table", "K"))
         return named_boundary(text_entry("table", said["table"]), said.get("K", POINTS))[0]
     found: dict[str, Any] = {"name": word_entry("name", said["name"])} if "name" in said else {}
     if "polar" in said:
-        found["polar"] = _formula("polar", said["polar"], letters)
+        found["polar"] = _formula("polar", said["polar"], parameters)
     elif "points" in said:
         found |= _fitted(said)
     elif "parametric" in said:
         if not isinstance(said["parametric"], list) or len(said["parametric"]) != 2:
             raise ValueError("scene: parametric needs two formulas, as in parametric = ['3*cos(theta)', 'sin(theta)']")
-        found["parametric"] = [_formula("parametric", text, letters) for text in said["parametric"]]
+        found["parametric"] = [_formula("parametric", text, parameters) for text in said["parametric"]]
     else:
-        found["component"] = [_component(n, entry, letters) for n, entry in enumerate(_list("component", said), 1)]
+        found["component"] = [_component(n, entry, parameters) for n, entry in enumerate(_list("component", said), 1)]
     if "undefined" in said:
         found["undefined"] = [_mark(entry) for entry in _list("undefined", said)]
     if "origin" in said:
@@ -203,7 +203,7 @@ def boundary_of(said: Mapping[str, Any], letters: tuple[str, ...]) -> dict[str, 
     return found
 
 
-def _component(n: int, entry: Any, letters: tuple[str, ...]) -> dict[str, str]:
+def _component(n: int, entry: Any, parameters: tuple[str, ...]) -> dict[str, str]:
     """One component: a name, two formulas in `theta`, and where `theta` begins and ends."""
     label = f"component {n}"
     known_entries(f"scene: {label}", entry, PIECE)
@@ -211,7 +211,7 @@ def _component(n: int, entry: Any, letters: tuple[str, ...]) -> dict[str, str]:
         if key not in entry:
             raise ValueError(f"scene: {label} has no {key}; it needs {', '.join(PIECE[1:])}")
     return {"name": word_entry(f"{label}: name", entry.get("name", f"component{n}"))} | {
-        key: _formula(f"{label}: {key}", entry[key], letters) for key in PIECE[1:]
+        key: _formula(f"{label}: {key}", entry[key], parameters) for key in PIECE[1:]
     }
 
 
@@ -229,28 +229,28 @@ def _place(label: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     return {"component": index, "theta": _formula(f"{label}: theta", entry.get("theta", "0"), ())}
 
 
-def _formula(label: str, given: Any, letters: tuple[str, ...]) -> str:
-    """A formula in `theta` and the shape's letters, as SymPy writes it."""
+def _formula(label: str, given: Any, parameters: tuple[str, ...]) -> str:
+    """A formula in `theta` and the shape's parameters, as SymPy writes it."""
     text = str(given) if isinstance(given, int) and not isinstance(given, bool) else text_entry(label, given)
-    return str(_parsed(label, text, letters))
+    return str(_parsed(label, text, parameters))
 
 
-def _parsed(label: str, text: str, letters: Iterable[str]) -> "Expr":
+def _parsed(label: str, text: str, parameters: Iterable[str]) -> "Expr":
     from symbolic.tables.formula import parse
 
     try:
-        return parse(text, _symbols(letters))
+        return parse(text, _symbols(parameters))
     except ValueError as error:
         raise ValueError(f"{label}: {error}") from None
 
 
-def _symbols(letters: Iterable[str]) -> "dict[str, Symbol]":
-    """`theta`, and the shape's letters as real symbols."""
+def _symbols(parameters: Iterable[str]) -> "dict[str, Symbol]":
+    """`theta`, and the shape's parameters as real symbols."""
     from sympy import Symbol
 
     from symbolic.tables.table import theta
 
-    return {letter: Symbol(letter, real=True) for letter in letters} | {theta.name: theta}
+    return {parameter: Symbol(parameter, real=True) for parameter in parameters} | {theta.name: theta}
 
 
 def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
@@ -258,7 +258,7 @@ def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
     from symbolic import tables
     from symbolic.tables.table import Mark
 
-    texts = {letter: document["shape"][letter] for letter in letters_of(document)}
+    texts = {parameter: document["shape"][parameter] for parameter in parameters_of(document)}
     left = {each.symbol.name for each in free}
     numbers = {key: _expression(key, value_text(text)) for key, text in texts.items() if key not in left}
     if "table" in document:
@@ -269,7 +269,7 @@ def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
     symbols = _symbols(texts)
 
     def formula(text: str) -> "Expr":
-        values = {symbols[letter]: value for letter, value in numbers.items()}
+        values = {symbols[parameter]: value for parameter, value in numbers.items()}
         return _parsed("scene", text, texts).subs(values | {symbols[each.symbol.name]: each.symbol for each in free})
 
     marks = [Mark(m["name"], m["component"], formula(m["theta"])) for m in document.get("undefined", ())]
@@ -292,8 +292,8 @@ def name_of(boundary: Mapping[str, Any]) -> str:
     return str(boundary.get("table") or boundary.get("name") or kind)
 
 
-def letters_of(boundary: Mapping[str, Any]) -> tuple[str, ...]:
-    """The shape parameters of a boundary: the paper's, or the letters of the formulas other than `theta`."""
+def parameters_of(boundary: Mapping[str, Any]) -> tuple[str, ...]:
+    """The shape parameters of a boundary: the paper's, or the names in the formulas other than `theta`."""
     if "table" in boundary:
         return PAPER[boundary["table"]]
     formulas = [boundary.get("polar", ""), *boundary.get("parametric", ())]

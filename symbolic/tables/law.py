@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from symbolic.tables.definition import LAW_LETTERS, UNIFORM, exact, exact_text, words_of
+from symbolic.tables.definition import LAW_NAMES, UNIFORM, exact, exact_text, words_of
 
 if TYPE_CHECKING:
     from sympy import Expr, Symbol
@@ -58,7 +58,7 @@ class Law:
     @property
     def parameters(self) -> tuple[str, ...]:
         """Its own parameters that have no value yet, in order."""
-        return tuple(name for name in letters_of_law(self.formula) if name not in dict(self.numbers))
+        return tuple(name for name in parameters_of_law(self.formula) if name not in dict(self.numbers))
 
     def at(self, **numbers: Any) -> "Law":
         """The same law with exact numbers for parameters of its own."""
@@ -163,9 +163,9 @@ class Law:
         return ", ".join([self.formula, *(f"{name} = {text}" for name, text in self.numbers)])
 
 
-def letters_of_law(formula: str) -> tuple[str, ...]:
+def parameters_of_law(formula: str) -> tuple[str, ...]:
     """The names in a law's formula that are parameters of its own."""
-    return tuple(sorted(words_of([formula]) - set(LAW_LETTERS))) if formula != UNIFORM else ()
+    return tuple(sorted(words_of([formula]) - set(LAW_NAMES))) if formula != UNIFORM else ()
 
 
 def _symbols(formula: str) -> "dict[str, Symbol]":
@@ -174,7 +174,7 @@ def _symbols(formula: str) -> "dict[str, Symbol]":
     from symbolic.tables.table import eta, lam, theta
 
     known = {"eta": eta, "lam": lam, "theta": theta}
-    return known | {name: Symbol(name, real=True) for name in letters_of_law(formula)}
+    return known | {name: Symbol(name, real=True) for name in parameters_of_law(formula)}
 
 
 @cache
@@ -184,7 +184,7 @@ def _canonical(formula: str) -> str:
     from symbolic.tables.formula import parse
     from symbolic.tables.table import eta, lam
 
-    if "s" in letters_of_law(formula):
+    if "s" in parameters_of_law(formula):
         raise ValueError("law: s is arc length, which a law does not know; accepted: the landing's parameter theta")
     try:
         symbols = _symbols(formula)

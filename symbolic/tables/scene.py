@@ -23,11 +23,11 @@ from symbolic.tables.definition import (
     contraction_text,
     exact,
     known_entries,
-    letters_of,
     name_of,
     named_boundary,
     number_entry,
     parameter_text,
+    parameters_of,
     range_ends,
     range_text,
     table_boundary,
@@ -37,7 +37,7 @@ from symbolic.tables.definition import (
     word_entry,
 )
 from symbolic.tables.law import Law as Law
-from symbolic.tables.law import letters_of_law
+from symbolic.tables.law import parameters_of_law
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -79,17 +79,21 @@ class Scene:
     def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
         """Keeps the one line that says all of it; the same line for every way to write it."""
         name, law = name_of(boundary), law if isinstance(law, Law) else Law(law)
-        letters = tuple(dict.fromkeys((*letters_of(boundary), *letters_of_law(law.formula))))
+        parameters = tuple(dict.fromkeys((*parameters_of(boundary), *parameters_of_law(law.formula))))
         shape = {**dict(law.numbers), **shape}
-        for letter in shape:
-            if letter not in letters:
-                raise ValueError(f"{name}: no shape parameter {letter}; it has: {', '.join(letters) or 'none'}")
-        for letter in letters:
-            if letter not in shape:
-                raise ValueError(f"{name}: the shape parameter {letter} needs a value, as in Scene(..., {letter}=...)")
+        for parameter in shape:
+            if parameter not in parameters:
+                raise ValueError(f"{name}: no shape parameter {parameter}; it has: {', '.join(parameters) or 'none'}")
+        for parameter in parameters:
+            if parameter not in shape:
+                raise ValueError(
+                    f"{name}: the shape parameter {parameter} needs a value, as in Scene(..., {parameter}=...)"
+                )
         document = dict(boundary)
-        if letters:
-            document["shape"] = {letter: parameter_text(f"{name}: {letter}", shape[letter]) for letter in letters}
+        if parameters:
+            document["shape"] = {
+                parameter: parameter_text(f"{name}: {parameter}", shape[parameter]) for parameter in parameters
+            }
         if not law.uniform:
             document["law"] = law.formula
         document["lam"] = contraction_text(lam)
@@ -97,8 +101,8 @@ class Scene:
         if self.family_text:
             _family(self.family_text)
         if not law.uniform:
-            own, law = letters_of_law(law.formula), self.law
-            ranges = {letter: ends for letter, ends in self.ranges.items() if letter in own}
+            own, law = parameters_of_law(law.formula), self.law
+            ranges = {parameter: ends for parameter, ends in self.ranges.items() if parameter in own}
             free = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] not in ranges))
             free.check((self.lam, self.lam), free.places(self.table) if free.placed else None, **ranges)
 
@@ -130,7 +134,7 @@ class Scene:
     @property
     def shape(self) -> "dict[str, Fraction | Expr]":
         """The numbers of the table's shape parameters, exactly."""
-        return {name: exact(name, value_text(self.document["shape"][name])) for name in letters_of(self.document)}
+        return {name: exact(name, value_text(self.document["shape"][name])) for name in parameters_of(self.document)}
 
     @property
     def ranges(self) -> "dict[str, tuple[Fraction | Expr, Fraction | Expr]]":
@@ -146,13 +150,15 @@ class Scene:
     def law(self) -> Law:
         """The reflection law, with the numbers of its own parameters."""
         formula = self.document.get("law", UNIFORM)
-        return Law(formula).at(**{name: value_text(self.document["shape"][name]) for name in letters_of_law(formula)})
+        return Law(formula).at(
+            **{name: value_text(self.document["shape"][name]) for name in parameters_of_law(formula)}
+        )
 
     @property
     def boundary(self) -> str:
         """The table with the numbers of its shape, as one line of text: the same for every law and contraction."""
         said = {key: value for key, value in self.document.items() if key in BOUNDARY}
-        shape = {name: value_text(self.document["shape"][name]) for name in letters_of(self.document)}
+        shape = {name: value_text(self.document["shape"][name]) for name in parameters_of(self.document)}
         return toml(said | {"shape": shape})
 
     @cached_property
@@ -163,10 +169,10 @@ class Scene:
     @cached_property
     def family_text(self) -> str:
         """The boundary with the ranges of its parameters in the place of their values; nothing where none has one."""
-        shape = {letter: self.document["shape"][letter] for letter in letters_of(self.document)}
+        shape = {parameter: self.document["shape"][parameter] for parameter in parameters_of(self.document)}
         if not any(map(range_text, shape.values())):
             return ""
-        return self._with({letter: range_text(text) or text for letter, text in shape.items()})
+        return self._with({parameter: range_text(text) or text for parameter, text in shape.items()})
 
     def _with(self, shape: Mapping[str, str]) -> str:
         boundary = {key: value for key, value in self.document.items() if key in BOUNDARY}
@@ -191,10 +197,8 @@ class Scene:
             accepted = ", ".join(self.shape) or "none"
             raise ValueError(f"{self.name}: no shape parameter {parameter}; it has: {accepted}")
         ends = [exact(parameter, end) for end in (low, high)]
-        values = {letter: value_text(text) for letter, text in self.document["shape"].items()}
-        return _family(
-            self._with({letter: values[letter] for letter in self.shape} | {parameter: "{}..{}".format(*ends)})
-        )
+        values = {parameter: value_text(text) for parameter, text in self.document["shape"].items()}
+        return _family(self._with({name: values[name] for name in self.shape} | {parameter: "{}..{}".format(*ends)}))
 
     def at(self, *, lam: Any = None, law: Law | str | None = None, **shape: Any) -> "Scene":
         """The same scene with another contraction or law, or other numbers for its shape.
@@ -247,7 +251,8 @@ class Scene:
         if not isinstance(shape, Mapping):
             raise ValueError(f"scene: shape = {shape!r} is no table of numbers such as a = '3/2'")
         numbers = {
-            word_entry("shape", letter): number_entry(f"shape.{letter}", value) for letter, value in shape.items()
+            word_entry("shape", parameter): number_entry(f"shape.{parameter}", value)
+            for parameter, value in shape.items()
         }
         other = object.__new__(cls)
         boundary = boundary_of({key: document[key] for key in BOUNDARY if key in document}, tuple(numbers))

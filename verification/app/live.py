@@ -42,13 +42,13 @@ class Choice:
     phi: float = 0.2
 
     @property
-    def letter(self) -> str | None:
+    def parameter(self) -> str | None:
         """The name of the table's shape parameter, if it has one."""
         return next(iter(PAPER.get(self.table, ())), None)
 
     def scene(self) -> Scene:
         """The scene; `ValueError` with one sentence when there is none."""
-        given = {name: self.shape if name == self.letter else None for name in DEFAULTS}
+        given = {name: self.shape if name == self.parameter else None for name in DEFAULTS}
         if self.table == OWN:
             return scene(None, self.formula, None, None, self.lam, **given)
         return scene(self.table, None, None, None, self.lam, **given)
@@ -64,7 +64,7 @@ class Choice:
         'pinball orbit ellipse --a 1.5 --lam 0.9 --start=0.5,-0.25 --bounces 10'
         """
         table = ["--polar", self.formula] if self.table == OWN else [self.table]
-        shape = [f"--{self.letter}", self.shape] if self.letter else []
+        shape = [f"--{self.parameter}", self.shape] if self.parameter else []
         part = ["--component", self.map().ir.parts[self.component].name] if self.component else []
         start = [f"--start={self.theta!r},{self.phi!r}", "--bounces", str(bounces)]
         return shlex.join(["pinball", "orbit", *table, *shape, "--lam", self.lam, *part, *start])
@@ -83,7 +83,7 @@ class Choice:
         if self.table == OWN:
             head.append("from symbolic import tables")
             table = f"tables.polar({self.formula!r})"
-        shape = f', {self.letter}="{self.shape}"' if self.letter else ""
+        shape = f', {self.parameter}="{self.shape}"' if self.parameter else ""
         part = f", component={self.component}" if self.component else ""
         body = [f'map = PinballMap({table}, lam="{self.lam}"{shape})']
         body.append(f"orbit = map.orbit({self.theta!r}, {self.phi!r}, {bounces}{part})")
@@ -296,12 +296,12 @@ class LiveTable:
 
     def _other_table(self) -> None:
         self.choice = Choice(table=self.table.value, formula=self.formula.value, lam=self.choice.lam, theta=0.3)
-        letter = self.choice.letter
+        parameter = self.choice.parameter
         self.formula.visible = self.table.value == OWN
-        self.shape.visible = letter is not None
-        if letter is not None and self.shape.value != DEFAULTS[letter]:
-            self.shape.name = f"{letter}, shape of the {self.table.value}"
-            self.shape.value = DEFAULTS[letter]  # which rebuilds
+        self.shape.visible = parameter is not None
+        if parameter is not None and self.shape.value != DEFAULTS[parameter]:
+            self.shape.name = f"{parameter}, shape of the {self.table.value}"
+            self.shape.value = DEFAULTS[parameter]  # which rebuilds
         else:
             self.rebuild()
 

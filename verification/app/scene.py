@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text
-from symbolic.tables.law import Law, letters_of_law
+from symbolic.tables.law import Law, parameters_of_law
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def scene(
     if file is not None:
         return _from_file(file, lam, values, K, shape, formula)
     law = UNIFORM if formula is None else _law(formula).formula
-    own: dict[str, Any] = {n: values.pop(n) for n in letters_of_law(law) if n in values and name in BUILT}
+    own: dict[str, Any] = {n: values.pop(n) for n in parameters_of_law(law) if n in values and name in BUILT}
     if drawn is not None:
         for key in values:
             raise ValueError(f"--shape {key}: a table from a file of data has no shape parameter; leave it out")
@@ -72,7 +72,7 @@ def scene(
         key: parameter_text(f"--{key}", text) for key, text in _fitting(name, PAPER.get(name, ()), shape).items()
     }
     value = _contraction(lam)
-    numbers |= {letter: parameter_text(f"--shape {letter}", text) for letter, text in own.items()}
+    numbers |= {parameter: parameter_text(f"--shape {parameter}", text) for parameter, text in own.items()}
     if table in GALLERY:
         return Scene(_of_gallery(table, values), lam=value, law=law, **numbers)
     if table:
@@ -194,7 +194,7 @@ def _contraction(lam: str | None) -> Any:
 
 
 NAMED = (*PAPER, *GALLERY)
-BUILT = (*NAMED, "data")  # whose --shape gives lengths; a formula's own letters stand in its scene
+BUILT = (*NAMED, "data")  # whose --shape gives lengths; a formula's own parameters stand in its scene
 Command = Callable[..., Any]
 TABLE = (
     click.argument("table", required=False, type=click.Choice(NAMED)),

@@ -346,7 +346,7 @@ def dataset(branch: Branch) -> "xarray.Dataset":
         "arclength": ("point", np.array([point.s for point, _ in listed])),
         "event": ("point", np.array(["" if e is None else e.kind.value for _, e in listed])),
     }
-    about = {"cycle": branch.system.label, "letter": parameter, **_ended(branch)}
+    about = {"cycle": branch.system.label, "parameter": parameter, **_ended(branch)}
     return xarray.Dataset(values, coordinates, attrs=about)
 
 
@@ -369,7 +369,7 @@ def record(branch: Branch) -> dict[str, Any]:
                 "supercritical": form.supercritical if form is not None else None,
             }
         )
-    return {"cycle": branch.system.label, "letter": parameter, **_ended(branch), "points": points}
+    return {"cycle": branch.system.label, "parameter": parameter, **_ended(branch), "points": points}
 
 
 def _ended(branch: Branch) -> dict[str, str]:

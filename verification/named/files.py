@@ -96,7 +96,7 @@ def _contact_of(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _special(claim: CornerClaim) -> dict[str, Any]:
-    """What a special claim is about: kind, scene, free letter, bounces."""
+    """What a special claim is about: kind, scene, free parameter, bounces."""
     corner = claim.lam is None
     scene = {"table": "cuspless"} if corner else {"table": "egg", "lam": str(claim.lam)}
     said = {"kind": "corner" if corner else "focus", "scene": scene, "free": claim.value}
@@ -104,10 +104,10 @@ def _special(claim: CornerClaim) -> dict[str, Any]:
 
 
 def _problem_said(problem: Problem) -> dict[str, Any]:
-    """What a problem is about: kind, scene, free letter, bounces."""
+    """What a problem is about: kind, scene, free parameter, bounces."""
     boundary, held = table_boundary(problem.table)
     scene = {key: value for key, value in boundary.items() if key != "name"}
-    scene |= {"shape": {letter: str(value) for letter, value in held.items()}} if held else {}
+    scene |= {"shape": {parameter: str(value) for parameter, value in held.items()}} if held else {}
     if "table" not in boundary and problem.table.shapes:  # the free parameter of a table of one's own, by its range
         (own,) = problem.table.shapes
         scene |= {"shape": {own.symbol.name: f"{own.range.start}..{own.range.end}"}}
@@ -248,13 +248,13 @@ def _problem(said: Mapping[str, Any], lam: Any, box: arb) -> Problem:
     known_entries("certificate: scene", scene, (*KINDS, "K", "undefined", "origin", "shape", "law", "lam"))
     law = Law(text_entry("law", scene.get("law", UNIFORM)))
     texts = scene.get("shape", {})
-    ranges = {letter: text for letter, text in texts.items() if isinstance(text, str) and ".." in text}
+    ranges = {parameter: text for parameter, text in texts.items() if isinstance(text, str) and ".." in text}
     if set(ranges) - {said["free"]}:
         raise ValueError(f"certificate: {', '.join(ranges)} has a range; accepted: for the free parameter alone")
-    numbers = {letter: number(text, letter) for letter, text in texts.items() if letter not in ranges}
-    law = law.at(**{letter: numbers[letter] for letter in law.parameters if letter in numbers})
+    numbers = {parameter: number(text, parameter) for parameter, text in texts.items() if parameter not in ranges}
+    law = law.at(**{parameter: numbers[parameter] for parameter in law.parameters if parameter in numbers})
     if "table" in scene:
-        shape = {letter: value for letter, value in numbers.items() if letter not in dict(law.numbers)}
+        shape = {parameter: value for parameter, value in numbers.items() if parameter not in dict(law.numbers)}
         table = tables.named(scene["table"], int(scene.get("K", POINTS))).at(**shape)
     elif ranges:
         table = _over(scene, *next(iter(ranges.items())), box)

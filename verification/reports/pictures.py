@@ -109,7 +109,7 @@ def _density(axes: "Axes", counts: NDArray[Any], extent: tuple[float, float, flo
     axes.imshow(ink(counts), origin="lower", extent=extent, aspect="auto", interpolation="nearest")
 
 
-def diagram(parts: Parts, name: str, found: Arrays, letter: str, events: Iterable[tuple[float, str]]) -> None:
+def diagram(parts: Parts, name: str, found: Arrays, parameter: str, events: Iterable[tuple[float, str]]) -> None:
     """The attractors against the parameter as a density, events as lines, and the largest exponent with error bars."""
     values, half = found["values"], float(found["half"])
     low, high = float(values[0]), float(values[-1])
@@ -125,7 +125,7 @@ def diagram(parts: Parts, name: str, found: Arrays, letter: str, events: Iterabl
         few = slice(None, None, max(1, len(values) // 60))
         bottom.errorbar(values[few], found["largest"][few], found["error"][few], color=INK, ls="", elinewidth=0.8)
         bottom.set_ylabel(r"$\nu_+$")
-        bottom.set_xlabel(AXES.get(letter, letter))
+        bottom.set_xlabel(AXES.get(parameter, parameter))
         bottom.set_ylim(max(float(np.nanmin(found["least"])), -2.0) - 0.05, None)
         bottom.legend(loc="lower right")
         _events(top, bottom, sorted(events), (low, high))

@@ -80,19 +80,19 @@ def test_the_events_of_the_cascade_are_the_located_ones():
 
 
 @pytest.mark.parametrize(
-    ("ring", "start", "letter", "value", "interval", "fixed", "published", "digits"),
+    ("ring", "start", "parameter", "value", "interval", "fixed", "published", "digits"),
     [
         (logistic(1), [0.6], "r", 2.5, (2.0, 3.6), {}, LOGISTIC, 1e-9),
         (henon(1), [1.2], "a", 0.1, (-0.1, 1.1), {"b": 0.3}, HENON, 1e-7),
     ],
 )
-def test_the_cascades_of_published_maps_are_found(ring, start, letter, value, interval, fixed, published, digits):
-    one = branch(ring, np.array(start), letter, value, interval, fixed)
+def test_the_cascades_of_published_maps_are_found(ring, start, parameter, value, interval, fixed, published, digits):
+    one = branch(ring, np.array(start), parameter, value, interval, fixed)
     found = cascade(one, interval, 5)
 
     assert [event.value for event in found] == pytest.approx(published, abs=digits)
     assert all(event.form.supercritical for event in found)
-    assert abs(found[0].value - (3 if letter == "r" else 3 * (1 - 0.3) ** 2 / 4)) < 1e-12
+    assert abs(found[0].value - (3 if parameter == "r" else 3 * (1 - 0.3) ** 2 / 4)) < 1e-12
 
 
 def test_no_pitchfork_is_lost_where_the_whole_ring_is_singular():
@@ -295,7 +295,7 @@ def test_the_shape_is_followed_to_the_fold_and_the_doubling_of_the_closed_forms(
         run(*words, "--json", str(file))
         (one,) = json.loads(file.read_text())["branches"]
         (found[cycle],) = one["events"]
-        assert one["letter"] == "alpha"
+        assert one["parameter"] == "alpha"
     slope = tan(exact_pi / 18)
     expected = {"triangle": slope / sqrt(9 + slope**2), "diameter": alpha_tilde().subs(lam_letter, Rational(1, 2))}
 

@@ -67,12 +67,12 @@ def command(
         raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
-    letter, ends = varied(scene, shape) if shape else ("lam", interval)
+    parameter, ends = varied(scene, shape) if shape else ("lam", interval)
     low, high = interval_of(f"--{'shape' if shape else 'lam'}", ends)
     lam = contraction(interval) if shape else None
     if lam is not None and not scene.law.uniform:
         scene = scene.at(lam=lam)
-    law = law_over(scene, letter, ends.split(":"))
+    law = law_over(scene, parameter, ends.split(":"))
     table = scene.table
     if cycle is not None:
         ring, x, own = named(cycle, table)
@@ -84,25 +84,27 @@ def command(
     value, fixed = float(exact("--at", at)) if at is not None else first if own is None else own, {}
     if lam is not None:
         x, fixed = at_contraction(ring, x, value, float(lam)), {"lam": float(lam)}
-        if letter in scene.shape:
-            ring = replace(ring, table=over(scene, letter, ends))
-        value = float({**scene.shape, **own_numbers(scene)}[letter])
+        if parameter in scene.shape:
+            ring = replace(ring, table=over(scene, parameter, ends))
+        value = float({**scene.shape, **own_numbers(scene)}[parameter])
     ring = replace(ring, law=law)
     steps = Steps(most=points)
     with output.progress("Following", points) as tick:
-        found = [branch(ring, x, letter, value, (low, high), fixed, steps, lambda p: tick(f"{letter} = {p.z[-1]:.4f}"))]
+        found = [
+            branch(ring, x, parameter, value, (low, high), fixed, steps, lambda p: tick(f"{parameter} = {p.z[-1]:.4f}"))
+        ]
         found += turned_off(found[0], (low, high), steps, switch)
     certificates = {}
     if digits:
         events = [event for one in found for event in one.events]
         with output.progress("Certifying", len(events)) as tick:
             for event in events:
-                certificates[id(event)] = certificate(event, digits, letter, lam)
+                certificates[id(event)] = certificate(event, digits, parameter, lam)
                 tick(event.kind.value)
     documents = []
     for one in found:
         document = record(one)
-        document["events"] = [noted(event, letter, certificates.get(id(event))) for event in one.events]
+        document["events"] = [noted(event, parameter, certificates.get(id(event))) for event in one.events]
         documents.append(document)
     drawn_on = curves_of(found, scene, output) if curves else []
     output.write({"table": scene.name, "branches": documents, "curves": drawn_on})
@@ -197,13 +199,13 @@ def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth
     return found
 
 
-def certificate(event: Any, digits: int, letter: str, lam: Any) -> dict[str, Any] | None:
+def certificate(event: Any, digits: int, parameter: str, lam: Any) -> dict[str, Any] | None:
     """Value, radius and checklist of an event, or None where there is no certificate."""
     from verification.arithmetic.balls import decimal
     from verification.named.events import proof_of
 
     try:
-        proof = proof_of(event, digits, letter, lam)
+        proof = proof_of(event, digits, parameter, lam)
     except ValueError:
         return None
     if proof is None:
@@ -212,12 +214,12 @@ def certificate(event: Any, digits: int, letter: str, lam: Any) -> dict[str, Any
     return {"value": value, "radius": radius, "certified": proof.certified, "checks": proof.checks}
 
 
-def noted(event: Any, letter: str, proof: dict[str, Any] | None) -> dict[str, Any]:
+def noted(event: Any, parameter: str, proof: dict[str, Any] | None) -> dict[str, Any]:
     """An event for JSON."""
     form = event.form
     return {
         "event": event.kind.value,
-        letter: event.value,
+        parameter: event.value,
         "located": event.located,
         "theta": [float(x) for x in event.point.z[:-1]],
         "branch_coefficient": form.branch if form else None,
@@ -271,24 +273,24 @@ def drawn(branches: list["Branch"], path: str) -> None:
 
 def show(console: "Console", document: dict[str, Any]) -> None:
     """Some points of a branch, and its events."""
-    points, letter = document["points"], document["letter"]
+    points, parameter = document["points"], document["parameter"]
     stride = max(1, len(points) // ROWS)
     console.print(f"{document['cycle']}: {len(points)} points")
-    console.print(f"  {letter:<14}  multipliers                            stable  event")
+    console.print(f"  {parameter:<14}  multipliers                            stable  event")
     for i, point in enumerate(points):
         if i % stride and not point["event"] and i != len(points) - 1:
             continue
         shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
-        console.print(f"  {point[letter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
+        console.print(f"  {point[parameter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
     for event in document["events"]:
         proof = event["certificate"]
         said = (
             f"{proof['value']} +- {proof['radius']} ({'' if proof['certified'] else 'not '}certified)"
             if proof
-            else (f"{event[letter]:.12g}")
+            else (f"{event[parameter]:.12g}")
         )
         side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
-        console.print(f"  {event['event']} at {letter} = {said}{side}")
+        console.print(f"  {event['event']} at {parameter} = {said}{side}")
 
 
 def said_stable(point: dict[str, Any]) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from verification.named.locate import Located
 
 
-LETTERS = ("lam", "alpha", "n", "period")
+PARAMETERS = ("lam", "alpha", "n", "period")
 
 
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
@@ -68,8 +68,8 @@ def command(
     if bare["K"] is not None:
         raise ValueError(f"--K {bare['K']} says something of a table; accepted: egg --K {bare['K']}, with --period")
     options = bare["lam"], bare["alpha"], n, period
-    given = {letter: text for letter, text in zip(LETTERS, options, strict=True) if text is not None}
-    shape = {letter: number(text, f"--{letter}") for letter, text in given.items()}
+    given = {parameter: text for parameter, text in zip(PARAMETERS, options, strict=True) if text is not None}
+    shape = {parameter: number(text, f"--{parameter}") for parameter, text in given.items()}
     if "n" in shape and not shape["n"].is_Integer:
         raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
     if "period" in shape and not shape["period"].is_Integer:

@@ -83,7 +83,7 @@ class Proof:
 
     @property
     def value(self) -> arb:
-        """The ball of the free letter."""
+        """The ball of the free parameter."""
         value: arb = self.enclosure.zero[-1]
         return value
 

@@ -1,6 +1,6 @@
 """What judging each claim takes, and which claims share results: the record by which `pinball verify` shares out work.
 
-    python benchmarks/judges.py          # five minutes; writes verification/paper/report/seconds.json
+    python benchmarks/judges.py          # five minutes; writes verification/paper/claims/focusing/seconds.json
     python benchmarks/judges.py --jobs 4 # reads it: how long so many processes need, by the record
 
 The claims are judged one after the other in one process, and every function of the package that keeps its results
@@ -18,7 +18,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-RECORD = Path(__file__).resolve().parents[1] / "verification" / "paper" / "report" / "seconds.json"
+RECORD = Path(__file__).resolve().parents[1] / "verification" / "paper" / "claims" / "focusing" / "seconds.json"
 OURS = ("symbolic", "numeric", "verification")
 SHARED = 0.5  # seconds that are worth staying together for
 PROCESSES = 16  # among which the claims should divide evenly
@@ -89,7 +89,7 @@ def measure() -> None:
     global judged
     note_all()
     report = import_module("verification.paper.report.report")
-    for module in sorted(set(report.homes().values())):
+    for module in sorted({claim.home for claim in report.catalogue()}):
         import_module(module)
     seconds = {}
     for claim in report.catalogue():

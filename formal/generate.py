@@ -21,7 +21,7 @@ from symbolic.tables.table import K0, K1, a, alpha, cos_eta1, cos_phi0, lam, t, 
 
 HERE = Path(__file__).parent
 GENERATED = HERE / "Generated.v"
-PRINTED = next((HERE.parent / "verification").rglob("printed"))
+PRINTED = next((HERE.parent / "verification").rglob("focusing"))
 P1, P2 = Symbol("P1", real=True), Symbol("P2", real=True)
 LETTERS = {letter.name: letter for letter in (K0, K1, a, alpha, cos_eta1, cos_phi0, lam, t, theta, P1, P2)}
 

@@ -139,6 +139,7 @@ json_option = click.option(
 
 COMMANDS = {
     "verify": "Is each claim of the paper true?",
+    "claims": "A folder for another paper: its sentences, and who judges them.",
     "report": "What becomes of this table? One page for all questions.",
     "locate": "Where does it happen, to N certified digits?",
     "check": "Does a certificate still hold, without the search?",
@@ -169,6 +170,7 @@ HOMES = {  # commands that share a module
     "basins": ("sweep", "basins_command"),
     "bifurcation": ("sweep", "bifurcation_command"),
     "explore": ("verify", "explore_command"),
+    "claims": ("verify", "claims_command"),
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}

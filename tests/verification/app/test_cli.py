@@ -21,6 +21,9 @@ from symbolic.tables.table import theta
 from verification.app import cli
 from verification.app.cli import COMMANDS, Output, json_option, main
 from verification.app.scene import scene_options, table_options
+from verification.paper.claims import folder
+from verification.paper.claims.claim import Claim
+from verification.paper.claims.folder import Paper
 from verification.paper.report import report
 
 Verdict = Enum("Verdict", {name.upper(): name for name in ("confirmed", "corrected", "refuted", "supported", "open")})
@@ -58,9 +61,13 @@ def engine(monkeypatch, tmp_path):
         verdicts=verdicts,
         judged=lambda claims, digits, jobs: (Result(each.id, Verdict(verdicts[each.id])) for each in claims),
     )
-    monkeypatch.setattr(
-        report, "catalogue", lambda: [SimpleNamespace(id=each, section="3.1 Circular table") for each in verdicts]
-    )
+    section, home = "3.1 Circular table", "verification.paper.judges.map"
+
+    def paper(*_):
+        claims = [Claim(each, section, "$1 = 1$", "identity", "1", home=home) for each in verdicts]
+        return Paper(tmp_path, "A paper", (), "", {section: ""}, tuple(claims), ())
+
+    monkeypatch.setattr(folder, "paper", paper)
     monkeypatch.setattr(report, "judged", lambda *asked: closable(fake.judged(*asked)))
     monkeypatch.chdir(tmp_path)
     return fake
@@ -148,7 +155,7 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--digits"], "'--digits' requires an argument"),
         (
             ["verify", "--nope"],
-            "no option is called --nope; accepted: --changed, --digits, --figures, --help, --jobs, --json, --only, ",
+            "no option is called --nope; accepted: --changed, --claims, --digits, --figures, --help, --jobs, --json, ",
         ),
         (["verify", "more"], "unexpected extra argument (more); pinball verify --help shows what is accepted"),
         (["verify", "--json", "no/such/file"], "there is no directory 'no/such'; create it first"),

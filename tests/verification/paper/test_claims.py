@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from symbolic.tables.formula import parse
-from verification.paper.claims.claim import LETTERS, Claim, Printed, Verdict
+from verification.paper.claims.claim import Claim, Printed, Verdict
 from verification.paper.claims.judges import JUDGES
 from verification.paper.report.report import Result, catalogue, judge, verify
 
@@ -103,7 +103,7 @@ def readable(mutant: Claim) -> bool:
 def same(mutant: Claim, claim: Claim) -> bool:
     """Twice nothing is nothing: such a mutant says the same."""
     pairs = zip(entries(mutant.printed), entries(claim.printed), strict=True)
-    return all(parse(new, LETTERS) == parse(old, LETTERS) for new, old in pairs)
+    return all(parse(new, claim.names) == parse(old, claim.names) for new, old in pairs)
 
 
 def test_every_id_of_the_contract_is_a_claim():
@@ -115,7 +115,7 @@ def test_ids_are_unique_and_every_judge_has_a_claim():
 
     assert len(ids) == len(set(ids))
     results()
-    assert set(JUDGES) <= set(ids)
+    assert {name for home, name in JUDGES if home.startswith("verification.paper")} <= set(ids)
 
 
 def test_no_symbolic_claim_is_open():

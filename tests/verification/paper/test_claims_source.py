@@ -2,14 +2,12 @@
 
 import ast
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-from verification.paper.report import report as claims
+from verification.paper.claims.folder import SHIPPED, paper
 
-PAPER = Path(claims.__file__).parents[1]
-JUDGES = [path for room in claims.ROOMS for path in sorted((PAPER / room).glob("*.py"))]
+JUDGES = sorted(path.resolve() for folder in SHIPPED.glob("*/paper.toml") for path in paper(folder.parent).judges)
 TEXTS = {"reason", "notes", "erratum", "evidence", "method", "derived"}  # fields that hold sentences
 READERS = {"startswith", "endswith", "find", "rfind", "index", "rindex", "search", "match", "fullmatch"}
 VERDICTS = {"shown", "answer"}  # findings from a decision

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from verification.paper.claims.claim import Claim, Sentence, caption, defects, differences, digest, inventory, split
+from verification.paper.claims.claim import Claim, Sentence, caption, defects, differences, digest, split
+from verification.paper.claims.folder import paper
 from verification.paper.report.report import catalogue
 
 PAPER = os.environ.get("PINBALL_PAPER")
@@ -139,10 +140,10 @@ def test_a_list_that_is_not_in_order_has_a_defect(listed):
 
 
 def test_every_sentence_of_the_paper_is_quoted_by_a_claim_or_is_prose_with_a_reason():
-    assert defects(inventory(), catalogue()) == []
+    assert defects(paper().inventory(), catalogue()) == []
 
 
 if PAPER:
 
     def test_the_list_is_the_paper_s_sentences_in_order_and_every_quote_is_in_its_place():
-        assert differences(Path(PAPER).read_text(encoding="utf-8"), inventory(), catalogue()) == []
+        assert differences(Path(PAPER).read_text(encoding="utf-8"), paper().inventory(), catalogue()) == []

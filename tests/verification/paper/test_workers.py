@@ -15,6 +15,7 @@ import pytest
 from verification.app.cli import main
 from verification.app.commands.verify import Last, write_report
 from verification.paper.claims.claim import Verdict
+from verification.paper.claims.folder import paper, recorded
 from verification.paper.report import changed, report
 from verification.paper.report.workers import TRIES, Lost, in_processes
 
@@ -101,7 +102,7 @@ def test_claims_that_share_results_are_judged_by_one_process_and_the_dearest_beg
 
     assert sorted(claim.id for group in groups for claim in group) == sorted(c.id for c in report.catalogue())
     assert costs == sorted(costs, reverse=True)
-    known, together = report.recorded()
+    known, together = recorded(paper())
     assert set(known) <= {claim.id for claim in report.catalogue()}
     assert set(together) <= set(known)
     assert any(len(group) > 1 for group in groups)
@@ -155,7 +156,7 @@ def test_a_judge_loads_no_module_that_its_digest_leaves_out(name):
     loaded = {module for module in run.stdout.split() if module.partition(".")[0] in changed.STOREYS}
 
     assert loaded
-    assert loaded <= changed.closure(report.homes()[name])
+    assert loaded <= changed.closure(next(claim.home for claim in report.catalogue() if claim.id == name))
 
 
 def test_a_digest_changes_with_every_module_that_a_judge_can_load_and_with_no_other(monkeypatch):

@@ -8,7 +8,7 @@ import json
 import os
 import re
 import socket
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.paper.claims.claim import Claim
+    from verification.paper.claims.folder import Paper
     from verification.paper.figures.catalogue import Picture as Figure
     from verification.paper.report.page import Picture
     from verification.paper.report.report import Result
@@ -143,7 +144,27 @@ def _free(port: int) -> int:
         return int(probe.getsockname()[1])
 
 
+@click.command(epilog="Example: pinball claims new my_paper, then pinball verify --claims my_paper")
+@click.argument("what", type=click.Choice(["new"]))
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@json_option
+def claims_command(what: str, folder: Path, output: Output) -> int:
+    """A new folder for the claims of another paper: one sentence and its judge, to be replaced by your own.
+
+    It has paper.toml (title, authors, where it was printed, its sections, its sentences as printed) and judges.py.
+    """
+    from verification.paper.claims.folder import begin
+
+    written = [str(path) for path in begin(folder)]
+    output.write({"written": written})
+    output.console.print(f"{' and '.join(written)} are written; pinball verify --claims {folder} judges what they say.")
+    return DONE
+
+
 @click.command(epilog="Example: pinball verify --only 'egg.*' --digits 30")
+@click.option(
+    "--claims", "source", metavar="DIR", help="Another paper: its folder, or polygons or elastic. Runs its judges."
+)
 @click.option("--only", metavar="GLOB", default="*", show_default=True, help="Judge the claims whose id matches.")
 @click.option("--section", metavar="LABEL", help="Judge the claims of a section, such as 6.3, 6 or Abstract.")
 @click.option("--changed", is_flag=True, help="Judge what depends on changed code; keep the rest of the last report.")
@@ -154,6 +175,7 @@ def _free(port: int) -> int:
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes that judge and draw; one for each core.")
 @json_option
 def command(
+    source: str | None,
     only: str,
     section: str | None,
     changed: bool,
@@ -166,31 +188,38 @@ def command(
 ) -> int:
     """Is each claim of the paper true? Exit status 1 when one is open.
 
+    --claims DIR judges another paper, whose sentences and judges are in DIR; `pinball claims new DIR` begins one. The
+    judges are Python: this option runs them, so give it folders only that you would run. Nothing else loads them.
+
     The report does not depend on --jobs, but for the seconds in it.
     """
     from numeric.sweeps.sweep import cores
+    from verification.paper.claims.folder import OWN, paper
     from verification.paper.report.page import diagrams
 
-    claims = chosen(only, section)
+    about = paper(source or OWN)
+    claims = chosen(only, section, about)
     directory = prepared(folder)
     measured = diagrams(Path(work)) if work is not None else []
-    last = Last.read(directory, claims, digits) if changed else Last({}, {})
+    pictured = report.pictures(about) if figures or changed else []
+    last = Last.read(directory, claims, digits, pictured) if changed else Last({}, {})
     found = {result.id: result for result in last.results.values()}
     missing = [claim for claim in claims if claim.id not in found]
     if changed:
         output.console.print(f"{len(missing)} of {len(claims)} claims depend on code that has changed.")
-    jobs = jobs or cores()
+    jobs, costs = jobs or cores(), {claim.id: report.seconds([claim]) for claim in claims}
     with (
         output.progress("Judging", report.seconds(missing)) as step,
         closing(report.judged(missing, digits, jobs)) as judged,
     ):
         for result in judged:
             found[result.id] = result
-            step(f"{len(found)} of {len(claims)}: {result.id}", report.seconds([result]))
+            step(f"{len(found)} of {len(claims)}: {result.id}", costs[result.id])
     results = [found[claim.id] for claim in claims]
-    pictures = drawn({claim.section for claim in claims}, output, jobs, last.images) if figures else []
-    write_report(directory, results, [*pictures, *measured], codes(claims, digits))
-    output.write(report.document(results))
+    sections = {claim.section for claim in claims}
+    shown = drawn([each for each in pictured if each.section in sections], output, jobs, last.images) if figures else []
+    write_report(directory, results, [*shown, *measured], codes(claims, digits, pictured), about)
+    output.write(report.document(results, about.about))
     show(output.console, results)
     output.console.print(f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex).")
     return FAILED if report.counts(results)["open"] else DONE
@@ -204,7 +233,7 @@ class Last:
     images: "Mapping[str, bytes]"
 
     @classmethod
-    def read(cls, directory: Path, claims: "Sequence[Claim]", digits: int) -> "Last":
+    def read(cls, directory: Path, claims: "Sequence[Claim]", digits: int, figures: "Sequence[Figure]" = ()) -> "Last":
         """From the report in a directory; nothing where there is none."""
         path = directory / "report.json"
         if not path.is_file():
@@ -217,7 +246,7 @@ class Last:
             raise ValueError(
                 f"--changed: {path} is no report ({type(error).__name__}); remove it, or judge without --changed"
             ) from None
-        same = {name for name, code in codes(claims, digits).items() if before.get(name) == code}
+        same = {name for name, code in codes(claims, digits, figures).items() if before.get(name) == code}
         page = directory / "report.html"
         shown = IMAGE.findall(page.read_text(encoding="utf-8")) if page.is_file() else []
         images = {name: base64.b64decode(data) for data, name in shown if f"figure {name}" in same}
@@ -227,14 +256,14 @@ class Last:
 IMAGE = re.compile(r'<img src="data:image/png;base64,([^"]*)" alt="([^"]*)">')
 
 
-def chosen(only: str, section: str | None) -> "list[Claim]":
+def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
     """The claims that are asked for; `ValueError` with the nearest ids or the sections there are when none is."""
-    claims = report.catalogue()
+    claims = list(about.claims)
     if section is not None:
         known = dict.fromkeys(claim.section for claim in claims)
         there = [name for name in known if within(name, section)]
         if not there:
-            labels = ", ".join(sorted((name.split(" ")[0] for name in known), key=report.section_order))
+            labels = ", ".join(label(name) for name in about.sections if name in known)
             raise ValueError(f"--section {section!r} has no claim; accepted: {labels}")
         claims = [claim for claim in claims if claim.section in there]
     wanted = matching(only, [claim.id for claim in claims])
@@ -247,8 +276,17 @@ def within(name: str, section: str) -> bool:
     >>> within("6.3 Period-2 orbits", "6"), within("10 End", "1"), within("Abstract", "abstract")
     (True, False, True)
     """
-    label, asked = name.split(" ")[0].lower(), section.strip().lower()
-    return asked in (label, name.lower()) or label.startswith(f"{asked}.")
+    number, asked = label(name).lower(), section.strip().lower()
+    return asked in (number, name.lower()) or number.startswith(f"{asked}.")
+
+
+def label(name: str) -> str:
+    """The number of a section; the whole name of one that has none.
+
+    >>> label("6.3 Period-2 orbits"), label("Abstract"), label("Of the square")
+    ('6.3', 'Abstract', 'Of the square')
+    """
+    return name.split(" ")[0] if report.section_order(name) > (0,) else name
 
 
 def matching(only: str, ids: Sequence[str]) -> list[str]:
@@ -277,19 +315,17 @@ def prepared(folder: str) -> Path:
 
 
 def drawn(
-    sections: Collection[str], output: Output, jobs: int = 1, known: "Mapping[str, bytes] | None" = None
+    wanted: "Sequence[Figure]", output: Output, jobs: int = 1, known: "Mapping[str, bytes] | None" = None
 ) -> "list[Picture]":
-    """The figures of those sections, as drafts, in their order; those known already are not drawn again.
+    """The figures wanted, as drafts, in their order; those known already are not drawn again.
 
     There are none where Matplotlib is missing.
     """
-    from verification.paper.figures.catalogue import pictures
     from verification.paper.report.page import Picture
 
     if find_spec("matplotlib") is None:
         output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
         return []
-    wanted = [picture for picture in pictures().values() if picture.section in sections]
     images = dict(known or {})
     missing = [picture for picture in wanted if picture.name not in images]
     with output.progress("Drawing", len(missing)) as step, closing(_images(missing, jobs)) as found:
@@ -322,19 +358,21 @@ def write_report(
     results: Sequence["Result"],
     pictures: "Sequence[Picture]" = (),
     code: "Mapping[str, str] | None" = None,
+    about: "Paper | None" = None,
 ) -> None:
     """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once.
 
     `code` has digests of the code that the results depend on, kept for `--changed`.
     """
+    from verification.paper.claims.folder import paper
     from verification.paper.report.page import markdown, page
     from verification.paper.report.report import tables
 
-    versions = report.made_with()
-    whole = report.document(results) | {"made_with": versions, "code": dict(code or {})}
-    write_whole(directory / "report.html", page(results, versions, pictures))
-    write_whole(directory / "report.md", markdown(results, versions))
-    write_whole(directory / "report.tex", tables(results))
+    versions, about = report.made_with(), about or paper()
+    whole = report.document(results, about.about) | {"made_with": versions, "code": dict(code or {})}
+    write_whole(directory / "report.html", page(results, versions, pictures, about))
+    write_whole(directory / "report.md", markdown(results, versions, about))
+    write_whole(directory / "report.tex", tables(results, about.sections))
     write_whole(directory / "report.json", json.dumps(whole, indent=2) + "\n")
 
 

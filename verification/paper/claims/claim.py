@@ -1,18 +1,16 @@
-"""A claim of the paper as printed, what came of judging it, and the list of the paper's sentences.
+"""A claim of a paper as printed, what came of judging it, and the list of the paper's sentences.
 
-Each sentence is quoted by a claim, or listed as prose with a reason. The paper itself is not part of this repository:
-`printed/sentences/*.toml` lists its sentences in order, each by its section, its opening words and a digest of its
-text; with the paper's LaTeX source at hand, `differences` compares.
+Each sentence that a folder lists is quoted by a claim, or is prose with a reason. The paper itself is not kept: the
+list has its sentences in order, each by its section, its opening words and a digest of its text; with the paper's LaTeX
+source at hand, `differences` compares.
 """
 
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 from hashlib import sha256
-from importlib.resources import files
 from itertools import zip_longest
 from typing import Any, TypeAlias
 
@@ -24,7 +22,6 @@ from symbolic.tables import table as symbols
 from symbolic.tables.formula import parse
 
 LETTERS: dict[str, Symbol] = {name: value for name, value in vars(symbols).items() if isinstance(value, Symbol)}
-LETTERS |= {name: Symbol(name, real=True) for name in ("P1", "P2", "rho", "rho1", "rho2")}
 
 Number: TypeAlias = Expr | Callable[[int], arb]
 Printed = str | list[str] | list[list[str]]
@@ -42,7 +39,12 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Claim:
-    """One sentence of the paper, transcribed with its misprints."""
+    """One sentence of a paper, transcribed with its misprints.
+
+    `letters` are those of the paper's formulas beside the letters of tables and laws; `home` is the module that judges
+    it, by its dotted name or, outside this package, by its path. What judging takes and the number of the group that
+    it shares results with say who does what first.
+    """
 
     id: str
     section: str
@@ -51,6 +53,15 @@ class Claim:
     printed: Printed
     over: tuple[tuple[str, str], ...] = ()
     base: str = ""
+    letters: tuple[str, ...] = ()
+    home: str = field(default="", repr=False)
+    seconds: float = field(default=1.0, repr=False, compare=False)
+    group: int | None = field(default=None, repr=False, compare=False)
+
+    @cached_property
+    def names(self) -> dict[str, Symbol]:
+        """The letters that its formulas may have."""
+        return LETTERS | {name: Symbol(name, real=True) for name in self.letters}
 
     @property
     def text(self) -> str:
@@ -63,9 +74,9 @@ class Claim:
     def formula(self) -> Expr | Matrix:
         """What is printed, as an expression; a list or a table of formulas as a matrix."""
         if isinstance(self.printed, str):
-            return parse(self.printed, LETTERS)
+            return parse(self.printed, self.names)
         rows = [[row] if isinstance(row, str) else row for row in self.printed]
-        return Matrix([[parse(entry, LETTERS) for entry in row] for row in rows])
+        return Matrix([[parse(entry, self.names) for entry in row] for row in rows])
 
     @cached_property
     def box(self) -> dict[Symbol, Interval]:
@@ -73,8 +84,8 @@ class Claim:
         found = {}
         for name, text in self.over:
             interval = parse_interval(text)
-            if name in LETTERS and interval is not None:
-                found[LETTERS[name]] = interval
+            if name in self.names and interval is not None:
+                found[self.names[name]] = interval
         return found
 
 
@@ -130,20 +141,6 @@ def parse_interval(text: str) -> Interval | None:
         return None
 
 
-def load(table: str) -> list[Claim]:
-    """The claims that the paper makes on one table, in its order."""
-    text = (files("verification.paper.claims") / "printed" / f"{table}.toml").read_text(encoding="utf-8")
-    return [_claim(entry) for entry in tomllib.loads(text)["claim"]]
-
-
-def _claim(entry: dict[str, Any]) -> Claim:
-    return Claim(**{**entry, "over": tuple(entry.get("over", {}).items())})
-
-
-PARTS = (
-    *("0_abstract", "1_introduction", "2_pinball", "3_ellipse", "4_cardioid"),
-    *("5_cuspless", "6_egg", "7_discussion", "A_methods"),
-)
 LEFT_OUT = re.compile(r"\s*(?:\\label\{[^}]*\}|\\(?:begin|end)\{(?:equation|eqnarray)\}|\\fl\b|\\ams\{.*\})\s*")
 COMMENT = re.compile(r"(?<!\\)%.*\n?")
 FIGURE = re.compile(r"\\begin\{figure\}(.*?)\\end\{figure\}", re.DOTALL)
@@ -167,17 +164,11 @@ class Sentence:
         """How many of its fates are given: it must be one."""
         return sum(map(bool, (self.claims, self.repeats, self.prose)))
 
-
-def inventory() -> list[Sentence]:
-    """Every sentence of the paper, in its order, as listed."""
-    folder = files("verification.paper.claims") / "printed" / "sentences"
-    texts = [(folder / f"{part}.toml").read_text(encoding="utf-8") for part in PARTS]
-    return [_sentence(entry) for text in texts for entry in tomllib.loads(text)["sentence"]]
-
-
-def _sentence(entry: dict[str, Any]) -> Sentence:
-    named = {key: tuple(entry.get(key, ())) for key in ("claims", "repeats")}
-    return Sentence(**{**entry, **named})
+    @classmethod
+    def from_dict(cls, entry: dict[str, Any]) -> "Sentence":
+        """A table of a folder's list."""
+        named = {key: tuple(entry.get(key, ())) for key in ("claims", "repeats")}
+        return cls(**{**entry, **named})
 
 
 def normalised(text: str) -> str:

@@ -18,14 +18,17 @@ from verification.arithmetic.balls import enclose, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Number
 
 Judge = Callable[[Claim], Judgement]
-JUDGES: dict[str, Judge] = {}
+JUDGES: dict[tuple[str, str], Judge] = {}  # by the module and the claim's id: two papers may use one id
 
 
 def judges(*ids: str) -> Callable[[Judge], Judge]:
-    """Enters a function as the judge of the claims named."""
+    """Enters a function as the judge of the claims named.
+
+    The ids are read before anything runs: they are written out, and the decorator begins its line.
+    """
 
     def enter(judge: Judge) -> Judge:
-        JUDGES.update(dict.fromkeys(ids, judge))
+        JUDGES.update(dict.fromkeys(((judge.__module__, name) for name in ids), judge))
         return judge
 
     return enter

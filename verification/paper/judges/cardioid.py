@@ -21,7 +21,7 @@ from symbolic.motion.collision import determinant, growth_defects, telescoped
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import arc_length, curvature, evolute, velocity
 from symbolic.tables.table import Component, s, theta
-from verification.paper.claims.claim import LETTERS, Claim, Judgement
+from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, identity, judges, zero
 
 BOUNDARY = cardioid.components[0]
@@ -79,7 +79,7 @@ def polar_curvature(claim: Claim) -> Judgement:
     """The curvature of `rho(theta)` for an undetermined function `rho`."""
     rho = Function("rho", real=True)(theta)
     general = curvature(Component("polar", (rho * cos(theta), rho * sin(theta)), -pi, pi))
-    orders = {rho.diff(theta, 2): LETTERS["rho2"], rho.diff(theta): LETTERS["rho1"], rho: LETTERS["rho"]}
+    orders = {rho.diff(theta, 2): claim.names["rho2"], rho.diff(theta): claim.names["rho1"], rho: claim.names["rho"]}
     for derivative, letter in orders.items():
         general = general.subs(derivative, letter)
     return identity(claim, general)

@@ -10,10 +10,11 @@ from functools import cache
 from hashlib import sha256
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from pathlib import Path
 
 from verification.paper.claims.claim import Claim
-from verification.paper.figures.catalogue import pictures
-from verification.paper.report.report import homes, made_with
+from verification.paper.figures.catalogue import Picture
+from verification.paper.report.report import made_with
 
 STOREYS = ("symbolic", "numeric", "verification")
 OURS = rf"(?:{'|'.join(STOREYS)})"
@@ -66,8 +67,15 @@ def imports(module: str) -> frozenset[str]:
     >>> "symbolic.expressions.signs" in imports("verification.paper.claims.judges")
     True
     """
-    known, text = sources(), LEFT_OUT.sub("", sources()[module])
-    found = set(IMPORT.findall(text))
+    found = named(LEFT_OUT.sub("", sources()[module]))
+    # Packages run first.
+    above = {each.rsplit(".", n)[0] for each in {*found, module} for n in range(1, each.count(".") + 1)}
+    return frozenset((found | above) & sources().keys())
+
+
+def named(text: str) -> set[str]:
+    """The modules of the package that a text imports or quotes, and the names that it takes from them."""
+    known, found = sources(), set(IMPORT.findall(text))
     for origin, names in FROM.findall(text):
         found.add(origin)
         if origin in known:
@@ -75,9 +83,7 @@ def imports(module: str) -> frozenset[str]:
                 found |= {f"{origin}.{name}", *([exports(origin)[name]] if name in exports(origin) else [])}
     for quoted in QUOTED.findall(text):
         found |= {quoted, *(each for each in known if each.rpartition(".")[0] == quoted)}
-    # Packages run first.
-    above = {each.rsplit(".", n)[0] for each in {*found, module} for n in range(1, each.count(".") + 1)}
-    return frozenset((found | above) & known.keys())
+    return found
 
 
 def closure(module: str) -> frozenset[str]:
@@ -99,17 +105,26 @@ def digest(module: str) -> str:
     return whole.hexdigest()
 
 
-def codes(claims: Iterable[Claim], digits: int) -> dict[str, str]:
+def codes(claims: Iterable[Claim], digits: int, figures: Iterable[Picture] = ()) -> dict[str, str]:
     """A digest for each claim, by its id, and for each figure of their sections, by `figure NAME`.
 
     It changes with the claim's words, its judge, all that this can load, and how many digits are asked for.
     """
     claims = list(claims)
-    judged = {claim.id: _digest(homes().get(claim.id), claim, digits) for claim in claims}
+    judged = {claim.id: _digest(claim.home, claim, digits) for claim in claims}
     sections = {claim.section for claim in claims}
-    drawn = [picture for picture in pictures().values() if picture.section in sections]
-    return judged | {f"figure {each.name}": _digest(each.module, each) for each in drawn}
+    return judged | {f"figure {each.name}": _digest(each.module, each) for each in figures if each.section in sections}
 
 
-def _digest(module: str | None, *words: object) -> str:
-    return sha256(repr((digest(module) if module else "", words)).encode()).hexdigest()
+def _digest(module: str, *words: object) -> str:
+    code = outside(module) if module.endswith(".py") else digest(module)
+    return sha256(repr((code, words)).encode()).hexdigest()
+
+
+def outside(path: str) -> str:
+    """A digest of a module that is no part of the package, with all that it can load of the package."""
+    text = Path(path).read_text(encoding="utf-8")
+    whole = sha256(text.encode())
+    for name in sorted(named(text) & sources().keys()):
+        whole.update(digest(name).encode())
+    return whole.hexdigest()

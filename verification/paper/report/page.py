@@ -17,10 +17,12 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
+from verification.paper.claims.folder import paper
 from verification.paper.report.mathml import formula, prose, remark
 from verification.paper.report.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
+    from verification.paper.claims.folder import Paper
     from verification.paper.report.report import Result
 
 
@@ -50,9 +52,15 @@ class Picture:
         return next(quoting, next((c.id for c in claims if c.section == self.section), ""))
 
 
-def page(results: "Sequence[Result]", versions: Mapping[str, str], pictures: Sequence[Picture] = ()) -> str:
+def page(
+    results: "Sequence[Result]",
+    versions: Mapping[str, str],
+    pictures: Sequence[Picture] = (),
+    about: "Paper | None" = None,
+) -> str:
     """The whole page. Two runs differ in the seconds only."""
-    sections = by_section(results)
+    about = about or paper()
+    sections = by_section(results, about.sections)
     ordered = [result for _, claims in sections for result in claims]
     beside: dict[str, list[Picture]] = {}
     for picture in pictures:
@@ -61,10 +69,11 @@ def page(results: "Sequence[Result]", versions: Mapping[str, str], pictures: Seq
     environment.filters |= {"prose": prose, "said": said, "sentence": sentence, "opening": opening}
     template = environment.from_string((files("verification.paper.report") / "page.html").read_text(encoding="utf-8"))
     return template.render(
+        about=about,
         summary=summary(results),
         counts=counts(results),
         meanings=VERDICTS,
-        errata=errata(results),
+        errata=errata(results, about.sections),
         place=place,
         sections=sections,
         beside=beside,
@@ -132,14 +141,18 @@ DIGITS = 60  # digits of a number on a line
 WORDS = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")  # two in a row make a text, not a formula
 
 
-def markdown(results: Sequence["Result"], versions: Mapping[str, str]) -> str:
+def markdown(results: Sequence["Result"], versions: Mapping[str, str], about: "Paper | None" = None) -> str:
     """The whole report: summary, errata, then each claim by section of the paper.
 
     Two runs differ in the seconds only.
     """
-    parts = ["# What the paper says, and what is true", summary(results), _legend(results), *_errata(results)]
-    for section, claims in by_section(results):
-        parts += [f"## {section}", *(_claim(result) for result in claims)]
+    about = about or paper()
+    head = f"*{about.title}*" + (f"\n({about.source})" if about.source else "")
+    parts = ["# What the paper says, and what is true", head, summary(results), _legend(results)]
+    parts += _errata(results, about.sections)
+    for section, claims in by_section(results, about.sections):
+        source = about.sections.get(section, "")
+        parts += [f"## {section}", *([source] if source else []), *(_claim(result) for result in claims)]
     made = ", ".join(f"{name} {number}" for name, number in versions.items())
     parts += ["---", f"Made with {made}."]
     return "\n\n".join(parts) + "\n"
@@ -150,8 +163,8 @@ def _legend(results: Sequence["Result"]) -> str:
     return "\n".join(["| verdict | claims | meaning |", "|---|---:|---|", *rows])
 
 
-def _errata(results: Iterable["Result"]) -> list[str]:
-    wrong = errata(results)
+def _errata(results: Iterable["Result"], sections: Iterable[str]) -> list[str]:
+    wrong = errata(results, sections)
     if not wrong:
         return ["## Errata", "None found."]
     return ["## Errata", *(_erratum(f"{n}. ", result) for n, result in enumerate(wrong, 1))]

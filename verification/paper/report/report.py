@@ -1,6 +1,6 @@
-r"""The claims of the paper judged, and told: as a page, Markdown, JSON and LaTeX tables.
+r"""The claims of a paper judged, and told: as a page, Markdown, JSON and LaTeX tables.
 
-`catalogue()` lists the claims, `verify()` judges them. What is printed lies in `printed/*.toml`, what is true is
+`catalogue()` lists the claims, `verify()` judges them. What is printed lies in the paper's folder, what is true is
 derived in `symbolic`, and the judges stand between the two; so a misprint cannot leak into the mathematics.
 
 The page is one file that needs no network; a result is shown in each form from the same `Result`.
@@ -8,33 +8,27 @@ The page is one file that needs no network; a result is shown in each form from 
 The LaTeX tables are brought into a document by `\input`.
 """
 
-import json
 import platform
-import re
 import time
 from collections import Counter, deque
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from functools import cache, partial
-from importlib import import_module
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
-from importlib.resources import files
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
-from verification.paper.claims.claim import Claim, Judgement, Verdict, load
-from verification.paper.claims.judges import JUDGES
+from verification.paper.claims.claim import Claim, Judgement, Verdict
+from verification.paper.claims.folder import OWN, Paper, home, judge_of, module, paper
+from verification.paper.figures.catalogue import Picture
 from verification.paper.report.workers import Lost, in_processes
 
-TABLES = ("map", "circle", "ellipse", "cardioid", "cuspless", "egg", "appendix")
-ROOMS = ("judges", "egg")  # of judges
-UNKNOWN_SECONDS = 0.1  # for a claim that the record does not have
 SMALL = 4.0  # seconds of judging that other processes would not save
-JUDGED, QUOTED = re.compile(r"@judges\(([^)]*)\)"), re.compile(r'"([^"]+)"')
 
 
 @dataclass(frozen=True)
@@ -65,20 +59,26 @@ class Result:
         return {**self.__dict__, **rounded}
 
 
-def catalogue() -> list[Claim]:
-    """Every claim, table by table, in the order of the paper."""
-    return [claim for table in TABLES for claim in load(table)]
+def catalogue(claims: str | Path = OWN) -> list[Claim]:
+    """Every claim of the paper in a folder, or of one that comes with the package, in the order given there."""
+    return list(paper(claims).claims)
 
 
-def verify(only: str = "*", digits: int = 15, jobs: int = 1) -> Iterator[Result]:
+def pictures(found: Paper) -> list[Picture]:
+    """The figures that go with a paper's sections; most papers have none."""
+    return list(module(home(Path(found.figures))).pictures().values()) if found.figures else []
+
+
+def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path = OWN) -> Iterator[Result]:
     """Judges the claims whose id matches the glob `only`, in the catalogue's order; only their judges are imported.
 
-    With more than one job the claims are judged in that many processes.
+    With more than one job the claims are judged in that many processes. `claims` is the folder of another paper, or the
+    name of one that comes with the package; the judges in a folder are run, as any module that is imported.
     """
-    claims = [claim for claim in catalogue() if fnmatchcase(claim.id, only)]
+    asked = [claim for claim in catalogue(claims) if fnmatchcase(claim.id, only)]
     found: dict[str, Result] = {}
-    order = deque(claim.id for claim in claims)
-    with closing(judged(claims, digits, jobs)) as results:
+    order = deque(claim.id for claim in asked)
+    with closing(judged(asked, digits, jobs)) as results:
         for result in results:
             found[result.id] = result
             while order and order[0] in found:
@@ -90,32 +90,22 @@ def judged(claims: Sequence[Claim], digits: int, jobs: int) -> Generator[Result,
 
     The results do not depend on `jobs`, but for their seconds. A claim whose process died again and again is open.
     """
+    for claim in claims:
+        if claim.home.endswith(".py"):
+            judge_of(claim)  # a module that cannot be run is refused before any work
     groups = shared_out(claims)
     if jobs == 1 or len(groups) < 2 or seconds(claims) < SMALL:
         yield from (judge(claim, digits) for claim in claims)
         return
-    modules = sorted({homes()[claim.id] for claim in claims if claim.id in homes()})
+    modules = sorted({claim.home for claim in claims if not claim.home.endswith(".py")})
     with closing(in_processes(partial(judge, digits=digits), groups, jobs, modules)) as answers:
         for claim, answer in answers:
             yield _result(claim, _open(f"not judged: {answer}"), digits, 0.0) if isinstance(answer, Lost) else answer
 
 
-@cache
-def recorded() -> tuple[dict[str, float], dict[str, int]]:
-    """The seconds that judging each claim takes, and which claims share results: those of one number.
-
-    `python benchmarks/judges.py` measures them. They say who does what first, and change no result.
-    """
-    text = (files("verification.paper.report") / "seconds.json").read_text(encoding="utf-8")
-    record = json.loads(text)
-    groups = {name: number for number, names in enumerate(record["together"]) for name in names}
-    return record["seconds"], groups
-
-
-def seconds(claims: Iterable["Claim | Result"]) -> float:
-    """What the record says that judging claims takes; of one that it does not know, little."""
-    known = recorded()[0]
-    return sum(known.get(claim.id, UNKNOWN_SECONDS) for claim in claims)
+def seconds(claims: Iterable[Claim]) -> float:
+    """What judging claims is said to take."""
+    return sum(claim.seconds for claim in claims)
 
 
 def shared_out(claims: Iterable[Claim]) -> list[list[Claim]]:
@@ -126,33 +116,17 @@ def shared_out(claims: Iterable[Claim]) -> list[list[Claim]]:
     """
     found: dict[object, list[Claim]] = {}
     for claim in claims:
-        found.setdefault(recorded()[1].get(claim.id, claim.id), []).append(claim)
+        found.setdefault(claim.id if claim.group is None else claim.group, []).append(claim)
     return sorted(found.values(), key=seconds, reverse=True)
 
 
-@cache
-def homes() -> dict[str, str]:
-    """The module that judges each claim, read off the decorators without importing a judge.
-
-    >>> homes()["egg.monodromy"]
-    'verification.paper.egg.period2'
-    """
-    found: dict[str, str] = {}
-    for room in ROOMS:
-        for path in (files("verification.paper") / room).iterdir():
-            if path.name.endswith(".py"):
-                text = path.read_text(encoding="utf-8")
-                named = [name for ids in JUDGED.findall(text) for name in QUOTED.findall(ids)]
-                found |= dict.fromkeys(named, f"verification.paper.{room}.{path.name[:-3]}")
-    return found
-
-
 def judge(claim: Claim, digits: int = 15) -> Result:
-    """The result of one claim; `open` when nothing judges it yet."""
+    """The result of one claim; the module that judges it is imported when it is the first of that module."""
     start = time.perf_counter()
-    if claim.id in homes():
-        import_module(homes()[claim.id])
-    judgement = _judged(claim) if claim.id in JUDGES else _open("stated from numerics; nothing settles it here yet")
+    try:
+        judgement = judge_of(claim)(claim)
+    except Exception as error:  # a judge that fails leaves its claim open, and says so; the others go on
+        judgement = _open(f"the judge failed: {type(error).__name__}: {error}")
     return _result(claim, judgement, digits, time.perf_counter() - start)
 
 
@@ -180,14 +154,6 @@ def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> 
     )
 
 
-def _judged(claim: Claim) -> Judgement:
-    """A judge that fails leaves its claim open, and says so; the others go on."""
-    try:
-        return JUDGES[claim.id](claim)
-    except Exception as error:
-        return _open(f"the judge failed: {type(error).__name__}: {error}")
-
-
 def method(judgement: Judgement) -> str:
     """How the verdict was reached, in a sentence or two."""
     if judgement.verdict is Verdict.SUPPORTED:
@@ -206,9 +172,9 @@ VERDICTS = {
 }
 
 
-def document(results: Iterable["Result"]) -> dict[str, Any]:
-    """The results under the JSON schema of `pinball verify`."""
-    return {"schema": 1, "claims": [result.to_dict() for result in results]}
+def document(results: Iterable["Result"], about: Mapping[str, object] | None = None) -> dict[str, Any]:
+    """The results under the JSON schema of `pinball verify`, with what is said of the paper."""
+    return {"schema": 1, **({"paper": about} if about else {}), "claims": [result.to_dict() for result in results]}
 
 
 def counts(results: Iterable["Result"]) -> dict[str, int]:
@@ -234,21 +200,22 @@ def made_with() -> dict[str, str]:
     return found | {"machine": platform.machine() or "unknown", "seed": "1"}
 
 
-def by_section(results: Iterable["Result"]) -> list[tuple[str, list["Result"]]]:
-    """The results of each section, sections in the order of the paper."""
-    ordered = sorted(results, key=lambda result: section_order(result.section))
+def by_section(results: Iterable["Result"], sections: Iterable[str] = ()) -> list[tuple[str, list["Result"]]]:
+    """The results of each section, in the order of `sections`; those that it does not have by their numbers."""
+    order = {name: (-1, n) for n, name in enumerate(sections)}
+    ordered = sorted(results, key=lambda each: (order.get(each.section, section_order(each.section)), each.section))
     return [(name, list(claims)) for name, claims in groupby(ordered, key=lambda result: result.section)]
 
 
-def errata(results: Iterable["Result"]) -> list["Result"]:
+def errata(results: Iterable["Result"], sections: Iterable[str] = ()) -> list["Result"]:
     """What is wrong in the paper, in its order."""
     wrong = [result for result in results if result.verdict.value in ("corrected", "refuted")]
-    return sorted(wrong, key=lambda result: section_order(result.section))
+    return [result for _, claims in by_section(wrong, sections) for result in claims]
 
 
 def place(result: "Result") -> str:
     """Where a claim stands, in words."""
-    return result.section if result.section == "Abstract" else f"Section {result.section}"
+    return f"Section {result.section}" if section_order(result.section) > (0,) else result.section
 
 
 def section_order(section: str) -> tuple[int, ...]:
@@ -281,12 +248,14 @@ SPECIAL = {
 BREAKS = "*/+,=_"  # a long formula may be broken after these
 
 
-def tables(results: Sequence["Result"]) -> str:
+def tables(results: Sequence["Result"], sections: Iterable[str] = ()) -> str:
     """Three tables: the counts, the errata, and every claim; they need the packages longtable and booktabs."""
     parts = [
         "% \\usepackage{booktabs,longtable}",
         _table("lr", ("verdict", "claims"), [[name, str(number)] for name, number in counts(results).items()]),
-        _table(r"p{.24\linewidth}p{.68\linewidth}", ("claim", "erratum"), [_erratum(r) for r in errata(results)]),
+        _table(
+            r"p{.24\linewidth}p{.68\linewidth}", ("claim", "erratum"), [_erratum(r) for r in errata(results, sections)]
+        ),
         _table(
             r"p{.28\linewidth}p{.13\linewidth}p{.49\linewidth}",
             ("claim", "verdict", "what is true"),

@@ -1,0 +1,256 @@
+"""A paper in a folder: what it says of itself, its claims as printed, and the modules that judge them.
+
+`paper.toml` has the title, the authors, where it was printed, the sections, and the claims or the files that hold them;
+`judges.py`, or the modules that it names, has a judge for each. A folder is read without running anything of it; its
+judges are run when a claim is judged.
+"""
+
+import json
+import re
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from hashlib import sha256
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from verification.paper.claims.claim import Claim, Sentence
+from verification.paper.claims.judges import JUDGES, Judge
+
+FILE = "paper.toml"
+OWN = "focusing"  # judged when nothing else is asked for
+SHIPPED = Path(__file__).resolve().parent  # the folders of papers that come with the package lie here
+ROOT = SHIPPED.parents[2]
+JUDGED, QUOTED = re.compile(r"^@judges\(([^)]*)\)", re.MULTILINE), re.compile(r"[\"']([^\"']+)[\"']")
+
+
+@dataclass(frozen=True)
+class Paper:
+    """What a folder says of a paper: where it was printed, its sections in order, its claims in the order given.
+
+    A section may name a source of its own. `judges` are modules, `figures` is one with a function `pictures`, `seconds`
+    a record of what judging takes; all are paths, empty where the folder has none.
+    """
+
+    folder: Path
+    title: str
+    authors: tuple[str, ...]
+    citation: str
+    sections: Mapping[str, str]
+    claims: tuple[Claim, ...]
+    judges: tuple[Path, ...]
+    sentences: tuple[Path, ...] = ()
+    figures: str = ""
+    seconds: str = ""
+
+    @property
+    def about(self) -> dict[str, object]:
+        """Title, authors and citation, as JSON has them."""
+        return {"title": self.title, "authors": list(self.authors), "citation": self.citation}
+
+    @property
+    def source(self) -> str:
+        """Who wrote it, and where."""
+        return "; ".join(filter(None, (", ".join(self.authors), self.citation)))
+
+    def inventory(self) -> list[Sentence]:
+        """Every sentence of the paper, in its order, as listed."""
+        return [Sentence.from_dict(entry) for path in self.sentences for entry in _toml(path)["sentence"]]
+
+
+NAMED = {"title": str, "citation": str, "figures": str, "seconds": str}
+LISTED = ("authors", "letters", "claims", "sentences", "judges")
+ENTRY = {"id": str, "section": str, "quote": str, "printed": (str, list), "kind": str, "over": dict, "base": str}
+
+
+def read(folder: Path) -> Paper:
+    """The paper in a folder, as written; nothing of it is run. `ValueError` says in a sentence what is wrong."""
+    path = folder / FILE
+    if not path.is_file():
+        raise ValueError(f"{folder} has no {FILE}; `pinball claims new DIR` makes a folder that has one")
+    whole = _toml(path)
+    own = whole.pop("claim", [])
+    _checked(path, whole, {**NAMED, **dict.fromkeys(LISTED, list), "sections": (list, dict)}, ("title", "sections"))
+    lists = {name: tuple(map(str, whole.get(name, ()))) for name in LISTED}
+    entries = [(path, entry) for entry in own]
+    entries += [(folder / name, entry) for name in lists["claims"] for entry in _toml(folder / name).get("claim", [])]
+    sections = whole["sections"] if isinstance(whole["sections"], dict) else dict.fromkeys(whole["sections"], "")
+    claims = tuple(_claim(where, entry, sections, lists["letters"]) for where, entry in entries)
+    twice = [name for name, number in Counter(claim.id for claim in claims).items() if number > 1]
+    if twice or not claims:
+        raise ValueError(f"{path}: {f'two claims have the id {twice[0]!r}' if twice else 'there is no [[claim]]'}")
+    beside = {name: str(folder / whole[name]) if name in whole else "" for name in ("figures", "seconds")}
+    judges, sentences = ([folder / name for name in lists[key]] for key in ("judges", "sentences"))
+    return Paper(
+        folder,
+        whole["title"],
+        lists["authors"],
+        whole.get("citation", ""),
+        sections,
+        claims,
+        tuple(judges or [folder / "judges.py"]),
+        tuple(sentences),
+        **beside,
+    )
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{path} cannot be read: {error.strerror or error}") from None
+    except ValueError as error:  # no TOML, or no UTF-8
+        raise ValueError(f"{path} is no TOML: {error}") from None
+
+
+def _checked(where: Path, entry: Any, kinds: Mapping[str, Any], needed: Iterable[str], name: str = "") -> None:
+    """Refuses what a table must not hold, with the key, and what would be accepted."""
+    label = f"{where}{f', claim {name!r}' if name else ''}"
+    if not isinstance(entry, dict):
+        raise ValueError(f"{label}: a claim is a table [[claim]], not {entry!r}")
+    for key in needed:
+        if key not in entry:
+            raise ValueError(f"{label}: {key!r} is missing")
+    for key, value in entry.items():
+        if key not in kinds:
+            raise ValueError(f"{label}: no key is called {key!r}; accepted: {', '.join(kinds)}")
+        texts = key == "printed" or not isinstance(value, list) or all(isinstance(each, str) for each in value)
+        if not isinstance(value, kinds[key]) or not texts:
+            raise ValueError(f"{label}: {key} = {value!r} should be {WANTED[kinds[key]]}")
+
+
+WANTED = {str: "a text", list: "a list of texts", dict: "a table", (str, list): "a text or a list of them"}
+WANTED[list, dict] = "a list of texts, or a table with a source for each"
+
+
+def _claim(where: Path, entry: Any, sections: Mapping[str, str], letters: tuple[str, ...]) -> Claim:
+    _checked(
+        where,
+        entry,
+        ENTRY,
+        ("id", "section", "quote", "printed"),
+        entry.get("id", "") if isinstance(entry, dict) else "",
+    )
+    if entry["section"] not in sections:
+        listed = ", ".join(map(repr, sections))
+        raise ValueError(f"{where}, claim {entry['id']!r}: no section is called {entry['section']!r}; listed: {listed}")
+    over = tuple(entry.get("over", {}).items())
+    return Claim(**{"kind": "property", **entry, "over": over, "letters": letters})
+
+
+def paper(claims: str | Path = OWN) -> Paper:
+    """The paper in a folder, or one that comes with the package by its name; each claim knows which module judges it.
+
+    Nothing of the folder is run: the judges are read off the decorators. `ValueError` names a claim that nothing
+    judges, and a judge that has no claim.
+
+    >>> paper().sections["4 Cardioid"], paper("focusing").authors[0]
+    ('', 'A. Arroyo')
+    """
+    folder = Path(claims)
+    known = sorted(path.parent.name for path in SHIPPED.glob("*/paper.toml"))
+    if not folder.is_dir():
+        if str(claims) in known:
+            return _shipped(str(claims))
+        raise ValueError(
+            f"there is no folder {str(claims)!r}; accepted: a folder with a paper.toml, {', '.join(known)}"
+        )
+    return _with_judges(read(folder.resolve()))
+
+
+@cache
+def _shipped(name: str) -> Paper:
+    return _with_judges(read(SHIPPED / name))
+
+
+def _with_judges(found: Paper) -> Paper:
+    homes: dict[str, str] = {}
+    for path in found.judges:
+        if not path.is_file():
+            raise ValueError(f"{found.folder} names the judges in {path}, and there is no such file")
+        for ids in JUDGED.findall(path.read_text(encoding="utf-8")):
+            for name in QUOTED.findall(ids):
+                if name in homes:
+                    raise ValueError(f"{path}: {name!r} is judged twice; one judge for each claim")
+                homes[name] = home(path)
+    ids = [claim.id for claim in found.claims]
+    for name in ids:
+        if name not in homes:
+            raise ValueError(
+                f"the claim {name!r} has no judge; write a function below @judges({name!r}) in {found.judges[0]}"
+            )
+    for name, where in homes.items():
+        if name not in ids:
+            raise ValueError(f"{where} judges {name!r}, which is no claim of {found.folder}")
+    seconds, groups = recorded(found)
+    new = (
+        replace(claim, home=homes[claim.id], seconds=seconds.get(claim.id, claim.seconds), group=groups.get(claim.id))
+        for claim in found.claims
+    )
+    return replace(found, claims=tuple(new))
+
+
+def recorded(found: Paper) -> tuple[dict[str, float], dict[str, int]]:
+    """The seconds that judging each claim takes, and which claims share results: those of one number.
+
+    They say who does what first, and change no result; nothing is recorded of most papers.
+    """
+    if not found.seconds:
+        return {}, {}
+    record = json.loads(Path(found.seconds).read_text(encoding="utf-8"))
+    return record["seconds"], {name: number for number, names in enumerate(record["together"]) for name in names}
+
+
+def begin(folder: Path) -> list[Path]:
+    """Writes the folder of a paper with one claim and its judge; what was written. `ValueError` when it is there."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ValueError(f"{folder} is there already; accepted: a new folder, or an empty one")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        written = [folder / name for name in (FILE, "judges.py")]
+        for path in written:
+            path.write_text((SHIPPED / "skeleton" / f"{path.stem}.txt").read_text(encoding="utf-8"), encoding="utf-8")
+    except OSError as error:
+        raise ValueError(f"{folder} cannot be written: {error.strerror or error}") from None
+    return written
+
+
+def home(path: Path) -> str:
+    """A module of this package by its dotted name, another by its path.
+
+    >>> home(Path(__file__))
+    'verification.paper.claims.folder'
+    """
+    path = path.resolve()
+    inside = path.is_relative_to(ROOT) and (path.parent / "__init__.py").is_file()
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts) if inside else str(path)
+
+
+def judge_of(claim: Claim) -> Judge:
+    """The function that judges a claim. Its module is run when it is met for the first time."""
+    return JUDGES[module(claim.home).__name__, claim.id]
+
+
+def module(home: str) -> ModuleType:
+    """A module of this package by its dotted name, or one outside by its path, run once for each text that it had."""
+    if not home.endswith(".py"):
+        return import_module(home)
+    path = Path(home)
+    try:
+        name = f"claims_{sha256(str(path).encode() + path.read_bytes()).hexdigest()[:12]}_{path.stem}"
+        if name not in sys.modules:
+            spec = spec_from_file_location(name, path)
+            assert spec is not None
+            assert spec.loader is not None
+            found = module_from_spec(spec)
+            spec.loader.exec_module(found)
+            sys.modules[name] = found
+    except (Exception, SystemExit) as error:
+        raise ValueError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from error
+    return sys.modules[name]

@@ -11,7 +11,7 @@ so that no lane's result depends on its neighbours.
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from numeric.backends.protocol import Backend, Low, M, N, Pair, bound, modulus
 
@@ -219,6 +219,44 @@ def normalised(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
     """`z` divided by its length, whatever that is."""
     scale = ops.number(1.0) / ops.sqrt(dot(z, z))
     return unit(ops, (z[0] * scale, z[1] * scale))
+
+
+class Series(NamedTuple):
+    """How an arc length is told: in closed form, or by a finite Fourier sum; first come offsets of components."""
+
+    offsets: int = 0
+    step: int = 1  # of the sum, all frequencies are multiples of it
+    terms: int = 0
+    rises: int = 0  # as many as there are terms, or none on a boundary that mirrors `theta`
+
+    @property
+    def size(self) -> int:
+        """How many numbers say it: offsets, the mean speed, coefficients of sines, and of rises."""
+        return self.offsets + (1 + self.terms + self.rises if self.terms else 0)
+
+
+CLOSED = Series()
+
+
+def waves(ops: Backend[N, M], series: Series, numbers: Sequence[N], u: Pair[N], theta: N) -> N:
+    """`offset + mean*theta + sum_k a_k*sin(k*theta) + b_k*(1 - cos(k*theta))` at `u = exp(i*theta)`, by Clenshaw."""
+    c, s = u
+    for bit in f"{series.step:b}"[1:]:
+        c, s = squared((c, s))
+        c, s = times((c, s), u) if bit == "1" else (c, s)
+    sines, rises = numbers[2 : 2 + series.terms], numbers[2 + series.terms :]
+
+    def backwards(coefficients: Sequence[N]) -> Pair[N]:
+        one, two = coefficients[-1], ops.number(0.0)
+        for a in coefficients[-2::-1]:
+            one, two = (c + c) * one + (a - two), one
+        return one, two
+
+    wave = s * backwards(sines)[0]
+    if rises:
+        one, two = backwards(rises)
+        wave = wave + ((sum(rises[1:], start=rises[0]) + two) - c * one)
+    return numbers[1] * theta + wave + numbers[0]
 
 
 TOLERANCE = 2.0**-27  # of the last Newton correction: the error left is its square

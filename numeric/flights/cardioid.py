@@ -70,6 +70,9 @@ class Cardioid(Family):
     def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
         return ops.q(4, 1) * ops.sin(theta * ops.q(1, 2))
 
+    def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
+        return ops.number(4.0) * position[1]
+
     def parameter(self, component: int, s: Array) -> Array | None:
         return np.asarray(2 * np.arcsin(np.clip(s / 4, -1, 1)))
 

@@ -1,5 +1,6 @@
 """The unit circle: angles are the state, and a bounce is `theta + pi - 2*phi`, `lam*phi`."""
 
+from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing
 
@@ -44,6 +45,9 @@ class Circle(Family):
         return modulus(ops.number(2.0) * ops.atan2(ops.sin(half), ops.cos(half)))
 
     def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
+        return theta
+
+    def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
         return theta
 
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:

@@ -74,6 +74,10 @@ class Cuspless(Cardioid):
     def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
         return theta if component == 1 else super().arclength(ops, component, theta)
 
+    def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
+        wall, (arc_offset, wall_offset) = ops.number(0.5) < position[0], numbers
+        return ops.select(wall, wall_offset - position[1], ops.number(4.0) * position[2] + arc_offset)
+
     def parameter(self, component: int, s: Array) -> Array | None:
         return super().parameter(component, s) if component == 0 else None
 

@@ -1,8 +1,7 @@
 """What a family of tables is: which tables it serves, fields of state, a flight, a reflection, and the tangent map.
 
 A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. What it must define is
-abstract there; the other methods have a general answer, from the table's `Boundary`. A `Status` says how a trajectory
-ended, by name.
+abstract there; the other methods have a general answer, from the table's `Boundary`.
 
 Everything here runs on any arithmetic of `numeric.backends`. A *law* is `slap` (lam = 0, the exit
 is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.
@@ -233,11 +232,13 @@ class Family(ABC):
         total = sum(((x - y) * (x - y) for x, y in zip(fields[1:], others[1:], strict=True)), start=ops.number(0.0))
         return ops.sqrt(total + (fields[0] - others[0]) * (fields[0] - others[0]))
 
-    # ---- arc length
-
     def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N | None:
         """Arc length from `theta = 0` in elementary functions, or None where there is no such form."""
         return None
+
+    def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
+        """Arc length at position fields, where kernels tell it: from the sum over a whole turn of `theta`."""
+        return plane.waves(ops, how, numbers, (position[0], position[1]), theta)
 
     def elliptic(self) -> float | None:
         """The parameter `m` for which arc length from `theta = 0` is the elliptic integral `E(theta | m)`, if any."""

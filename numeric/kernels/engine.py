@@ -6,18 +6,19 @@ Every lane computes what it would compute alone, so results depend neither on th
 import itertools
 import os
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends.functions import CLOSED, Series
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family
 from numeric.kernels import machine
 from numeric.kernels.machine import START, KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
-PART = 1 << 17  # doubles recorded at a time: a page that stays in the cache
+PART = 1 << 16  # doubles recorded at a time: a page that stays in the cache
 ALONE = 4  # particles that are run in narrow blocks: it takes less long to wait for
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
@@ -42,6 +43,11 @@ class Engine(NamedTuple):
     def width(self) -> int:
         """Lanes to a block."""
         return self.lanes or self.family.width
+
+    @property
+    def tells(self) -> bool:
+        """Whether kernels are asked for, and those of the family tell orbits."""
+        return self.kernels and type(self.family).framed is not Family.framed
 
     def run(
         self,
@@ -79,13 +85,17 @@ class Engine(NamedTuple):
         return Result(rows, record)
 
     def course(
-        self, law: str, told: Sequence[str], start: Sequence[Array], lam: Array, shape: Sequence[float]
+        self,
+        law: str,
+        told: Sequence[str],
+        count: int,
+        shape: Sequence[float],
+        length: tuple[Series, Sequence[float]] = (CLOSED, ()),
     ) -> "Course | None":
-        """Particles that start at component, parameter and exit angle, told by kernels; None where there are none."""
-        if not self.kernels or type(self.family).framed is Family.framed:
+        """Room for so many particles that kernels tell; None where there are no such kernels."""
+        if not self.tells:
             return None
-        width = ALONE if start[0].size <= ALONE else self.width
-        found = Course(self, law, tuple(told), width, start, lam, shape)
+        found = Course(self, law, tuple(told), count, shape, length)
         return found if found.kernel(starts=True) is not None else None
 
     def _advance(
@@ -107,31 +117,44 @@ class Engine(NamedTuple):
             return
         parameters = np.array([*shape, 0.0])
         pointers = [x.ctypes.data if x is not None else None for x in (state, contraction, parameters, page)]
-        shared(function, pointers, state.shape[1], self.width, bounces, threads)
+        shared(function, pointers, state.shape[1], (0, state.shape[1]), self.width, bounces, threads)
 
 
 class Course:
-    """Particles on their way: `advance` bounces them on and tells each bounce, where their state is at hand."""
+    """Particles on their way: `begin` takes them up, `advance` bounces them on and tells each bounce.
+
+    Of a single bounce, blocks of lanes write what they tell where the caller wants it. More bounces, what is left of a
+    block, and what is no float64 come by way of a page of our own, which stays in the cache: a block's lanes are far
+    apart in memory from one bounce to the next.
+    """
 
     def __init__(
         self,
         engine: Engine,
         law: str,
         told: tuple[str, ...],
-        width: int,
-        start: Sequence[Array],
-        lam: Array,
+        count: int,
         shape: Sequence[float],
+        length: tuple[Series, Sequence[float]],
     ) -> None:
-        self.engine, self.law, self.told, self.width, self.count = engine, law, told, width, lam.size
-        columns = -(-self.count // width) * width
-        self.names = fields(engine.family, KernelSpec(law))
-        self.state = np.empty((len(self.names) + len(START), columns))
-        self.state[len(engine.family.fields(law)) : -len(START)] = 0.0  # no outcome yet
-        self.lam, self.shape = np.empty(columns), np.array([*shape, 0.0])
+        self.engine, self.law, self.told, self.how = engine, law, told, length[0]
+        self.width = ALONE if count <= ALONE else engine.width
+        self.names, self.own = fields(engine.family, KernelSpec(law)), len(engine.family.fields(law))
+        columns = -(-count // self.width) * self.width
+        self.state, self.lam = np.zeros((len(self.names) + len(START), columns)), np.empty(columns)
+        self.shape = np.array([*shape, *length[1], 0.0])
+        self.pointers = [x.ctypes.data for x in (self.state, self.lam, self.shape)]
+        self.page, self.begun = np.empty(0), False
+
+    def begin(self, start: Sequence[NDArray[Any] | float], lam: Array) -> "Course":
+        """Takes up particles at component, parameter and exit angle, no more than there is room for."""
+        self.count, self.begun = lam.size, False
+        self.columns = -(-self.count // self.width) * self.width
         for row, values in zip((*self.state[-len(START) :], self.lam), (*start, lam), strict=True):
-            row[: self.count], row[self.count :] = values, values[-1]
-        self.begun = False
+            row[: self.count] = values
+            row[self.count : self.columns] = row[self.count - 1]
+        self.state[self.own : -len(START)] = 0.0  # no outcome yet
+        return self
 
     @property
     def rows(self) -> dict[str, Array]:
@@ -141,50 +164,84 @@ class Course:
     def kernel(self, starts: bool = False, told: bool = True) -> machine.Run | None:
         """The kernel that starts or goes on, and tells or does not."""
         engine = self.engine
-        spec = KernelSpec(self.law, told=self.told if told else (), starts=starts)
+        spec = KernelSpec(self.law, told=self.told if told else (), starts=starts, length=self.how)
         return machine.compiled(engine.family, engine.identity, engine.names, spec, self.width)
 
     def advance(
         self, bounces: int, out: Mapping[str, Array], top: int, every: int = 1, threads: int | None = 1
     ) -> None:
         """Bounces all particles, and writes what is told of every so many-th bounce into rows from `top` on."""
-        columns = self.lam.size
-        most = 1 if every > 1 else min(bounces, max(1, PART // (max(1, len(self.told)) * columns)))
-        page = np.empty((most, len(self.told), columns))
-        for done in range(0, bounces // every, most):
-            part = min(most, bounces // every - done)
-            if every > 1:
-                self._run(every - 1, None, threads)
-            self._run(part, page[:part], threads)
-            for i, name in enumerate(self.told):
-                out[name][top + done : top + done + part] = page[:part, i, : self.count]
+        rows = [out[name][top : top + bounces // every] for name in self.told]
+        if not rows:
+            self.start()._call(self.kernel(told=False), bounces // every * every, None, threads)
+        elif every == 1:
+            self._tell(rows, threads)
+        else:
+            for i in range(bounces // every):
+                self.start()._call(self.kernel(told=False), every - 1, None, threads)
+                self._tell([row[i : i + 1] for row in rows], threads)
 
     def start(self) -> "Course":
         """Makes the fields of the state, unless they are made."""
         if not self.begun:
             self._call(self.kernel(starts=True, told=False), 0, None, 1)
+            self.begun = True
         return self
 
-    def _run(self, bounces: int, page: Array | None, threads: int | None) -> None:
-        """Bounces all particles, and tells each bounce if there is a page for it."""
-        told = page is not None and bool(self.told)
-        if not told:
-            self.start()
-        self._call(self.kernel(starts=not self.begun, told=told), bounces, page, threads)
+    def _tell(self, rows: list[Array], threads: int | None) -> None:
+        """Bounces all particles once for each row, and tells of it there."""
+        starts, self.begun = not self.begun, True
+        alone = len(rows[0]) == 1 and all(row.dtype == np.float64 and row.strides[1] == row.itemsize for row in rows)
+        whole = self.count // self.width * self.width if alone else 0
+        if whole:
+            table = np.array([*(row.ctypes.data for row in rows), 0])
+            self._call(self.kernel(starts), 1, table, threads, (0, whole))
+        if whole < self.count:
+            self._through_a_page(starts, rows, whole, threads)
 
-    def _call(self, run: machine.Run | None, bounces: int, page: Array | None, threads: int | None) -> None:
+    def _through_a_page(self, starts: bool, rows: list[Array], left: int, threads: int | None) -> None:
+        """As `_tell`, for the particles from one on."""
+        columns, bounces = self.columns - left, len(rows[0])
+        most = min(bounces, max(1, PART // (len(rows) * columns)))
+        need = most * len(rows) * columns
+        self.page = np.empty(need) if self.page.size < need else self.page
+        page = self.page[:need].reshape(most, len(rows), columns)
+        begin = page.ctypes.data - left * page.itemsize  # a kernel counts columns from the first particle
+        table = np.array([*(begin + i * page.strides[1] for i in range(len(rows))), len(rows) * columns])
+        first, on = self.kernel(starts), self.kernel() if bounces > most else None
+        pairs = [(row[:, left:], page[:, i, : self.count - left]) for i, row in enumerate(rows)]
+        for done in range(0, bounces, most):
+            part = min(most, bounces - done)
+            self._call(on if done else first, part, table, threads, (left, self.columns))
+            for row, own in pairs:
+                row[done : done + part] = own[:part]
+
+    def _call(
+        self,
+        run: machine.Run | None,
+        bounces: int,
+        table: NDArray[np.int64] | None,
+        threads: int | None,
+        columns: tuple[int, int] | None = None,
+    ) -> None:
         assert run is not None
-        self.begun = True
-        pointers = [x.ctypes.data if x is not None else None for x in (self.state, self.lam, self.shape, page)]
-        shared(run, pointers, self.lam.size, self.width, bounces, threads)
+        pointers = *self.pointers, None if table is None else table.ctypes.data
+        shared(run, pointers, self.lam.size, columns or (0, self.columns), self.width, bounces, threads)
 
 
 def shared(
-    run: machine.Run, pointers: Sequence[int | None], columns: int, width: int, bounces: int, threads: int | None
+    run: machine.Run,
+    pointers: Sequence[int | None],
+    row: int,
+    columns: tuple[int, int],
+    width: int,
+    bounces: int,
+    threads: int | None,
 ) -> None:
-    """A kernel on all columns, shared out to threads."""
-    pieces = _pieces(columns // width, columns * bounces, threads)
-    calls = [(*pointers, columns, first * width, last * width, bounces) for first, last in pieces]
+    """A kernel on some columns of rows so long, shared out to threads."""
+    first, last = columns
+    pieces = _pieces((last - first) // width, (last - first) * bounces, threads)
+    calls = [(*pointers, row, first + one * width, first + other * width, bounces) for one, other in pieces]
     if len(calls) == 1:
         run(*calls[0])
         return

@@ -14,13 +14,14 @@ from collections.abc import Callable, Sequence
 from functools import cache as memoised
 from typing import Any, NamedTuple
 
+from numeric.backends.functions import CLOSED, Series
 from numeric.backends.protocol import Backend, M, N, modulus
 from numeric.flights.family import Array, Family
 from numeric.lowering import cache
 
 TANGENT = ("shift", "omega", "growth", "up", "down", "volume", "n0")
 TOLD = ("component", "theta", "phi", "eta", "x", "y")
-MATRIX = ("moved by s", "moved by phi", "bent by s", "bent by phi")  # ds1, and K1*ds1 - K0*ds0 - dphi0, of both inputs
+MATRIX = ("ds1/ds0", "ds1/dphi0", "dphi1/ds0", "dphi1/dphi0")
 START = ("first component", "first theta", "first phi")  # the last rows of a kernel that starts by them
 FAR = 2.0**100  # a double holds 2**1000
 
@@ -31,14 +32,16 @@ class KernelSpec(NamedTuple):
     law: str
     record: bool = False
     exponents: bool = False
-    told: tuple[str, ...] = ()  # what is recorded in place of the state, of `TOLD` and `MATRIX`
+    told: tuple[str, ...] = ()  # what is recorded in place of the state, of `TOLD`, `s` and `MATRIX`
     starts: bool = False  # from component, parameter and exit angle, in place of a state
+    length: Series = CLOSED  # how arc length is told
 
     @property
     def text(self) -> str:
         """The question as part of a name."""
         words = [word for word in ("record", "exponents", "starts") if getattr(self, word)]
-        return "-".join([self.law, *words, *self.told])
+        how = ["-".join(map(str, self.length))] if "s" in self.told and self.length.terms else []
+        return "-".join([self.law, *words, *self.told, *how])
 
 
 def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:

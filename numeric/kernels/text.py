@@ -6,7 +6,9 @@
 `state` holds one row of `width` doubles for each field: the particle's own, then `code` and `lost` when the
 family has outcomes, then the tangent vector's when exponents are asked for, or component, parameter and exit angle
 that a particle starts from. Columns `first` to `last` are worked on. `record`, when orbits are asked for, receives
-after every bounce the particle's own rows, or what was asked for in their place: parameter, angles, point.
+after every bounce the particle's own rows. Where something else is told of each bounce (parameter, angles, point, arc
+length), `record` is a table of addresses, one for each thing told, and of how many doubles lie between two bounces: so
+a kernel writes where its caller wants to have it. After the numbers of the shape come those of the arc length.
 
 Inside, the processor takes numbers below 2**-1022 for zero: a particle at rest on a cycle ends up there, and many
 processors take such an operation for an exception, sixty times as long. The caller's mode is restored on the way out.
@@ -74,6 +76,9 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     ops.label("entry")
     ops.lines += [f"  {line}" for line in mode.entry]
     parameters = [_broadcast(ops, i, name) for i, name in enumerate(shape)]
+    series = [_broadcast(ops, len(shape) + i, f"of length {i}") for i in range(spec.length.size)]
+    goals = [_entry(ops, "ptr", i) for i in range(len(spec.told))]
+    far_apart = _entry(ops, "i64", len(goals)) if goals else ""
     ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
     ops.lines += ["  %busy = icmp slt i64 %at, %last", "  br i1 %busy, label %start, label %exit"]
     ops.label("start")
@@ -106,7 +111,8 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     texts = [x.text for x in new]
     if spec.told:
         particle = [LLVMVector(ops, name) for name in state[:own]]
-        _record(ops, [x.text for x in _told(ops, family, spec, parameters, lam, particle, landed)])
+        told = _told(ops, family, spec, parameters, series, lam, particle, landed)
+        _tell(ops, [x.text for x in told], goals, far_apart)
     elif spec.record:
         _record(ops, texts[:own])
     ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %until"]
@@ -186,6 +192,7 @@ def _told(
     family: Family,
     spec: KernelSpec,
     shape: list[LLVMVector],
+    series: list[LLVMVector],
     lam: LLVMVector,
     before: list[LLVMVector],
     landing: Landing[LLVMVector] | None,
@@ -201,8 +208,10 @@ def _told(
     incidence = family.incidence(ops, landing)
     phi = ops.number(0.0) if spec.law == SLAP else family.exit_angle(ops, spec.law, lam, landing)
     known = {"component": component, "theta": theta, "phi": phi, "eta": -incidence, "x": frame.x, "y": frame.y}
+    if "s" in spec.told:
+        known["s"] = family.along(ops, landing.position, theta, spec.length, series)
     if MATRIX[0] in spec.told:
-        known |= zip(MATRIX, _matrix(ops, family, spec.law, shape, before, landing), strict=True)
+        known |= zip(MATRIX, _matrix(ops, family, spec.law, shape, lam, before, landing), strict=True)
     return [known[name] for name in spec.told]
 
 
@@ -211,6 +220,7 @@ def _matrix(
     family: Family,
     law: str,
     shape: list[LLVMVector],
+    lam: LLVMVector,
     before: list[LLVMVector],
     landing: Landing[LLVMVector],
 ) -> list[LLVMVector]:
@@ -222,7 +232,21 @@ def _matrix(
     rate1, curvature1 = family.curving(ops, shape, landing.position)
     turned, scale = (curvature, ops.number(1.0)), -rate1 / landing.along
     moved = [(t * curvature + n0 / rate) * scale, t * scale]
-    return [*moved, *(curvature1 * x - y for x, y in zip(moved, turned, strict=True))]
+    return [*moved, *(lam * (curvature1 * x - y) for x, y in zip(moved, turned, strict=True))]
+
+
+def _entry(ops: LLVMBackend, kind: str, i: int) -> str:
+    """An entry of the table of addresses."""
+    return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %record, i64 {i}')}, align 8")
+
+
+def _tell(ops: LLVMBackend, texts: list[str], goals: Sequence[str], apart: str) -> None:
+    """Store what is told of bounce `%i` where each thing goes."""
+    place = ops.emit(f"add i64 {ops.emit(f'mul i64 %i, {apart}')}, %at")
+    for text, goal in zip(texts, goals, strict=True):
+        ops.lines.append(
+            f"  store {ops.type} {text}, ptr {ops.emit(f'getelementptr double, ptr {goal}, i64 {place}')}, align 8"
+        )
 
 
 def _record(ops: LLVMBackend, texts: list[str]) -> None:

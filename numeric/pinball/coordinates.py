@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends.functions import Series
 from numeric.flights.family import FORMULA, SLAP, Family, Frame
 
 Array = NDArray[np.float64]
@@ -200,6 +201,7 @@ def _polished(states: States, index: int, theta: Array, x: Array, y: Array, low:
 MOST = 1 << 14  # terms; a boundary that needs more is not smooth
 SETTLED = 1e-9  # radians: the step after one this short is below rounding
 HIGHEST = 1 << 10  # degree of a Chebyshev series
+ROOM, MOST_TOLD = 8, 64  # waves told by kernels: their number is a multiple of the one, and at most the other
 ROUNDING = 4e-16  # of the largest speed: what a transform of rounded samples leaves in a coefficient that is 0
 
 
@@ -302,6 +304,26 @@ class ArcLength:
             if np.any(here):
                 out[here] = self._inverse(index, s[here] - self.offsets[index], low, high)
         return out
+
+    @cached_property
+    def series(self) -> tuple[Series, list[float]] | None:
+        """How kernels tell arc length, and the numbers that it takes; None where too many waves would be needed."""
+        family, index = self.states.family, np.zeros(1, dtype=np.int64)
+        if family.arclength(self.states.ops, 0, np.zeros(1)) is not None:
+            return Series(len(self.offsets)), self.offsets
+        if not self.states.boundary.closed:
+            return None
+        waves = Waves.of(lambda at: self.states.speed(np.broadcast_to(index, at.shape), at))
+        step = int(np.gcd.reduce(waves.frequencies)) or 1
+        order = waves.frequencies // step
+        terms = ROOM * -(-int(order.max(initial=1)) // ROOM)
+        if terms > MOST_TOLD:
+            return None
+        sines, rises = np.zeros((2, terms))
+        sines[order - 1], rises[order - 1] = waves.sines, waves.rises
+        rising = terms if np.any(np.abs(rises) > ROUNDING * waves.mean) else 0
+        told = *self.offsets, waves.mean, *sines, *rises[:rising]
+        return Series(1, step, terms, rising), [float(x) for x in told]
 
     @cached_property
     def perimeter(self) -> float:

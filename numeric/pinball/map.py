@@ -203,8 +203,7 @@ class PinballMap:
         of another kind has its slope there, and what it changes along the boundary times `ds1`.
         """
         if self.reflection.uniform and (single := self._single(MATRIX).told(theta, phi, component)) is not None:
-            x, y, *second = single
-            return np.array([[x, y], [float(self.lam.flat[0]) * bent for bent in second]])
+            return np.array(single).reshape(2, 2)
         where, theta, phi = self._start(theta, phi, component)
         law, states, count = self._law(phi), self.states, theta.size
         law = PINBALL if law == SLAP else law
@@ -369,13 +368,16 @@ class PinballMap:
 
     def _entered(self, start: tuple[NDArray[np.int64], Array, Array], law: str, lam: Array) -> list[Array]:
         """The fields of particles that leave a boundary point at an exit angle: those with which orbits begin."""
-        course = self.engine.course(law, (), (start[0].astype(float), *start[1:]), lam, self.shape)
+        course = self.engine.course(law, (), lam.size, self.shape)
         if course is None:
             return self.states.enter(*start, law)
-        return [course.start().rows[name].copy() for name in self.family.fields(law)]
+        rows = course.begin(start, lam).start().rows
+        return [rows[name] for name in self.family.fields(law)]
 
     def _lams(self, theta: Array) -> Array:
-        return np.broadcast_to(self.lam, theta.shape).ravel().astype(float)
+        if self.lam.size == 1:
+            return np.broadcast_to(self.lam.reshape(()), theta.size)
+        return np.broadcast_to(self.lam, theta.shape).ravel()
 
 
 def _unpacked(

@@ -1,7 +1,8 @@
 """Particles on their way, told bounce by bounce in people's coordinates: by the kernel in lanes, or translated later.
 
-The paper's tables, and other ellipses and finite sums, have kernels that tell component, parameter, angles and point
-themselves, as far as they are asked. Of other tables, and without kernels, the recorded states are translated.
+The paper's tables, and other ellipses and finite sums, have kernels that tell component, parameter, angles, point and
+arc length themselves, as far as they are asked. Of other tables, and without kernels, the recorded states are
+translated; arc length then comes from the parameter, as it does where too many waves would be needed.
 """
 
 import ctypes
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from numeric.backends.functions import CLOSED
 from numeric.flights.family import NEAR, SLAP
 from numeric.kernels.engine import ALONE
 from numeric.kernels.engine import Course as KernelCourse
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 HALF_PI = math.pi / 2
-SIDE_BY_SIDE = 1 << 13  # particles at a time
+SIDE_BY_SIDE = 1 << 12  # particles at a time: their state stays in the processor's second cache
 PIECE = 1 << 20  # numbers to a field of a piece of an orbit
 FIELDS = (*Orbit._fields, "s")
 
@@ -52,10 +54,11 @@ class Course:
             counted("every", every),
             _real(dtype),
         )
-        needed = {*self.names, *(("component", "theta") if "s" in self.names else ())}
+        self.length = map.arclength.series if "s" in self.names and map.engine.tells else None
+        needed = {*self.names, *(("component", "theta") if "s" in self.names and self.length is None else ())}
         if len(map.states.ends) == 1:
             needed -= {"component"}
-        self.needed = tuple(name for name in TOLD if name in needed)
+        self.needed = tuple(name for name in (*TOLD, "s") if name in needed and (name != "s" or self.length))
         self.done, self.last = 0, dict[str, NDArray[Any]]()
         self.keep, self.kernels = keep, dict[int, KernelCourse | None]()
         self.own: list[Array] = []
@@ -81,7 +84,7 @@ class Course:
     # ---- within
 
     def _kind(self, name: str) -> Any:
-        return np.float64 if name == "theta" and "s" in self.names else self.dtype
+        return np.float64 if name == "theta" and "s" in self.names and not self.length else self.dtype
 
     def _first(self) -> dict[str, NDArray[Any]]:
         """The start, or what was told last: nothing landed at a start, so `eta` is no number."""
@@ -90,6 +93,8 @@ class Course:
         known: dict[str, NDArray[Any]] = {"component": self.where, "theta": self.theta, "phi": self.phi}
         if {"x", "y"} & {*self.needed}:
             known["x"], known["y"] = self.map.states.point(self.where, self.theta)
+        if "s" in self.needed:
+            known["s"] = self.map.arclength.s(self.theta, self.where)
         self.last = known | {"eta": np.full(self.lam.size, np.nan)}
         return self.last
 
@@ -98,9 +103,10 @@ class Course:
     ) -> tuple[NDArray[Any], NDArray[Any]]:
         """Some thousand particles at a time, which stay in the cache; codes of outcomes, and bounces that were lost."""
         ends: tuple[NDArray[Any], NDArray[Any]] = np.zeros(self.lam.size), np.zeros(self.lam.size)
+        kernel = None
         for left in range(0, self.lam.size, SIDE_BY_SIDE):
             part = slice(left, left + SIDE_BY_SIDE)
-            kernel = self.kernels[left] if left in self.kernels else self._kernel(part)
+            kernel = self.kernels[left] if left in self.kernels else self._kernel(part, kernel)
             if kernel is None:
                 rows = self._translated(bounces, out, top, threads)
                 return (rows["code"], rows["lost"]) if "code" in rows else ends
@@ -112,9 +118,13 @@ class Course:
                 ends[0][part], ends[1][part] = rows["code"], rows["lost"]
         return ends
 
-    def _kernel(self, part: slice) -> KernelCourse | None:
-        start = self.where[part].astype(float), self.theta[part], self.phi[part]
-        return self.map.engine.course(self.law, self.needed, start, self.lam[part], self.map.shape)
+    def _kernel(self, part: slice, other: KernelCourse | None) -> KernelCourse | None:
+        """Some of the particles in the hands of a kernel; the room of others that are done with may be used again."""
+        if other is None or self.keep:
+            count = min(self.lam.size - part.start, SIDE_BY_SIDE)
+            length = self.length or (CLOSED, ())
+            other = self.map.engine.course(self.law, self.needed, count, self.map.shape, length)
+        return other and other.begin((self.where[part], self.theta[part], self.phi[part]), self.lam[part])
 
     def _stopped(
         self,
@@ -165,7 +175,7 @@ class Course:
             out["code"] = np.zeros(shape, dtype=np.int64)
             for particle in np.flatnonzero(self.code):
                 out["code"][np.searchsorted(made, self.bad[particle]) :, particle] = self.code[particle]
-        if "s" in self.names:
+        if "s" in self.names and "s" not in out:
             out["s"] = self.map.arclength.s(out["theta"], out["component"]).astype(self.dtype, copy=False)
         return {n: out[n] if n in ("component", "code") else out[n].astype(self.dtype, copy=False) for n in self.names}
 
@@ -188,18 +198,17 @@ def _real(dtype: DTypeLike) -> Any:
 
 def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Array, Array], lam: Array) -> Array | None:
     """The derivative of one bounce of each particle as kernels tell it; None without them, or where one stops."""
-    found = np.empty((1, lam.size, 2, 2))
+    found, kernel = np.empty((2, 2, lam.size)), None
     for left in range(0, lam.size, SIDE_BY_SIDE):
         part = slice(left, left + SIDE_BY_SIDE)
-        begun = start[0][part].astype(float), start[1][part], start[2][part]
-        kernel = map.engine.course(law, MATRIX, begun, lam[part], map.shape)
+        kernel = kernel or map.engine.course(law, MATRIX, min(lam.size, SIDE_BY_SIDE), map.shape)
         if kernel is None:
             return None
-        kernel.advance(1, {name: found[:, part, i // 2, i % 2] for i, name in enumerate(MATRIX)}, 0)
+        kernel.begin([given[part] for given in start], lam[part])
+        kernel.advance(1, {name: found[i // 2, i % 2, None, part] for i, name in enumerate(MATRIX)}, 0)
         if np.any(kernel.rows.get("code", 0)):
             return None
-    found[0, :, 1] *= lam[:, None]
-    return found
+    return np.moveaxis(found, 2, 0)
 
 
 REALS, WHOLES = frozenset({float, int, np.float64}), frozenset({int, np.int64})
@@ -216,9 +225,9 @@ class Single:
         self.lam, self.reflection, self.law, self.names = map.lam, map.reflection, law, names
         self.ends, self.cusped = map.states.ends, map.family.cusped
         low, high = self.ends[0]
-        start = np.array([0.0]), np.array([0.4 * low + 0.6 * high]), np.array([0.1 * (law != SLAP)])
-        lam = np.array([float(map.lam.flat[0])])
-        course = map.engine.course(law, names, start, lam, map.shape) if map.lam.size == 1 else None
+        course = map.engine.course(law, names, 1, map.shape) if map.lam.size == 1 else None
+        if course is not None:
+            course.begin((0.0, 0.4 * low + 0.6 * high, 0.1 * (law != SLAP)), np.array([float(map.lam.flat[0])]))
         self.course, self.run = course, course.kernel(starts=True) if course is not None else None
         self.free: list[Any] = []
 
@@ -237,7 +246,7 @@ class Single:
             return None
         free = self.free
         buffer = free.pop() if free else self._buffer()
-        arguments, state, record, first, code = buffer
+        arguments, state, record, _, first, code = buffer
         state[first], state[first + ALONE], state[first + 2 * ALONE] = component, theta, phi
         self.run(*arguments)
         if code and state[code] != 0:
@@ -246,13 +255,15 @@ class Single:
         free.append(buffer)
         return found
 
-    def _buffer(self) -> tuple[tuple[int, ...], Any, Any, int, int]:
-        """Arguments of the kernel, state and record; where the start begins, and where the outcome stands or 0."""
+    def _buffer(self) -> tuple[tuple[int, ...], Any, Any, Any, int, int]:
+        """Arguments of the kernel, state, record, its table; where the start begins, and the outcome stands or 0."""
         assert self.course is not None
         rows, code = self.course.state.shape[0], "code" in self.course.names
         state = (ctypes.c_double * (rows * ALONE))(*self.course.state.ravel())
         record = (ctypes.c_double * (len(self.names) * ALONE))()
+        first, row = ctypes.addressof(record), ALONE * ctypes.sizeof(ctypes.c_double)
+        table = (ctypes.c_int64 * (len(self.names) + 1))(*(first + i * row for i in range(len(self.names))), ALONE)
         kept = self.course.lam.ctypes.data, self.course.shape.ctypes.data
-        arguments = ctypes.addressof(state), *kept, ctypes.addressof(record), ALONE, 0, ALONE, 1
+        arguments = ctypes.addressof(state), *kept, ctypes.addressof(table), ALONE, 0, ALONE, 1
         place = self.course.names.index("code") * ALONE if code else 0
-        return arguments, state, record, (rows - len(START)) * ALONE, place
+        return arguments, state, record, table, (rows - len(START)) * ALONE, place

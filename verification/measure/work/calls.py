@@ -111,6 +111,7 @@ def batch_rows(name: str, runs: int) -> Iterable[Call]:
         (f"derivative of {MANY:,}", lambda: map.derivative(at, phi, where), MANY, True, 3.0),
         ("orbits, parameter and angle", lambda: told(("theta", "phi")), WIDE**2, False, 3.0),
         ("orbits, angles and points", lambda: told(TOLD), WIDE**2, False, 3.0),
+        ("orbits, with arc length", lambda: told((*TOLD, "s")), WIDE**2, False, 3.0),
     )
 
     def told(fields: tuple[str, ...]) -> object:

@@ -98,6 +98,50 @@ class Engine(NamedTuple):
         found = Course(self, law, tuple(told), count, shape, length)
         return found if found.kernel(starts=True) is not None else None
 
+    def once(
+        self,
+        law: str,
+        start: Sequence[NDArray[Any]],
+        lam: Array,
+        shape: Sequence[float],
+        out: Mapping[str, NDArray[Any]],
+        length: tuple[Series, Sequence[float]] = (CLOSED, ()),
+        threads: int | None = None,
+    ) -> Array | None:
+        """A single bounce, told from where the particles lie to where it is wanted; the codes of its outcomes.
+
+        None where there are no such kernels.
+        """
+        if not self.tells:
+            return None
+        spec = KernelSpec(law, told=tuple(out), once=True, length=length[0])
+        width = ALONE if lam.size <= ALONE else self.width
+        run = machine.compiled(self.family, self.identity, self.names, spec, width)
+        if run is None:
+            return None
+        numbers, code = np.array([*shape, *length[1], 0.0]), np.zeros(lam.size)
+        given = [np.ascontiguousarray(x, dtype=np.float64) for x in (*start, lam)]
+        wanted = [row if row.dtype == np.float64 else np.empty(row.size) for row in out.values()]
+
+        def call(lam: Array, particles: Sequence[Array], goals: Sequence[Array]) -> None:
+            tables = [np.array([*(row.ctypes.data for row in rows), 0]) for rows in (particles, goals)]
+            columns = lam.size // width * width
+            pointers = [x.ctypes.data for x in (tables[0], lam, numbers, tables[1])]
+            shared(run, pointers, columns, (0, columns), width, 1, threads)
+
+        call(given[3], [*given[:3], code], wanted)  # the whole blocks of lanes
+        if rest := lam.size % width:
+            last = [np.full(width, x[-1]) for x in (*given, code, *wanted)]
+            for row, values in zip(last, given, strict=False):
+                row[:rest] = values[-rest:]
+            call(last[3], [*last[:3], last[4]], last[5:])
+            for row, values in zip((code, *wanted), last[4:], strict=True):
+                row[-rest:] = values[:rest]
+        for row, values in zip(out.values(), wanted, strict=True):
+            if row is not values:
+                row[:] = values
+        return code
+
     def _advance(
         self,
         spec: KernelSpec,

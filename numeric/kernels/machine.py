@@ -34,12 +34,13 @@ class KernelSpec(NamedTuple):
     exponents: bool = False
     told: tuple[str, ...] = ()  # what is recorded in place of the state, of `TOLD`, `s` and `MATRIX`
     starts: bool = False  # from component, parameter and exit angle, in place of a state
+    once: bool = False  # the same, from where they lie and with no state afterwards
     length: Series = CLOSED  # how arc length is told
 
     @property
     def text(self) -> str:
         """The question as part of a name."""
-        words = [word for word in ("record", "exponents", "starts") if getattr(self, word)]
+        words = [word for word in ("record", "exponents", "starts", "once") if getattr(self, word)]
         how = ["-".join(map(str, self.length))] if "s" in self.told and self.length.terms else []
         return "-".join([self.law, *words, *self.told, *how])
 

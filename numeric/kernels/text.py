@@ -8,7 +8,9 @@ family has outcomes, then the tangent vector's when exponents are asked for, or 
 that a particle starts from. Columns `first` to `last` are worked on. `record`, when orbits are asked for, receives
 after every bounce the particle's own rows. Where something else is told of each bounce (parameter, angles, point, arc
 length), `record` is a table of addresses, one for each thing told, and of how many doubles lie between two bounces: so
-a kernel writes where its caller wants to have it. After the numbers of the shape come those of the arc length.
+a kernel writes where its caller wants to have it. One that goes `once` has a table as `state` too: where component,
+parameter and exit angle of the particles lie, and where their outcomes go; of the state nothing is kept. After the
+numbers of the shape come those of the arc length.
 
 Inside, the processor takes numbers below 2**-1022 for zero: a particle at rest on a cycle ends up there, and many
 processors take such an operation for an exception, sixty times as long. The caller's mode is restored on the way out.
@@ -77,17 +79,24 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     ops.lines += [f"  {line}" for line in mode.entry]
     parameters = [_broadcast(ops, i, name) for i, name in enumerate(shape)]
     series = [_broadcast(ops, len(shape) + i, f"of length {i}") for i in range(spec.length.size)]
-    goals = [_entry(ops, "ptr", i) for i in range(len(spec.told))]
-    far_apart = _entry(ops, "i64", len(goals)) if goals else ""
+    goals = [_entry(ops, "record", "ptr", i) for i in range(len(spec.told))]
+    far_apart = _entry(ops, "record", "i64", len(goals)) if goals else ""
+    given = [_entry(ops, "state", "ptr", i) for i in range(len(START) + family.stops)] if spec.once else []
     ops.lines += ["  br label %column", "column:", "  %at = phi i64 [%first, %entry], [%next, %stored]"]
     ops.lines += ["  %busy = icmp slt i64 %at, %last", "  br i1 %busy, label %start, label %exit"]
     ops.label("start")
     ops.open()
-    addresses = [_address(ops, "state", ops.emit(f"mul i64 %width, {i}")) for i in range(len(names))]
+    if spec.once:
+        addresses = [ops.emit(f"getelementptr double, ptr {goal}, i64 %at") for goal in given]
+    else:
+        addresses = [_address(ops, "state", ops.emit(f"mul i64 %width, {i}")) for i in range(len(names))]
     loaded = [ops.emit(f"load {ops.type}, ptr {address}, align 8") for address in addresses]
     if spec.starts:
         loaded = _started(ops, family, spec.law, parameters, loaded[-len(START) :]) + loaded[own : -len(START)]
         names, addresses = names[: -len(START)], addresses[: -len(START)]
+    if spec.once:
+        nothing = [ops.literal(0.0)] * (2 * family.stops)  # code and lost
+        loaded = _started(ops, family, spec.law, parameters, loaded[: len(START)]) + nothing
     if spec.starts and not spec.told:
         return _module(ops, family, spec, _stored(ops, loaded, addresses), mode)
     lam = _contraction(ops, spec.law)
@@ -133,6 +142,8 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     finals = [ops.fresh() for _ in names]
     for name, begin, end in zip(finals, loaded, texts[: len(names)], strict=True):
         ops.lines.append(f"  {name} = phi {ops.type} [{begin}, %{before}], [{end}, %{last}]")
+    if spec.once:
+        finals, addresses = finals[own : own + family.stops], addresses[len(START) :]
     return _module(ops, family, spec, _stored(ops, finals, addresses), mode)
 
 
@@ -235,18 +246,17 @@ def _matrix(
     return [*moved, *(lam * (curvature1 * x - y) for x, y in zip(moved, turned, strict=True))]
 
 
-def _entry(ops: LLVMBackend, kind: str, i: int) -> str:
-    """An entry of the table of addresses."""
-    return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %record, i64 {i}')}, align 8")
+def _entry(ops: LLVMBackend, table: str, kind: str, i: int) -> str:
+    """An entry of a table of addresses."""
+    return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %{table}, i64 {i}')}, align 8")
 
 
 def _tell(ops: LLVMBackend, texts: list[str], goals: Sequence[str], apart: str) -> None:
     """Store what is told of bounce `%i` where each thing goes."""
     place = ops.emit(f"add i64 {ops.emit(f'mul i64 %i, {apart}')}, %at")
     for text, goal in zip(texts, goals, strict=True):
-        ops.lines.append(
-            f"  store {ops.type} {text}, ptr {ops.emit(f'getelementptr double, ptr {goal}, i64 {place}')}, align 8"
-        )
+        address = ops.emit(f"getelementptr double, ptr {goal}, i64 {place}")
+        ops.lines.append(f"  store {ops.type} {text}, ptr {address}, align 8")
 
 
 def _record(ops: LLVMBackend, texts: list[str]) -> None:

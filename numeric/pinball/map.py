@@ -337,8 +337,9 @@ class PinballMap:
         if phi.max() >= np.pi / 2 or phi.min() <= -np.pi / 2:
             steep = np.abs(phi) >= np.pi / 2
             raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
-        if self.family.cusped and np.any(at_cusp := np.cos(theta / 2) < NEAR):
-            raise ValueError(f"theta = {theta[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
+        far = theta[np.abs(theta) > 3] if self.family.cusped else np.zeros(0)
+        if np.any(at_cusp := np.cos(far / 2) < NEAR):
+            raise ValueError(f"theta = {far[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")
         if self.lam.size > 1 and self.lam.shape != theta.shape:
             raise ValueError(
                 f"lam has shape {self.lam.shape} and the particles {theta.shape}; "

@@ -102,6 +102,12 @@ class Course:
         self, bounces: int, out: dict[str, NDArray[Any]], top: int, threads: int | None
     ) -> tuple[NDArray[Any], NDArray[Any]]:
         """Some thousand particles at a time, which stay in the cache; codes of outcomes, and bounces that were lost."""
+        if bounces == 1 and not (self.keep or self.done):
+            given, rows = (self.where, self.theta, self.phi), {name: values[top] for name, values in out.items()}
+            length = self.length or (CLOSED, ())
+            code = self.map.engine.once(self.law, given, self.lam, self.map.shape, rows, length, threads)
+            if code is not None:
+                return code, np.asarray(code != 0)
         ends: tuple[NDArray[Any], NDArray[Any]] = np.zeros(self.lam.size), np.zeros(self.lam.size)
         kernel = None
         for left in range(0, self.lam.size, SIDE_BY_SIDE):
@@ -198,17 +204,10 @@ def _real(dtype: DTypeLike) -> Any:
 
 def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Array, Array], lam: Array) -> Array | None:
     """The derivative of one bounce of each particle as kernels tell it; None without them, or where one stops."""
-    found, kernel = np.empty((2, 2, lam.size)), None
-    for left in range(0, lam.size, SIDE_BY_SIDE):
-        part = slice(left, left + SIDE_BY_SIDE)
-        kernel = kernel or map.engine.course(law, MATRIX, min(lam.size, SIDE_BY_SIDE), map.shape)
-        if kernel is None:
-            return None
-        kernel.begin([given[part] for given in start], lam[part])
-        kernel.advance(1, {name: found[i // 2, i % 2, None, part] for i, name in enumerate(MATRIX)}, 0)
-        if np.any(kernel.rows.get("code", 0)):
-            return None
-    return np.moveaxis(found, 2, 0)
+    found = np.empty((2, 2, lam.size))
+    out = dict(zip(MATRIX, found.reshape(4, -1), strict=True))
+    code = map.engine.once(law, start, lam, map.shape, out)
+    return None if code is None or code.any() else np.moveaxis(found, 2, 0)
 
 
 REALS, WHOLES = frozenset({float, int, np.float64}), frozenset({int, np.int64})

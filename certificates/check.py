@@ -13,7 +13,7 @@ import re
 import sys
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from importlib import import_module
 from itertools import product
 from math import atan, factorial, isqrt, prod
@@ -43,12 +43,19 @@ SAYS |= {
     "through each other as lam varies.",
 }
 WHAT = {"fold": "the multiplier 1: a fold", "flip": "the multiplier -1: a flip", "focus": "two equal multipliers"}
-WAYS = ("table", "polar", "parametric", "component")  # to say a boundary
+WAYS = ("table", "polar", "parametric", "component")  # to say a boundary; more of it: undefined, origin
 
 
 def need(holds, why, error=Unproved):
     if not holds:
         raise error(why)
+
+
+def beside(name):
+    """A file beside this one, which imports it: for kinds of their own, or for what no table of the paper needs."""
+    sys.modules.setdefault("check", sys.modules[__name__])
+    sys.path += {str(Path(__file__).parent)} - {*sys.path}
+    return import_module(name)
 
 
 class Number:  # what follows from a sum, a product and a sign
@@ -68,7 +75,7 @@ class I(Number):
     def of(x, p):
         if isinstance(x, I):
             k = p - x.p
-            return I(x.lo << k, x.hi << k, p) if k >= 0 else I(x.lo >> -k, -(-x.hi >> -k), p)
+            return x if k == 0 else I(x.lo << k, x.hi << k, p) if k > 0 else I(x.lo >> -k, -(-x.hi >> -k), p)
         x = Fraction(x)
         return I((x.numerator << p) // x.denominator, -((-x.numerator << p) // x.denominator), p)
 
@@ -106,6 +113,7 @@ class I(Number):
     inside = lambda self, o: o.lo < self.lo and self.hi < o.hi  # in the interior
     wide = lambda self, o: I(self.lo - o.size().lo, self.hi + o.size().lo, self.p)
 
+    @lru_cache(maxsize=99)  # one interval is asked for both, and more than once
     def sin_cos(self):
         """Those of the middle, by Taylor's series, give or take the radius, since no slope is above 1."""
         m, p, one = self.mid(), self.p, 1 << self.p
@@ -203,9 +211,14 @@ def function(name, x, p):
         r = one / (at * at + 1 if name == "atan" else at)
         tangent = [at.atan(), r, -at * r * r, (at * at * 3 - 1) * r * r * r / 3] if name == "atan" else []
         terms = (tangent or [r, -r * r, r * r * r, -r * r * r * r])[: d + 1]
+    return taylor(x, terms)
+
+
+def taylor(x, terms):
+    """A function of a number or a jet, from its Taylor coefficients at the value."""
     if not isinstance(x, Jet):
         return terms[0]
-    small, found = Jet([0, *x.c[1:]], d), Jet.of(terms[-1], d)
+    small, found = Jet([0, *x.c[1:]], x.degree), Jet.of(terms[-1], x.degree)
     for term in reversed(terms[:-1]):
         found = found * small + term
     return found
@@ -226,17 +239,20 @@ def parse(text):
 
 
 def evaluate(node, names, p):
-    """A formula and its derivative by theta: numbers, letters, pi, + - * / ** ( ), sin, cos, and roots of numbers."""
-    kind, mark = type(node).__name__, type(getattr(node, "op", None)).__name__
+    """A formula and its derivative by theta: letters, pi, + - * / **, sin, cos, roots of numbers; then formulas.py."""
+    kind = type(node).__name__
     if kind == "Constant":
         return node.value, 0
     if kind == "Name" and (node.id in names or node.id == "pi"):
         x = names.get(node.id) or pi(p)
         return x if isinstance(x, Jet) or x.p == p else I.of(x, p), int(node.id == "theta")
-    if kind == "UnaryOp" and mark == "USub":
-        return tuple(-x for x in evaluate(node.operand, names, p))
+    below = {"UnaryOp": ["operand"], "BinOp": ["left", "right"]}.get(kind, [])
+    parts = [evaluate(part, names, p) for part in [getattr(node, key) for key in below] or getattr(node, "args", [])]
+    mark = getattr(getattr(node, "func", node), "id", "") or type(getattr(node, "op", None)).__name__
+    if mark == "USub":
+        return tuple(-x for x in parts[0])
     if kind == "BinOp":
-        (x, dx), (y, dy) = (evaluate(part, names, p) for part in (node.left, node.right))
+        (x, dx), (y, dy) = parts
         if mark == "Pow" and isinstance(y, Fraction) and y in range(1, 33):
             low = prod([x] * (int(y) - 1), start=I.of(1, p))
             return low * x, dx and low * dx * y
@@ -247,14 +263,16 @@ def evaluate(node, names, p):
             dy = dy and -dy * y * y
         if mark == "Mult":
             return x * y, (dx and dx * y) + (dy and x * dy)
-    if kind == "Call" and len(node.args) == 1 and getattr(node.func, "id", "") in ("sin", "cos", "sqrt"):
-        x, dx = evaluate(node.args[0], names, p)
-        if node.func.id != "sqrt":
+    if kind == "Call" and len(parts) == 1 and mark in ("sin", "cos", "sqrt"):
+        x, dx = parts[0]
+        if mark != "sqrt":
             s, c = function("sin", x, p), function("cos", x, p)
-            return (s, dx and c * dx) if node.func.id == "sin" else (c, dx and -s * dx)
+            return (s, dx and c * dx) if mark == "sin" else (c, dx and -s * dx)
         if not isinstance(x, Jet) and not dx and I.of(x, p).lo >= 0:
             return I(*(isqrt(end << p) + k for k, end in enumerate((I.of(x, p).lo, I.of(x, p).hi))), p), 0
-    raise Wrong(f"the formula has {ascii(ast.unparse(node))[:60]}, which is not understood or has no value")
+    found = beside("formulas").meaning(kind, mark, parts, p)
+    need(found, f"the formula has {ascii(ast.unparse(node))[:60]}, which is not understood or has no value", Wrong)
+    return found
 
 
 class Table:
@@ -263,6 +281,7 @@ class Table:
     def __init__(self, parts, letters, law, p):
         self.parts, self.letters, self.p = [[parse(text) for text in part] for part in parts], letters, p
         self.law, waves = law and parse(law), re.compile(r"\b(sin|cos)\(((\d+|K)\*)?theta\)")
+        self.marks = []  # components and parameters where the map is undefined
         self.closed = len(parts) == 1 and not any("theta" in waves.sub("", text.replace(" ", "")) for text in parts[0])
 
     def at(self, part, theta, names, p):
@@ -346,24 +365,26 @@ class Table:
             qx, qy, tx, ty = self.at(part, theta, names, p)
             return dx * (qy - y) - dy * (qx - x), dx * ty - dy * tx, dx * (qx - x) + dy * (qy - y)
 
+        def settled(part, piece):
+            line, speed, along = crossing(part, piece)
+            if 0 not in line or along < 0 or along - (dx * dx + dy * dy) > 0:
+                return True
+            if 0 not in crossing(part, piece.mid())[0] + speed * (piece - piece.mid()):
+                return True
+            turns = lambda at: pi(p) * (2 * round((piece - at).real() / 6.283185307179586) if self.closed else 0)
+            speeds = (crossing(part, piece.hull(at + turns(at)))[1] for other, at in start + end if other == part)
+            return any(speed > 0 or speed < 0 for speed in speeds)
+
         for part in range(len(self.parts)):
             (low, high), queue = self.ends(part, p), [(Fraction(0), Fraction(1))]
             while queue:
                 (a, b), spent = queue.pop(), spent + 1
                 need(spent <= 4000, "admissible: a chord may meet the boundary on its way")
-                piece = low + (high - low) * I.of(a, p).hull(I.of(b, p))
-                line, speed, along = crossing(part, piece)
-                if 0 not in line or along < 0 or along - (dx * dx + dy * dy) > 0:
-                    continue
-                if 0 not in crossing(part, piece.mid())[0] + speed * (piece - piece.mid()):
-                    continue
-                for at in (at for other, at in start + end if other == part):
-                    at = at + pi(p) * (2 * round((piece - at).real() / 6.283185307179586) if self.closed else 0)
-                    speed = crossing(part, piece.hull(at))[1]
-                    if speed > 0 or speed < 0:
-                        break
-                else:
-                    queue += [(a, (a + b) / 2), ((a + b) / 2, b)]
+                try:
+                    done = settled(part, low + (high - low) * I.of(a, p).hull(I.of(b, p)))
+                except Unproved:  # a formula may have no value on a wide piece
+                    done = False
+                queue += [] if done else [(a, (a + b) / 2), ((a + b) / 2, b)]
 
 
 def newton(equations, box, p):
@@ -415,6 +436,7 @@ class Cycle:
     def admissible(self, bounces, letter):
         """Bounces on their components, free chords, and no shorter cycle."""
         table, placed = self.table, []
+        apart = lambda x, y: 0 not in (((x - y) / 2).sin_cos()[0] if table.closed else x - y)
         for part, x in zip(self.parts * 2, bounces + [-x for x in bounces] * (self.sign < 0)):
             low, high = table.ends(part, self.p)
             if table.closed:
@@ -423,7 +445,8 @@ class Cycle:
             placed.append((part, x))
         for here, there in zip(placed, placed[1:] + placed[:1]):
             table.free([here], [there], self.names(letter))
-        apart = lambda x, y: 0 not in (((x - y) / 2).sin_cos()[0] if table.closed else x - y)
+        fit = all(part != other or apart(x, at) for part, x in placed for other, at in table.marks)
+        need(fit, "admissible: the map may be undefined at a bounce")
         for m in (m for m in range(1, len(placed)) if len(placed) % m == 0):
             other = any(c != d or apart(x, y) for (c, x), (d, y) in zip(placed, placed[m:] + placed[:m]))
             need(other, "minimal_period: the cycle may be a shorter one, run through several times")
@@ -449,29 +472,6 @@ class Cycle:
         last = self.table.orbit(launch, [I.of(0, self.p)] * 2 + [image[2]], self.way, 3, states)[-1]
         return [[x.c[algebra(3)[1][k, 0, 0]] * self.sign for x in last] for k in (2, 3)]
 
-    def cornered(self, image, theta1):
-        """What the corner orbit says more; the cuspless table's lower corner is its wall's end and its arc's start."""
-        table, p, slopes, unstable = self.table, self.p, [], False
-        edge, wall = table.ends(0, p)[1], table.ends(1, p)[1]
-        need(theta1 > 0 and theta1 < 2, "minimal_period: a bounce may be at a corner or on the axis")
-        table.free([(0, edge), (1, -wall)], [(0, theta1)], {})  # the mirror does the other two
-        table.free([(0, theta1)], [(0, -edge), (1, wall)], {})
-        for side, at in ((0, -edge), (1, wall)):
-            way = [(0, edge), (0, theta1), (side, at), (0, -theta1), (0, edge)]
-            states = table.orbit(lambda x, psi, lam: (x * 0 + edge, psi, {"lam": lam}), image, way, 1)
-            (_, motion, shift), (_, rise, growth) = (states[k][0].gradient(p) for k in (2, 4))
-            slopes.append((motion, rise, growth - rise * shift / motion))
-            start = [*map(value, states[1]), image[2]]
-            _, (theta, _), last = table.orbit(lambda x, psi, lam: (x, psi, {"lam": lam}), start, way[1:4], 1)
-            (a, b, _), (c, d, _) = ((-x).gradient(p) for x in last)
-            (e, f, _), trace, det = theta.gradient(p), a + d, a * d - b * c
-            off = 0 not in e * (e * b + f * d) - f * (e * a + f * c)  # no eigenvector runs along the corner's preimage
-            unstable = unstable or (det > 0 and trace - det > 1 and off)
-        (motion, arc, _), (_, straight, fall) = slopes
-        kink = (motion > 0 and straight < 0 and arc > 0) or (motion < 0 and arc < 0 and straight > 0)
-        for item, holds in (("s4_minimum_at_a_kink", kink), ("s4_dips_below", fall < 0), ("unstable", unstable)):
-            need(holds, f"{item}: this sign is not proved")
-
 
 def exact(pair):
     mantissa, exponent = (int(text) for text in pair if isinstance(text, str))
@@ -487,31 +487,29 @@ def within(name, x):
 
 def read_scene(scene, free, p):
     """The table and the contraction that a scene says, and how it is called in words."""
-    known = isinstance(scene, dict) and set(scene) <= {*WAYS, "origin", "K", "shape", "law", "lam"}
+    known = isinstance(scene, dict) and set(scene) <= {*WAYS, "undefined", "origin", "K", "shape", "law", "lam"}
     way = [key for key in WAYS if known and key in scene]
-    need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and origin, K, shape, law, lam", Wrong)
+    need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
     need(type(K) is int and 2 <= K <= 50 and ("K" not in scene or title == "egg"), "scene: K is out of range", Wrong)
-    fit = isinstance(shape, dict) and not {"theta", "eta", "lam", "pi", "K"} & {*shape}
+    fit = isinstance(shape, dict) and not {"theta", "eta", "lam", "pi", "E", "K"} & {*shape}
     need(fit and "K" not in scene.get("law", "") and title in (None, *PAPER), "scene: no such table or letter", Wrong)
-    letter, parts = PAPER.get(title) or ("", [(scene.get("polar"), "-pi", "pi")])
-    parts = [(*scene["parametric"], "-pi", "pi")] if way == ["parametric"] else parts
-    if way == ["component"]:
-        parts = [[e[key] for key in ("x", "y", "from", "to")] for e in scene["component"]]
+    letter, parts = PAPER.get(title) or ("", beside("formulas").pieces(way[0], scene[way[0]]))
+    ranges = {name: text.split("..") for name, text in shape.items() if title is None and ".." in text}
     given = {*shape, free} - {"", "lam"}
     fit = letter in ("", *given) and (title is None or "law" in scene or not given - {letter})
-    need(fit and free in ("", "lam", letter), "scene: the table has other letters", Wrong)
+    fit = fit and free in ("", "lam", letter, *ranges) and {*ranges} == {free} & {*shape}
+    need(fit, "scene: the table has other letters, or one with a range that is not free", Wrong)
     number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p))
-    letters = {name: number(name, text) for name, text in shape.items()} | ({"K": I.of(K, p)} if title == "egg" else {})
-    table = Table(parts, letters, scene.get("law"), p)
-    need(table.closed or way[0] not in WAYS[1:3], "scene: theta may stand only in sin(n*theta), cos(n*theta)", Wrong)
-    for k in range(-256, 256) if way == ["polar"] else ():
-        names = letters | {"theta": pi(64) * I(k << 56, (k + 1) << 56, 64)}
-        need(I.of(evaluate(table.parts[0][0], names, 64)[0], 64) > 0, "scene: the radius may not be positive", Wrong)
+    letters = {name: number(name, text) for name, text in shape.items() if name not in ranges}
+    letters |= {name: number(name, low).hull(number(name, high)) for name, (low, high) in ranges.items()}
+    table = Table(parts, letters | ({"K": I.of(K, p)} if title == "egg" else {}), scene.get("law"), p)
+    if title is None:
+        table.marks = beside("formulas").marks(table, way[0], scene)
     need((free == "lam") == (lam is None), "scene: lam is told where it is not the free letter, and only there", Wrong)
     said = [("phi", scene.get("law")), *shape.items(), ("lam", lam)]
     title = (title or f"{way[0]} {scene[way[0]]}") + f" of {K} points" * (K != 3)
-    return table, lam and number("lam", lam), title + "".join(f", {k} = {v}" for k, v in said if v)
+    return table, lam and number("lam", lam), title + "".join(f", {k} = {v}" for k, v in said if v and k not in ranges)
 
 
 def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
@@ -541,17 +539,17 @@ def checked(given):
     need(schema == 3, "this checker reads schema 3", Wrong)
     need(items == dict.fromkeys(KINDS[kind], True), f"checks must list as true: {', '.join(KINDS[kind])}", Wrong)
     centre, radius, parts = [exact(pair) for pair in centre], exact(radius), given.get("components", [0, 0])
-    letters = {"cycle": [""], "corner": ["lam", "phi"], "focus": ["alpha"], "tangency": ["lam"]}
+    letters = {"cycle": [""], "corner": ["lam", "phi"], "focus": ["alpha"], "tangency": ["lam"]}.get(kind)
     fit = type(bits) is type(digits) is int and 16 <= bits <= 12_000 and 1 <= digits <= 3_000 and radius > 0
     fit = fit and isinstance(parts, list) and 2 <= len(parts) <= 1024 and type(given.get("mirror", False)) is bool
-    need(
-        fit and free in letters.get(kind, ["lam", "alpha", "a"]), "bits, digits, free or radius is out of range", Wrong
-    )
+    fit = fit and (free in letters if letters else type(free) is str and free != "")
+    need(fit, "bits, digits, free or radius is out of range", Wrong)
     p = 16 * len(parts) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
     sign, wanted = -1 if given.get("mirror") else 1, 3 if kind == "tangency" else len(parts) + (free != "")
     fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts)
-    fit = fit and (sign > 0 or ("table" in scene and table.law is None))
+    plain = "table" in scene and table.law is None
+    fit = fit and (sign > 0 or plain or beside("formulas").symmetric(table, parts))
     if kind == "corner":
         wanted, fit = 2, fit and scene == {"table": "cuspless"} and parts == [0, 0] and sign < 0
     fit = fit and (kind != "tangency" or (table.closed and table.law is None))
@@ -559,20 +557,22 @@ def checked(given):
     n = f"its {len(parts)} bounces" if sign > 0 else f"{len(parts)} bounces, and then their mirror images,"
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))
     need(words == said, f"the statement must be: {said!a}", Wrong)
+    true = f"tangency of two manifolds: {title}"
+    need(kind != "tangency" or name == true, f"the name must be {true!a}", Wrong)
     boxes = [I.of(x - radius, p).hull(I.of(x + radius, p)) for x in centre]
     if kind == "tangency":
-        sys.modules.setdefault("check", sys.modules[__name__])  # which tangency.py imports
-        sys.path.append(str(Path(__file__).parent))
-        touching, places = import_module("tangency").touching, (I.of(x, p).wide(I.of(x / 2**36, p)) for x in centre[:2])
-        image = touching(given, table, [*places, boxes[2]])
-        found, true = image[2], f"tangency of two manifolds: {title}"
+        places = (I.of(x, p).wide(I.of(x / 2**36, p)) for x in centre[:2])
+        image = beside("tangency").touching(given, table, [*places, boxes[2]])
+        found = image[2]
     else:
-        box = boxes.pop() if free else None
+        box, reach = boxes.pop() if free else None, table.letters.get(free)
+        table.letters |= {free: box} if reach else {}
         boxes = [table.ends(0, p)[1].wide(I.of(radius, p)), *boxes] if kind == "corner" else boxes  # the first bounce
         cycle = Cycle(table, kind, parts, boxes, sign, "lam" if kind == "corner" else free, box, lam)
         image, bounces = cycle.solved()
-        found = image[2] if free in ("lam", "alpha", "a") else image[1] if free == "phi" else bounces[-1]
-        cycle.cornered(image, bounces[1]) if kind == "corner" else cycle.admissible(bounces, image[2])
+        found = image[1] if (kind, free) == ("corner", "phi") else image[2] if free else bounces[-1]
+        need(not reach or found.inside(reach), f"{free} is not in its range", Wrong)
+        beside("corner").cornered(cycle, image, bounces[1]) if kind == "corner" else cycle.admissible(bounces, image[2])
         cycle.generic(image) if kind in ("fold", "flip") else None
         true = named(kind, sign, parts, bounces, boxes, scene, free, title, p)
     within(free, image[2]) if free else None

@@ -14,9 +14,10 @@ from typing import Any
 
 from sympy import Expr, Integer, Rational
 
-from symbolic import tables
-from symbolic.tables.table import Table
+from symbolic import Law, Scene, tables
+from symbolic.tables.table import Mark, Table
 from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.files import document
 from verification.named.locate import certify, locate
 
@@ -24,6 +25,11 @@ Proof = Callable[[], Any]
 HERE = Path(__file__).parent
 DIGITS = 20
 LONG = {6: 60}  # the second reader follows a cycle all round, and needs two digits for each bounce of a long one
+LAW = (
+    "-lam*tanh(eta) + exp(eta)/90 + log(eta**2 + 1)/20 - tan(eta/2)/9 - atan(eta)/9 + sinh(eta)*cosh(eta)/99"
+    " + sqrt(eta + 2)/90 - (eta + 2)**(1/3)/80 + (eta + 3)**(-2)/9"
+)
+RADIUS = "1 + exp(cos(2*theta))/40 + tanh(cos(2*theta))/50 + (2 + cos(2*theta))**(2/3)/60 + E/99"
 EGG, THIRD, HALF = Rational(2, 25), Rational(1, 3), Rational(1, 2)
 
 
@@ -32,9 +38,21 @@ def value(name: str, digits: int = DIGITS, **shape: Expr) -> Proof:
     return lambda: locate(name, digits, **shape).proof
 
 
-def cycle(table: Table, start: list[float], lam: Expr) -> Proof:
+def cycle(table: Table, start: list[float], lam: Expr, law: str = "-lam*eta") -> Proof:
     """A cycle by itself, of a table of one component."""
-    return lambda: certify(Problem(table, (0,) * len(start), lam=lam), start, DIGITS)
+    return lambda: certify(Problem(table, (0,) * len(start), lam=lam, law=Law(law)), start, DIGITS)
+
+
+def flip(table: Table, start: list[float], free: str, lam: Expr | None = None, mirror: bool = False) -> Proof:
+    """A period doubling of a table of one's own; the last start is that of the free parameter."""
+    closure = Closure(-1 if mirror else 1)
+    problem = Problem(table, (0,) * (len(start) - 1), BifurcationKind.FLIP, free, lam, closure)
+    return lambda: certify(problem, start, DIGITS)
+
+
+def family(radius: str, parameter: str, span: str) -> Table:
+    """A table with a free parameter, over its range."""
+    return Scene.of({"polar": radius, "shape": {parameter: span}}).family
 
 
 CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
@@ -53,6 +71,11 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         "cardioid": cycle(tables.cardioid, [pi / 3, -pi / 3], THIRD),
         "egg-triangle": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF),
         "five-waves": cycle(tables.polar("1 + cos(5*theta)/40"), [0.0, pi], THIRD),
+        "marked-point": cycle(tables.polar("1 + cos(5*theta)/40", "polar", (), [Mark("m", 0, HALF)]), [0.0, pi], THIRD),
+        "law-in-all-words": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF, LAW),
+        "radius-in-words": cycle(tables.polar(RADIUS), [pi / 2, -pi / 2], THIRD),
+        "free-parameter": flip(family("1 + b*cos(3*theta)", "b", "0:0..1/10"), [0.0, pi, 0.06], "b", THIRD),
+        "own-mirror": flip(tables.polar("1 + 2*cos(3*theta)/25"), [0.0845, -2.7749, 0.2878], "lam", mirror=True),
     }
 )
 

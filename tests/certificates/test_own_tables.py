@@ -1,0 +1,119 @@
+"""Tables and laws of one's own: what the package proves, the second reader proves, and a wrong reader does not."""
+
+import copy
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "certificates"
+OWN = ("law-in-all-words", "radius-in-words", "free-parameter", "marked-point", "own-mirror")
+WORDS = ("exp", "log", "tan", "atan", "sinh", "cosh", "tanh")
+
+
+def document(name: str) -> dict:
+    return json.loads((FOLDER / f"{name}.json").read_text())
+
+
+def said(check, given: dict) -> str:
+    """The verdict, as `main` prints it."""
+    try:
+        return check.checked(given)
+    except check.Unproved as why:
+        return f"not proved: {why}"
+    except check.Wrong as why:
+        return f"refused: {why}"
+
+
+def replaced(given: dict, **scene: object) -> dict:
+    return copy.deepcopy(given) | {"scene": given["scene"] | scene}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_what_the_package_proves_of_such_a_table_the_second_reader_proves(check, name):
+    assert said(check, document(name)).startswith("proved: ")
+
+
+def test_the_same_law_and_the_same_marked_point_are_written_again(make):
+    for name in ("law-in-all-words", "marked-point"):
+        assert make.text(name) == (FOLDER / f"{name}.json").read_text()
+
+
+@pytest.mark.parametrize("word", [*WORDS, "sqrt", "**"])
+def test_a_reader_with_one_wrong_word_proves_nothing(check, monkeypatch, word):
+    """Off by a part in 10**12: the orbit is then another one."""
+    formulas, given = check.beside("formulas"), document("law-in-all-words")
+    right, power, off = formulas.called, formulas.power, 1 + Fraction(1, 10**12)
+    wrong = lambda *all_of: [part * off for part in power(*all_of)]  # noqa: E731
+    named = lambda name, *rest: [part * (off if name == word else 1) for part in right(name, *rest)]  # noqa: E731
+    law = given["scene"]["law"]
+
+    assert f"{word}(" in law
+    monkeypatch.setattr(formulas, "power", wrong) if word == "**" else monkeypatch.setattr(formulas, "called", named)
+    assert said(check, given).startswith("not proved: exists")
+
+
+@pytest.mark.parametrize(
+    ("name", "scene", "answer"),
+    [
+        (
+            "marked-point",
+            {"undefined": [{"name": "m", "component": 0, "theta": "0"}]},
+            "not proved: admissible: the map",
+        ),
+        (
+            "marked-point",
+            {"undefined": [{"name": "m", "component": 0, "theta": "2*pi"}]},
+            "not proved: admissible: the",
+        ),
+        ("marked-point", {"undefined": [{"name": "m", "component": 1, "theta": "1"}]}, "refused: scene: an undefined"),
+        ("marked-point", {"undefined": [{"name": "m", "theta": "1"}]}, "refused: scene: an undefined"),
+        ("free-parameter", {"shape": {"b": "0..1/20"}}, "refused: b is not in its range"),
+        ("free-parameter", {"shape": {"b": "1/10"}}, "refused: scene: the table has other letters"),
+        ("free-parameter", {"shape": {"c": "0..1/10"}}, "refused: scene: the table has other letters"),
+        ("free-parameter", {"shape": {"b": "0..2"}}, "refused: scene: the radius"),
+        ("own-mirror", {"polar": "2*cos(3*theta)/25 + sin(theta)/10**40 + 1"}, "refused: scene, components"),
+        ("own-mirror", {"law": "-lam*eta + eta**2/10**40"}, "refused: scene, components"),
+        ("radius-in-words", {"polar": "log(cos(2*theta)) + 2"}, "refused: scene: the radius"),
+        ("radius-in-words", {"polar": "2 + exp(theta)"}, "refused: scene: theta may stand only"),
+    ],
+)
+def test_another_scene_is_not_proved(check, name, scene, answer):
+    assert said(check, replaced(document(name), **scene)).startswith(answer)
+
+
+def test_a_parameter_with_a_number_is_not_free(check):
+    """Both would be said of one parameter: that it is 1/10, and that it lies in the box."""
+    given = document("alpha-tilde")
+    given["scene"]["shape"] = {"alpha": "1/10"}
+    given["statement"] = given["statement"].replace("egg,", "egg, alpha = 1/10,")
+
+    assert said(check, given).startswith("refused: scene: the table has other letters")
+
+
+def test_the_free_parameter_of_a_family_is_that_of_the_paper_under_another_name(check):
+    """The flip of the egg's diameters, once by the paper's name and once by a formula."""
+    lines = [check.checked(document(name)).splitlines()[0] for name in ("free-parameter", "alpha-tilde")]
+
+    assert lines[0].rpartition(" = ")[2] == lines[1].rpartition(" = ")[2]
+    assert lines[0] != lines[1]
+
+
+@pytest.mark.parametrize(
+    ("formula", "sign"),
+    [
+        ("cos(theta)", 1),
+        ("sin(3*theta) + theta*exp(theta**2)", -1),
+        ("theta**3/cosh(theta) - tanh(2*sin(theta))", -1),
+        ("log(2 + cos(theta)) + sqrt(theta**2 + b)", 1),
+        ("exp(theta)", 0),
+        ("theta + 1", 0),
+        ("abs(theta)", 1),
+        ("-theta**2", 1),
+        ("theta**(1/3)", 0),
+        ("eta*lam*cos(theta)", -1),
+    ],
+)
+def test_the_symmetry_of_a_formula_is_known_or_none(check, formula, sign):
+    assert check.beside("formulas").parity(check.parse(formula)) == sign

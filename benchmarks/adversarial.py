@@ -26,7 +26,7 @@ from numeric import PinballMap
 from symbolic import tables
 from verification.measure.extremes.by_hand import hard, judged
 from verification.measure.extremes.kernels import Wide, made_unit
-from verification.measure.extremes.orbits import LAM, RADII, bounced, cases, conditions, own_cases
+from verification.measure.extremes.orbits import LAM, LONG_RADII, bounced, cases, conditions, own_cases
 
 EPS = 2.0**-52
 
@@ -46,8 +46,8 @@ def main(count, word):
     for case in cases(count):
         if word in case.label:
             line(case)
-    for name in RADII:
-        if name in word or not word:
+    for name in LONG_RADII:
+        if word in name:
             for case in own_cases(name, count):
                 line(case)
 
@@ -155,17 +155,17 @@ def inside(count, word):
     say("| table | flights | points | stopped | outside |")
     say("|---|---|---|---|---|")
     part = (np.arange(64) + 0.5)[:, None] / 64
-    for name in RADII:
+    for name in LONG_RADII:
         for case in own_cases(name, count) if not word or word in name else ():
             own, found, going = bounced(case)
-            ops, family = case.map.states.ops, case.map.family
+            ops, family, radius = case.map.states.ops, case.map.family, case.map.ir.program("radius").only(0)
             out = 0
             for block in range(0, own[0].size, BLOCK):
                 cut = slice(block, block + BLOCK)
                 (x0, y0), (x1, y1) = (family.point(ops, *(row[cut] for row in rows[:2])) for rows in (own, found))
                 x, y = x0 + part * (x1 - x0), y0 + part * (y1 - y0)
                 away = np.hypot(x, y)
-                beyond = away - family.radius(ops, x / away, y / away)[0] > 64 * EPS * (1 + away)
+                beyond = away - radius(ops, x / away, y / away)[0] > 64 * EPS * (1 + away)
                 out += int(np.sum(np.any(beyond, axis=0) & going[cut]))
             label = case.label.partition(", ")[2]
             say(f"| {name} | {label} | {own[0].size} | {int(np.sum(~going))} | {out} |")

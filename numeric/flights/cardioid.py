@@ -25,6 +25,7 @@ class Cardioid(Family):
     path = "cubic for the far end, its interval known from one sign"
     cusped = True
     pairs = 0, 2
+    tells = True
     position: tuple[str, ...] = ("p", "q")  # cos and sin of theta/2
     direction = ("cos_phi", "sin_phi")
     steps = 4, 1

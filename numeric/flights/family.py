@@ -142,9 +142,8 @@ def law_of(lam_low: float, lam_high: float) -> str:
 class Landing(Generic[N]):
     """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
 
-    `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an
-    outcome that stops the particle (0 none, else `Status`), or is None where a family has none. `vectors` and
-    `numbers` are what the family's own methods need again, by name.
+    `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an outcome that stops the
+    particle (0 none, else `Status`), or is None. `vectors` and `numbers` are what the family's own methods need again.
     """
 
     position: list[N]
@@ -163,11 +162,11 @@ class Family(ABC):
     cusped: ClassVar[bool] = False  # a boundary point without a normal, at cos(theta/2) = 0
     pairs: ClassVar[tuple[int, ...]] = ()  # where the pairs of fields begin that have length one
     stops = True  # some landings are outcomes that stop the particle
+    tells = False  # kernels tell orbits in people's coordinates, by `framed` and `curving`
     renormalise_every = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     position: tuple[str, ...] = ()
     direction: tuple[str, ...] = ()
-
     boundary: Boundary
     formula: LawIR | None = None  # of the law that is called FORMULA
 
@@ -208,7 +207,7 @@ class Family(ABC):
         """Component, as a number, and parameter of position fields."""
 
     def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N] | None:
-        """The frame at position fields, on any number system: a family that has it tells orbits in its kernels."""
+        """The frame at position fields, on any number system; for a family whose kernels tell orbits."""
         return None
 
     def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:

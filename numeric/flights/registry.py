@@ -11,6 +11,7 @@ FAMILIES = (
     ("circle", "Circle"),
     ("cardioid", "Cardioid"),
     ("cuspless", "Cuspless"),
+    ("harmonic", "Conic"),
     ("harmonic", "Ellipse"),
     ("harmonic", "Fourier"),
     ("pieces", "Pieces"),

@@ -47,7 +47,7 @@ class Engine(NamedTuple):
     @property
     def tells(self) -> bool:
         """Whether kernels are asked for, and those of the family tell orbits."""
-        return self.kernels and type(self.family).framed is not Family.framed
+        return self.kernels and self.family.tells
 
     def run(
         self,

@@ -5,7 +5,6 @@ disk, and never while a map runs.
 """
 
 from collections.abc import Callable
-from fractions import Fraction
 from functools import reduce
 from typing import Any
 
@@ -46,7 +45,8 @@ def lower(table: Table) -> TableIR:
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols) for component in table.components)
     same = _same_as(table)
-    programs = {} if same else (_fourier(table, symbols) or _pieces(table, symbols)) | _radius(table, symbols)
+    own = {} if same else _conic(table, symbols) or _fourier(table, symbols) or _pieces(table, symbols)
+    programs = {} if same else own | _radius(table, symbols)
     index, start = table.origin
     return TableIR(
         table.name,
@@ -265,6 +265,11 @@ def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     h = flight.harmonics(table.components[0])
     if h is None or max(h) > DEGREE:
         return {}
+    return _harmonic(h, symbols)
+
+
+def _harmonic(h: flight.Harmonics, symbols: list[Symbol]) -> dict[str, Program]:
+    """The programs of a finite Fourier sum."""
     degree = max(h)
 
     def in_nodes(nodes: Any, harmonics: flight.Harmonics) -> flight.Harmonics:
@@ -285,11 +290,22 @@ def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
     def chord(nodes: Any) -> list[Any]:
         ex, ey, bx, by = nodes.inputs
-        ahead = {k: seen_ahead(k, *vectors, (ex, ey)) for k, vectors in in_nodes(nodes, h).items() if k}
+        ahead = {k: flight.seen_ahead(k, *vectors, (ex, ey)) for k, vectors in in_nodes(nodes, h).items() if k}
         return flight.chord_polynomial(ahead, flight.ONE, (bx, by))
 
     programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
     return programs
+
+
+def _conic(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
+    """The programs of an ellipse that is given by its radius about a focus; none of any other table."""
+    whole = table.components[0]
+    rho = whole.radius if len(table.components) == 1 and whole.end - whole.start == 2 * pi else None
+    known = None if rho is None or size(rho) > LONG or levels(rho) > DEEP else flight.about_focus(rho)
+    if known is None:
+        return {}
+    focus = _program(symbols, lambda nodes: [nodes(x) for x in (*known.ahead, known.p, known.size, known.left)])
+    return _harmonic(known.harmonics, symbols) | {"focus": focus}
 
 
 def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
@@ -374,22 +390,6 @@ def _piece(component: Component) -> tuple[str, list[Expr]] | None:
     marks = [cos(middle), sin(middle), sin(half), cos(half)]
     radius = sqrt(square) if circular else S.One
     return "circle" if circular else "ellipse", [*centre, *A, *B, *corner, D, radius, *marks]
-
-
-def seen_ahead(
-    k: int, C: flight.Complex, S: flight.Complex, E: flight.Complex
-) -> tuple[flight.Complex, flight.Complex]:
-    """A harmonic in the frame of the flight, where `E = 1`; of the two vectors only the parts that a chord sees.
-
-    `exp(i*k*m)*conj(M_k)` is a number times `E**(k + 1)` and one times `E**(k - 1)`. With `|E| = 1` used here, a
-    circle's part of a table adds no rounding to the chord polynomial: its products `E*conj(E)` are one.
-    """
-    half = Fraction(1, 2)
-    up = flight.powers(E, k + 1)
-    above = (C[0] - S[1]) * half, (S[0] + C[1]) * -half
-    below = (C[0] + S[1]) * half, (C[1] - S[0]) * half
-    g = [x + y for x, y in zip(flight.times(above, up[k + 1]), flight.times(below, up[k - 1]), strict=True)]
-    return (g[0], 0), (-g[1], 0)
 
 
 def _bound(value: Expr) -> str | None:

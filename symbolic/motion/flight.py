@@ -18,9 +18,10 @@ The pinball map of the unit circle, explicit. Paper: section 3.1.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from fractions import Fraction
+from typing import Any, NamedTuple
 
-from sympy import Expr, I, Pow, S, cos, exp, expand, im, pi, re, simplify, sin, symbols
+from sympy import Dummy, Expr, I, Pow, S, cos, exp, expand, im, pi, re, simplify, sin, sqrt, symbols
 
 from symbolic.tables.geometry import boundary_coefficients
 from symbolic.tables.table import Component, lam, phi, s, theta
@@ -95,6 +96,62 @@ def support(h: Harmonics, k: int, E: Complex) -> Complex:
     """
     (cx, cy), (sx, sy) = h[k]
     return cx * E[0] + cy * E[1], sx * E[0] + sy * E[1]
+
+
+def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Complex]:
+    """A harmonic in the frame of the flight, where `E = 1`; of the two vectors only the parts that a chord sees.
+
+    `exp(i*k*m)*conj(M_k)` is a number times `E**(k + 1)` and one times `E**(k - 1)`. With `|E| = 1` used here, a
+    circle's part of a table adds no rounding to the chord polynomial: its products `E*conj(E)` are one.
+    """
+    half = Fraction(1, 2)
+    up = powers(E, k + 1)
+    above = (C[0] - S[1]) * half, (S[0] + C[1]) * -half
+    below = (C[0] + S[1]) * half, (C[1] - S[0]) * half
+    g = [x + y for x, y in zip(times(above, up[k + 1]), times(below, up[k - 1]), strict=True)]
+    return (g[0], 0), (-g[1], 0)
+
+
+class Focal(NamedTuple):
+    """The ellipse `1/rho = p + size*cos(theta - w)` in its eccentric parameter `E`, counted like `theta - w`."""
+
+    harmonics: Harmonics  # of the parameter `E`
+    ahead: tuple[Expr, Expr]  # cosine and sine of `w`
+    p: Expr
+    size: Expr
+    left: Expr  # `p*p - size*size`
+
+
+def about_focus(rho: Expr) -> Focal | None:
+    """The ellipse with a focus in the origin whose radius is `rho(theta)`; None of anything else, and of a circle.
+
+    With `left = p*p - size*size` the half axes are `p/left` and `1/sqrt(left)`, and the centre is at `-size/left` along
+    the long one. None as well where the direction of that axis depends on a parameter.
+
+    >>> about_focus(1 / (5 + 3 * cos(theta))).harmonics
+    {0: ((-3/16, 0), (0, 0)), 1: ((5/16, 0), (0, 1/4))}
+    >>> about_focus(1 + cos(theta) / 2) is None
+    True
+    """
+    c, s = Dummy(real=True), Dummy(real=True)
+    found = expand(1 / rho, trig=True).xreplace({cos(theta): c, sin(theta): s})
+    if found.has(theta) or not found.is_polynomial(c, s):
+        return None
+    p, q, r = found.subs({c: 0, s: 0}), *(found.coeff(x).subs({c: 0, s: 0}) for x in (c, s))
+    if expand(found - p - q * c - r * s) != 0 or q == r == 0 or (q != 0 and (r / q).free_symbols):
+        return None
+    slope = r / q if q != 0 else S.Zero
+    size = q * sqrt(1 + slope**2) if q != 0 else r
+    x, y = (1 / sqrt(1 + slope**2), slope / sqrt(1 + slope**2)) if q != 0 else (S.Zero, S.One)
+    if size.is_negative:
+        size, x, y = -size, -x, -y
+    free = p.free_symbols | size.free_symbols
+    left = (p - size) * (p + size) if free else expand(p * p - q * q - r * r)
+    if not free and not (p.is_positive and left.is_positive):
+        return None
+    a, b = p / left, 1 / sqrt(left)
+    centre = -x * size / left, -y * size / left
+    return Focal({0: (centre, (S.Zero, S.Zero)), 1: ((a * x, a * y), (-b * y, b * x))}, (x, y), p, size, left)
 
 
 def chord_polynomial(h: Harmonics, E: Complex, B: Complex) -> list[Any]:

@@ -7,9 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, cos, expand, pi, sin, symbols
 
-from numeric.lowering.lower import seen_ahead
 from symbolic import tables
-from symbolic.motion.flight import ONE, chord_polynomial, flight_residual, harmonics, point_at, support
+from symbolic.motion.flight import ONE, chord_polynomial, flight_residual, harmonics, point_at, seen_ahead, support
 from symbolic.tables.table import Component, alpha, theta
 
 

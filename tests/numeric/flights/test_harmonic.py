@@ -2,12 +2,16 @@
 
 import numpy as np
 import pytest
-from sympy import Rational, cos, sin
+from sympy import Interval as Range
+from sympy import Rational, Symbol, cos, sin
 
 from numeric import PinballMap, Status
+from numeric.flights.general import General
 from numeric.kernels.machine import KernelSpec
-from symbolic import tables
+from symbolic import Law, tables
+from symbolic.tables.table import Shape
 from symbolic.tables.table import theta as symbol
+from verification.maps.exact import ExactMap, errors
 
 HERE = np.zeros(24, dtype=np.int64)
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)
@@ -148,3 +152,94 @@ def test_chords_may_lie_far_from_those_of_the_circle():
     assert map.path.startswith("chord")
     assert np.max(np.abs((step.x - x) * vy - (step.y - y) * vx)) <= 1e-12
     assert np.min((step.x - x) * vx + (step.y - y) * vy) > 0
+
+
+CONICS = {  # about the origin: eccentricity 1/4; 999/1000, with the far tip to the left; the same turned
+    "round": "1/(2 + cos(theta)/2)",
+    "comet": "1/(1 + 999*cos(theta)/1000)",
+    "turned": "2/(1 - 999*cos(theta - pi/3)/1000)",
+}
+
+
+@pytest.fixture(params=list(CONICS))
+def conic(request):
+    """A map on arrays, of the contraction given."""
+    table = tables.polar(CONICS[request.param])
+    return lambda lam="0.9", **more: PinballMap(table, lam=lam, kernels=False, **more)
+
+
+def by_definition(map):
+    """The same map with every zero of the flight function bracketed on the radius."""
+    general = General(map.states.boundary)
+    general.formula = map.family.formula
+    map.family = map.states.family = general
+    map.engine = type(map.engine)(map.family, "", map.engine.names, False)
+    return map
+
+
+def test_a_conic_about_the_origin_is_met_in_closed_form_as_exactly_as_its_condition_allows(conic):
+    """From both tips and anywhere; a difference in the radius would cost three digits at the far one."""
+    map = conic()
+    theta, phi = np.array([-3.1415, 3.14, 1.047, -2.0945]), np.array([0.3, -1.2, 1.5, 0.01])
+    own = map.states.enter(HERE[:4], theta, phi, map.law)
+    found = map.engine.run(KernelSpec(map.law, record=True), own, np.full(4, 0.9), map.shape, 1).record[0]
+    matrix = np.abs(map.derivative(theta, phi))
+    place, direction = errors(map, ExactMap(map, 30), own, list(found))
+
+    assert map.family.name == "conic"
+    assert np.all(place <= np.maximum(4, 8 * (1 + matrix[:, 0].sum(axis=-1))))
+    assert np.all(direction <= np.maximum(8, 8 * (1 + matrix[:, 1].sum(axis=-1))))
+    assert np.max(place) <= 8
+    assert np.max(direction) <= 32
+
+
+def test_the_parameter_of_a_conic_is_the_polar_angle_about_its_focus(conic):
+    map, theta = conic(), np.concatenate([np.linspace(-np.pi, np.pi, 400), np.pi - 10.0 ** np.arange(-14, 0)])
+    here, exact = np.zeros(theta.size, dtype=np.int64), ExactMap(map, 30)
+    back = map.states.place(map.states.enter(here, theta, 0 * theta, map.law))[1]
+    gap = np.remainder(back - theta + np.pi, 2 * np.pi) - np.pi
+    frame, speed = map.states.frame(here, theta), map.states.speed(here, theta)
+    curvature = map.states.curvature(here, theta)
+
+    assert np.max(np.abs(gap)) <= 4 * 2.0**-52 * np.pi
+    assert np.max(np.abs(np.arctan2(frame.y, frame.x) - np.arctan2(np.sin(theta), np.cos(theta)))) <= 2.0**-50
+    for i in (0, 57, 200, 333, 402, 411):
+        x, y, dx, dy, ax, ay = map.ir.parts[0].curve(exact.ops, exact.context.mpf(theta[i]))
+        size = exact.context.hypot(dx, dy)
+        condition = 1 + abs((x * dx + y * dy) / (x * x + y * y))  # of the radius, in the angle
+        assert exact.context.hypot(frame.x[i] - x, frame.y[i] - y) <= 2.0**-49 * condition * exact.context.hypot(x, y)
+        assert abs(speed[i] / size - 1) <= 2.0**-48 * condition
+        assert abs(curvature[i] * size**3 / (dy * ax - dx * ay) - 1) <= 2.0**-47 * condition
+
+
+@pytest.mark.parametrize("name", ["round", "turned"])
+def test_derivatives_and_exponents_of_a_conic_are_those_of_the_general_flight(name):
+    """With a law that depends on the place as well, where the two parameters must not be mixed up."""
+    theta, phi = np.array([0.3, -2.0, 1.1]), np.array([0.2, -0.5, 0.9])
+    for law in (Law(), Law("-eta/2 + sin(theta)*cos(eta)/8")):
+        table = tables.polar(CONICS[name])
+        one, other = (PinballMap(table, lam="0.9", law=law, kernels=False) for _ in range(2))
+        other = by_definition(other)
+        a, b = (each.exponents(theta, phi, 4) for each in (one, other))
+
+        assert np.allclose(one.derivative(theta, phi), other.derivative(theta, phi), rtol=1e-9, atol=1e-12)
+        assert np.allclose(a.nu_plus, b.nu_plus, rtol=0, atol=1e-9)
+        assert np.allclose(a.nu_minus, b.nu_minus, rtol=0, atol=1e-9)
+
+
+def test_a_conics_eccentricity_may_be_a_parameter_and_may_vanish():
+    b = Symbol("b", real=True)
+    table = tables.polar(
+        1 / (1 + b * cos(symbol)), "focal", [Shape(b, Range(Rational(-3, 4), Rational(3, 4)), "opens")]
+    )
+    theta, phi = np.array([0.3, -2.0, 3.1]), np.array([0.2, -0.5, 0.9])
+    maps = [PinballMap(table, lam="0.9", kernels=False, b=value) for value in ("-1/2", 0, "1/2")]
+    fixed = PinballMap(tables.polar("1/(1 + cos(theta)/2)"), lam="0.9", kernels=False).step(theta, phi)
+
+    assert len({map.engine.identity for map in maps}) == 1
+    assert not maps[0].family.tells
+    assert maps[0].step(theta + np.pi, phi).theta == pytest.approx(
+        fixed.theta - np.pi * np.sign(fixed.theta), abs=1e-14
+    )
+    assert maps[2].step(theta, phi).theta == pytest.approx(fixed.theta, abs=1e-14)
+    assert maps[1].step(0.3, 0.0).theta == pytest.approx(0.3 - np.pi, abs=1e-15)

@@ -22,7 +22,6 @@ RADII = {
     "star": "1 + cos(5*theta)/4",
     "waves": "1 + cos(40*theta)/2000",
     "peanut": "exp(cos(2*theta)/4)",
-    "conic": "1/(2 + cos(theta)/2)",
     "words": "1 + tanh(cos(3*theta))/5 + atan(sin(theta))/9 + log(2 + sin(theta))/9",
 }
 WORDS = ("sqrt", "exp", "log", "sin", "cos", "sinh", "cosh", "tanh", "atan")
@@ -134,7 +133,9 @@ def test_a_flight_along_an_almost_straight_wall_ends():
 
 def test_a_conic_about_the_origin_is_met_in_one_step():
     """`w` is constant there, so that the bound of the march is the boundary itself: `1/r = 2 + cos(theta)/2`."""
-    map = PinballMap(tables.polar(RADII["conic"]), lam=1, kernels=False)
+    map = PinballMap(tables.polar("1/(2 + cos(theta)/2)"), lam=1, kernels=False)
+    map.family = map.states.family = Polar(map.states.boundary)  # it has a closed form, which is taken otherwise
+    map.engine = type(map.engine)(map.family, "", map.engine.names, False)
     low, high = (1 / (2 + sign / 2) for sign in (1, -1))
     a, c = (low + high) / 2, (high - low) / 2
     theta, phi = anywhere(200, 6)

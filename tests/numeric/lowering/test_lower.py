@@ -7,10 +7,10 @@ import pytest
 from sympy import Float, Rational, Symbol, asin, cos, erf, exp, pi, sin, sqrt, sympify
 
 from numeric.backends.scalars import ScalarBackend
-from numeric.lowering.lower import converted, lower, seen_ahead
+from numeric.lowering.lower import converted, lower
 from numeric.lowering.program import Builder, table_ir
 from symbolic import tables
-from symbolic.motion.flight import ONE, chord_polynomial
+from symbolic.motion.flight import ONE, chord_polynomial, seen_ahead
 from symbolic.tables.geometry import velocity
 from symbolic.tables.table import Component, Table, theta
 

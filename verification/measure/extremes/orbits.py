@@ -221,6 +221,10 @@ RADII = {  # of tables that are not the paper's
     "conic": "1/(2 + cos(theta)/2)",
     "waves": "1 + cos(40*theta)/2000",
 }
+LONG_RADII = RADII | {  # with ellipses whose far tip is 2000 times as far from the origin as the near one
+    "comet": "1/(1 + 999*cos(theta)/1000)",
+    "turned comet": "2/(1 - 999*cos(theta - pi/3)/1000)",
+}
 LAM, OTHERS = "19/20", (0, 1e-300, 1)
 LABELLED, DIGITS, SEED_OF_LABELLED = 24, 50, 11
 
@@ -281,11 +285,11 @@ def scene(name: str, lam: Any = LAM) -> PinballMap:
     """The map of a table by name, at the shape that is measured."""
     if name in SCENES:
         return PinballMap(name, lam=lam, **SCENES[name])
-    return PinballMap(tables.polar(RADII[name], name=name), lam=lam)
+    return PinballMap(tables.polar(LONG_RADII[name], name=name), lam=lam)
 
 
 def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` balls of every kind on a table of `RADII`."""
+    """`count` balls of every kind on a table of `LONG_RADII`."""
     rng, map = np.random.default_rng(seed), scene(name)
     side, zero = rng.choice([-1, 1], count), np.zeros(count, dtype=np.int64)
     tiny = 10.0 ** rng.uniform(-12, -1, count)

@@ -29,9 +29,11 @@ quick: $(VENV)/test.stamp
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp
 	$(BIN)/python -m pytest -q tests/browser
 
-# The certificates of the report, by the second reader: Python alone, nothing of this package. A few minutes.
+# The certificates of the report, by the second reader: Python alone, nothing of this package. A few minutes. Then
+# whether each number that report and pages call certified has one.
 check-all:
 	@$(PYTHON) -I -S certificates/check.py certificates/*.json
+	@$(PYTHON) -S certificates/printed.py --prove
 
 # The theorems in Coq. Nothing is installed: where Coq is missing, one sentence says what is needed.
 formal:

@@ -23,6 +23,8 @@ from verification.named.locate import certify, locate
 
 Proof = Callable[[], Any]
 HERE = Path(__file__).parent
+REPORTS = HERE.parent / "docs" / "reports"
+NINE = (-2.2794, 0.0999, 2.9941, 2.5028, 1.9891, 1.3928, 0.7008, -0.1020, -1.0494)  # near a cycle at lam = 9/10
 DIGITS = 20
 LONG = {6: 60}  # the second reader follows a cycle all round, and needs two digits for each bounce of a long one
 LAW = (
@@ -50,6 +52,34 @@ def flip(table: Table, start: list[float], free: str, lam: Expr | None = None, m
     return lambda: certify(problem, start, DIGITS)
 
 
+def doubling_beside(period: int, member: int) -> Proof:
+    """Of a cascade beside the paper's, which bears chaos of its own."""
+
+    def proof() -> Any:
+        from verification.paper.egg.egg import side_cascade
+
+        claim = side_cascade(period)[member].claim
+        start = [float(x.mid()) for x in claim.centre]
+        return certify(claim.problem, start, int(2.5 * len(start)))
+
+    return proof
+
+
+def kept(report: str, name: str) -> Proof:
+    """What a report of docs/reports has a certificate of, to as many digits as the second reader needs."""
+
+    def proof() -> Any:
+        blocks = (block for part in json.loads((REPORTS / report).read_text())["sections"] for block in part["blocks"])
+        given = next(block["document"] for block in blocks if block["kind"] == "certificate" and block["name"] == name)
+        start = [int(m) * 2.0 ** int(e) for m, e in given["centre"]]
+        period = len(given["components"])
+        table = tables.polar(given["scene"]["polar"])
+        problem = Problem(table, (0,) * period, BifurcationKind.FLIP, "lam", None, Closure(1))
+        return certify(problem, start, int(2.5 * period))
+
+    return proof
+
+
 def family(radius: str, parameter: str, span: str) -> Table:
     """A table with a free parameter, over its range."""
     return Scene.of({"polar": radius, "shape": {parameter: span}}).family
@@ -71,6 +101,12 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         "cardioid": cycle(tables.cardioid, [pi / 3, -pi / 3], THIRD),
         "egg-triangle": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF),
         "five-waves": cycle(tables.polar("1 + cos(5*theta)/40"), [0.0, pi], THIRD),
+        "cardioid-period-9": cycle(tables.cardioid, [*NINE], Rational(9, 10)),
+        "egg-period-3": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], Rational(3937, 10_000)),
+        **{f"beside-{12 * 2**k}": doubling_beside(12, k) for k in range(2)},
+        **{f"beside-{8 * 2**k}": doubling_beside(8, k) for k in range(2)},
+        "limacon-12": kept("limacon.json", "cascade-3-12-0"),
+        "limacon-24": kept("limacon.json", "cascade-3-24-0"),
         "marked-point": cycle(tables.polar("1 + cos(5*theta)/40", "polar", (), [Mark("m", 0, HALF)]), [0.0, pi], THIRD),
         "law-in-all-words": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF, LAW),
         "radius-in-words": cycle(tables.polar(RADIUS), [pi / 2, -pi / 2], THIRD),

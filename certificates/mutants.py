@@ -25,7 +25,10 @@ import check
 HERE = Path(__file__).parent
 KEPT = HERE.parent / "report" / "mutants.json"
 # short cycles: a thousand mutants of each are a matter of minutes
-SAMPLES = ("minor-axis", "five-waves", "saddle-node", "lambda-c", "alpha-tilde", "alpha-hat", "lambda-star", "phi-star")
+SAMPLES = (
+    *("minor-axis", "five-waves", "saddle-node", "lambda-c", "alpha-tilde", "alpha-hat", "lambda-star", "phi-star"),
+    *("law-in-all-words", "free-parameter", "own-mirror", "marked-point"),  # tables and laws of one's own
+)
 TOUCH = "boundary-crisis"  # of the kind of its own; the damage to manifolds and orbit stands for that to bounces
 Document = dict[str, Any]
 NAMES = (
@@ -55,6 +58,9 @@ NUMBERS = (
     "__import__('os')",
     "1#2",
 )
+
+
+FUNCTIONS = ("sin", "cos", "tan", "atan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "abs")
 
 
 def digit(given: Document, dice: random.Random) -> None:
@@ -108,6 +114,21 @@ def scene(given: Document, dice: random.Random) -> None:
         said["K"] = dice.choice((2, 4, 5, 0, "3"))
     else:
         said["lam"] = dice.choice(NUMBERS)
+
+
+def formula(given: Document, dice: random.Random) -> None:
+    """A digit, a sign or a word of one of the scene's own formulas; or a marked point."""
+    said = given["scene"]
+    key = dice.choice([key for key in ("law", "polar", "undefined", "shape") if key in said] or ["law"])
+    if key == "undefined":
+        said[key][0][dice.choice(("component", "theta"))] = dice.choice((0, 1, "0", "pi", "-pi", "3*pi", "x", "1/2"))
+        return
+    text = said["shape"].get("b", "0..1") if key == "shape" else said.get(key, "-lam*eta")
+    places = list(re.finditer(r"[a-z]{3,}(?=\()|\d|[-+*/]|\.\.", text))
+    place = dice.choice(places)
+    kind = next(kind for kind in (FUNCTIONS, "0123456789", "+-*/", ("..",)) if place[0] in kind)
+    text = text[: place.start()] + dice.choice(kind) + text[place.end() :]
+    said[key] = {"b": text} if key == "shape" else text
 
 
 def about(given: Document, dice: random.Random) -> None:
@@ -181,15 +202,17 @@ DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
 )  # fmt: skip
 
 
+OWN = (*DAMAGE, formula, formula, formula, formula)
 TOUCHING = (digit, exponent, bound, moved, manifold, manifold, manifold, swapped, scene, item, words, entry)
 
 
 def mutant(name: str, given: Document, k: int) -> Document:
     """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
     dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
-    damage = dice.choice(TOUCHING if given["kind"] == "tangency" else DAMAGE)
+    own = {"law", "polar"} & {*given["scene"]}
+    damage = dice.choice(TOUCHING if given["kind"] == "tangency" else OWN if own and name != "five-waves" else DAMAGE)
     damage(found, dice)
-    return repaired(found) if damage in (scene, about) and dice.random() < 0.5 else found
+    return repaired(found) if damage in (scene, formula, about) and dice.random() < 0.5 else found
 
 
 def repaired(given: Document) -> Document:
@@ -239,12 +262,22 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
     (name, value, error), (known, true, small) = told(line), told(first)
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
+    keys = ("law", "polar", "undefined", *(("shape",) if "polar" in original["scene"] else ()))
+    if any(given["scene"].get(key) != original["scene"].get(key) for key in keys):
+        return proved_by_the_package(given)
     same = all(given[key] == original.get(key) for key in ("kind", "scene", "free", *({"mirror"} & set(given))))
     if not same:  # a cycle that the damaged file names rightly: of the same place in another scene
         return given["kind"] == "cycle" and name != known
     ends = [check.exact(pair) for pair in original["centre"]]  # an order of the same bounces is the same cycle
     last = true if original["free"] else min(ends, key=lambda x: abs(x - value))
     return name == known and abs(value - last) <= error + small
+
+
+def proved_by_the_package(given: Document) -> bool:
+    """What the reader in balls says of a scene with another formula: it shares nothing with the second."""
+    from verification.named.files import checked
+
+    return checked(given).certified
 
 
 def judged(name: str, k: int, original: Document, first: str) -> str:

@@ -30,5 +30,10 @@ def mutants(check) -> ModuleType:
 
 
 @pytest.fixture(scope="session")
+def printed(check) -> ModuleType:
+    return loaded("printed")
+
+
+@pytest.fixture(scope="session")
 def make() -> ModuleType:
     return loaded("make")

@@ -11,6 +11,7 @@ from flint import arb
 from sympy import Rational
 
 from verification.named import files
+from verification.paper.claims import folder
 from verification.proofs.manifolds.known import CONTACTS
 from verification.proofs.manifolds.proof import ITEMS, Proof, TangencyClaim, TangencyProof
 
@@ -35,7 +36,7 @@ def test_committed_files_are_of_the_format(path):
 
 
 def test_the_folder_has_the_certificates_that_its_script_writes(make):
-    assert [path.stem for path in FILES] == sorted(make.CERTIFICATES)
+    assert {path.stem for path in FILES} == {*make.CERTIFICATES}
 
 
 def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
@@ -45,10 +46,50 @@ def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
     said = [name.removesuffix(".json") for row in results for name in re.findall(r"`([\w.-]+)`", row[4])]
     named = {name if name[0] != "-" else f"doubling{name}" for name in said}
     examples = {"minor-axis", "cardioid", "egg-triangle", "five-waves"}  # a cycle each, and no result
+    examples |= {"cardioid-period-9", "egg-period-3", "beside-8", "beside-12", "beside-16", "beside-24", "limacon-12"}
+    examples |= {"limacon-24"}  # of claims of the report, and of a report of a table of one's own
     examples |= {"law-in-all-words", "radius-in-words", "free-parameter", "marked-point", "own-mirror"}
 
     assert len(results) - 2 >= 20  # without the header
     assert named - {"lam", "a"} == {path.stem for path in FILES} - examples
+
+
+def test_every_number_that_pages_and_reports_call_certified_has_a_certificate(printed, monkeypatch, capsys, tmp_path):
+    """A report of the paper is read where there is one; here one is made up, with a right and a wrong number."""
+    monkeypatch.setattr(printed.sys, "argv", ["printed.py"])
+    monkeypatch.setattr(printed, "REPORT", tmp_path / "report.json")
+    assert printed.main() == 0
+    assert capsys.readouterr().out.endswith(" numbers, 0 without\n")
+
+    said = [
+        ("cuspless.lambda_star", "0.0712172452489160"),
+        ("egg.doubling.4", "0.388761023460843"),
+        ("new.claim", None),
+    ]
+    claims = [{"id": name, "value": value, "method": "certified"} for name, value in said]
+    (tmp_path / "report.json").write_text(json.dumps({"claims": claims}))
+    assert printed.main() == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "egg.doubling.4: no certificate holds 0.388761023460843"
+    assert lines[1] == "new.claim: no certificate holds a sentence that says certified"
+    assert lines[2].endswith(" numbers, 2 without")
+
+
+def test_a_printed_number_is_held_within_one_of_its_last_digit(printed):
+    given = json.loads((FOLDER / "lambda-c.json").read_text())
+
+    assert printed.holds(given, "0.09340")
+    assert printed.holds(given, "0.0934003354313602")
+    assert not printed.holds(given, "0.0934003354313604")
+    assert printed.holds(json.loads((FOLDER / "phi-star.json").read_text()), "-0.02898")
+
+
+def test_the_claims_that_are_said_to_have_certificates_are_claims(printed):
+    texts = [path.read_text() for path in (ROOT / "verification" / "paper").rglob("*.py")]
+    claims = {name for text in texts for row in folder.JUDGED.findall(text) for name in folder.QUOTED.findall(row)}
+
+    assert {*printed.CLAIMS, *printed.WITHOUT, *printed.ALSO} <= claims
+    assert {name for files in printed.CLAIMS.values() for name in files} <= {path.stem for path in FILES}
 
 
 @pytest.mark.parametrize("key", ["name", "statement", "scene", "radius", "checks", "kind"])

@@ -1,0 +1,153 @@
+"""Is there a certificate for each number that is printed as certified? `python certificates/printed.py [--prove]`.
+
+Read are README.md, the pages of docs, the reports kept in docs/reports with the certificates inside them, and, where
+`pinball verify` has left one, report/report.json. A number has a certificate when one of the right place in the list
+below, or of the same page, holds it within the digits that are printed. `--prove` has the second reader prove those
+inside of reports; `make check-all` proves the files of this folder as well. Exit status 1 where something is missing.
+"""
+
+import json
+import re
+import sys
+from collections.abc import Iterator
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import check
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+REPORT = ROOT / "report" / "report.json"
+SECOND = r"`([\w.-]+\.json|-\d)`"  # in the table of docs/trust.md: `doubling-3.json`, `-4`
+DOUBLINGS = tuple(f"doubling-{n}" for n in range(3, 7))
+CLAIMS: dict[str, tuple[str, ...]] = {  # of the paper's report: what says `certified`, or has such a value
+    "cardioid.contraction_implies": ("cardioid-period-9",),
+    "cuspless.coexistence": ("lambda-c",),
+    "cuspless.no_stable_period4": ("lambda-c",),
+    "cuspless.unstable_period4": ("lambda-c",),
+    "cuspless.corner_orbit": ("lambda-star",),
+    "cuspless.lambda_star": ("lambda-star",),
+    "cuspless.lambda_star_body": ("lambda-star",),
+    "cuspless.lambda_star_caption": ("lambda-star",),
+    "cuspless.phi_star": ("phi-star",),
+    "cuspless.lambda_c": ("lambda-c",),
+    "cuspless.lambda_c_caption": ("lambda-c",),
+    "cuspless.lambda_c_digits": ("lambda-c",),
+    "egg.saddle_node": ("saddle-node",),
+    "egg.period3_end_caption": ("saddle-node",),
+    "egg.period3_lambda_c": ("saddle-node",),
+    "egg.no_period3_caption": ("saddle-node",),
+    **{f"egg.doubling.{n}": (f"doubling-{n}",) for n in range(3, 7)},
+    "egg.cascade": DOUBLINGS,
+    "egg.figure_attractors": ("doubling-4",),
+    "egg.exponent_period3": ("egg-period-3",),
+    "egg.noise": ("beside-12", "beside-24", "beside-8", "beside-16"),
+}
+WITHOUT: dict[str, str] = {  # and why
+    "ellipse.lambda_minus_5": "a closed form, by algebra",
+    "egg.alpha_tilde_0": "a closed form, by algebra",
+    "egg.alpha_tilde_1": "a closed form, by algebra",
+    "cardioid.slap_expanding": "a minimum over a set, by a cover in balls",
+    "cardioid.slap_expanding_caption": "a minimum over a set, by a cover in balls",
+    "cardioid.slap_second_derivative": "a minimum over a set, by a cover in balls",
+}
+TOO_LONG = {  # cycles that the second reader does not follow: `pinball check` proves what the report has of them
+    "0.733045076874652845644": 48,
+    "0.733048334966163011932": 96,
+    "0.733049033237568648957": 192,
+}
+FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enough digits for the second reader
+ALSO: dict[str, str] = {  # parts of a sentence that have none here; `pinball locate ... --certificate FILE` writes one
+    "egg.cascade": "doublings 7 and 8: cycles of 64 and 128 bounces take the second reader too long",
+    "egg.exponent_period32": "exponents of cycles of 32 bounces, at contractions with no name",
+    "egg.isolated_regions": "doublings of periods 48, 8, 16 and 32, at the end of cascades",
+}
+
+
+def value(given: dict[str, Any]) -> Fraction:
+    """What a certificate is of: its free unknown, of `phi-star` that of the proved line, otherwise the last bounce."""
+    if given["name"] == "phi-star":
+        return Fraction(re.search(r"= (-?[\d.]+)", check.checked(given))[1])
+    return check.exact(given["centre"][-1])
+
+
+def holds(given: dict[str, Any], printed: str) -> bool:
+    """Do the printed digits differ from the certificate's value by one of the last of them at most?"""
+    last = Fraction(10) ** Decimal(printed).as_tuple().exponent
+    return abs(value(given) - Fraction(printed)) <= last
+
+
+def committed() -> dict[str, dict[str, Any]]:
+    """The certificates of this folder."""
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(HERE.glob("*.json"))}
+
+
+def kept_reports() -> Iterator[tuple[str, list[dict[str, Any]], list[str]]]:
+    """Each report of docs/reports: its name, the certificates inside it, and the numbers it calls proved."""
+    for path in sorted((ROOT / "docs" / "reports").glob("*.json")):
+        blocks = [b for part in json.loads(path.read_text())["sections"] for b in part["blocks"]]
+        inside = [block["document"] | {"schema": 3} for block in blocks if block["kind"] == "certificate"]
+        cells = [(row[0], cell) for block in blocks for row in block.get("rows", ()) for cell in row]
+        told = [cell["value"] for name, cell in cells if isinstance(cell, dict) and is_certified(name, cell)]
+        yield path.stem, inside, told
+
+
+def is_certified(row: Any, cell: dict[str, Any]) -> bool:
+    """Is a cell of a report a proved number with an error? A perimeter is an integral, and has no certificate."""
+    return cell.get("known") == "proved" and bool(cell.get("error")) and row != "perimeter"
+
+
+def of_pages() -> Iterator[tuple[str, str]]:
+    """Page and number of each line that ends in `(certified)`."""
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
+        for match in re.finditer(r"= (-?[\d.]+) \+- \S+ +\(certified", path.read_text(encoding="utf-8")):
+            yield str(path.relative_to(ROOT)), match[1]
+
+
+def of_trust() -> Iterator[tuple[str, str]]:
+    """File and number of each row of docs/trust.md that has both, in the order in which it has them."""
+    for row in (line.split("|") for line in (ROOT / "docs" / "trust.md").read_text(encoding="utf-8").splitlines()):
+        if len(row) == 8 and (numbers := re.findall(r"-?0\.\d{5}", row[2])):
+            names = [name.removesuffix(".json") for name in re.findall(SECOND, row[4])]
+            full = [name if name[0] != "-" else names[0].rpartition("-")[0] + name for name in names]
+            yield from zip(full, numbers, strict=True) if full else ()
+
+
+def of_claims(path: Path) -> Iterator[tuple[str, str, str]]:
+    """Claim, file and number, or what is missing instead of a file, of a report of the paper."""
+    for claim in json.loads(path.read_text(encoding="utf-8"))["claims"]:
+        name, said = claim["id"], " ".join(str(claim.get(key)) for key in ("method", "derived", "erratum"))
+        if claim["value"] is None and "certified" not in said:
+            continue
+        if name not in {**CLAIMS, **WITHOUT, **ALSO}:
+            yield name, "", str(claim["value"] or "a sentence that says certified")
+        for file in CLAIMS.get(name, ()) if claim["value"] and "exponent" not in name else ():
+            yield name, file, claim["value"].rstrip("0")
+
+
+def main() -> int:
+    """One line for each number without a certificate, and the counts."""
+    files, missing, count = committed(), [], 0
+    found = [(page, number, [*files.values()]) for page, number in of_pages()]
+    found += [("docs/trust.md", number, [files[name]] if name in files else []) for name, number in of_trust()]
+    for page, inside, told in kept_reports():
+        short = [given for given in inside if len(given["components"]) <= FOLLOWED]
+        here = [*short, *files.values()]
+        found += [(f"docs/reports/{page}.json", number, here) for number in told if number not in TOO_LONG]
+        for given in short if "--prove" in sys.argv else ():
+            sys.stdout.write(f"{page}: {check.checked(given).splitlines()[0]}\n")
+    for claim, file, number in of_claims(REPORT) if REPORT.exists() else ():
+        found.append((claim, number, [files[file]] if file in files else []))
+    for place, number, given in found:
+        count += 1
+        if not any(holds(each, number) for each in given):
+            missing.append(f"{place}: no certificate holds {number}")
+    missing += [f"{name}.json is missing" for each in CLAIMS.values() for name in each if name not in files]
+    sys.stdout.write("".join(f"{line}\n" for line in missing) + f"{count} numbers, {len(missing)} without\n")
+    return 1 if missing else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

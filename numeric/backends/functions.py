@@ -238,27 +238,6 @@ class Series(NamedTuple):
 CLOSED = Series()
 
 
-def waves(ops: Backend[N, M], series: Series, numbers: Sequence[N], u: Pair[N], theta: N) -> N:
-    """`offset + mean*theta + sum_k a_k*sin(k*theta) + b_k*(1 - cos(k*theta))` at `u = exp(i*theta)`, by Clenshaw."""
-    c, s = u
-    for bit in f"{series.step:b}"[1:]:
-        c, s = squared((c, s))
-        c, s = times((c, s), u) if bit == "1" else (c, s)
-    sines, rises = numbers[2 : 2 + series.terms], numbers[2 + series.terms :]
-
-    def backwards(coefficients: Sequence[N]) -> Pair[N]:
-        one, two = coefficients[-1], ops.number(0.0)
-        for a in coefficients[-2::-1]:
-            one, two = (c + c) * one + (a - two), one
-        return one, two
-
-    wave = s * backwards(sines)[0]
-    if rises:
-        one, two = backwards(rises)
-        wave = wave + ((sum(rises[1:], start=rises[0]) + two) - c * one)
-    return numbers[1] * theta + wave + numbers[0]
-
-
 TOLERANCE = 2.0**-27  # of the last Newton correction: the error left is its square
 ENOUGH = 200  # passes of the bracketed loop, of which every second one at worst halves the bracket
 

@@ -1,7 +1,7 @@
 """What a family of tables is: which tables it serves, fields of state, a flight, a reflection, and the tangent map.
 
 A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. What it must define is
-abstract there; the other methods have a general answer, from the table's `Boundary`.
+abstract there; the others have a general answer, from the table's `Boundary`.
 
 Everything here runs on any arithmetic of `numeric.backends`. A *law* is `slap` (lam = 0, the exit
 is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.
@@ -184,8 +184,6 @@ class Family(ABC):
         """What kernels depend on besides the table's programs and this package's text."""
         return ""
 
-    # ---- between people's coordinates and fields
-
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Points and unit tangents; a closed form without cancellation where there is one."""
         return self.boundary.frame(component, theta)
@@ -236,8 +234,8 @@ class Family(ABC):
         return None
 
     def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
-        """Arc length at position fields, where kernels tell it: from the sum over a whole turn of `theta`."""
-        return plane.waves(ops, how, numbers, (position[0], position[1]), theta)
+        """As `arclength`, with its offset, at position fields; beside `framed`."""
+        raise NotImplementedError(self.name)
 
     def elliptic(self) -> float | None:
         """The parameter `m` for which arc length from `theta = 0` is the elliptic integral `E(theta | m)`, if any."""

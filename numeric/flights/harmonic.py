@@ -8,6 +8,7 @@ focus. Its flight is the ellipse's, in the eccentric parameter `E`; people are t
 and angles from the direction of `Q`, `tan(theta/2) = sqrt((1 + e)/(1 - e))*tan(E/2)`.
 """
 
+from collections.abc import Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -57,6 +58,30 @@ class Harmonic(Family):
         square = plane.dot((d[0], d[1]), (d[0], d[1]))
         rate = ops.sqrt(square)
         return rate, plane.cross((a[0], a[1]), (d[0], d[1])) / (square * rate)
+
+    def unit_of_theta(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
+        """`exp(i*theta)` at position fields."""
+        return position[0], position[1]
+
+    def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
+        """`offset + mean*theta + sum_k a_k*sin(k*theta) + b_k*(1 - cos(k*theta))`, by Clenshaw's rule."""
+        u = c, s = self.unit_of_theta(ops, position)
+        for bit in f"{how.step:b}"[1:]:
+            c, s = plane.squared((c, s))
+            c, s = plane.times((c, s), u) if bit == "1" else (c, s)
+        sines, rises = numbers[2 : 2 + how.terms], numbers[2 + how.terms :]
+
+        def backwards(coefficients: Sequence[N]) -> Pair[N]:
+            one, two = coefficients[-1], ops.number(0.0)
+            for a in coefficients[-2::-1]:
+                one, two = (c + c) * one + (a - two), one
+            return one, two
+
+        wave = s * backwards(sines)[0]
+        if rises:
+            one, two = backwards(rises)
+            wave = wave + ((sum(rises[1:], start=rises[0]) + two) - c * one)
+        return numbers[1] * theta + wave + numbers[0]
 
     def landed(self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N]) -> Landing[N]:
         """The landing at `u` of a particle that flies along `v`."""
@@ -188,10 +213,13 @@ class Conic(Ellipse):
         x, y = half(ops, plane.dot(focus.ahead, n), plane.exact_cross(ops, focus.ahead, n))
         return list(plane.unit(ops, plane.squared(plane.normalised(ops, (focus.ratio * x, y)))))
 
-    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
+    def unit_of_theta(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         focus = self.focus(ops)
         x, y = half(ops, position[0], position[1])
-        n = plane.times(focus.ahead, plane.squared(plane.normalised(ops, (x, focus.ratio * y))))
+        return plane.times(focus.ahead, plane.squared(plane.normalised(ops, (x, focus.ratio * y))))
+
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
+        n = self.unit_of_theta(ops, position)
         return ops.number(0.0), ops.atan2(n[1], n[0])
 
     def _seen(self, theta: Array) -> tuple[Array, Array, Pair[Array]]:

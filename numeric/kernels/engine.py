@@ -200,6 +200,13 @@ class Course:
         self.state[self.own : -len(START)] = 0.0  # no outcome yet
         return self
 
+    def restore(self, rows: Array) -> "Course":
+        """Goes on from a state."""
+        self.state[: len(rows), : self.count] = rows
+        self.state[: len(rows), self.count :] = rows[:, -1:]
+        self.begun = True
+        return self
+
     @property
     def rows(self) -> dict[str, Array]:
         """The rows of the state, by name."""

@@ -2,11 +2,17 @@
 
 from . import sampling
 from .map import PinballMap
+from .orbits import PIECE, Course
 from .sampling import GENERIC, Growth, Starts, boundary, interior_starts, phase_grid, phase_starts
-from .states import Exponents, Orbit, Slap
+from .states import MEANINGS, STATUSES, UNITS, Exponents, Orbit, Slap, counted
 
 __all__ = [
     "GENERIC",
+    "MEANINGS",
+    "PIECE",
+    "STATUSES",
+    "UNITS",
+    "Course",
     "Exponents",
     "Growth",
     "Orbit",
@@ -14,6 +20,7 @@ __all__ = [
     "Slap",
     "Starts",
     "boundary",
+    "counted",
     "interior_starts",
     "phase_grid",
     "phase_starts",

@@ -78,8 +78,33 @@ class Course:
         if np.any(code):
             self._stopped(code, lost, bounces, out, made)
         self.done += bounces
-        self.last = {name: values[-1] for name, values in out.items()} if rows else self.last
+        self.last = {name: values[-1].copy() for name, values in out.items()} if rows and self.keep else self.last
         return self._chosen(out, made)
+
+    def saved(self) -> Array:
+        """All that the rest of the orbit depends on besides its start: rows of numbers, one for each particle."""
+        if self.kernels:
+            known = [kernel.rows for kernel in self.kernels.values() if kernel is not None]
+            own = [np.concatenate([rows[name] for rows in known]) for name in known[0]]
+        else:
+            own = [*self.own, *self.rest]
+        first = self._first()
+        return np.array([self.where, self.theta, self.phi, self.bad, *own, *(first[name] for name in self.needed)])
+
+    def restore(self, saved: Array, done: int) -> None:
+        """Goes on from what was `saved` after so many bounces."""
+        own, told = saved[4 : len(saved) - len(self.needed)], saved[len(saved) - len(self.needed) :]
+        self.where, self.theta, self.phi, self.bad, self.done = saved[0].astype(int), saved[1], saved[2], saved[3], done
+        self.bad = self.bad.astype(np.int64)
+        kinds = {"component": np.int64}
+        self.last = {name: row.astype(kinds.get(name, np.float64)) for name, row in zip(self.needed, told, strict=True)}
+        count = len(self.map.family.fields(self.law))
+        self.own, self.rest = list(own[:count]), list(own[count:])
+        self.code = self.rest[0].astype(np.int64) if self.rest else self.code
+        for left in range(0, self.lam.size, SIDE_BY_SIDE):
+            part = slice(left, left + SIDE_BY_SIDE)
+            if (kernel := self._kernel(part, None)) is not None:
+                self.kernels[left] = kernel.restore(own[:, part])
 
     # ---- within
 

@@ -2,6 +2,7 @@
 
 from . import fields
 from .fields import attractors_of, basins, bifurcation, egg, parameter_space
+from .orbits import record
 from .run import UnfinishedError, on_threads
 from .store import Memory
 from .sweep import Array, Cost, Measured, Sweep, cores, cost, floor_of, map_of, measured, text_of, versions
@@ -25,6 +26,7 @@ __all__ = [
     "measured",
     "on_threads",
     "parameter_space",
+    "record",
     "text_of",
     "versions",
 ]

@@ -66,8 +66,8 @@ class Stored:
 
         self.sweep, self.path = sweep, path
         with zarr.config.set({"array.write_empty_chunks": True}):
-            group = zarr.open_group(_whole_files()(path), mode="r+")
-            self.arrays: dict[str, Any] = {field.name: group[field.name] for field in sweep.fields}
+            self.group: Any = zarr.open_group(_whole_files()(path), mode="r+", use_consolidated=False)
+            self.arrays: dict[str, Any] = {field.name: self.group[field.name] for field in sweep.fields}
 
     def missing(self) -> list[Index]:
         """The parts that are not there, or not whole; a warning names files that are there and damaged."""

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from rich.console import Console
 
+    from numeric import PinballMap
+
 
 LARGEST = 1 << 26  # bytes of a sweep's results that are written as JSON
 PATIENCE = 2.0  # seconds before a progress bar appears
@@ -174,6 +176,7 @@ HOMES = {  # commands that share a module
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}
+EXTRAS["pyarrow"] = "table"
 EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
 LONGEST = 600  # characters of a sentence; a reader sees the end of it
 
@@ -324,6 +327,33 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
     labels = {str(key): _read(value) for key, value in found.attrs.items()}
     whole = {**labels, "coords": coords, "fields": fields}
     return whole if store is None else {**whole, "store": str(store)}
+
+
+COLUMNS = ("component", "theta", "s", "x", "y", "eta", "phi", "code")
+
+
+def table(map: "PinballMap", start: tuple[float, float, int], bounces: int, path: Path) -> str:
+    """Writes an orbit of one particle, a row for each bounce, in the format of the name; the status of the last one."""
+    import numpy as np
+
+    from numeric.pinball.states import STATUSES
+
+    theta, phi, component = start
+    if path.suffix == ".zarr":
+        from numeric.sweeps.orbits import record
+
+        code = record(map, path, theta, phi, bounces, component, fields=COLUMNS).code.values[-1, 0]
+    elif path.suffix in (".npz", ".parquet"):
+        arrow: Any = import_module("pyarrow") if path.suffix == ".parquet" else None
+        columns: dict[str, Any] = map.orbit(theta, phi, bounces, component, fields=COLUMNS)
+        if path.suffix == ".npz":
+            np.savez(path, **columns)
+        else:
+            import_module("pyarrow.parquet").write_table(arrow.table(columns), path)
+        code = columns["code"][-1]
+    else:
+        raise ValueError(f"--out {path}: accepted: a name that ends in .npz, .parquet or .zarr")
+    return str(STATUSES[code].name.lower())
 
 
 def _read(value: Any) -> Any:

@@ -70,6 +70,7 @@ def lengths(map):
     return length
 
 
+CONIC = tables.polar(1 / (2 + cos(theta) / 2), name="conic")
 TILTED = tables.polar(1 + cos(theta) / 5 + sin(2 * theta) / 40, name="tilted")
 
 
@@ -83,6 +84,7 @@ TILTED = tables.polar(1 + cos(theta) / 5 + sin(2 * theta) / 40, name="tilted")
         *(PinballMap("egg", lam=0.9, alpha=alpha) for alpha in ("0", "0.08", "0.1")),
         PinballMap("egg", lam=0.9, K=5, alpha="0.03"),
         PinballMap(TILTED, lam=0.9),
+        PinballMap(CONIC, lam=0.9),
     ],
     ids=lambda map: f"{map.ir.table}{map.shape}",
 )

@@ -2,16 +2,21 @@
 
 import errno
 import os
+import tracemalloc
 
 import numpy as np
 import pytest
 import xarray as xr
+from sympy import Rational, cos
 
+from numeric import PinballMap
 from numeric.sweeps.fields import bifurcation, parameter_space
+from numeric.sweeps.orbits import memory, record
 from numeric.sweeps.run import UnfinishedError, run
 from numeric.sweeps.store import opened
 from numeric.sweeps.sweep import Axis, Field, Sweep, cost, text_of
-from symbolic import Scene
+from symbolic import Scene, tables
+from symbolic.tables.table import theta
 
 TIMES = Axis("x", np.arange(7.0), "1", "first factor", 3), Axis("y", np.arange(5), "1", "second factor", 2)
 
@@ -209,3 +214,68 @@ def test_the_count_of_chaotic_orbits_is_the_paper_s_picture():
 
     assert np.array_equal(found.chaotic.values > 0, [[False] * 3, [False, True, True]])
     assert np.all(found.nu_max.values >= found.nu_min.values)
+
+
+class StoppedError(Exception):
+    """Somebody pulled the plug."""
+
+
+WITHOUT_A_KERNEL = tables.polar(1 + Rational(3, 5) * cos(theta), name="limacon")
+
+
+@pytest.mark.parametrize(
+    "map",
+    [
+        PinballMap("cuspless", lam=0.8),
+        PinballMap("cardioid", lam=[[0.2, 0.9, 1.0]]),
+        PinballMap("circle", lam=0.6, kernels=False),
+        PinballMap(WITHOUT_A_KERNEL, lam=0.9),
+    ],
+    ids=lambda map: map.ir.table,
+)
+def test_an_orbit_that_was_stopped_goes_on_to_the_same_bits(tmp_path, map):
+    start, stop = ([[0.5, 0.7, 2.0]], 0.25), 2  # on the cardioid the first one flies into the cusp
+    asked = {"fields": ("s", "theta", "eta", "code"), "every": 2}
+
+    def pulled(done, pieces):
+        assert pieces == 4
+        if done == stop:
+            raise StoppedError
+
+    with pytest.raises(StoppedError):
+        record(map, tmp_path / "orbit", *start, 30, piece=12, tick=pulled, **asked)
+    made = []
+    found = record(map, tmp_path / "orbit", *start, 30, piece=12, tick=lambda *at: made.append(at), **asked)
+    whole = map.orbit(*start, 30, **asked)
+
+    assert made == [(i, 4) for i in range(stop + 1, 5)]
+    assert found.bounce.values.tolist() == list(range(0, 31, 2))
+    assert "checkpoint" not in found
+    for name in asked["fields"]:
+        assert np.array_equal(found[name].values, whole[name][:, 0], equal_nan=name == "eta")
+
+
+def test_a_store_takes_no_other_orbit_and_is_made_whole_when_a_file_of_it_is_damaged(tmp_path):
+    egg, path = PinballMap("egg", lam=0.5, alpha=0.08), tmp_path / "orbit"
+    whole = record(egg, path, [0.1, 0.2], 0.3, 40, piece=20).theta.values
+    with pytest.raises(ValueError, match="holds a sweep with"):
+        record(egg, path, [0.1, 0.25], 0.3, 40, piece=20)
+    with pytest.raises(ValueError, match="holds a sweep with"):
+        record(egg.at(0.6), path, [0.1, 0.2], 0.3, 40, piece=20)
+    (path / "theta" / "c" / "1" / "0").write_bytes(b"nothing")
+    with pytest.warns(UserWarning, match="damaged"):
+        again = record(egg, path, [0.1, 0.2], 0.3, 40, piece=20)
+
+    assert np.array_equal(again.theta.values, whole)
+
+
+def test_the_memory_that_writing_an_orbit_takes_is_said_before(tmp_path):
+    egg, piece, names = PinballMap("egg", lam=0.5, alpha=0.08), 1 << 17, ("theta", "phi", "s")
+    start = np.linspace(-3, 3, 500), 0.3
+    record(egg, tmp_path / "first", *start, 2, fields=names, piece=piece, threads=1)
+    tracemalloc.start()
+    record(egg, tmp_path / "orbit", *start, 1500, fields=names, piece=piece, threads=1)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+
+    assert peak < memory(egg, 500, names, piece) < 2 * peak < 8 * 500 * 1500 * 3

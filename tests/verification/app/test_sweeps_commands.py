@@ -1,6 +1,7 @@
 """`pinball sweep`, `bifurcation` and `basins`: what they answer, as text and as JSON, and what they refuse."""
 
 import json
+import sys
 from fractions import Fraction
 
 import numpy as np
@@ -194,3 +195,40 @@ def test_both_ends_of_a_range_belong_to_it_whatever_their_decimals():
 
     assert Fraction(5, 6) < 5 / 6  # the double
     assert found.shape["b"] == Fraction(5, 6)
+
+
+@pytest.mark.parametrize("name", ["orbit.npz", "orbit.zarr"])
+def test_an_orbit_goes_into_a_table_whole_and_the_answer_holds_its_beginning(capsys, tmp_path, name):
+    asked = ["orbit", "cuspless", "--lam", "1/2", "--start", "0.3,0.2", "--bounces", "300"]
+    assert main([*asked, "--json", "-"]) == 0
+    whole = json.loads(capsys.readouterr().out)["bounces"]
+    assert main([*asked, "--out", str(tmp_path / name), "--json", "-"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    found = np.load(tmp_path / name) if name.endswith("npz") else xr.open_zarr(tmp_path / name)
+
+    assert said["bounces"] == whole[:40]
+    assert said["last"] == "regular"
+    for key in ("theta", "x", "y", "phi"):
+        assert np.asarray(found[key]).ravel().tolist() == [entry[key] for entry in whole]
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--out", "orbit.csv"], "--out orbit.csv: accepted: a name that ends in .npz, .parquet or .zarr"),
+        (
+            ["--out", "orbit.npz", "--arithmetic", "arb"],
+            "--out orbit.npz holds float64 columns; accepted: --arith",
+        ),
+    ],
+)
+def test_a_table_of_an_orbit_that_cannot_be_written_is_refused_in_a_sentence(capsys, words, reason):
+    assert main(["orbit", "circle", "--lam", "1/2", "--start", "0.3,0.2", "--bounces", "3", *words]) == 2
+    assert reason in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_table_in_a_format_whose_package_is_missing_says_how_to_get_it(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+
+    assert main(["orbit", "circle", "--lam", "1/2", "--start", "0.3,0.2", "--bounces", "3", "--out", "o.parquet"]) == 2
+    assert "pyarrow is missing; install it with: pip install 'pinball-billiards[table]'" in capsys.readouterr().err

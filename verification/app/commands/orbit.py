@@ -5,13 +5,14 @@ return.
 """
 
 from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from symbolic.tables.definition import UNIFORM
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option
+from verification.app.cli import DONE, FAILED, Output, json_option, table
 from verification.app.scene import scene_options, start_of, table_options
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
 @click.option("--arithmetic", type=click.Choice(WAYS), default="float64", show_default=True)
 @click.option("--digits", type=click.IntRange(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
 @click.option("--tolerance", metavar="T", help="In place of --digits: so many that the error is below it.")
+@click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="A table in .npz, .parquet or .zarr.")
 @json_option
 def command(
     scene: Scene,
@@ -45,6 +47,7 @@ def command(
     arithmetic: str,
     digits: int | None,
     tolerance: str | None,
+    out: Path | None,
     output: Output,
 ) -> int:
     """Where does this particle go? Exit status 1 when it stops at a join, a cusp or a tangency.
@@ -53,6 +56,8 @@ def command(
     that goes on where that cannot be proved ends as `unproved`. The other outcomes are found, and not proved.
     `auto` takes what is cheapest for the digits asked of the last bounce, and says why: float64 as long as the orbit
     leaves it enough of its own, then arb.
+    With --out every bounce is a row of a table of float64 columns, and `component` and `code` are whole numbers; then
+    --json has the first bounces only. A .zarr store is written in pieces, and the same command resumes it.
     """
     from numeric import PinballMap
 
@@ -73,6 +78,12 @@ def command(
         arithmetic = choice.arithmetic
         picked = {"arithmetic": arithmetic, "why": choice.why}
     digits = digits or MANY
+    if out is not None:
+        if arithmetic != "float64":
+            raise ValueError(f"--out {out} holds float64 columns; accepted: --arithmetic float64, or --json FILE")
+        picked |= {"out": str(out), "last": table(map, (float(theta), float(phi), index), bounces, out)}
+        output.console.print(f"{bounces + 1} rows are in {out}")
+        bounces = min(bounces, MOST - 1)
     if arithmetic == "float64":
         entries = in_float64(map, index, float(theta), float(phi), bounces)
     else:
@@ -83,11 +94,12 @@ def command(
             entries = follow(map, scene.lam, (index, theta, phi), bounces, digits, step)
     output.write({"bounces": entries} | picked)
     show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
-    if picked:
+    if "why" in picked:
         output.console.print(f"{arithmetic}: {picked['why']}")
     if entries[-1]["status"] == "unproved":
         output.console.print("no proof that the next flight meets nothing before it lands; it is not given")
-    return DONE if all(entry["status"] == "regular" for entry in entries) else FAILED
+    statuses = [*(entry["status"] for entry in entries), picked.get("last", "regular")]
+    return DONE if all(status == "regular" for status in statuses) else FAILED
 
 
 def wanted(digits: int | None, tolerance: str | None) -> int | None:

@@ -3,6 +3,7 @@
 import ast
 import doctest
 import importlib.util
+import json
 import re
 import shlex
 from pathlib import Path
@@ -51,6 +52,23 @@ def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
 
         assert (prompt, command) == ("$", "pinball")
         assert main(arguments) in (0, 1), capsys.readouterr().err
+
+
+def test_the_paper_that_a_page_makes_is_judged_as_the_page_says(tmp_path, capsys):
+    """Its TOML and its Python, put where it says, and the lines that it prints."""
+    text = (DOCS / "how_to" / "judge_a_paper.md").read_text()
+    blocks = {kind: re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("toml", "python", "text")}
+    (tmp_path / "paper.toml").write_text(blocks["toml"][0])
+    (tmp_path / "judges.py").write_text("\n\n".join(blocks["python"]))
+
+    assert main(["verify", "--claims", str(tmp_path), "--report", str(tmp_path / "report")]) == 0
+    told = capsys.readouterr().out
+    shown = [line for line in told.splitlines() if ": " in line and "stadium." in line]
+    expected = blocks["text"][0].splitlines()
+    assert len(shown) == len(expected) == 2
+    assert all(line.startswith(wanted) for line, wanted in zip(shown, expected, strict=True))
+    report = json.loads((tmp_path / "report" / "report.json").read_text())
+    assert [claim["verdict"] for claim in report["claims"]] == ["corrected", "confirmed", "supported"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=named)

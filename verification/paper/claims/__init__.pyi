@@ -13,6 +13,7 @@ from .judges import (
     implied,
     on_range,
     rounded,
+    sampled,
     shown,
     zero,
 )
@@ -38,6 +39,7 @@ __all__ = [
     "on_range",
     "paper",
     "rounded",
+    "sampled",
     "shown",
     "zero",
 ]

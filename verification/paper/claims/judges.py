@@ -195,6 +195,11 @@ def answer(holds: bool | None, reason: str) -> Finding:
     return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
+def sampled(derived: str, evidence: str, agrees: bool) -> Judgement:
+    """A claim that sampling supports within the error it states, and leaves open where it does not."""
+    return Judgement(Finding(Outcome.UNKNOWN, evidence), derived, evidence=evidence if agrees else "")
+
+
 def implied(argument: str, proposition: Boolean) -> Finding:
     """A step of logic alone: proved when no assignment of truth values makes `proposition` false, refuted by one.
 

@@ -24,9 +24,8 @@ from symbolic.tables.table import alpha, lam
 from verification.arithmetic.progress import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, greater, judges, shown
+from verification.paper.claims.judges import answer, by, counterexample, greater, judges, sampled, shown
 from verification.paper.judges.attractors import SHAPE, found, unsettled
-from verification.paper.judges.exponents import sampled
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
 from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_points
 

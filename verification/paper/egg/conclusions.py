@@ -21,10 +21,9 @@ from verification.named.attractors import certificate
 from verification.named.branches import Cascade, cascade
 from verification.named.curves import double_one, expanding_cycle
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, judges, zero
+from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import JOIN, SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
 from verification.paper.judges.ellipse import LIMIT, lyapunov
-from verification.paper.judges.exponents import sampled
 from verification.paper.judges.hyperbolicity import chaos, corner
 from verification.proofs.manifolds.known import CONTACTS
 from verification.proofs.periodic.bifurcation import doubling_curve

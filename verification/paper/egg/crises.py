@@ -18,9 +18,8 @@ from numeric.pinball.sampling import interior_starts
 from verification.arithmetic.balls import FLOAT64
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import judges
+from verification.paper.claims.judges import judges, sampled
 from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, unsettled
-from verification.paper.judges.exponents import sampled
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
 from verification.proofs.manifolds.saddle import local, saddle

@@ -45,8 +45,7 @@ from verification.cycles.cascade import doublings
 from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, equal, identity, judges, zero
-from verification.paper.judges.exponents import sampled
+from verification.paper.claims.judges import by, counterexample, equal, identity, judges, sampled, zero
 from verification.proofs.periodic.bifurcation import Proof
 
 BOUNDARY = egg(3).components[0]

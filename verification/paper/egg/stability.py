@@ -30,10 +30,9 @@ from verification.named.attractors import certificate
 from verification.named.branches import cascade
 from verification.named.curves import accumulation
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, judges, zero
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, zero
 from verification.paper.egg.period3 import side_of_fold
 from verification.paper.judges.attractors import strange
-from verification.paper.judges.exponents import sampled
 from verification.proofs.periodic.bifurcation import Stability, doubling_curve, over_interval, stability
 from verification.proofs.periodic.triangles import contracts, flips_nowhere
 

@@ -2,7 +2,6 @@
 
 from .attractors import JOIN, SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, strange, unsettled
 from .ellipse import LIMIT, lyapunov
-from .exponents import sampled
 from .hyperbolicity import bounced, chaos, corner, ends_of_period
 from .located import certified
 
@@ -22,7 +21,6 @@ __all__ = [
     "found",
     "lyapunov",
     "proved_at",
-    "sampled",
     "strange",
     "unsettled",
 ]

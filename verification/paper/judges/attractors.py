@@ -24,9 +24,8 @@ from symbolic.motion.flight import flight
 from symbolic.tables.table import lam, phi
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges
+from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled
 from verification.paper.judges.ellipse import settles, two_cycles
-from verification.paper.judges.exponents import sampled
 from verification.proofs.manifolds.known import boundary
 
 SEED, STARTS, FEW = 1, 200, 40

@@ -11,8 +11,7 @@ from symbolic.motion.collision import birkhoff_matrix, derivative_matrix
 from symbolic.tables.gallery import arc, piecewise
 from symbolic.tables.table import Table, cos_eta1, cos_phi0, lam, phi, s, t, theta
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, greater, judges, zero
-from verification.paper.judges.exponents import sampled
+from verification.paper.claims.judges import by, greater, judges, sampled, zero
 
 SEED, ORBITS, BOUNCES = 1, 32, 40_000
 

@@ -28,15 +28,10 @@ from verification.arithmetic.balls import enclose, working
 from verification.cycles.cascade import cascade, cycle_at, doubled
 from verification.named.attractors import Certificate, certificate, exponents
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, digits, greater, judges, rounded, zero
+from verification.paper.claims.judges import answer, by, counterexample, digits, greater, judges, rounded, sampled, zero
 
 SHAPE = Rational(2, 25)
 SEED = 1
-
-
-def sampled(derived: str, evidence: str, agrees: bool) -> Judgement:
-    """A claim that sampling supports within the error it states, and leaves open where it does not."""
-    return Judgement(Finding(Outcome.UNKNOWN, evidence), derived, evidence=evidence if agrees else "")
 
 
 def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:

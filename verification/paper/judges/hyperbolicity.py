@@ -27,11 +27,10 @@ from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import enclose
 from verification.arithmetic.progress import telling
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, judges, zero
+from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled
 from verification.paper.judges.cuspless import attracting_below
 from verification.paper.judges.exponents import SPECTRA_SEED as SEED
-from verification.paper.judges.exponents import sampled
 from verification.paper.judges.located import certified, located, subcritical
 from verification.proofs.corner.border_collision import Kind
 from verification.proofs.corner.corner import ARC

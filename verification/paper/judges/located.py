@@ -18,8 +18,8 @@ from symbolic.tables.table import lam
 from verification.named.attractors import certificate
 from verification.named.locate import Located, locate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, digits, judges, zero
-from verification.paper.judges.exponents import Spectrum, sampled, spectrum
+from verification.paper.claims.judges import answer, by, counterexample, digits, judges, sampled, zero
+from verification.paper.judges.exponents import Spectrum, spectrum
 from verification.proofs.periodic.bifurcation import Proof
 
 SHAPE = Rational(2, 25)

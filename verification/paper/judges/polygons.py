@@ -18,8 +18,7 @@ from symbolic.expressions.signs import Box, Finding, positive
 from symbolic.motion.collision import birkhoff_matrix, derivative_matrix, exit_angle
 from symbolic.tables.table import cos_eta1, cos_phi0, eta, lam, phi, t
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, greater, identity, judges, zero
-from verification.paper.judges.exponents import sampled
+from verification.paper.claims.judges import by, counterexample, greater, identity, judges, sampled, zero
 
 RIGHT, LEFT = 2 * pi / 3, 4 * pi / 3  # what the normal turns by to the next side of the triangle, and to the one before
 HALF = Rational(1, 2)

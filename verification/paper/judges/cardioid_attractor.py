@@ -24,7 +24,7 @@ from symbolic.tables import cardioid
 from symbolic.tables.geometry import arc_length, curvature, velocity
 from symbolic.tables.table import theta
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, equal, greater, judges, shown, zero
+from verification.paper.claims.judges import answer, by, equal, greater, judges, sampled, shown, zero
 from verification.paper.judges.attractors import STARTS, chaotic, cycles, found, unsettled
 from verification.paper.judges.exponents import (
     BALLS,
@@ -33,7 +33,6 @@ from verification.paper.judges.exponents import (
     EARLY,
     SEED,
     Spectrum,
-    sampled,
     spectrum,
     uneven,
     visited,

@@ -12,7 +12,7 @@ The cycles that the paper names or implies, each by its boundary points.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property, lru_cache
 
 from sympy import (
     Expr,
@@ -75,24 +75,29 @@ class Cycle:
         """The frame at each bounce."""
         return tuple(frame(self.table, index, value, self.ranges) for index, value in self.bounces)
 
+    @cache  # noqa: B019  (a cycle is frozen)
     def chord(self, i: int) -> Matrix:
         """The vector from bounce `i` to the next."""
         n = len(self.bounces)
-        return (self.frames[(i + 1) % n].point - self.frames[i % n].point).applyfunc(simplify)
+        return (self.frames[(i + 1) % n].point - self.frames[i % n].point).applyfunc(simplify).as_immutable()
 
+    @cache  # noqa: B019  (a cycle is frozen)
     def length(self, i: int) -> Expr:
         """The length of the flight that leaves bounce `i`."""
         chord = self.chord(i)
         return root(simplify(chord.dot(chord)), self.ranges)
 
+    @cache  # noqa: B019  (a cycle is frozen)
     def cos_exit(self, i: int) -> Expr:
         """The cosine of the exit angle at bounce `i`."""
         return simplify(self.chord(i).dot(self.frames[i % len(self.bounces)].normal) / self.length(i))
 
+    @cache  # noqa: B019  (a cycle is frozen)
     def cos_incidence(self, i: int) -> Expr:
         """The cosine of the incidence angle at bounce `i`."""
         return simplify(-self.chord(i - 1).dot(self.frames[i % len(self.bounces)].normal) / self.length(i - 1))
 
+    @cache  # noqa: B019  (a cycle is frozen)
     def sliding(self, i: int) -> tuple[Expr, Expr]:
         """`(sin of the exit angle, minus sin of the incidence angle)` at bounce `i`."""
         tangent = self.frames[i % len(self.bounces)].tangent
@@ -128,6 +133,7 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
     return Frame(point, tangent, normal, cancel(-turning / speed**3))
 
 
+@cache
 def is_double_normal(cycle: Cycle) -> bool:
     """True when it is proved that every chord is normal to the boundary at both its ends.
 
@@ -140,6 +146,7 @@ def is_double_normal(cycle: Cycle) -> bool:
     return all(vanishes(part) for i in range(len(cycle.bounces)) for part in cycle.sliding(i))
 
 
+@cache
 def is_elastic(cycle: Cycle) -> bool:
     """True when it is proved that the cycle obeys the elastic law `phi = -eta` at each bounce."""
     return all(vanishes(out - back) for out, back in (cycle.sliding(i) for i in range(len(cycle.bounces))))
@@ -167,12 +174,19 @@ def monodromy(cycle: Cycle, base: int = 0, contraction: Expr = lam) -> Matrix:
     >>> monodromy(minor_axis()).det().simplify()
     lam**2
     """
+    return Matrix(_monodromy(cycle, base, contraction))
+
+
+@lru_cache(maxsize=256)
+def _monodromy(cycle: Cycle, base: int, contraction: Expr) -> Matrix:
+    """The stability matrix, derived once in a process; nobody can change its entries."""
     product = eye(2)
     for i in range(base, base + len(cycle.bounces)):
         product = flight_matrix(cycle, i, contraction) * product
-    return product.applyfunc(factor)
+    return product.applyfunc(factor).as_immutable()
 
 
+@lru_cache(maxsize=256)
 def trace_and_determinant(cycle: Cycle, contraction: Expr = lam) -> tuple[Expr, Expr]:
     """Trace and determinant of the monodromy matrix."""
     matrix = monodromy(cycle, 0, contraction)
@@ -225,6 +239,7 @@ def complex_pair(trace: Expr, det: Expr, box: Box) -> Finding:
     return positive(4 * det - trace**2, box)
 
 
+@cache
 def contracting_norm() -> Finding:
     """Is there for every attracting monodromy matrix a quadratic norm in which it contracts?
 
@@ -247,36 +262,43 @@ def contracting_norm() -> Finding:
 c = Symbol("c", real=True)  # cos(theta) of a bounce of the egg's orbit between parallel tangents
 
 
+@cache
 def diameter() -> Cycle:
     """A diameter of the circle. Paper: section 3.1."""
     return Cycle("diameter", circle, ((0, S.Zero), (0, pi)))
 
 
+@cache
 def major_axis() -> Cycle:
     """The long axis of the ellipse. Paper: section 3.2."""
     return Cycle("major axis", ellipse, ((0, S.Zero), (0, pi)))
 
 
+@cache
 def minor_axis() -> Cycle:
     """The short axis of the ellipse. Paper: section 3.2."""
     return Cycle("minor axis", ellipse, ((0, pi / 2), (0, -pi / 2)))
 
 
+@cache
 def cardioid_vertical() -> Cycle:
     """The chord from `s = 2` to `s = -2`. Paper: section 4, caption of the slap map."""
     return Cycle("vertical", cardioid, ((0, pi / 3), (0, -pi / 3)))
 
 
+@cache
 def cuspless_vertical() -> Cycle:
     """The same chord in the cuspless cardioid. Paper: section 5."""
     return Cycle("vertical", cuspless, ((0, pi / 3), (0, -pi / 3)))
 
 
+@cache
 def cuspless_horizontal() -> Cycle:
     """The orbit along `y = 0`, from the wall's centre to the rightmost point. Paper: section 5.1."""
     return Cycle("horizontal", cuspless, ((1, S.Zero), (0, S.Zero)))
 
 
+@lru_cache(maxsize=64, typed=True)
 def egg_diameter(K: int | Expr = 3, angle: Expr = S.Zero) -> Cycle:
     """The chord of the egg from `angle` through the centre: vertex to flat for odd K. Paper: section 6.3.
 
@@ -285,6 +307,7 @@ def egg_diameter(K: int | Expr = 3, angle: Expr = S.Zero) -> Cycle:
     return Cycle("diameter", egg(K), ((0, angle), (0, angle + pi)))
 
 
+@cache
 def egg_parallel() -> Cycle:
     """The egg's period-2 orbit between parallel tangents that is not a diameter. Paper: section 6.2.
 
@@ -304,6 +327,7 @@ def egg_parallel() -> Cycle:
     )
 
 
+@cache
 def parallel_shape() -> Expr:
     """`alpha` as a function of `c` on `egg_parallel`: where the height `rho*sin(theta)` is stationary.
 
@@ -316,6 +340,7 @@ def parallel_shape() -> Expr:
     return together(shape)
 
 
+@lru_cache(maxsize=64, typed=True)
 def egg_triangle(at_flat: bool = True) -> Cycle:
     """The equilateral period-3 orbit of the elastic egg, at the flat points or at the vertices.
 

@@ -29,6 +29,8 @@ A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma
 expanding.
 """
 
+from functools import lru_cache
+
 from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt
 
 from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter
@@ -38,6 +40,7 @@ from symbolic.motion.collision import area_factor, derivative_matrix
 from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
 
 
+@lru_cache(maxsize=256)
 def stability_number(cycle: Cycle) -> Expr:
     """`P = (1 + t*K0)*(1 + t*K1)` of a cycle of period 2, free of units.
 
@@ -136,6 +139,7 @@ def lambda_c() -> Expr:
     return flip_contraction(stability_number(cuspless_horizontal()))
 
 
+@lru_cache(maxsize=64, typed=True)
 def tilt(K: int | Expr = 3) -> Expr:
     """`W = 2*K**2*alpha/(1-alpha**2)`, which is `sqrt(1 - P)` on the diameters of an egg with odd K.
 

@@ -9,6 +9,7 @@ so that the inside of the table lies to the left of every component.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TypeAlias
@@ -92,6 +93,12 @@ def egg(K: int | Expr = 3) -> Table:
     points = _exact(K)
     if points.is_integer is False or (points - 2).is_negative or points.has(theta):
         raise ValueError(f"egg: K = {K} is no number of points; K must be an integer of at least 2")
+    return _egg(points)
+
+
+@lru_cache(maxsize=64)
+def _egg(points: Expr) -> Table:
+    """The egg of a number of points that makes sense; shown to be a table once in a process."""
     convex = Shape(alpha, Interval(0, 1 / (1 + points**2)), "makes the table non-convex")
     return polar(1 + alpha * cos(points * theta), "egg", [convex])
 

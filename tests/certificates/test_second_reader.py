@@ -122,7 +122,7 @@ def test_a_certificate_has_the_same_bytes_whatever_the_machine(tmp_path, environ
     names = ("saddle-node", "alpha-hat")
     command = [sys.executable, str(FOLDER / "make.py"), "--into", str(tmp_path), *names]
     around = {"PATH": os.environ["PATH"], "HOME": str(tmp_path), "PYTHONPATH": str(FOLDER.parent)}
-    subprocess.run(command, cwd=FOLDER.parent, env=around | environment, check=True, timeout=300)
+    subprocess.run(command, cwd=FOLDER.parent, env=around | environment, check=True, timeout=600)
 
     for name in names:
         assert (tmp_path / f"{name}.json").read_bytes() == (FOLDER / f"{name}.json").read_bytes()

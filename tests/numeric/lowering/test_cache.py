@@ -16,7 +16,7 @@ from numeric.lowering import cache, program
 PROGRAM = """
 import sys
 from numeric import PinballMap
-step = PinballMap("egg", lam=0.5, alpha="0.08").step(0.3, 0.2)
+step = PinballMap("circle", lam=0.5).step(0.3, 0.2)
 print(float(step.theta).hex(), "sympy" in sys.modules)
 """
 

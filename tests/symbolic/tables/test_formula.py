@@ -53,9 +53,9 @@ def test_a_formula_is_read_back_from_its_own_text(expression):
 @example("abs(exp(sqrt(theta)))")
 @settings(max_examples=300)
 def test_any_text_is_a_formula_or_one_sentence_and_soon(text):
-    started = time.monotonic()
+    started = time.process_time()
     value, sentence = read(text)
-    assert time.monotonic() - started < SECONDS
+    assert time.process_time() - started < SECONDS
     assert "\n" not in sentence
     assert len(sentence) < 300
     assert flaw(value) is None

@@ -299,7 +299,7 @@ def test_a_scene_that_is_none_is_one_sentence(scenes, capsys, arguments, sentenc
 
 def pinball(*arguments: str, **kwargs) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "verification", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60, **kwargs)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, **kwargs)
 
 
 @pytest.mark.parametrize("package", ["xarray", "zarr"])
@@ -315,7 +315,7 @@ def test_a_missing_extra_is_one_sentence_with_the_command_that_brings_it(package
 def test_help_loads_no_mathematics():
     loaded = "import sys; from verification.app import cli; cli.main(['--help']); "
     loaded += "print(sorted(sys.modules), file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, check=True, timeout=600)
 
     for module in ("sympy", "numpy", "scipy", "matplotlib", "flint", "mpmath", "llvmlite", "rich"):
         assert f"'{module}'" not in done.stderr
@@ -336,7 +336,13 @@ def test_a_table_of_ones_own_is_read_and_proved_once_and_then_without_sympy(tabl
 
     def run() -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=kept, cwd=tmp_path, timeout=60
+            [sys.executable, "-c", code],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=kept,
+            cwd=tmp_path,
+            timeout=600,
         )
 
     first, second = run(), run()
@@ -379,7 +385,7 @@ def test_a_reader_that_goes_away_is_no_error():
     read, write = os.pipe()
     os.close(read)
     command = [sys.executable, "-m", "verification", "--help"]
-    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, check=False, timeout=600)
     os.close(write)
 
     assert (done.returncode, done.stderr) == (141, "")

@@ -35,17 +35,28 @@ def test_the_listener_is_forgotten_at_the_end_whatever_happens():
     assert told == []
 
 
+def seen(capfd, wanted):
+    """What is shown until `wanted` is, or until a minute of waiting is over."""
+    shown = ""
+    for _ in range(6000):
+        shown += capfd.readouterr().err
+        if wanted in shown:
+            break
+        time.sleep(0.01)
+    return shown
+
+
 def test_a_terminal_shows_how_far_a_long_step_has_come(monkeypatch, capfd):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "120")
     monkeypatch.setattr(output, "PATIENCE", 0.0)
     with Output().progress("Judging", 2) as step:
         tick = telling("triangles excluded")
-        time.sleep(0.3)  # the bar starts in a thread of its own
+        shown = seen(capfd, "Judging")  # the bar starts in a thread of its own
         tick(0.43)
-        time.sleep(0.3)
+        shown += seen(capfd, "43%")
         step("egg.slap_no_period3")
-    shown = capfd.readouterr().err
+    shown += capfd.readouterr().err
 
     assert "Judging: triangles excluded, 43%" in shown
     assert "Judging egg.slap_no_period3" in shown

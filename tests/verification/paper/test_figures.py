@@ -226,7 +226,7 @@ def test_the_list_and_the_data_alone_need_no_matplotlib():
         "status = [main(['figure', '--list']), main(['figure', 'cuspless-s4', '--json', '-'])]; "
         "sys.exit(any(status) or 'matplotlib' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=600)
 
     assert done.returncode == 0, done.stderr
     assert "egg-basins" in done.stdout

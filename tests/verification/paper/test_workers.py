@@ -133,12 +133,12 @@ def test_ctrl_c_ends_every_process(tmp_path, started):
         start_new_session=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 600
     while len(running(tmp_path)) < started and time.monotonic() < deadline:
         time.sleep(0.005)
     os.killpg(process.pid, signal.SIGINT)
 
-    assert process.communicate(timeout=60)[1].endswith("pinball: interrupted\n")
+    assert process.communicate(timeout=600)[1].endswith("pinball: interrupted\n")
     assert process.returncode == 130
     while running(tmp_path) and time.monotonic() < deadline:
         time.sleep(0.02)

@@ -170,11 +170,28 @@ class Pinball(_Bound):
         if self.words is ARRAYS:
             return start
 
+        reached: Any = None
+
         def correction(x: Vector) -> Vector:
-            value, _, slope, *_ = self.angle(here, x[0])
+            nonlocal reached
+            (reached,) = x
+            value, _, slope, *_ = self.angle(here, reached)
             return [(value - phi) / slope]
 
-        return iterated(correction, [here * 0 + (start if np.ndim(start) else float(start))], NEWTON, largest).x[0]
+        def size(parts: Sequence[Any]) -> float:
+            return largest([share(parts[0], reached)])
+
+        return iterated(correction, [here * 0 + (start if np.ndim(start) else float(start))], NEWTON, size).x[0]
+
+
+def share(step: Any, x: Any) -> Any:
+    """A correction in units of what it corrects, or of 1 where that is smaller.
+
+    Derivatives along an unstable manifold grow from bounce to bounce, and the rounding of their corrections with them.
+    """
+    if not isinstance(step, Jet):
+        return step / (1 + abs(x))
+    return Jet(*(a / (1 + abs(b)) for a, b in zip(step.c, x.c, strict=True))) if isinstance(x, Jet) else step
 
 
 def floating(x: Any) -> Any:

@@ -27,7 +27,6 @@ PROVED = {
     "slap.expanding": Verdict.CONFIRMED,
     "elastic.mean_free_path": Verdict.CONFIRMED,
 }
-SAMPLED = [name for name in CLAIMS if name not in PROVED]
 
 
 def verdict(name, **changes):
@@ -159,6 +158,4 @@ def test_the_two_published_constants_of_small_discs_are_told_apart(monkeypatch):
 
 
 def test_sampled_sentences_are_supported():
-    found = {name: verdict(name) for name in ("square.coexistence", "stadium.elliptical", "triangle.measure_zero")}
-
-    assert set(found.values()) == {Verdict.SUPPORTED}
+    assert {verdict(name) for name in ("square.coexistence", "stadium.elliptical")} == {Verdict.SUPPORTED}

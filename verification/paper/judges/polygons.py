@@ -47,8 +47,8 @@ def contraction(claim: Claim) -> Judgement:
         counterexample("both areas grow on the flight along a normal", *grown, at={lam: here[lam]}),
         "T maps phase space into |phi| <= lam*pi/2; pointwise det DT = lam*cos(phi0)/cos(eta1)",
         by("|phi1| = lam*|eta1| <= lam*pi/2, a strip of lam times the area", zero("", exit_angle() + lam * eta)),
-        "Contraction holds for phase space as a whole, not at every point: on the flight along a normal at "
-        "lambda = 9/10 the area element grows in (s, phi) and in (s, sin phi).",
+        "Contraction holds for phase space as a whole, not at every point: on the flight along a normal at lambda = "
+        "9/10 the area element grows in (s, phi) and in (s, sin phi).",
     )
 
 
@@ -60,8 +60,8 @@ def hull() -> Expr:
 def two_maps() -> Finding:
     """The angles of the attractor lie in `|phi| <= hull()`, and are those of two affine contractions by `lam`."""
     return by(
-        "a flight changes the angle to lam*(pi/3 - phi) or lam*(-pi/3 - phi), which keep |phi| <= m, "
-        "m = lam*pi/(3*(1 - lam)), and draw every angle towards it",
+        "a flight changes the angle to lam*(pi/3 - phi) or lam*(-pi/3 - phi), which keep |phi| <= m, m = "
+        "lam*pi/(3*(1 - lam)), and draw every angle towards it",
         zero("", next_exit_angle(RIGHT, -hull()) - hull()),
         zero("", next_exit_angle(LEFT, hull()) + hull()),
         zero("", next_exit_angle(RIGHT, phi) + next_exit_angle(LEFT, -phi)),
@@ -87,8 +87,8 @@ def measure_zero(claim: Claim) -> Judgement:
         sums[value] = np.mean(found.nu_plus + found.nu_minus), np.std(found.nu_plus) / np.sqrt(48)
     said = ", ".join(f"{total:.4f} +- {error:.0e} at {value}" for value, (total, error) in sums.items())
     return sampled(
-        "for lam < 1/2 the attractor lies in a Cantor set of angles of the measure 0; for every lam < 1 "
-        "nu_+ + nu_- <= 0 for almost every start",
+        "for lam < 1/2 the attractor lies in a Cantor set of angles of the measure 0; for every lam < 1 nu_+ + nu_- "
+        "<= 0 for almost every start",
         f"proved for lam < 1/2: {below.reason}; above, nu_+ + nu_- is {said}: areas shrink along orbits",
         bool(below) and all(total < -8 * error for total, error in sums.values()),
     )
@@ -110,10 +110,8 @@ def expansion(claim: Claim) -> Judgement:
     return Judgement(
         by(
             "up to its ends, a product over an orbit is that of cos(lam*eta)/cos(eta), at least 1; it grows with "
-            "|eta|, "
-            "for sin((1 - lam)*x) and (1 - lam)*sin(lam*x)*cos(x) are positive on 0 < x < pi/2; and the next incidence "
-            "is "
-            "at least pi/3 - lam*|eta|, more than pi/6 where |eta| is less",
+            "|eta|, for sin((1 - lam)*x) and (1 - lam)*sin(lam*x)*cos(x) are positive on 0 < x < pi/2; and the next "
+            "incidence is at least pi/3 - lam*|eta|, more than pi/6 where |eta| is less",
             zero("the matrix is triangular", between_sides()[1, 0]),
             zero("the place is stretched by cos(phi0)/cos(eta1)", between_sides()[0, 0] + cos_phi0 / cos_eta1),
             zero("d/dx of cos(lam*x)/cos(x)", stretch.diff(x) * cos(x) ** 2 - rise),
@@ -131,8 +129,8 @@ def cantor(claim: Claim) -> Judgement:
     box = claim.box
     return Judgement(
         by(
-            "rays of one direction |phi| < pi/6 from a whole side are parted by the opposite corner, and fill each of "
-            "the other two sides; so n bounces leave whole sides times 2^n intervals of angles, of the length "
+            "rays of one direction |phi| < pi/6 from a whole side are parted by the opposite corner, and fill each "
+            "of the other two sides; so n bounces leave whole sides times 2^n intervals of angles, of the length "
             "lam^n*2*m",
             two_maps(),
             disjoint(box),
@@ -140,8 +138,8 @@ def cantor(claim: Claim) -> Judgement:
             by("angles after a bounce are below pi/6", positive(Rational(1, 6) - lam / 2, box)),
             zero("at pi/6 the corner is seen from the end of the side", tan(pi / 6) * sqrt(3) / 2 - HALF),
         ),
-        "the attractor is {whole sides} x {the angles that stay under phi -> lam*(+-pi/3 - phi)}, a Cantor set of the "
-        "dimension log(2)/log(1/lam); its angles are a Cantor set for every lam < 1/2",
+        "the attractor is {whole sides} x {the angles that stay under phi -> lam*(+-pi/3 - phi)}, a Cantor set of "
+        "the dimension log(2)/log(1/lam); its angles are a Cantor set for every lam < 1/2",
     )
 
 
@@ -153,17 +151,16 @@ def nonaccessible(claim: Claim) -> Judgement:
     top = next_exit_angle(RIGHT, pi / 6)
     return Judgement(
         by(
-            "after one bounce |phi| < lam*pi/2; rays with pi/6 < phi < lam*pi/2 land below the share "
-            "h = cos(phi)/cos(pi/3 - phi) of the next side, h < 1, and leave with an angle between "
-            "lam*(pi/3 - lam*pi/2) and lam*pi/6; what comes from the other side leaves below lam*(lam*pi/2 - pi/3)",
+            "after one bounce |phi| < lam*pi/2; rays with pi/6 < phi < lam*pi/2 land below the share h = "
+            "cos(phi)/cos(pi/3 - phi) of the next side, h < 1, and leave with an angle between lam*(pi/3 - lam*pi/2) "
+            "and lam*pi/6; what comes from the other side leaves below lam*(lam*pi/2 - pi/3)",
             zero("1 - h has the sign of phi - pi/6", cos(pi / 3 - phi) - cos(phi) - sin(phi - pi / 6)),
             by("there are such rays", positive(lam / 2 - Rational(1, 6), box)),
             by("their angles are an interval", positive(simplify((top - steep) / (lam * pi)), box)),
             by("some of it is theirs alone", positive(simplify((top - other) / (lam * pi)), box)),
         ),
         "for every lam in (1/3, 1) no orbit enters, after two bounces, the places above the share h(phi) of a side "
-        "with "
-        "the angle lam*(pi/3 - phi), pi/6 < phi < min(lam*pi/2, 2*pi/3 - lam*pi/2)",
+        "with the angle lam*(pi/3 - phi), pi/6 < phi < min(lam*pi/2, 2*pi/3 - lam*pi/2)",
     )
 
 
@@ -222,8 +219,7 @@ def fractal_boundaries(claim: Claim) -> Judgement:
     return sampled(
         "the share of pairs that end apart falls far slower than their distance",
         f"at lam = {NEAR}, of pairs of starts at the distances 1e-3, 1e-6, 1e-9 there end on different attractors "
-        f"{said}; "
-        "across a smooth boundary it would fall by a factor of a thousand each time",
+        f"{said}; across a smooth boundary it would fall by a factor of a thousand each time",
         bool(owner.max() == 2) and min(shares[:2]) > 0.1 and min(int(np.sum(both)) for both in known) > 100,
     )
 
@@ -238,18 +234,15 @@ def parabolic(claim: Claim) -> Judgement:
     return Judgement(
         by(
             "from |phi| on, the particle drifts by side*(tan(|phi|) + tan(lam*|phi|) + ...) <= side*tan(|phi|)/(1 - "
-            "lam), "
-            "for tan is convex, so that tan(lam*x) <= lam*tan(x); a start further than this from the corners stays "
-            "between "
-            "the two sides, and phi -> 0",
+            "lam), for tan is convex, so that tan(lam*x) <= lam*tan(x); a start further than this from the corners "
+            "stays between the two sides, and phi -> 0",
             zero("tan'' = 2*tan*(1 + tan^2)", tan(phi).diff(phi, 2) - 2 * tan(phi) * (1 + tan(phi) ** 2)),
             zero("the angle becomes -lam*phi", next_exit_angle(FACING, phi) + lam * phi),
             zero("round the cycle: lam^2 along the angle", shrinking - lam**2),
             zero("and 1 along the place", place - 1),
         ),
         "each orbit of period 2 between facing sides has the multipliers lam^2 and 1; together they attract every "
-        "start "
-        "with tan(|phi|) < (1 - lam)*(distance from the corners)/side",
+        "start with tan(|phi|) < (1 - lam)*(distance from the corners)/side",
     )
 
 
@@ -290,8 +283,7 @@ def coexistence(claim: Claim) -> Judgement:
         f"both attractors are met at lam = {', '.join(both)}, none but the parabolic one at "
         f"{', '.join(none) or 'no other'}",
         f"of 200 random starts keep moving after 6000 bounces: {said}; the others are on orbits of period 2. The "
-        "sentence "
-        "names no range of lam",
+        "sentence names no range of lam",
         len(both) >= 2,
     )
 
@@ -304,9 +296,8 @@ def expanding(claim: Claim) -> Judgement:
     incidence = next_exit_angle(turn, S.Zero) / lam
     return Judgement(
         by(
-            "a particle that leaves along a normal lands at pi - turn, the same all along the side; the square of the "
-            "slope "
-            "exceeds 1 by tan(turn)^2, which is 0 where the normals are opposite and nowhere else",
+            "a particle that leaves along a normal lands at pi - turn, the same all along the side; the square of "
+            "the slope exceeds 1 by tan(turn)^2, which is 0 where the normals are opposite and nowhere else",
             zero("the slope is -1/cos(eta1)", slope + 1 / cos_eta1),
             zero("eta1 = pi - turn", incidence - (pi - turn)),
             zero("constant along the side", slope.diff(t)),

@@ -1,4 +1,4 @@
-"""The same answers on odd machines: no assertions, no locale, no home, little memory, many threads."""
+"""The same answers on odd machines: few instructions, no assertions, no locale or home, little memory, many threads."""
 
 import os
 import resource
@@ -15,12 +15,20 @@ import sys
 import numpy as np
 from numeric import PinballMap
 from verification.app.cli import main
+BEFORE
 map = PinballMap("egg", lam=0.7, alpha="0.08")
 theta = np.linspace(-3, 3, 640)
 orbit = map.orbit(theta, 0 * theta, 20, threads=THREADS)
 print(orbit.theta[-1].tobytes().hex()[:400], float(np.sum(orbit.x)).hex())
 AFTER
 sys.exit(main(["locate", "lambda-c", "--digits", "20", "--json", "-"]))
+"""
+BASELINE = """
+from numeric.kernels import machine
+llvm = machine._llvm()
+if llvm.get_process_triple().startswith("x86_64"):
+    target = llvm.Target.from_default_triple()
+    machine._target = lambda: target.create_target_machine(cpu="x86-64", features="", opt=3)
 """
 FORK = """
 import os
@@ -33,13 +41,13 @@ if os.waitpid(child, 0)[1] != 0:
 """
 
 
-def answers(threads=2, after="", prepare=None, without=(), **environment):
+def answers(threads=2, before="", after="", prepare=None, without=(), **environment):
     """What the program says, and its exit status; the seconds are left out."""
     known = {name: value for name, value in os.environ.items() if name not in without}
     with tempfile.TemporaryDirectory() as folder:
         known |= {"PYTHONPATH": str(ROOT), "PINBALL_CACHE": folder} | environment
         known = {name: value for name, value in known.items() if name not in without}
-        text = PROGRAM.replace("THREADS", str(threads)).replace("AFTER", after)
+        text = PROGRAM.replace("THREADS", str(threads)).replace("BEFORE", before).replace("AFTER", after)
         done = subprocess.run(
             [sys.executable, "-W", "ignore::DeprecationWarning", "-c", text], cwd=folder, env=known, text=True,
             capture_output=True, preexec_fn=prepare, check=False,
@@ -60,6 +68,9 @@ MACHINES = {
     "without assertions, docstrings, a locale and a home": {
         "PYTHONOPTIMIZE": "2", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0",
         "without": ("HOME", "XDG_CACHE_HOME", "USER", "LOGNAME"),
+    },
+    "the instructions of every x86-64 and no more, in kernels, NumPy and OpenBLAS": {
+        "before": BASELINE, "NPY_DISABLE_CPU_FEATURES": "AVX2 FMA3", "OPENBLAS_CORETYPE": "Prescott",
     },
     "64 threads, and a fork after them": {"threads": 64, "after": FORK},
     "2 GB of addresses": {"prepare": lambda: resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))},

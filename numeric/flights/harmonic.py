@@ -83,9 +83,11 @@ class Harmonic(Family):
             wave = wave + ((sum(rises[1:], start=rises[0]) + two) - c * one)
         return numbers[1] * theta + wave + numbers[0]
 
-    def landed(self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N]) -> Landing[N]:
-        """The landing at `u` of a particle that flies along `v`."""
-        dx, dy = self.velocity(ops, *u, *shape)
+    def landed(
+        self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N], d: Pair[N] | None = None
+    ) -> Landing[N]:
+        """The landing at `u` of a particle that flies along `v`; the velocity there, where it is known better."""
+        dx, dy = d or self.velocity(ops, *u, *shape)
         across = plane.exact_dot(ops, (dx, dy), v)
         along = -plane.exact_cross(ops, (dx, dy), v)
         code = None  # a convex table has no tangent normals

@@ -21,7 +21,8 @@ origin one is.
 
 A march ends where `K' < 0` and `2*L*K <= HALT*K'*K'` with `|w| + |K| <= L` near by: there a zero lies ahead by
 Kantorovich's theorem, and Newton's method converges to it. It takes the last steps, on the flight equation with its
-known zero divided out (see `Secant`), so that short flights are as exact as long ones.
+known zero divided out (see `Secant`), so that short flights are as exact as long ones. Where the radius has no words
+but the four operations and roots, the last residual has twice the digits: what is left is the rounding of the landing.
 
 Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: what passes a bulge of the wall, or cuts it, by less than
 this may be taken for the other; its incidence is within 1e-7 of a tangent. A march that does not end has met a
@@ -36,9 +37,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from numeric.backends import functions as plane
+from numeric.backends.doubled import WORDS, Doubles
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.protocol import Backend, Fields, M, N, modulus
-from numeric.flights.family import Boundary, Landing, Status, grazing
+from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing
 from numeric.flights.harmonic import Harmonic
 
 CELLS = 4096  # intervals that cover the turn
@@ -47,6 +49,8 @@ HALT = 2.0**-12
 FLOOR = 2.0**-50  # rounding of K*h*r*r, in units of r*r
 SHALLOW = 2.0**-20  # departures flatter than its root take care of cancellation
 MOST = 400  # steps of a march
+HALF = 2.0**-27  # radians: beyond, a last correction is no rounding
+LONG = 200  # lines of a radius that is not computed with twice the digits: it would take seconds to compile
 GROWTH = 8.0  # from one step to the next, of a flight that begins along the wall
 
 
@@ -60,6 +64,7 @@ class Polar(Harmonic):
         super().__init__(boundary)
         program = boundary.ir.program("radius")
         self.alone, self.radius, self.bent = program.only(0), program.only(0, 1), program.only(0, 1, 2)
+        self.refines = {word for word, *_ in self.radius.lines} <= WORDS and len(self.radius.lines) <= LONG
         self.bounds = bounds(boundary)
 
     @classmethod
@@ -92,8 +97,8 @@ class Polar(Harmonic):
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         flight = Flight(self, ops, shape, (position[0], position[1]), (exit[0], exit[1]))
         x, y, left, reach = flight.marched()
-        u = flight.sharpened((x, y), reach)
-        landing = self.landed(ops, shape, law, u, flight.v)
+        u, d = flight.refined(flight.sharpened((x, y), reach), law == SLAP)
+        landing = self.landed(ops, shape, law, u, flight.v, d)
         tangent = ops.number(float(Status.GRAZING.code))
         lost = grazing(ops, landing.across, landing.along) | (ops.number(0.5) < left)
         landing.code = ops.select(lost, tangent, ops.number(0.0))
@@ -226,6 +231,34 @@ class Flight:
         nought = ops.number(0.0) * reach
         x = ops.zero(function, nought, -far, far, one, 1)
         return at(x)
+
+    def refined(self, u: Any, normal: bool) -> tuple[Any, Any]:
+        """The landing after one more step of Newton's method, whose residual has twice the digits; the velocity there.
+
+        What is left is the rounding of the landing. The velocity is that of the landing before it is rounded, and its
+        direction feels no cancellation among harmonics either. So is the direction of a flight along the `normal`.
+        """
+        ops, family, v = self.ops, self.family, self.v
+        r, slope, bent = family.bent(ops, *u, *self.shape)
+        if not family.refines or getattr(ops, "context", None) is not None:  # with more digits there is no need
+            return u, plane.times((slope, r), u)
+        doubles: Any = Doubles(ops)
+        shape = [doubles.of(x) for x in self.shape]
+        (c0, s0), (c, s) = doubles.unit(self.u0), doubles.unit(u)
+        (start, slope0), (far, rise) = (family.radius(doubles, *at, *shape) for at in ((c0, s0), (c, s)))
+        x, y = far * c - start * c0, far * s - start * s0
+        along = doubles.of(v[0]), doubles.of(v[1])
+        if normal:
+            along = -(slope0 * s0 + start * c0), slope0 * c0 - start * s0
+            v = along[0].high, along[1].high
+        value = along[0] * y - along[1] * x
+        d = (rise * c - far * s).high, (rise * s + far * c).high
+        step = -(value.high / plane.exact_cross(ops, v, d))
+        known = modulus(step) < ops.number(HALF)  # else a tangency
+        step = ops.select(known, step, ops.number(0.0))
+        ax, ay = plane.times((bent - r, slope + slope), u)
+        moved = c.high + (c.low - step * s.high), s.high + (s.low + step * c.high)
+        return moved, (d[0] + step * ax, d[1] + step * ay)
 
 
 class Bounds(NamedTuple):

@@ -7,6 +7,7 @@ from sympy import Interval as Range
 from sympy import Rational, Symbol, cos
 
 from numeric import PinballMap, Status
+from numeric.backends.doubled import Doubles
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.scalars import ArrayBackend, ScalarBackend
 from numeric.flights.general import General
@@ -97,6 +98,38 @@ def test_random_landings_are_the_exact_ones(exactly):
 
     assert np.all(position <= np.maximum(4, 2 * (1 + matrix[:, 0].sum(axis=-1))))
     assert np.all(direction <= np.maximum(8, 4 * (1 + matrix[:, 1].sum(axis=-1))))
+
+
+@pytest.mark.parametrize("name", ["limacon", "star"])
+@pytest.mark.parametrize("lam", [0, 0.95])
+def test_landings_with_large_condition_numbers_are_right_to_the_last_bits(name, lam):
+    """The worst of four hundred: without a residual of twice the digits they are off by half a condition number."""
+    map = PinballMap(tables.polar(RADII[name]), lam=lam, kernels=False)
+    theta, phi = anywhere(400, 8)
+    phi = phi if lam else 0 * phi
+    matrix = 1 + np.abs(map.derivative(theta, phi))[:, 0].sum(axis=-1)
+    worst = np.argsort(matrix)[-2:]
+    own, found, code = flown(map, theta[worst], phi[worst])
+    position, direction = errors(map, ExactMap(map, 30), own, found)
+
+    assert not code.any()
+    assert np.max(position) <= 1
+    assert np.max(direction) <= 8
+
+
+def test_programs_run_with_twice_the_digits():
+    mp = mpmath.MPContext()
+    mp.dps = 50
+    program = PinballMap(tables.polar("sqrt(3 + pi*cos(5*theta)/7)/(2 - sin(theta)/3)"), lam=0, kernels=False).ir
+    program = program.program("radius").only(0, 1)
+    doubles, angle = Doubles(ArrayBackend()), np.linspace(-3, 3, 7)
+    c, s = doubles.unit((np.cos(angle), np.sin(angle)))
+    for i, x in enumerate(angle):
+        known = mp.matrix([mp.mpf(np.cos(x)), mp.mpf(np.sin(x))])
+        known = known / mp.norm(known)
+        truth = program(ScalarBackend(mp), *known)
+        for value, exact in zip(program(doubles, c, s), truth, strict=True):
+            assert abs(mp.mpf(value.high[i]) + mp.mpf(value.low[i]) - exact) <= mp.mpf(2) ** -97
 
 
 def test_flights_along_the_wall_are_as_exact_as_their_condition_allows(exactly):

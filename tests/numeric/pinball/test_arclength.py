@@ -1,6 +1,7 @@
 """Arc length of tables that have no closed form, its ends and its offsets."""
 
 import re
+from functools import cache
 
 import mpmath
 import numpy as np
@@ -17,20 +18,38 @@ from symbolic.tables.table import theta
 EPS = 2.0**-52
 MP = mpmath.MPContext()
 MP.dps = 40
-ROOTED = tables.polar(sqrt(1 + cos(theta) / 3 + sin(2 * theta) / 5), name="rooted")  # no symmetry, no finite sum
-SKEWED = tables.parametric(cos(theta) + sin(2 * theta) / 9, sin(theta) + cos(3 * theta) / 20, name="skewed")
-STADIUM = tables.piecewise(
-    tables.arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
-    tables.arc("top", -theta, 1, -1, 1),
-    tables.arc("left", -1 - cos(theta), -sin(theta), -pi / 2, pi / 2),
-    tables.arc("bottom", theta, -1, -1, 1),
-    name="stadium",
-)
-LENS = tables.piecewise(  # two bows of ellipses; neither parameter range begins at 0, and one does not hold it
-    tables.arc("lower", 2 * cos(theta), sin(theta) / 3, pi, 2 * pi),
-    tables.arc("upper", 2 * cos(theta), sin(theta), 0, pi),
-    name="lens",
-)
+
+
+@cache
+def rooted():
+    """No symmetry, no finite sum."""
+    return tables.polar(sqrt(1 + cos(theta) / 3 + sin(2 * theta) / 5), name="rooted")
+
+
+@cache
+def skewed():
+    return tables.parametric(cos(theta) + sin(2 * theta) / 9, sin(theta) + cos(3 * theta) / 20, name="skewed")
+
+
+@cache
+def stadium():
+    return tables.piecewise(
+        tables.arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
+        tables.arc("top", -theta, 1, -1, 1),
+        tables.arc("left", -1 - cos(theta), -sin(theta), -pi / 2, pi / 2),
+        tables.arc("bottom", theta, -1, -1, 1),
+        name="stadium",
+    )
+
+
+@cache
+def lens():
+    """Two bows of ellipses; neither parameter range begins at 0, and one does not hold it."""
+    return tables.piecewise(
+        tables.arc("lower", 2 * cos(theta), sin(theta) / 3, pi, 2 * pi),
+        tables.arc("upper", 2 * cos(theta), sin(theta), 0, pi),
+        name="lens",
+    )
 
 
 def length(map, component, low, high):
@@ -42,10 +61,10 @@ def length(map, component, low, high):
     return quad(speed, low, high, epsabs=4e-14, epsrel=1e-13)[0]
 
 
-@pytest.mark.parametrize("table", [ROOTED, SKEWED, LENS], ids=lambda table: table.name)
+@pytest.mark.parametrize("table", [rooted, skewed, lens], ids=lambda table: table.__name__)
 def test_arc_length_is_the_integral_of_the_speed(table):
-    arc = PinballMap(table).arclength
-    map = PinballMap(table)
+    arc = PinballMap(table()).arclength
+    map = PinballMap(table())
     for component, (low, high) in enumerate(map.states.ends):
         at = np.linspace(low, high, 8)
         s = arc.s(at, component)
@@ -53,9 +72,9 @@ def test_arc_length_is_the_integral_of_the_speed(table):
             assert abs((s1 - s0) - length(map, component, a, b)) <= 16 * EPS * max(1, abs(s0), abs(s1))
 
 
-@pytest.mark.parametrize("table", [ROOTED, SKEWED, LENS, STADIUM], ids=lambda table: table.name)
+@pytest.mark.parametrize("table", [rooted, skewed, lens, stadium], ids=lambda table: table.__name__)
 def test_the_parameter_comes_back_from_its_arc_length(table):
-    map = PinballMap(table)
+    map = PinballMap(table())
     for component, (low, high) in enumerate(map.states.ends):
         at = np.linspace(low, high, 301).reshape(7, 43)
         back = map.arclength.theta(map.arclength.s(at, component), component)
@@ -79,7 +98,7 @@ def test_perimeters_that_are_known(name, shape, perimeter):
 
 
 def test_the_stadium_is_two_half_circles_and_two_straights():
-    arc = PinballMap(STADIUM).arclength
+    arc = PinballMap(stadium()).arclength
     start = arc.s(np.array([-np.pi / 2, -1.0, -np.pi / 2, -1.0]), np.arange(4))
     end = arc.s(np.array([np.pi / 2, 1.0, np.pi / 2, 1.0]), np.arange(4))
 
@@ -89,10 +108,10 @@ def test_the_stadium_is_two_half_circles_and_two_straights():
     assert arc.s(0.3, 0) - arc.s(0.0, 0) == pytest.approx(0.3, abs=1e-15)
 
 
-@pytest.mark.parametrize(("table", "at"), [(STADIUM, 0.0), (LENS, np.pi), (ROOTED, 0.0)])
+@pytest.mark.parametrize(("table", "at"), [(stadium, 0.0), (lens, np.pi), (rooted, 0.0)])
 def test_arc_length_is_zero_at_the_origin_or_where_its_component_begins_beyond_it(table, at):
-    assert table.origin == (0, 0)
-    assert float(PinballMap(table).arclength.s(at, 0)) == pytest.approx(0, abs=1e-15)
+    assert table().origin == (0, 0)
+    assert float(PinballMap(table()).arclength.s(at, 0)) == pytest.approx(0, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", ["circle", "cuspless", "ellipse", "cardioid"])
@@ -217,7 +236,7 @@ def test_the_inverse_keeps_its_digits_up_to_the_cusp():
 
 
 def test_the_inverse_takes_two_steps_from_its_grid(monkeypatch):
-    for map in (PinballMap(table) for table in (ROOTED, SKEWED, LENS)):
+    for map in (PinballMap(table()) for table in (rooted, skewed, lens)):
         arc, asked = map.arclength, []
         speed = type(map.states).speed
         monkeypatch.setattr(type(map.states), "speed", lambda *at, ask=speed, said=asked: said.append(0) or ask(*at))
@@ -233,8 +252,8 @@ def test_closed_curves_have_waves_and_arcs_have_polynomials():
         return isinstance(getattr(length, "__self__", None), Waves)
 
     assert has_waves(PinballMap("egg", alpha="0.08").arclength.lengths[0])
-    assert all(has_waves(PinballMap(table).arclength.lengths[0]) for table in (ROOTED, SKEWED))
-    assert not any(has_waves(length) for length in PinballMap(STADIUM).arclength.lengths)
+    assert all(has_waves(PinballMap(table()).arclength.lengths[0]) for table in (rooted, skewed))
+    assert not any(has_waves(length) for length in PinballMap(stadium()).arclength.lengths)
 
 
 @pytest.mark.parametrize("rate", [pi, pi / 3, Rational(1, 2)])
@@ -250,8 +269,8 @@ def test_a_closed_curve_has_its_length_whatever_its_parameter_runs_through(rate)
 @pytest.mark.parametrize(("origin", "before"), [((0, 1.25), 0), ((1, 0.5), 1), ((3, -0.25), 3)])
 def test_arc_length_begins_where_a_table_says(origin, before):
     index, at = origin
-    arc = PinballMap(tables.piecewise(*STADIUM.components, origin=(index, Rational(str(at))))).arclength
-    usual = PinballMap(STADIUM).arclength
+    arc = PinballMap(tables.piecewise(*stadium().components, origin=(index, Rational(str(at))))).arclength
+    usual = PinballMap(stadium()).arclength
 
     assert float(arc.s(at, index)) == pytest.approx(0, abs=1e-15)
     for component in range(4):  # counterclockwise from there: the components before it come last

@@ -3,18 +3,19 @@
 import pytest
 from sympy import Matrix, Rational, S, cos, eye, pi, simplify, sin
 
-from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, piecewise, polar
 from symbolic.tables.gallery import diamond, sinai, stadium
 from symbolic.tables.geometry import group, order_of_rotation
-from symbolic.tables.table import alpha, theta
+from symbolic.tables.table import Table, alpha, theta
 
 TABLES = (ellipse.at(a=2), cardioid, cuspless, egg(3).at(alpha="0.08"), egg(4).at(alpha="0.02"), egg(7))
 PEAR = polar(1 / (9 + cos(theta)), name="pear")
 
 
 def quarter_turned(table):
+    """A turned table is one: that is not shown again."""
     x, y = table.components[0].point
-    return parametric(-y, x, name=f"{table.name} a quarter turned")
+    return Table(f"{table.name} a quarter turned", (arc("turned", -y, x, -pi, pi),))
 
 
 TURNED = tuple(quarter_turned(table) for table in (ellipse.at(a=2), egg(3).at(alpha="0.08")))

@@ -9,7 +9,6 @@ from verification.paper.egg import elastic as on_elastic_cycles
 from verification.paper.report.report import catalogue
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
-TRACE, TWIST, DRIFT = flat_triangle()
 
 
 def verdict(judge, name: str) -> Verdict:
@@ -29,13 +28,18 @@ def test_a_vertex_triangle_that_were_elliptic_would_not_alternate(monkeypatch: p
 
 
 def test_a_triangle_that_left_the_circle_at_second_order_would_show_no_bias(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(on_elastic_cycles, "flat_triangle", lambda: (Integer(2), TWIST, DRIFT))
+    _, twist, drift = flat_triangle()
+    monkeypatch.setattr(on_elastic_cycles, "flat_triangle", lambda: (Integer(2), twist, drift))
 
     assert verdict(on_elastic_cycles.bias, "egg.period3_bias") is not Verdict.CONFIRMED
 
 
-@pytest.mark.parametrize("facts", [(TRACE, Integer(0), DRIFT), (Integer(-1), TWIST, DRIFT), (TRACE, TWIST, Integer(1))])
-def test_no_island_is_proved_without_twist_at_a_resonance_or_where_area_is_lost(facts, monkeypatch: pytest.MonkeyPatch):
+@pytest.mark.parametrize(("place", "wrong"), [(1, 0), (0, -1), (2, 1)])  # of trace, twist and drift
+def test_no_island_is_proved_without_twist_at_a_resonance_or_where_area_is_lost(
+    place: int, wrong: int, monkeypatch: pytest.MonkeyPatch
+):
+    right = flat_triangle()
+    facts = (*right[:place], Integer(wrong), *right[place + 1 :])
     monkeypatch.setattr(on_elastic_cycles, "flat_triangle", lambda: facts)
 
     assert verdict(on_elastic_cycles.period3_islands, "egg.period3_islands") is not Verdict.CONFIRMED

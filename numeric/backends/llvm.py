@@ -10,7 +10,7 @@ import struct
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from numeric.backends import functions
+from numeric.backends import functions, memory
 from numeric.backends.functions import DoubleBackend
 
 Fold = float | None
@@ -234,16 +234,11 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
 
     def look_up(self, values: Sequence[LLVMVector], index: LLVMVector) -> LLVMVector:
         """The constant of that index, gathered from memory; the first one where there is none."""
-        items = ", ".join(self.literal(x.value)[len("splat (") : -1] for x in values)  # type: ignore[arg-type]
-        name = self.constants.setdefault(f"[{len(values)} x double] [{items}]", f"@array{len(self.constants)}")
-        known = (self.number(-0.5) < index) & (index < self.number(len(values) - 0.5))
-        inside, places = self.select(known, index, self.number(0.0)).text, f"<{self.width} x i32>"
-        whole = self.emit(f"fptosi {self.type} {inside} to {places}")
-        pointers = self.emit(f"getelementptr double, ptr {name}, {places} {whole}")
-        gather, kind = f"{self.type} @llvm.masked.gather.v{self.width}f64.v{self.width}p0", f"<{self.width} x ptr>"
-        self.called.add(f"declare {gather}({kind}, i32, {self.masks}, {self.type})")
-        given = f"{kind} {pointers}, i32 8, {self.masks} splat (i1 true), {self.type} poison"
-        return LLVMVector(self, self.emit(f"call {gather}({given})"))
+        return LLVMVector(self, memory.gathered(self, [x.value for x in values], index))  # type: ignore[misc]
+
+    def look_up_row(self, rows: Sequence[Sequence[float]], index: LLVMVector) -> list[LLVMVector]:
+        """The columns of a table of constants in the row of that index; the first where there is none."""
+        return [LLVMVector(self, column) for column in memory.columns(self, rows, index)]
 
     def negated(self, mask: LLVMMask) -> LLVMMask:
         """The opposite of a mask."""
@@ -349,8 +344,9 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         body: Callable[[list[LLVMVector]], list[LLVMVector]],
         state: list[LLVMVector],
         limit: int,
+        steady: bool = False,
     ) -> list[LLVMVector]:
-        """Apply `body` to the lanes for which `condition` holds, until it holds for none."""
+        """Apply `body` to lanes for which `condition` holds, until it does for none; `steady`: leaving others alone."""
         head, inside, after = (self.fresh(stem)[1:] for stem in ("head", "inside", "after"))
         starts, before = [x.text for x in state], self.block
         names = [self.fresh() for _ in state]
@@ -364,7 +360,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         more = self.emit(f"and i1 {self.anywhere(active)}, {self.emit(f'icmp ult i32 {index}, {limit}')}")
         self.lines.append(f"  br i1 {more}, label %{inside}, label %{after}")
         self.label(inside)
-        new = [self.select(active, x, y).text for x, y in zip(body(now), now, strict=True)]
+        new = [x.text if steady else self.select(active, x, y).text for x, y in zip(body(now), now, strict=True)]
         self.lines += [f"  {following} = add i32 {index}, 1", f"  br label %{head}"]
         phis = [
             f"  {name} = phi {self.type} [{start}, %{before}], [{end}, %{self.block}]"

@@ -94,6 +94,10 @@ class Backend(NumberSystem[N], Protocol[N, M]):
         """The value of that index, a whole number; the first one where there is none."""
         ...
 
+    def look_up_row(self, rows: Sequence[Sequence[float]], index: N, /) -> list[N]:
+        """The columns of a table of constants in the row of that index; the first where there is none."""
+        ...
+
     def settle(self, *values: N) -> None:
         """Compute these values here, and not where they are needed."""
         ...
@@ -129,9 +133,18 @@ class Backend(NumberSystem[N], Protocol[N, M]):
         ...
 
     def repeat(
-        self, condition: Callable[[list[N]], M], body: Callable[[list[N]], list[N]], state: list[N], limit: int, /
+        self,
+        condition: Callable[[list[N]], M],
+        body: Callable[[list[N]], list[N]],
+        state: list[N],
+        limit: int,
+        steady: bool = False,
+        /,
     ) -> list[N]:
-        """Apply `body` to the numbers for which `condition` holds, until it holds for none."""
+        """Apply `body` to the numbers for which `condition` holds, until it holds for none.
+
+        A `steady` body leaves the others alone by itself.
+        """
         ...
 
     def when(self, mask: M, values: list[N], changed: Callable[[], list[N]], /) -> list[N]:

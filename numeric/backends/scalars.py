@@ -92,6 +92,12 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         known = (index >= 0.0) & (index < len(values))
         return np.asarray(values)[np.where(known, index, 0.0).astype(np.int64)]
 
+    def look_up_row(self, rows: Sequence[Sequence[float]], index: Array) -> list[Array]:
+        """The columns of a table of constants in the row of that index; the first where there is none."""
+        known = (index >= 0.0) & (index < len(rows))
+        found = np.asarray(rows)[np.where(known, index, 0.0).astype(np.int64)]
+        return [found[..., i] for i in range(found.shape[-1])]
+
     def settle(self, *values: Array) -> None:
         """Nothing to do: every value is computed where it stands."""
 
@@ -106,13 +112,18 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         body: Callable[[list[Array]], list[Array]],
         state: list[Array],
         limit: int,
+        steady: bool = False,
     ) -> list[Array]:
-        """Apply `body` to the elements for which `condition` holds, until it holds for none."""
+        """Apply `body` to the elements for which `condition` holds, until it holds for none.
+
+        A `steady` body leaves the other elements alone by itself.
+        """
         for _ in range(limit):
             active = condition(state)
             if not np.any(active):
                 break
-            state = [np.where(active, new, old) for new, old in zip(body(state), state, strict=True)]
+            changed = body(state)
+            state = changed if steady else [np.where(active, x, y) for x, y in zip(changed, state, strict=True)]
         return state
 
     def when(self, mask: Masks, values: list[Array], changed: Callable[[], list[Array]]) -> list[Array]:
@@ -214,6 +225,10 @@ class ScalarBackend(Backend[N, bool]):
     def look_up(self, values: Sequence[N], index: N) -> N:
         """The value of that index."""
         return values[int(index)]  # type: ignore[call-overload]
+
+    def look_up_row(self, rows: Sequence[Sequence[float]], index: N) -> list[N]:
+        """The numbers of that row."""
+        return [self.number(x) for x in rows[int(index)]]  # type: ignore[call-overload]
 
     def settle(self, *values: N) -> None:
         """Nothing to do: every value is computed where it stands."""
@@ -318,6 +333,7 @@ class ScalarBackend(Backend[N, bool]):
         body: Callable[[list[N]], list[N]],
         state: list[N],
         limit: int,
+        steady: bool = False,
     ) -> list[N]:
         """Apply `body` while `condition` holds."""
         while condition(state):

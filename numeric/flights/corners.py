@@ -8,11 +8,13 @@ import numpy as np
 from numeric.backends import functions as plane
 from numeric.backends.protocol import modulus
 from numeric.flights.family import Boundary
+from numeric.flights.general import UNSURE
 
 LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
 MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
 TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
 Pair = tuple[Any, Any]
+Masks = Any
 
 
 class Piece(NamedTuple):
@@ -48,13 +50,18 @@ def column(pieces: list[Piece], i: int) -> list[Any]:
 
 def chosen(ops: Any, component: Any, values: list[Any]) -> Any:
     """The value of the particle's piece; neighbours that are equal cost nothing."""
-    if len(values) > MANY and all(getattr(value, "value", 0.0) is not None for value in values):
+    if len(values) > MANY and all(map(_constant, values)):
         return values[0] if all(same(value, values[0]) for value in values) else ops.look_up(values, component)
     found = values[0]
     for i in range(1, len(values)):
         if not same(values[i], values[i - 1]):
             found = ops.select(ops.number(i - 0.5) < component, values[i], found)
     return found
+
+
+def _constant(value: Any) -> bool:
+    """Is this one number, of a vector of LLVM a known one? An array has one for each particle."""
+    return getattr(value, "value", 0.0) is not None and not getattr(value, "ndim", 0)
 
 
 def chosen_mask(ops: Any, component: Any, values: list[bool]) -> Any:
@@ -142,3 +149,22 @@ def _turned(boundary: Boundary, j: int) -> float:
     theta = np.linspace(low, high, 257)
     _, _, dx, dy, _, _ = boundary.curve(np.full(theta.shape, j), theta)
     return float(np.ptp(np.unwrap(np.arctan2(dy, dx))))
+
+
+class Flight(NamedTuple):
+    """The line along which a particle leaves: its piece, point and direction, and `d x v` there."""
+
+    ops: Any
+    component: Any
+    z0: Pair
+    v: Pair
+    rate: Any
+    p: Any  # of the point
+
+
+def passing(flight: Flight, corner: Pair, side: Any, start: Any, t: Any) -> Masks:
+    """Does a flight of length `t` come to a corner on its way, as near as its rounding?"""
+    ops, (x, y) = flight.ops, corner
+    slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
+    ahead = plane.dot(flight.v, (x - flight.z0[0], y - flight.z0[1]))
+    return (modulus(side) <= slack) & (slack < ahead) & (ahead < t)

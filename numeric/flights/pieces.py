@@ -25,9 +25,9 @@ off by `UNSURE*S` along the arc, and the line moves sideways by `UNSURE` times i
 State: the piece, `p`, `q`, and the direction `v`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import modulus
@@ -36,6 +36,8 @@ from numeric.flights.corners import (
     ELLIPSE,
     LINE,
     MANY,
+    Flight,
+    Masks,
     Pair,
     Piece,
     chosen,
@@ -45,6 +47,7 @@ from numeric.flights.corners import (
     following,
     loops,
     passable,
+    passing,
     piece_of,
     span,
 )
@@ -53,7 +56,6 @@ from numeric.flights.general import UNSURE, refuse_long
 from numeric.flights.spline import halved
 
 FAR = 2.0**100  # as far as nothing was met
-Masks = Any
 Row = Sequence[Any]
 
 
@@ -73,6 +75,7 @@ class Pieces(Family):
         self.kinds = [kind for kind, _ in names]
         self.programs = [program for _, program in ir.programs]
         self.halving: list[list[float]] | None = None
+        self.constants: list[list[float]] | None = None  # numbers that are looked up
         known = self.pieces(boundary.ops, boundary.shape)
         self.known = known
         self.following = following(boundary, known)
@@ -85,8 +88,8 @@ class Pieces(Family):
         first = loops(self.following)[0]
         self.outer = first if convex(boundary, known, first, self.following) else []
         self.passed = [j for j in range(len(known)) if passable(boundary, known, j, self.following)]
-        whole = len(self.outer) == len(known) > MANY and not boundary.shape
-        self.halving = [[float(x) for x in program(boundary.ops)] for program in self.programs] if whole else None
+        if len(self.outer) == len(known) > MANY and not boundary.shape:
+            self.halving = self.constants = self.numbers()
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
@@ -98,12 +101,16 @@ class Pieces(Family):
         told = self.kinds, self.following, self.closed, self.wide, self.outer, self.bulges, self.passed, self.halving
         return repr(told)
 
+    def numbers(self) -> list[list[float]]:
+        """The numbers of every piece of a table without parameters."""
+        return [[float(x) for x in program(self.boundary.ops)] for program in self.programs]
+
     def pieces(self, ops: Any, shape: Row) -> list[Piece]:
         """All pieces in the arithmetic of `ops`."""
         found = []
         for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
-            if self.halving and not hasattr(ops, "context"):
-                x = [ops.number(value) for value in self.halving[j]]  # constants, which are looked up
+            if self.constants and not hasattr(ops, "context"):
+                x = [ops.number(value) for value in self.constants[j]]
             else:
                 x = program(ops, *shape)
             found.append(piece_of(kind, x))
@@ -137,11 +144,18 @@ class Pieces(Family):
     def _pair(self, ops: Any, component: Any, pairs: list[Pair]) -> Pair:
         return chosen(ops, component, [x for x, _ in pairs]), chosen(ops, component, [y for _, y in pairs])
 
+    def _axes(self, ops: Any, pieces: list[Piece], component: Any) -> list[Pair]:
+        """`A` and `B` of the particle's piece."""
+        return [self._pair(ops, component, column(pieces, i)) for i in (2, 3)]
+
+    def _turning(self, ops: Any, pieces: list[Piece], component: Any) -> Any:
+        """`A x B` of the particle's piece."""
+        return chosen(ops, component, column(pieces, 5))
+
     def tangent(self, ops: Any, shape: Row, position: Row) -> Pair:
         """The velocity `d` at a boundary point."""
         component, p, q = position
-        pieces = self.pieces(ops, shape)
-        A, B = (self._pair(ops, component, column(pieces, i)) for i in (2, 3))
+        A, B = self._axes(ops, self.pieces(ops, shape), component)
         return p * B[0] - q * A[0], p * B[1] - q * A[1]
 
     def point(self, ops: Any, pieces: list[Piece], position: Row) -> Pair:
@@ -170,12 +184,7 @@ class Pieces(Family):
             return self._landed(flight, pieces, best, [first, last, below, above])
         sides = [plane.cross(v, (corner[0] - z0[0], corner[1] - z0[1])) for corner in corners]
         if self.outer:
-            where = component
-            for j in self.outer:
-                other = ops.number(0.25) < abs(component - ops.number(float(j)))
-                meets = other & (sides[j] <= nought) & (nought < sides[self.following[j]])
-                where = ops.select(meets, ops.number(float(j)), where)
-            best = [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
+            best = self._round(flight, pieces, sides)
         for j, piece in enumerate(pieces):
             if j in self.outer:
                 continue
@@ -199,6 +208,16 @@ class Pieces(Family):
         assert best is not None
         return self._landed(flight, pieces, best, sides)
 
+    def _round(self, flight: Flight, pieces: list[Piece], sides: Row) -> list[Any]:
+        """Where a flight lands on the convex curve round all others."""
+        ops, where = flight.ops, flight.component
+        nought = ops.number(0.0)
+        for j in self.outer:
+            other = ops.number(0.25) < abs(flight.component - ops.number(float(j)))
+            meets = other & (sides[j] <= nought) & (nought < sides[self.following[j]])
+            where = ops.select(meets, ops.number(float(j)), where)
+        return [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
+
     def _spans(self, ops: Any, pieces: list[Piece]) -> list[Pair]:
         """What the points of every piece are added up from; constants, if there are no parameters."""
         if self.boundary.shape:
@@ -219,7 +238,7 @@ class Pieces(Family):
             largest = ops.maximum(largest, base + slope * ops.maximum(modulus(low), modulus(high)))
         return largest
 
-    def _slack(self, flight: "Flight", pieces: list[Piece], piece: Piece) -> Any:
+    def _slack(self, flight: Flight, pieces: list[Piece], piece: Piece) -> Any:
         """`(v x d)**2` below which rounding hides on which side of a tangent of an arc the line passes."""
         ops, radius = flight.ops, piece.radius
         if piece.kind != CIRCLE:
@@ -236,7 +255,7 @@ class Pieces(Family):
         kind = "" if several else self.kinds[self.outer[0]]
         return Piece(kind, origin, A, B, origin, D, radius, origin, origin)
 
-    def _met(self, flight: "Flight", piece: Piece, where: Any) -> tuple[Any, Any, Any, Any, Masks]:
+    def _met(self, flight: Flight, piece: Piece, where: Any) -> tuple[Any, Any, Any, Any, Masks]:
         """Length, `p`, `q` and `v x d` of the arrival on a piece, and where an arc has one."""
         ops, v = flight.ops, flight.v
         w = flight.z0[0] - piece.origin[0], flight.z0[1] - piece.origin[1]
@@ -276,26 +295,25 @@ class Pieces(Family):
         gap = piece.half[0] * c - piece.half[1] * s
         return ops.select(ops.number(0.0) < c, ops.number(1.0), gap) if wide else gap
 
-    def _landed(self, flight: "Flight", pieces: list[Piece], best: Row, sides: Row) -> Landing[Any]:
+    def _landed(self, flight: Flight, pieces: list[Piece], best: Row, sides: Row) -> Landing[Any]:
         ops, v, (t, p, q, along, where) = flight.ops, flight.v, best
         nought = ops.number(0.0)
-        A, B = (self._pair(ops, where, column(pieces, i)) for i in (2, 3))
+        A, B = self._axes(ops, pieces, where)
         d = p * B[0] - q * A[0], p * B[1] - q * A[1]
         across = plane.dot(d, v)
         code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
         farthest = self._farthest(ops, pieces)
         near = ops.negated(ops.number(4 * UNSURE) * farthest * farthest < along * along) if any(self.bulges) else None
-        for side in sides:
-            by = ops.negated(ops.number(8 * UNSURE) * farthest < modulus(side))
+        for by in self._near(ops, farthest, sides):
             near = by if near is None else near | by
         doubt = ops.when(near, [nought + nought * t], lambda: [self._doubt(flight, pieces, best, d, sides)])[0]
         code = ops.select(ops.number(0.5) < doubt, doubt, code)
         if not self.outer:  # what passes between two pieces is at a join
             code = ops.select(t < ops.number(FAR), code, ops.number(float(Status.JOIN.code)))
-        D = chosen(ops, where, [piece.D for piece in pieces])
+        D = self._turning(ops, pieces, where)
         return Landing([where, p, q], across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
 
-    def _doubt(self, flight: "Flight", pieces: list[Piece], best: Row, d: Pair, sides: Row) -> Any:
+    def _doubt(self, flight: Flight, pieces: list[Piece], best: Row, d: Pair, sides: Row) -> Any:
         """`JOIN` or `GRAZING`, by number, where rounding hides on which side of a corner or tangent the line passes."""
         ops, (t, p, q, along, where) = flight.ops, best
         nought, one = ops.number(0.0), ops.number(1.0)
@@ -310,20 +328,29 @@ class Pieces(Family):
             doubt = ops.select(own, t * t * speed + along * along * doubt, doubt)
             aside = aside * ops.select(own, speed, one)
         sure = (nought < gap) & (ops.number(UNSURE * UNSURE) * doubt < aside) | (ops.number(0.5 * FAR) < gap)
-        for j in self.passed:
-            x, y = pieces[j].start
-            slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
-            ahead = plane.dot(flight.v, (x - flight.z0[0], y - flight.z0[1]))
-            sure = sure & ops.negated((modulus(sides[j]) <= slack) & (slack < ahead) & (ahead < t))
+        for passes in self._passes(flight, pieces, start, t, sides):
+            sure = sure & ops.negated(passes)
         code = nought
         if any(self.bulges):
-            slack = [
-                self._slack(flight, pieces, piece) if bulges else -one
-                for piece, bulges in zip(pieces, self.bulges, strict=True)
-            ]
-            touches = (along * along <= chosen(ops, where, slack)) & ops.negated(own)
+            touches = (along * along <= self._slack_at(flight, pieces, where)) & ops.negated(own)
             code = ops.select(touches, ops.number(float(Status.GRAZING.code)), nought)
         return ops.select(sure, code, ops.number(float(Status.JOIN.code)))
+
+    def _near(self, ops: Any, farthest: Any, sides: Row) -> Iterator[Masks]:
+        """Whether the line passes a corner so near that its side may be in doubt."""
+        for side in sides:
+            yield ops.negated(ops.number(8 * UNSURE) * farthest < modulus(side))
+
+    def _passes(self, flight: Flight, pieces: list[Piece], start: Any, t: Any, sides: Row) -> Iterator[Masks]:
+        """Whether rounding hides on which side of a corner that may be passed the flight passes it."""
+        for j in self.passed:
+            yield passing(flight, pieces[j].start, sides[j], start, t)
+
+    def _slack_at(self, flight: Flight, pieces: list[Piece], where: Any) -> Any:
+        """`_slack` of the dispersing arc on which a flight ends; negative on other pieces."""
+        none, known = -flight.ops.number(1.0), zip(pieces, self.bulges, strict=True)
+        slack = [self._slack(flight, pieces, piece) if bulges else none for piece, bulges in known]
+        return chosen(flight.ops, where, slack)
 
     def _gap(self, ops: Any, pieces: list[Piece], where: Any, u: Pair) -> Any:
         """How far a landing is from the nearer end of its piece, in units of the velocity; negative beyond it."""
@@ -364,14 +391,3 @@ class Pieces(Family):
     def bend(self, ops: Any, shape: Row, landing: Landing[Any]) -> Pair:
         d = landing.vectors["d"]
         return -landing.numbers["D"], plane.dot(d, d)
-
-
-class Flight(NamedTuple):
-    """The line along which a particle leaves: its piece, point and direction, and `d x v` there."""
-
-    ops: Any
-    component: Any
-    z0: Pair
-    v: Pair
-    rate: Any
-    p: Any  # of the point

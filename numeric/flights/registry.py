@@ -14,6 +14,7 @@ FAMILIES = (
     ("harmonic", "Conic"),
     ("harmonic", "Ellipse"),
     ("harmonic", "Fourier"),
+    ("many", "Many"),
     ("pieces", "Pieces"),
     ("spline", "Spline"),
     ("polar", "Polar"),

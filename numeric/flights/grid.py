@@ -1,0 +1,142 @@
+"""A grid of cells over a table of many pieces: a flight looks at the pieces in the cells on its way, and at no others.
+
+From a cell without pieces a flight goes on at once to the end of the largest empty square of cells that begins there;
+which one that is depends on the signs of its direction, so every cell has four. As squares grow with the distance from
+the boundary, their number on a flight grows like the logarithm of the number of cells in a row.
+
+**No piece is left out that could be hit first.** Rounding moves a point of a flight by some units of `2**-52` of the
+numbers that points are added up from. A piece is listed in every cell that it comes as near to as `2*slack`, where
+`slack` is `WIDER = 2**-40` of these numbers, four thousand times as much; a flight leaves a square where it is ahead of
+its edge by half a slack, so that it comes on in spite of rounding. What a flight has met up to the length at which it
+left the last cell is therefore on the lists that it has read, and the nearest of them is the first hit.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric.backends.protocol import Backend, M, N, Pair, modulus
+
+WIDER = 2.0**-40
+OVER = 2.0**101  # beyond all lengths
+PIECE = 2.5  # cells for each piece: fewer have longer lists, more take longer to cross
+FEWEST, MOST = 4, 128  # cells in a row
+Array = NDArray[np.float64]
+
+
+class Grid(NamedTuple):
+    """Cells in rows, a ring of which lies round the table, and lists of pieces.
+
+    `squares` has four rows for each cell, for directions that are positive or negative in `x` and in `y`: the edges
+    that a flight comes to in `x` and in `y`, and the first line of the cell's list in `items`, `-1` for none, `-2`
+    beyond the table. A line has what the flight needs of a piece, and its number `j`, or `-1 - j` on a list's last.
+    """
+
+    low: tuple[float, float]
+    cell: tuple[float, float]
+    shape: tuple[int, int]
+    nudge: float
+    squares: list[list[float]]
+    items: list[list[float]]
+
+
+def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]], size: float) -> Grid:
+    """The grid over a table for pieces that lie in some boxes each; rows of left, right, low, high are boxes.
+
+    `lines` says of each piece what its line has, its number last; `size` is a bound of the numbers that points are
+    added up from.
+    """
+    slack = WIDER * size
+    lowest, highest = table[:, (0, 2)].min(axis=0) - 4 * slack, table[:, (1, 3)].max(axis=0) + 4 * slack
+    sides = highest - lowest
+    wanted = np.sqrt(PIECE * len(lines) * sides / sides[::-1])
+    inside = np.clip(np.rint(wanted), FEWEST, MOST).astype(int)
+    cell = sides / inside
+    low, (count, rows) = lowest - cell, (int(inside[0]) + 2, int(inside[1]) + 2)
+    held: list[list[int]] = [[] for _ in range(rows * count)]
+    for number, own in enumerate(boxes):
+        first = np.floor((own[:, (0, 2)] - 2 * slack - low) / cell).astype(int)
+        last = np.floor((own[:, (1, 3)] + 2 * slack - low) / cell).astype(int)
+        found = {(i, j) for (a, b), (c, d) in zip(first.tolist(), last.tolist(), strict=True)
+                 for i in range(a, c + 1) for j in range(b, d + 1)}  # fmt: skip
+        for i, j in found:
+            held[j * count + i].append(number)
+    items: list[list[float]] = []
+    link = np.full(rows * count, -1.0)
+    for at, numbers in enumerate(held):
+        if numbers:
+            link[at] = len(items)
+            items += [
+                [*lines[number][:-1], lines[number][-1] if number != numbers[-1] else -1.0 - lines[number][-1]]
+                for number in numbers
+            ]
+    links = link.reshape(rows, count)
+    links[0], links[-1], links[:, 0], links[:, -1] = (-2.0,) * 4
+    squares = [_square_rows(links, way, low, cell) for way in range(4)]
+    known = (float(low[0]), float(low[1])), (float(cell[0]), float(cell[1]))
+    return Grid(*known, (count, rows), slack / 2, [row for way in squares for row in way], items)
+
+
+def _square_rows(link: Array, way: int, low: Array, cell: Array) -> list[list[float]]:
+    """For the directions of one quadrant: to the left where `way` is odd, downwards from 2 on."""
+    flip = (slice(None, None, -1 if way & 2 else 1), slice(None, None, -1 if way & 1 else 1))
+    empty = (link == -1.0)[flip]
+    side = np.zeros(link.shape)
+    while np.any(empty):
+        side += empty
+        ahead = np.zeros_like(empty)
+        ahead[:-1, :-1] = empty[1:, :-1] & empty[:-1, 1:] & empty[1:, 1:]
+        empty = empty & ahead
+    steps = np.maximum(side[flip], 1.0)
+    y, x = np.indices(link.shape).astype(float)
+    x = x + 1.0 - steps if way & 1 else x + steps
+    y = y + 1.0 - steps if way & 2 else y + steps
+    rows = np.stack([low[0] + x * cell[0], low[1] + y * cell[1], link, 0.0 * link], axis=-1)
+    found: list[list[float]] = rows.reshape(-1, 4).tolist()
+    return found
+
+
+def met(
+    ops: Backend[N, M],
+    grid: Grid,
+    z0: Pair[N],
+    v: Pair[N],
+    best: list[N],
+    tried: Callable[[M, list[N], list[N]], list[N]],
+) -> list[N]:
+    """`best`, whose first is the length of the flight, after all lines of `items` have been `tried` that may matter."""
+    nought, one, half = ops.number(0.0), ops.number(1.0), ops.number(0.5)
+    left, down = (ops.with_sign(one, side) < nought for side in v)  # of -0.0 too
+    cells = float(grid.shape[0] * grid.shape[1])
+    way = ops.select(left, ops.number(cells), nought) + ops.select(down, ops.number(2 * cells), nought)
+    inverse, start, step = [], [], []
+    for axis in (0, 1):
+        ahead = ops.with_sign(ops.maximum(modulus(v[axis]), ops.number(2.0**-500)), v[axis])
+        inverse.append(one / ahead)
+        scale = ops.number(1 / grid.cell[axis])
+        nudged = z0[axis] + ops.with_sign(ops.number(grid.nudge), v[axis]) - ops.number(grid.low[axis])
+        start.append(nudged * scale - half)
+        step.append(v[axis] * scale)
+    wide = ops.number(float(grid.shape[0]))
+
+    def on(state: list[N]) -> list[N]:
+        """Through the square in which the flight is: the length up to its edge, and the list of its first cell."""
+        t, _ = state
+        i, j = (ops.rounded(step[axis] * t + start[axis]) for axis in (0, 1))
+        x, y, link, _ = ops.look_up_row(grid.squares, j * wide + i + way)
+        across, up = (x - z0[0]) * inverse[0], (y - z0[1]) * inverse[1]
+        t = ops.select(across < up, across, up)
+        return [ops.select(link < -one - half, ops.number(OVER), t), link]
+
+    def listed(state: list[N]) -> list[N]:
+        t, line, *best = state
+        t, line = ops.repeat(lambda at: (at[1] < nought) & (at[0] < best[0]), on, [t, line], 2 * sum(grid.shape))
+        *known, number = ops.look_up_row(grid.items, line)
+        reached, last = -half < line, number < nought
+        best = tried(reached, [*known, ops.select(last, -one - number, number)], best)
+        return [t, ops.select(last, -one, ops.select(reached, line + one, line)), *best]
+
+    begin = [nought * best[0], nought * best[0] - one, *best]
+    return ops.repeat(lambda at: (-half < at[1]) | (at[0] < at[2]), listed, begin, 16 * len(grid.items), True)[2:]

@@ -1,7 +1,5 @@
 """What a sweep is: named axes, the fields measured over them, and one task for each part of the grid.
 
-What a sweep will cost, before anything runs: bounces, seconds at the speed measured here, bytes.
-
 A scene as a line of text, which labels results and travels to other machines; its map, and random particles in it.
 
 The sign of a finite-time Lyapunov exponent, when its error decides it.
@@ -15,7 +13,6 @@ transient: then late blocks fall, and the scatter says so, unless the whole run 
 import itertools
 import json
 import os
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -182,49 +179,9 @@ def missing_value(dtype: str) -> float:
     return np.nan if np.dtype(dtype).kind == "f" else -1
 
 
-PARTICLES, BOUNCES, RUNS = 1024, 400, 3
-
-
-class Cost(NamedTuple):
-    """`seconds` is what the kernel needs for that many bounces with `workers` like this core."""
-
-    parts: int
-    collisions: int
-    nanoseconds: float
-    workers: int
-    bytes: int
-
-    @property
-    def seconds(self) -> float:
-        """The kernel's time."""
-        return self.collisions * self.nanoseconds * 1e-9 / self.workers
-
-    def as_data(self) -> dict[str, Any]:
-        """The keys of the JSON document."""
-        return {**self._asdict(), "seconds": self.seconds}
-
-
-def cost(sweep: Sweep, workers: int | None = None) -> Cost:
-    """The cost of all parts of a sweep; the speed of a bounce with exponents is measured in some milliseconds."""
-    workers = workers or cores()
-    return Cost(len(sweep.indices()), sweep.collisions, speed(sweep.map()), workers, sweep.size)
-
-
 def cores() -> int:
     """The cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def speed(map: PinballMap) -> float:
-    """Nanoseconds for a bounce with exponents, on one core: the fastest of a few runs."""
-    low, high = map.states.ends[0]
-    theta = low + (high - low) * (np.arange(PARTICLES) + 0.5) / PARTICLES
-    best = np.inf
-    for _ in range(RUNS):
-        begun = time.perf_counter()
-        map.exponents(theta, 0.0 * theta, BOUNCES, threads=1)
-        best = min(best, time.perf_counter() - begun)
-    return float(best / PARTICLES / BOUNCES * 1e9)
 
 
 KEPT = 16  # maps

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import time
 import tracemalloc
 
 import numpy as np
@@ -14,7 +15,8 @@ from numeric.sweeps.fields import bifurcation, parameter_space
 from numeric.sweeps.orbits import memory, record
 from numeric.sweeps.run import UnfinishedError, run
 from numeric.sweeps.store import opened
-from numeric.sweeps.sweep import Axis, Field, Sweep, cost, text_of
+from numeric.sweeps.cost import cost
+from numeric.sweeps.sweep import Axis, Field, Sweep, text_of
 from symbolic import Scene, tables
 from symbolic.tables.table import theta
 
@@ -196,6 +198,33 @@ def test_the_cost_is_that_of_all_bounces():
     assert expected.parts == 3
     assert expected.bytes == run(sweep).nbytes
     assert expected.seconds == expected.collisions * expected.nanoseconds * 1e-9 / 2
+
+
+PREPARED = set()
+
+
+def slowly(part):
+    """Takes time for each new `x`, for each part, and for each `y`; and a megabyte for each `y`."""
+    known = part.values["x"][0] in PREPARED
+    PREPARED.add(part.values["x"][0])
+    end = time.process_time() + 0.02 * (not known) + 0.002 + 0.0005 * part.values["y"].size
+    taken = np.ones((part.values["y"].size, 1 << 17))
+    while time.process_time() < end:
+        pass
+    return {"sum": taken[None, :, 0]}
+
+
+@pytest.mark.parametrize("workers", [1, 4])
+def test_seconds_and_memory_of_a_sweep_are_foretold_within_a_fifth(workers):
+    axes = Axis("x", np.arange(9.0), "1", "first", 1), Axis("y", np.arange(40.0), "1", "second", 20)
+    fields = (Field("sum", ("x", "y"), "float64", "1", "anything"),)
+    PREPARED.clear()
+    sweep = Sweep("slow", "Slow", axes, fields, slowly, 1, "none", {}, 18 * 20 * 10**6, lambda: None)
+    expected = cost(sweep, workers)
+    exact = 9 * 0.02 + 18 * (0.002 + 20 * 0.0005)
+
+    assert abs(expected.seconds * workers / exact - 1) < 0.2
+    assert abs(expected.memory / (workers * 20 * 2**20) - 1) < 0.2
 
 
 def test_the_diagram_of_the_egg_doubles_its_period():

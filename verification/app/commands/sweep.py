@@ -28,7 +28,8 @@ from verification.app.scene import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from numeric.sweeps.sweep import Cost, Sweep
+    from numeric.sweeps.cost import Cost
+    from numeric.sweeps.sweep import Sweep
 
 
 COLUMNS, ROWS = 96, 24  # of the picture in letters
@@ -79,11 +80,11 @@ def sweep_options(command: Command) -> Command:
 
 def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
     """Does a sweep, or says what it would cost, and shows what `lines` makes of the results."""
+    from numeric.sweeps.cost import cost
     from numeric.sweeps.run import UnfinishedError, run
-    from numeric.sweeps.sweep import cost
 
     if how.dry_run:
-        expected = cost(sweep, how.workers)
+        expected = cost(sweep, how.workers, how.store is not None)
         how.output.write({"dry_run": True, "sweep": sweep.name, **expected.as_data()})
         for line in estimated(expected):
             how.output.console.print(line)
@@ -117,6 +118,7 @@ def estimated(expected: "Cost") -> list[str]:
         f"about {duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
         f"{expected.workers} cores",
         f"{size(expected.bytes)} of results before compression",
+        f"{size(expected.memory)} of memory at most, about, for {expected.workers} parts at a time",
     ]
 
 

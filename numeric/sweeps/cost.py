@@ -60,7 +60,7 @@ def cost(sweep: Sweep, workers: int | None = None, stored: bool = True) -> Cost:
     chosen = [indices[len(indices) * (2 * i + 1) // (2 * PROBES)] for i in range(min(PROBES, len(indices)))]
     ends = [(_thinned(sweep, at, few), _thinned(sweep, at, more)) for at in chosen]
     begun, first = time.process_time(), _seconds(sweep, ends[0][0])  # which compiles
-    found, once = [], [0.0]
+    found, once = list[float](), [0.0]
     for small, large in ends:
         if found and time.process_time() - begun > PATIENCE:
             break
@@ -99,7 +99,7 @@ def _cut(sweep: Sweep) -> dict[str, int]:
 def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> Part:
     """A part with about so many coordinates: the middle ones of as many equal shares."""
     part, values = sweep.part(index), {}
-    for name, length in _cut(sweep).items():
+    for name in _cut(sweep):
         here = part.values[name]
         kept = max(1, min(len(here), count))
         values[name] = here[(np.arange(kept) * 2 + 1) * len(here) // (2 * kept)]

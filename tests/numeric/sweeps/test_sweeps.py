@@ -11,11 +11,11 @@ import xarray as xr
 from sympy import Rational, cos
 
 from numeric import PinballMap
+from numeric.sweeps.cost import cost
 from numeric.sweeps.fields import bifurcation, parameter_space
 from numeric.sweeps.orbits import memory, record
 from numeric.sweeps.run import UnfinishedError, run
 from numeric.sweeps.store import opened
-from numeric.sweeps.cost import cost
 from numeric.sweeps.sweep import Axis, Field, Sweep, text_of
 from symbolic import Scene, tables
 from symbolic.tables.table import theta

@@ -59,6 +59,11 @@ def cost(sweep: Sweep, workers: int | None = None, stored: bool = True) -> Cost:
         return Cost(len(indices), sweep.collisions, speed(sweep.map()), workers, sweep.size, kept)
     chosen = [indices[len(indices) * (2 * i + 1) // (2 * PROBES)] for i in range(min(PROBES, len(indices)))]
     ends = [(_thinned(sweep, at, few), _thinned(sweep, at, more)) for at in chosen]
+    if (
+        sweep.settings.get("attractors") == []
+    ):  # they are looked for later; to compare with none of them is another task
+        peak = _line(few, more, length, *(float(_peak(sweep, part)) for part in ends[0]))
+        return Cost(len(indices), sweep.collisions, speed(sweep.map()), workers, sweep.size, kept + int(workers * peak))
     begun, first = time.process_time(), _seconds(sweep, ends[0][0])  # which compiles
     found, once = list[float](), [0.0]
     for small, large in ends:

@@ -193,8 +193,8 @@ def check_command(file: str, output: Output) -> int:
 
     started = time.perf_counter()
     given = read(Path(file))
-    if given.get("kind") == "trapping region":
-        return _region_checked(given, output)
+    if given.get("kind") in ("trapping region", "boundary crisis"):
+        return _boxes_checked(given, output)
     proof = checked(given)
     seconds = time.perf_counter() - started
     name = str(given["name"])  # held to be what the equations say
@@ -226,13 +226,13 @@ def check_command(file: str, output: Output) -> int:
     return DONE if proof.certified else FAILED
 
 
-def _region_checked(given: dict[str, Any], output: Output) -> int:
-    """A trapping region has no value to show: its boxes are mapped anew."""
+def _boxes_checked(given: dict[str, Any], output: Output) -> int:
+    """What has no value to show: a trapping region's boxes are mapped anew, and those of a crisis grow again."""
     from verification.named.locate import WORDS
-    from verification.proofs.global_dynamics.regions import checked
+    from verification.proofs.global_dynamics import crisis, regions
 
     started = time.perf_counter()
-    name, checks = checked(given)
+    name, checks = (regions if given["kind"] == regions.KIND else crisis).checked(given)
     seconds, certified = time.perf_counter() - started, all(checks.values())
     output.write({"name": name, "certified": certified, "checks": checks, "seconds": seconds})
     output.console.print(f"{name}  ({'certified' if certified else 'not certified'}, {seconds:.2f} s)")

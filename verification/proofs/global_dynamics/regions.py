@@ -101,7 +101,7 @@ class Region:
                 raise ValueError(f"certificate: {given['kind']!r} of schema {given['schema']!r} is no {KIND}")
             scene = Scene.of(given["scene"])
             low, high = (Fraction(str(text)) for text in given["lam"])
-            columns, rows, parts = (_whole(name, given[name], LARGEST) for name in ("columns", "rows", "parts"))
+            columns, rows, parts = (whole(name, given[name], LARGEST) for name in ("columns", "rows", "parts"))
             if parts > MOST_PARTS:
                 raise ValueError(f"certificate: parts = {parts} is out of range; accepted: 1 to {MOST_PARTS}")
             charts = len(scene.table.components)
@@ -187,7 +187,7 @@ def _runs(cells: Cells) -> Iterator[list[int]]:
 
 def _unrolled(runs: Any, charts: int, columns: int, rows: int) -> Cells:
     """The blocks of runs; none may jut out of the grid."""
-    found = np.array([[_whole("a run", x, LARGEST, 0) for x in run] for run in runs], dtype=np.int64)
+    found = np.array([[whole("a run", x, LARGEST, 0) for x in run] for run in runs], dtype=np.int64)
     if found.ndim != 2 or found.shape[1] != 5 or not 1 <= int(found[:, 4].sum()) <= MOST_BOXES:
         raise ValueError("certificate: runs is no list of [chart, size, column, row, how many]")
     chart, size, column, row, count = found.T
@@ -199,7 +199,8 @@ def _unrolled(runs: Any, charts: int, columns: int, rows: int) -> Cells:
     return Cells(chart[own], column[own], row[own] + step * size[own], size[own])
 
 
-def _whole(name: str, given: Any, most: int, least: int = 1) -> int:
+def whole(name: str, given: Any, most: int, least: int = 1) -> int:
+    """A whole number of a document; `ValueError` where it is none, or out of range."""
     if isinstance(given, bool) or not isinstance(given, int) or not least <= given <= most:
         raise ValueError(f"certificate: {name} holds {given!r}; accepted: whole numbers from {least} to {most}")
     return given

@@ -299,11 +299,11 @@ def _entries(contact: Contact) -> dict[str, Any]:
     """A contact in the words of the certificate format, which calls its parameter a letter."""
     found = asdict(contact)
     found["letter"] = found.pop("parameter")
-    return found | {"unstable": _document(contact.unstable), "stable": _document(contact.stable)}
+    return found | {"unstable": orbit_said(contact.unstable), "stable": orbit_said(contact.stable)}
 
 
 def _contact(given: Mapping[str, Any]) -> Contact:
-    unstable, stable = (_orbit(given[name]) for name in ("unstable", "stable"))
+    unstable, stable = (orbit_of(given[name]) for name in ("unstable", "stable"))
     bounces, sign = int(given["bounces"]), int(given["sign"])
     if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
         raise ValueError(f"certificate: bounces = {bounces} or sign = {sign} is out of range")
@@ -313,11 +313,13 @@ def _contact(given: Mapping[str, Any]) -> Contact:
     return Contact(unstable, stable, bounces, sign, z, end, parameter)
 
 
-def _document(orbit: Orbit) -> dict[str, Any]:
+def orbit_said(orbit: Orbit) -> dict[str, Any]:
+    """The entries of a document that say which cycle it is, up to Newton's method."""
     return {"name": orbit.name, "start": orbit.start, "sign": orbit.closure.turn, "shift": orbit.closure.shift}
 
 
-def _orbit(given: Mapping[str, Any]) -> Orbit:
+def orbit_of(given: Mapping[str, Any]) -> Orbit:
+    """The cycle of such entries."""
     start, sign = tuple(float(x) for x in given["start"]), int(given["sign"])
     turns, parts = (int(x) for x in given["shift"])
     if not 1 <= len(start) <= LARGEST_PERIOD or sign not in (1, -1) or parts not in (1, 3):

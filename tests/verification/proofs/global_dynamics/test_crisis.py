@@ -1,0 +1,65 @@
+"""A crisis between two contractions: what keeps below, what leaves above, and what must not be proved."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from symbolic.tables.scene import Scene
+from verification.app import cli
+from verification.cycles.recurrence import Closure
+from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket
+from verification.proofs.manifolds.known import BOUNDARY, CONTACTS, SHAPE
+
+BELOW, ABOVE = Fraction(3, 5), Fraction(663, 1000)
+GRID = (1024, 512, 1)
+EGG, TRIANGLE = Scene("egg", alpha="0.08"), CONTACTS["boundary"].unstable
+
+
+@pytest.fixture(scope="module")
+def found():
+    return bracket(EGG, TRIANGLE, 1, (BELOW, ABOVE), GRID)
+
+
+def test_the_boundary_crisis_of_the_egg_lies_between_two_contractions(found, tmp_path, capsys):
+    """The tangency at 0.66214, located and proved by other means, lies between them too."""
+    file = tmp_path / "crisis.json"
+    file.write_text(json.dumps(found.to_dict()))
+
+    assert cli.main(["check", str(file)]) == 0
+    assert "lam between 3/5 and 663/1000  (certified" in capsys.readouterr().out
+    assert BoundaryCrisis.from_dict(json.loads(file.read_text())) == found
+    assert BELOW < Fraction(BOUNDARY[SHAPE][1]) < ABOVE
+
+
+def test_nothing_leaves_below_the_crisis(found):
+    """Above and below are told apart: at 0.65 the orbit that leaves at 0.663 is kept."""
+    assert replace(found, lam=(BELOW, Fraction(13, 20))).checks["leaves"] is None
+    with pytest.raises(ValueError, match="none of 20000 orbits along the branch leaves"):
+        bracket(EGG, TRIANGLE, 1, (BELOW, Fraction(13, 20)), GRID)
+
+
+@pytest.mark.parametrize("shift", [(1, 5), (1, 2)])
+def test_a_turn_that_is_no_symmetry_of_the_table_is_refused(found, shift):
+    """By the rule alone the points of such a round would be no orbit."""
+    orbit = replace(TRIANGLE, closure=Closure(1, shift))
+    with pytest.raises(ValueError, match="a turn of the table"):
+        replace(found, saddle=orbit)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"kind": "trapping region"},
+        {"side": 2},
+        {"lam": ["0.7", "0.6"]},
+        {"start": 1.5},
+        {"columns": 0},
+        {"sink": [1.0]},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_a_damaged_document_is_refused(found, change):
+    with pytest.raises(ValueError, match="certificate|crisis"):
+        BoundaryCrisis.from_dict(found.to_dict() | change)

@@ -41,7 +41,7 @@ from .problem import Linearised, NormalForm, Problem, mirrored
 from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
 from .switching import Curve, Degenerate, curve, switched
-from .systems import rotations
+from .systems import rotations, symmetries
 
 __all__ = [
     "ATTEMPTS",
@@ -113,6 +113,7 @@ __all__ = [
     "solved",
     "spectrum_of",
     "switched",
+    "symmetries",
     "symmetry_breaking",
     "trace_and_determinant",
     "typed",

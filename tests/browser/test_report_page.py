@@ -1,5 +1,7 @@
 """The report in a real browser: it shows, filters, prints, fits a phone, and is accessible."""
 
+from pathlib import Path
+
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
@@ -30,25 +32,30 @@ def shown(page):
     return page.locator("article:visible").count()
 
 
+def opened(page, url):
+    page.goto(url)
+    page.get_by_role("button", name="open or fold all").click()
+
+
 def test_every_claim_is_shown_with_its_formulas(page, report):
     url, results = report
-    page.goto(url)
+    opened(page, url)
 
     assert shown(page) == len(results)
-    matrix = page.locator("#ellipse\\.monodromy blockquote math mtable")
+    matrix = page.locator("#ellipse\\.monodromy h3 math mtable")
     assert matrix.bounding_box()["height"] > 30
-    assert page.get_by_role("img", name="ellipse-slap").is_visible()
+    assert page.get_by_role("img", name="The slap map of an ellipse").is_visible()
 
 
 def test_filters_leave_the_claims_they_name(page, report):
     url, results = report
-    page.goto(url)
+    opened(page, url)
     page.get_by_role("checkbox", name="confirmed").uncheck()
 
     expected = sum(result.verdict.value != "confirmed" for result in results)
     assert shown(page) == expected > 0
     assert page.get_by_role("status").inner_text() == f"{expected} of {len(results)} claims shown"
-    assert page.locator("section.part:visible").count() < page.locator("section.part").count()
+    assert page.locator("details.part:visible").count() < page.locator("details.part").count()
 
 
 def test_words_are_looked_for_in_the_claims(page, report):
@@ -56,12 +63,54 @@ def test_words_are_looked_for_in_the_claims(page, report):
     page.goto(url)
     page.get_by_role("searchbox").fill("minor axis is stable")
 
-    assert 0 < shown(page) < 5
+    assert 0 < shown(page) < len(report[1]) / 2
+
+
+def test_a_letter_is_found_by_its_name_and_by_its_sign(page, report):
+    url, results = report
+    page.goto(url)
+    counts = []
+    for typed in ("lambda", "\N{GREEK SMALL LETTER LAMDA}", "lam", "LAMBDA"):
+        page.get_by_role("searchbox").fill(typed)
+        counts.append(shown(page))
+
+    assert 0 < counts[0] < len(results)
+    assert len(set(counts)) == 1
+
+
+def test_filters_reach_the_errata_too(page, report):
+    url, _ = report
+    page.goto(url)
+    before = page.locator(".erratum:visible").count()
+    page.get_by_role("checkbox", name="corrected").uncheck()
+
+    assert page.locator(".erratum:visible").count() < before
+
+
+def test_a_link_opens_what_it_names_even_when_it_was_filtered_away(page, report):
+    url, _ = report
+    page.goto(url)
+    page.get_by_role("searchbox").fill("nothing says this")
+    assert shown(page) == 0
+    page.evaluate("location.hash = 'ellipse.monodromy'")
+
+    page.locator("#ellipse\\.monodromy").wait_for(state="visible")
+    assert 0 <= page.locator("#ellipse\\.monodromy").bounding_box()["y"] < 400
+
+
+def test_a_figure_is_enlarged_on_a_click_and_closed_by_escape(page, report):
+    url, _ = report
+    opened(page, url)
+    page.get_by_role("button", name="Enlarge: The slap map").click()
+    assert page.get_by_role("dialog").is_visible()
+    page.keyboard.press("Escape")
+
+    assert not page.get_by_role("dialog").is_visible()
 
 
 def test_filters_work_from_the_keyboard(page, report):
     url, results = report
-    page.goto(url)
+    opened(page, url)
     page.get_by_role("checkbox", name="corrected").focus()
     page.keyboard.press("Space")
 
@@ -85,6 +134,19 @@ def test_it_fits_its_window_and_is_accessible(page, report, size, scheme):
     page.set_viewport_size(size)
     page.goto(url)
 
+    page.get_by_role("button", name="open or fold all").click()
     assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+
+
+@pytest.mark.parametrize("name", ["flower", "limacon", "stadium"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_reports_of_tables_are_accessible(page, name, scheme):
+    page.emulate_media(color_scheme=scheme)
+    page.set_viewport_size(PHONE)
+    page.goto((Path(__file__).parents[2] / "docs" / "reports" / f"{name}.html").as_uri())
+
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     found = Axe().run(page)
     assert found.violations_count == 0, found.generate_report()

@@ -130,10 +130,11 @@ def test_json_has_the_keys_of_the_contract_in_order():
     ]  # fmt: skip
 
 
-def test_the_four_files_are_written_and_nothing_else(tmp_path):
+def test_the_report_and_the_letter_are_written_and_nothing_else(tmp_path):
     write_report(tmp_path, [Result(), WRONG])
 
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "report.json", "report.md", "report.tex"]
+    written = ["letter.tex", "report.html", "report.json", "report.md", "report.tex"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == written
     written = json.loads((tmp_path / "report.json").read_text())
     assert written["schema"] == 1
     assert {"python", "sympy", "mpmath", "python-flint", "numpy", "machine", "seed"} <= set(written["made_with"])

@@ -1,14 +1,20 @@
 """The HTML and LaTeX forms of the report: whole, faithful, self-contained."""
 
 import re
+import tomllib
+from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
+from verification.paper.claims.claim import Verdict
+from verification.paper.claims.folder import paper
+from verification.paper.figures.catalogue import pictures
 from verification.paper.report import report as claims
-from verification.paper.report.mathml import formula, mathml, prose, remark
+from verification.paper.report.findings import GRADES, compared, findings, graded, letter
+from verification.paper.report.mathml import formula, formulas, mathml, prose, remark
 from verification.paper.report.page import FOLD, Picture, diagrams, page
 from verification.paper.report.report import escaped, tables
 
@@ -73,12 +79,84 @@ def test_the_page_needs_no_network():
 
     assert all(link.startswith("#") for link in found.links)
     assert all(source.startswith("data:") for source in found.sources)
-    assert not re.search(r"url\(|@import|<link|<script src", html())
+    assert not re.search(r"url\((?!data:)|@import|<link|<script src", html())
 
 
 def test_every_claim_and_every_erratum_is_on_the_page():
     assert html().count("<article") == len(results())
-    assert html().count('class="erratum') == sum(r.verdict.value in ("corrected", "refuted") for r in results()) > 0
+    wrong = [r for r in results() if r.verdict.value in ("corrected", "refuted")]
+    assert html().count('class="erratum') == len({r.erratum for r in wrong}) > 0
+    assert all(html().count(f'href="#{r.id}"') >= 2 for r in wrong)  # at the erratum and at the claim itself
+
+
+def test_every_erratum_of_the_paper_has_a_grade_and_every_finding_its_claims_and_its_figure():
+    about = paper()
+    document = tomllib.loads((about.folder / "findings.toml").read_text())
+    known, listed = (
+        {claim.id for claim in about.claims},
+        [name for each in document["grades"].values() for name in each],
+    )
+
+    assert set(document["grades"]) == set(GRADES)
+    assert len(listed) == len(set(listed))
+    assert known.issuperset(listed)
+    for each in document["finding"]:
+        assert known.issuperset(each["claims"])
+        assert each["figure"] in pictures()
+
+
+def test_a_finding_is_not_told_while_one_of_its_claims_is_open():
+    settled = {"ellipse.mu": "confirmed", "ellipse.lambda_minus": "confirmed", "egg.alpha_tilde": "confirmed"}
+    judged = [replace(results()[0], id=name) for name in (*settled, "map.derivative_matrix")]
+    doubtful = [*judged[:-1], replace(judged[-1], verdict=Verdict.OPEN)]
+
+    assert len(findings(judged, paper())["holds"]) == 1
+    assert findings(doubtful, paper())["holds"] == []
+
+
+def test_digits_that_differ_are_marked_and_no_others():
+    wrong = replace(results()[0], verdict=Verdict.CORRECTED, printed="0.372", derived="0.371235...")
+
+    assert compared(wrong) == ("0.37<mark>2</mark>", "0.37<mark>1</mark>235\u2026")
+
+
+def test_the_entry_of_a_matrix_that_differs_is_marked_and_no_other():
+    matrix = {"printed": "[[1, lam*2], [3, 4*a]]", "derived": "[[1, 2*lam], [3, 5*a]]"}
+    printed, true = compared(replace(results()[0], verdict=Verdict.CORRECTED, witness={"a": "2"}, **matrix))
+
+    for shown in (printed, true):
+        assert [part.startswith("<mtd class=differs>") for part in re.findall("<mtd[^>]*>", shown)] == [False] * 3 + [
+            True
+        ]
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("zero for a**2 - 1 and so on", "a^{2} - 1"),
+        ("so nu_+ + nu_- <= 0 there", r"\nu_{+} + \nu_{-} \leq 0"),
+        ("|phi1| = lam*|eta|", r"\left|\varphi_{1}\right| = \lambda \, \left|\eta\right|"),
+        ("has no root for a in (1, 1/10]", r"\left(1, \frac{1}{10}\right]"),
+        ("(T0^2)' = 49/324 at both", r"\left(T_{0}^{2}\right)' = \frac{49}{324}"),
+        ("below 9e-04*a", r"9 \cdot 10^{-4} \, a"),
+    ],
+)
+def test_a_formula_within_a_sentence_is_set_as_one(text, latex):
+    assert [found for _, _, found in formulas(text)] == [latex]
+
+
+def test_words_are_no_formulas():
+    assert formulas("a cycle of period 4, or a strip; at the end (in the sense of 2.1), I see: it is a union") == []
+
+
+def test_the_letter_has_each_substantial_erratum_and_is_balanced():
+    text = letter(results(), paper())
+    grave = graded(results(), paper())["substantial"]
+
+    assert text.count(r"\item ") == len(grave) > 0
+    assert text.count("{") == text.count("}")
+    assert text.count("$") % 2 == 0
+    assert paper().title in text
 
 
 def test_two_runs_differ_in_nothing():
@@ -106,6 +184,7 @@ def test_a_formula_is_set_as_it_is_written_and_not_evaluated():
         ("a - (b - c)", r"a - \left(b - c\right)"),
         ("(a + b)^2/c", r"\frac{\left(a + b\right)^{2}}{c}"),
         ("(-a)^2", r"\left(-a\right)^{2}"),
+        ("(a/b)^(1/2)", r"\left(\frac{a}{b}\right)^{1/2}"),
         ("a/b/c", r"\frac{\frac{a}{b}}{c}"),
         ("a*(b*c)", r"a \, \left(b \, c\right)"),
         ("2*3", r"2 \cdot 3"),

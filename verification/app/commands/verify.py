@@ -221,7 +221,9 @@ def command(
     write_report(directory, results, [*shown, *measured], codes(claims, digits, pictured), about)
     output.write(report.document(results, about.about))
     show(output.console, results)
-    output.console.print(f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex).")
+    output.console.print(
+        f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex, letter.tex)."
+    )
     return FAILED if report.counts(results)["open"] else DONE
 
 
@@ -253,7 +255,7 @@ class Last:
         return cls({name: result for name, result in told.items() if name in same}, images)
 
 
-IMAGE = re.compile(r'<img src="data:image/png;base64,([^"]*)" alt="([^"]*)">')
+IMAGE = re.compile(r'<img src="data:image/[^;]*;base64,([^"]*)" data-figure="([^"]*)"')
 
 
 def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
@@ -332,7 +334,11 @@ def drawn(
         for picture, image in found:
             images[picture.name] = image
             step(picture.name)
-    return [Picture(each.name, each.caption, each.section, images[each.name]) for each in wanted if each.name in images]
+    return [
+        Picture(each.name, each.caption, each.section, images[each.name], each.shows)
+        for each in wanted
+        if each.name in images
+    ]
 
 
 def _images(wanted: "Sequence[Figure]", jobs: int) -> "Generator[tuple[Figure, bytes], None, None]":
@@ -350,7 +356,7 @@ def _images(wanted: "Sequence[Figure]", jobs: int) -> "Generator[tuple[Figure, b
 
 
 def _image(picture: "Figure") -> bytes:
-    return picture.image(picture.data(), ".png")
+    return picture.small(picture.data())
 
 
 def write_report(
@@ -360,11 +366,12 @@ def write_report(
     code: "Mapping[str, str] | None" = None,
     about: "Paper | None" = None,
 ) -> None:
-    """Writes the report as `report.html`, `report.md`, `report.json` and `report.tex`, each at once.
+    """Writes the report as `report.html`, `report.md`, `report.json`, `report.tex` and `letter.tex`, each at once.
 
     `code` has digests of the code that the results depend on, kept for `--changed`.
     """
     from verification.paper.claims.folder import paper
+    from verification.paper.report.findings import letter
     from verification.paper.report.page import markdown, page
     from verification.paper.report.report import tables
 
@@ -373,6 +380,7 @@ def write_report(
     write_whole(directory / "report.html", page(results, versions, pictures, about))
     write_whole(directory / "report.md", markdown(results, versions, about))
     write_whole(directory / "report.tex", tables(results, about.sections))
+    write_whole(directory / "letter.tex", letter(results, about))
     write_whole(directory / "report.json", json.dumps(whole, indent=2) + "\n")
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from verification.plots.sheet import Panels
 
 DRAFT, FULL = 1.0, 8.0  # resolutions
+LINES = 6000  # points that are small as lines
 WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
 ENDINGS = {".png": {"Software": None}, ".pdf": {"CreationDate": None, "Producer": None}, ".svg": {"Date": None}}
 
@@ -25,7 +26,8 @@ ENDINGS = {".png": {"Software": None}, ".pdf": {"CreationDate": None, "Producer"
 class Picture:
     """A figure: its name, the module and function that compute its data, and its place in the paper.
 
-    `labels` are the paper's own, empty for a figure that it only speaks of; the caption is quoted with its misprints.
+    `labels` are the paper's own, empty for a figure that it only speaks of; the caption is quoted with its misprints,
+    and `shows` says what is to be seen here.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Picture:
     labels: tuple[str, ...]
     section: str
     caption: str
+    shows: str
 
     @cached_property
     def _pair(self) -> tuple[Callable[[float], "Panels"], Callable[["Panels"], Any]]:
@@ -53,6 +56,18 @@ class Picture:
         with styled():
             buffer = BytesIO()
             self._pair[1](panels).savefig(buffer, format=ending[1:], metadata=ENDINGS[ending])
+            return buffer.getvalue()
+
+    def small(self, panels: "Panels") -> bytes:
+        """The drawn panels for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
+        count = sum(curve.x.size for panel in panels for curve in panel.curves.values())
+        if count <= LINES and all(panel.raster is None for panel in panels):
+            form: dict[str, Any] = {"format": "svg", "metadata": ENDINGS[".svg"]}
+        else:
+            form = {"format": "webp", "dpi": 140, "pil_kwargs": {"quality": 55}}
+        with styled():
+            buffer = BytesIO()
+            self._pair[1](panels).savefig(buffer, transparent=True, **form)
             return buffer.getvalue()
 
     def document(self, panels: "Panels", fine: float) -> dict[str, Any]:

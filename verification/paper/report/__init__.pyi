@@ -2,6 +2,7 @@
 
 from . import report
 from .changed import codes
+from .findings import letter
 from .mathml import formula, remark
 from .page import Picture, diagrams, markdown
 from .report import Result, escaped, tables, verify
@@ -16,6 +17,7 @@ __all__ = [
     "escaped",
     "formula",
     "in_processes",
+    "letter",
     "markdown",
     "remark",
     "report",

@@ -1,12 +1,13 @@
 """What a claim says, as HTML: the paper's LaTeX and our own formulas as MathML, everything else escaped.
 
 A formula of ours is plain text such as `4*sin(theta/2)`. It is set as it is written: its syntax tree
-is printed, and nothing is evaluated, reordered or simplified on the way.
+is printed, and nothing is evaluated, reordered or simplified on the way. Formulas within our sentences are found
+by their signs: the longest piece that can be read as a formula is set as one.
 """
 
 import ast
 import re
-from collections.abc import Callable
+from functools import lru_cache
 
 from latex2mathml.converter import convert
 from markupsafe import Markup, escape
@@ -40,25 +41,43 @@ SIGNS = {
 }
 TYPED = {"``": "\u201c", "''": "\u201d", "--": "\u2013", "~": "\u00a0", "\\ ": " ", "\\'e": "\u00e9"}
 PLAIN = {"<=": "\u2264", ">=": "\u2265", "!=": "\u2260", "->": "\u2192", "+-": "\u00b1", "sqrt": "\u221a"}
-GREEK = {
-    "lam": "\u03bb",
-    "lambda": "\u03bb",
-    "theta": "\u03b8",
-    "alpha": "\u03b1",
-    "phi": "\u03c6",
-    "eta": "\u03b7",
-    "kappa": "\u03ba",
-    "mu": "\u03bc",
-    "nu": "\u03bd",
-    "pi": "\u03c0",
-}
-SUBSCRIPTS = {"plus": "+", "minus": "\u2212", "star": "*", "oo": "\u221e"}
-LETTER = re.compile(rf"(?<![\w.&])(?<![a-z]-)({'|'.join(GREEK)})(?:_?(\d+|plus|minus|star|oo)|_([a-z]))?(?!\w|-[a-z])")
-FUNCTIONS = {name: rf"\{name}" for name in ("sin", "cos", "tan", "log", "exp", "min", "max", "inf", "sup")}
+GREEK = {name: chr(code) for name, code in zip(
+    ("alpha", "gamma", "delta", "theta", "kappa", "lambda", "mu", "nu", "pi", "rho", "tau", "phi", "chi", "eta", "eps"),
+    (0x3B1, 0x3B3, 0x3B4, 0x3B8, 0x3BA, 0x3BB, 0x3BC, 0x3BD, 0x3C0, 0x3C1, 0x3C4, 0x3C6, 0x3C7, 0x3B7, 0x3B5),
+    strict=True,
+)} | {"lam": "\u03bb"}  # fmt: skip
+SUBSCRIPTS = {"plus": "+", "minus": "\u2212", "star": "*", "oo": "\u221e", "pm": "\u00b1", "infinity": "\u221e"}
+SUBSCRIPTS |= {"+": "+", "-": "\u2212"}
+LETTER = re.compile(
+    rf"(?<![\w.&])(?<![a-z]-)({'|'.join(GREEK)})"
+    r"(?:_?(\d+|plus|minus|star|oo|pm|infinity)|_([a-z+-])|(\*)(?=[\s.,;:)&]|$))?(?!\w|-[a-z])"
+)
+TILDE = re.compile(rf"\b({'|'.join(GREEK)})[-_](tilde|hat)\b")
+BELOW = {"plus": "+", "minus": "-", "star": "*", "oo": r"\infty", "pm": r"\pm", "infinity": r"\infty"}
+ABOVE = {"tilde": r"\tilde", "hat": r"\hat"}
+FUNCTIONS = {name: rf"\{name}" for name in ("sin", "cos", "tan", "log", "exp", "min", "max", "inf", "sup", "det")}
 FUNCTIONS |= {f"a{name}": rf"\arc{name}" for name in ("sin", "cos", "tan")}
-ATOM = 5
+WORDS = {"oo": r"\infty", "C": "C", "trace": r"\operatorname{tr}", "det": r"\det", "share": "u", "_T": r"\tau"}
+NAME = (
+    rf"(?:(?:{'|'.join((*GREEK, *FUNCTIONS, *WORDS, 'sqrt', 'abs', 'Abs', 'sign'))})\d*"
+    r"|[A-Za-z]\d*|cos_phi\d|cos_eta\d)"
+    r"(?:_(?:[a-z]\b|\d+\b|oo|plus|minus|star|pm|tilde|hat|[+-](?!\d)))?'?(?![A-Za-z_])"
+)
+NUMBER = r"\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.]*[A-Za-z_]|\.\d)"
+SIGN = r"\s*(?:\*\*|<=|>=|!=|[-+*/^<>=])\s*"
+STARRED = r"(?<![\w.])(?:lambda|lam|phi|s)\*(?=[\s,;:.)\]]|$)"
+TOKEN = re.compile(
+    rf"(?P<name>{STARRED}|(?<![\w.]){NAME})|(?P<number>(?<![\w.]){NUMBER})|(?P<sign>{SIGN})"
+    r"|(?P<mark>[()\[\]|]'?)|(?P<comma>, )"
+)
+WORTH = re.compile(r"[\w)\]|']\s*(?:\*\*|[*/^<>=]|!=|[-+]\s|[-+](?=[\w(]))|\w\(|\|.")
+PAIR = re.compile(r"([\[(])((?:[^\[\](),;:]|\([^()]*\))+), ((?:[^\[\](),;:]|\([^()]*\))+)([\])])")
+AN_ELEMENT = re.compile(rf"\b({NAME}) in (?=[\[(])")
+LOW = re.compile(r"\\left\(((?:[^()\\^]|\\(?!frac|sqrt|left|right|begin)[a-z,;]+)*)\\right\)")  # need not stretch
+INLINE, ATOM = 5, 6  # how closely a quotient and an atom bind
 
 
+@lru_cache(maxsize=4096)
 def mathml(latex: str, display: bool = False) -> Markup:
     """LaTeX in the paper's macros as MathML, with the LaTeX kept for readers that copy it.
 
@@ -66,8 +85,9 @@ def mathml(latex: str, display: bool = False) -> Markup:
     True
     """
     known = MACRO.sub(lambda found: PAPER.get(found.group(), found.group()), latex)
-    whole = convert(known, display="block" if display else "inline")
-    return Markup(whole.replace("<math ", f'<math alttext="{escape(latex)}" ', 1))
+    whole = convert(LOW.sub(r"(\1)", known), display="block" if display else "inline")
+    plain = whole.replace(' xmlns="http://www.w3.org/1998/Math/MathML"', "", 1).replace(' display="inline"', "", 1)
+    return Markup(plain.replace("<math", f'<math alttext="{escape(latex)}"', 1))
 
 
 def prose(quote: str) -> Markup:
@@ -77,27 +97,10 @@ def prose(quote: str) -> Markup:
     Markup('it is <em>stable</em> &amp; so')
     """
     if "$" not in quote and LATEX_ONLY.search(TEXT_MACRO.sub("", quote)):
-        rows = quote if r"\begin" in quote or "&" not in quote else rf"\begin{{array}}{{cc}} {quote} \end{{array}}"
+        rows = quote if r"\begin" in quote or "&" not in quote else rf"\begin{{pmatrix}} {quote} \end{{pmatrix}}"
         return mathml(rows, display=True)
     parts = quote.split("$")
     return Markup("").join(_words(part) if i % 2 == 0 else mathml(part) for i, part in enumerate(parts))
-
-
-def remark(text: str) -> Markup:
-    """Our own words, in which the code's letters and signs become the paper's.
-
-    >>> remark("lam <= 1 for theta0")
-    Markup('λ ≤ 1 for θ<sub>0</sub>')
-    """
-    for sign, shown in PLAIN.items():
-        text = text.replace(sign, shown)
-    text = re.sub(r"(?<=[\w)\]])\*(?=[\w(])", "\u00b7", text)
-    return Markup(LETTER.sub(_greek, str(escape(text))))
-
-
-def _greek(found: re.Match[str]) -> str:
-    below = found[2] or found[3]
-    return GREEK[found[1]] + (f"<sub>{SUBSCRIPTS.get(below, below)}</sub>" if below else "")
 
 
 def _words(text: str) -> Markup:
@@ -107,67 +110,204 @@ def _words(text: str) -> Markup:
     return Markup(TEXT_MACRO.sub(r"<em>\1</em>", plain))
 
 
+def remark(text: str) -> Markup:
+    """Our own words, in which the code's letters and signs become the paper's, and formulas are set.
+
+    >>> remark("lam <= for theta0")
+    Markup('λ ≤ for θ<sub>0</sub>')
+    >>> remark("zero for a**2 - 1 and so on").count("<math ")
+    1
+    """
+    return Markup("").join(shown for _, shown in pieces(text))
+
+
+def pieces(text: str) -> list[tuple[str, Markup]]:
+    """The formulas and words of a sentence and the spaces between them, each as written and as shown."""
+    text = AN_ELEMENT.sub("\\1 \u2208 ", text)
+    found, at = [], 0
+    for start, end, latex in [*formulas(text), (len(text), len(text), "")]:
+        if start > at:
+            found.append((text[at:start], _plain(text[at:start])))
+        if latex:
+            found.append((text[start:end], mathml(latex)))
+        at = end
+    return found
+
+
+def _plain(text: str) -> Markup:
+    for sign, shown in PLAIN.items():
+        text = text.replace(sign, shown)
+    text = re.sub(r"(?<=[\w)\]])\*(?=[\w(])", "\u00b7", text)
+    text = re.sub(r"(?<![\w)])-(?=\d)", "\u2212", text)
+    text = re.sub(r"\b_T\b", "\u03c4", re.sub(r"\boo\b", "\u221e", text))
+    text = re.sub(r"\blambda-(c|star)\b", r"lambda_\1", text)
+    text = re.sub(r"(?<=[a-z\d]{2})_(?=[a-z]{2}|a )(?!plus|minus|star|oo|pm|infinity)", " ", text)  # names of checks
+    marked = TILDE.sub(lambda found: GREEK[found[1]] + {"tilde": "\u0303", "hat": "\u0302"}[found[2]], text)
+    greek = LETTER.sub(_greek, str(escape(marked)))
+    return Markup(re.sub(r"\b([A-Za-z])_(\d?[a-z]?)\b", r"<i>\1</i><sub>\2</sub>", greek))
+
+
+def _greek(found: re.Match[str]) -> str:
+    below = found[2] or found[3] or found[4]
+    return GREEK[found[1]] + (f"<sub>{SUBSCRIPTS.get(below, below)}</sub>" if below else "")
+
+
+def formulas(text: str) -> list[tuple[int, int, str]]:
+    """Where the formulas of a sentence begin and end, and each as LaTeX."""
+    found: list[tuple[int, int, str]] = []
+    at = 0
+    for run in _runs(text):
+        first = 0
+        while first < len(run):
+            start = run[first].end() - len(run[first].group().lstrip())
+            last = next((n for n in range(len(run), first, -1) if _set(text[start : run[n - 1].end()], text, start)), 0)
+            if start >= at and last:
+                end = run[last - 1].end()
+                found.append((start, end, _set(text[start:end], text, start) or ""))
+                first, at = last, end
+            else:
+                first += 1
+    return found
+
+
+def _runs(text: str) -> list[list[re.Match[str]]]:
+    """Signs that stand next to each other and could be a formula."""
+    runs: list[list[re.Match[str]]] = [[]]
+    for token in TOKEN.finditer(text):
+        if runs[-1] and runs[-1][-1].end() != token.start():
+            runs.append([])
+        runs[-1].append(token)
+    return [run for run in runs if run]
+
+
+def _set(piece: str, text: str, start: int) -> str | None:
+    """A piece of a sentence as LaTeX; None when it is no formula, or only a word or a number."""
+    if (
+        piece != piece.strip()
+        or piece.startswith("- ")
+        or not WORTH.search(piece)
+        or (start and (text[start - 1].isalnum() or text[start - 1] in "\\_^*/"))
+    ):
+        return None
+    if piece.endswith("*") and text[start + len(piece) :][:1] not in ("", *" ,;:.)]"):
+        return None
+    if pair := PAIR.fullmatch(piece):
+        ends = _read(pair[2]), _read(pair[3])
+        return None if None in ends else rf"\left{pair[1]}{ends[0]}, {ends[1]}\right{pair[4]}"
+    return _read(piece)
+
+
 def formula(text: str) -> Markup | None:
     """A formula in our notation as MathML; None when the text is no formula.
 
     >>> formula("the table is a circle") is None
     True
     """
+    latex = _read(text.strip())
+    return None if latex is None else Markup(str(mathml(latex)).replace("<math", '<math displaystyle="true"', 1))
+
+
+@lru_cache(maxsize=8192)
+def _read(text: str) -> str | None:
+    """A formula in our notation as LaTeX; None when it is none."""
+    if any(text.count(a) != text.count(b) for a, b in ("()", "[]")) or text.count("|") % 2:
+        return None
+    text = re.sub(r"\b(lam|phi|s)\*(?=[\s,;:.)\]]|$)", r"\1_star", text)
+    text = re.sub(r"\|([^|]+)\|", r" abs(\1)", re.sub(r"\blambda\b", "lam", text))
+    text = re.sub(r"\(([^()]*(?:\([^()]*\))?[^()]*)\)'", r"prime(\1)", text)
+    text = re.sub(r"(\w)'", r"\1_prime", text)
+    text = re.sub(r"_([+-])(?!\d)", lambda found: "_plus" if found[1] == "+" else "_minus", text)
+    code = re.sub(r"(?<![<>=!])=(?!=)", "==", text.replace("^", "**"))
     try:
-        code = re.sub(r"(?<![<>=!])=(?!=)", "==", text.strip().replace("^", "**"))
-        tree = ast.parse(code, mode="eval").body
-        return Markup(str(mathml(_latex(tree))).replace("<math ", '<math displaystyle="true" ', 1))
+        return _Source(code.strip()).latex(ast.parse(code.strip(), mode="eval").body)
     except (SyntaxError, ValueError, RecursionError):
         return None
 
 
-def _latex(node: ast.expr, within: int = 0) -> str:
-    """The syntax tree as LaTeX, in parentheses where `within` binds more closely."""
-    text, binding = _printed(node)
-    return rf"\left({text}\right)" if binding < within else text
+class _Source:
+    """A formula as typed: numbers are set with the digits that they were typed with."""
+
+    def __init__(self, code: str) -> None:
+        self.code = code
+
+    def latex(self, node: ast.expr, within: int = 0) -> str:
+        """The syntax tree as LaTeX, in parentheses where `within` binds more closely."""
+        text, binding = self._printed(node)
+        return rf"\left({text}\right)" if binding < within else text
+
+    def _printed(self, node: ast.expr) -> tuple[str, int]:
+        match node:
+            case ast.Constant(value=int() | float()):
+                return self._number(node), ATOM
+            case ast.Name(id=name):
+                return _letter(name), ATOM
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return f"-{self.latex(operand, 2)}", 2
+            case ast.BinOp(left=left, op=ast.Div(), right=right):
+                return rf"\frac{{{self.latex(left)}}}{{{self.latex(right)}}}", INLINE
+            case ast.BinOp(left=left, op=ast.Pow(), right=right):
+                return f"{self.latex(left, ATOM)}^{{{self._exponent(right)}}}", 4
+            case ast.BinOp(left=left, op=ast.Mult(), right=right):
+                dot = r" \cdot " if _ends_in_digit(left) and _begins_with_digit(right) else r" \, "
+                return f"{self.latex(left, 2)}{dot}{self.latex(right, 3)}", 2
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+                return f"{self.latex(left, 1)} {'+' if isinstance(op, ast.Add) else '-'} {self.latex(right, 2)}", 1
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
+                return _call(name, [self.latex(each) for each in arguments]), ATOM
+            case ast.Compare(left=left, ops=ops, comparators=others):
+                pairs = zip(ops, others, strict=True)
+                return self.latex(left) + "".join(f" {SIGNS[type(op)]} {self.latex(each)}" for op, each in pairs), 0
+            case ast.List(elts=entries) | ast.Tuple(elts=entries):
+                return self._listed(node, entries), ATOM
+        raise ValueError(f"no formula: {ast.dump(node)[:60]}")
+
+    def _number(self, node: ast.expr) -> str:
+        typed = ast.get_source_segment(self.code, node) or ""
+        mantissa, _, exponent = typed.lower().partition("e")
+        return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else typed
+
+    def _exponent(self, node: ast.expr) -> str:
+        """An exponent; a quotient of two plain numbers or letters on one line."""
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
+            sides = node.left, node.right
+            if all(isinstance(side, ast.Constant | ast.Name) for side in sides):
+                return "/".join(self.latex(side) for side in sides)
+        return self.latex(node)
+
+    def _listed(self, node: ast.expr, entries: list[ast.expr]) -> str:
+        """A matrix, a column, or a point."""
+        if entries and all(isinstance(row, ast.List) for row in entries):
+            lines = (
+                " & ".join(self.latex(entry) for entry in row.elts) for row in entries if isinstance(row, ast.List)
+            )
+            return r"\begin{pmatrix}" + r" \\ ".join(lines) + r"\end{pmatrix}"
+        inside = r",\; ".join(self.latex(entry) for entry in entries)
+        if isinstance(node, ast.List):
+            return rf"\left[{inside}\right]"
+        return rf"\left({inside}\right)" if self.code[node.col_offset] == "(" else inside
 
 
-def _printed(node: ast.expr) -> tuple[str, int]:
-    match node:
-        case ast.Constant(value=int() | float()):
-            return ast.unparse(node), ATOM
-        case ast.Name(id=name):
-            return {"oo": r"\infty", "C": "C"}.get(name) or letter(name), ATOM
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return f"-{_latex(operand, 2)}", 2
-        case ast.BinOp(left=left, op=ast.Div(), right=right):
-            return rf"\frac{{{_latex(left)}}}{{{_latex(right)}}}", ATOM
-        case ast.BinOp(left=left, op=ast.Pow(), right=right):
-            return f"{_latex(left, ATOM)}^{{{_latex(right)}}}", 4
-        case ast.BinOp(left=left, op=ast.Mult(), right=right):
-            dot = r" \cdot " if _ends_in_digit(left) and _begins_with_digit(right) else r" \, "
-            return f"{_latex(left, 2)}{dot}{_latex(right, 3)}", 2
-        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
-            return f"{_latex(left, 1)} {'+' if isinstance(op, ast.Add) else '-'} {_latex(right, 2)}", 1
-        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
-            return _call(name, [_latex(each) for each in arguments]), ATOM
-        case ast.Compare(left=left, ops=ops, comparators=others):
-            pairs = zip(ops, others, strict=True)
-            return _latex(left) + "".join(f" {SIGNS[type(op)]} {_latex(each)}" for op, each in pairs), 0
-        case ast.List(elts=rows) if rows and all(isinstance(row, ast.List) for row in rows):
-            lines = (" & ".join(_latex(entry) for entry in row.elts) for row in rows if isinstance(row, ast.List))
-            return r"\begin{pmatrix}" + r" \\ ".join(lines) + r"\end{pmatrix}", ATOM
-        case ast.List(elts=entries) | ast.Tuple(elts=entries):
-            inside = r",\; ".join(_latex(entry) for entry in entries)
-            return (rf"\left[{inside}\right]" if isinstance(node, ast.List) else rf"\left({inside}\right)"), ATOM
-    raise ValueError(f"no formula: {ast.dump(node)[:60]}")
+def _letter(name: str) -> str:
+    """A name of the code as the paper's letter."""
+    if name.endswith("_prime"):
+        return f"{_letter(name.removesuffix('_prime'))}'"
+    if name in WORDS or name in FUNCTIONS:
+        return WORDS.get(name) or FUNCTIONS[name]
+    stem, _, tail = name.partition("_")
+    if stem in ("cos", "sin") and tail:
+        return rf"\{stem} {_letter(tail)}"
+    if tail in ABOVE:
+        return rf"{ABOVE[tail]}{{{_letter(stem)}}}"
+    return f"{_letter(stem)}_{{{BELOW[tail]}}}" if tail in BELOW else letter(name)
 
 
 def _call(name: str, arguments: list[str]) -> str:
-    special: dict[str, Callable[[str], str]] = {
-        "sqrt": lambda x: rf"\sqrt{{{x}}}",
-        "abs": lambda x: rf"\left|{x}\right|",
-        "Abs": lambda x: rf"\left|{x}\right|",
-    }
-    if name in special and len(arguments) == 1:
-        return special[name](arguments[0])
-    head = FUNCTIONS.get(name) or letter(name)
-    return rf"{head}\left({', '.join(arguments)}\right)"
+    if name == "sqrt" and len(arguments) == 1:
+        return rf"\sqrt{{{arguments[0]}}}"
+    if name in ("abs", "Abs") and len(arguments) == 1:
+        return rf"\left|{arguments[0]}\right|"
+    inside = rf"\left({', '.join(arguments)}\right)"
+    return f"{inside}'" if name == "prime" else f"{_letter(name)}{inside}"
 
 
 def _ends_in_digit(node: ast.expr) -> bool:

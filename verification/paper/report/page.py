@@ -18,7 +18,9 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from verification.paper.claims.folder import paper
-from verification.paper.report.mathml import formula, prose, remark
+from verification.paper.figures.catalogue import plain
+from verification.paper.report.findings import GRADES, compared, findings, graded
+from verification.paper.report.mathml import prose, remark
 from verification.paper.report.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
@@ -31,19 +33,39 @@ LONG = 300  # characters of a method before it is folded
 OPENING = 120  # of which this many are shown
 
 
+KINDS = {b"\x89PNG": "png", b"RIFF": "webp"}
+
+
+def address(kind: str, content: bytes) -> str:
+    """An address that holds the content whole."""
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
+
+
 @dataclass(frozen=True)
 class Picture:
-    """A figure of the report: a PNG image, its caption as printed, and its section of the paper."""
+    """A figure of the report: an image, its caption as printed and in our words, and its section of the paper."""
 
     name: str
     caption: str
     section: str
     image: bytes
+    shows: str = ""
 
     @property
     def source(self) -> str:
         """The image as an address that holds it whole."""
-        return f"data:image/png;base64,{base64.b64encode(self.image).decode('ascii')}"
+        kind = next((kind for start, kind in KINDS.items() if self.image.startswith(start)), "svg+xml")
+        return address(f"image/{kind}", self.image)
+
+    @property
+    def words(self) -> Markup:
+        """Our caption, or else the paper's."""
+        return prose(self.shows or self.caption)
+
+    @property
+    def alt(self) -> str:
+        """The first sentence of the caption without what sets it."""
+        return plain((self.shows or self.caption).partition(". ")[0])
 
     def stands_by(self, claims: "Sequence[Result]") -> str:
         """The first claim that quotes the caption, else the first of the section; empty when there is neither."""
@@ -65,18 +87,30 @@ def page(
     beside: dict[str, list[Picture]] = {}
     for picture in pictures:
         beside.setdefault(picture.stands_by(ordered), []).append(picture)
+    first = findings(results, about)
+    shown = {each.figure for found in first.values() for each in found} & {picture.name for picture in pictures}
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {"prose": prose, "said": said, "sentence": sentence, "opening": opening}
-    template = environment.from_string((files("verification.paper.report") / "page.html").read_text(encoding="utf-8"))
+    environment.filters |= {"prose": prose, "remark": remark, "sentence": sentence, "opening": opening}
+    template = environment.from_string(_text("page.html"))
+    font = (files("verification.paper.report") / "math.woff2").read_bytes()
     return template.render(
         about=about,
+        style=Markup(_text("page.css").replace("FONT", address("font/woff2", font))),
+        script=Markup(_text("page.js")),
         summary=summary(results),
         counts=counts(results),
         meanings=VERDICTS,
-        errata=errata(results, about.sections),
+        findings=first,
+        pictures={picture.name: picture for picture in pictures},
+        shown=shown,
+        grades=GRADES,
+        graded=graded(results, about),
+        compared=compared,
         place=place,
-        sections=sections,
+        sections=[(name, claims, counts(claims)) for name, claims in sections],
         beside=beside,
+        home={claim.id: claim.home for claim in about.claims if not claim.home.endswith(".py")},
+        together=_together(results, about),
         made=", ".join(f"{name} {number}" for name, number in versions.items()),
         seconds=sum(result.seconds for result in results),
         fold=FOLD,
@@ -84,9 +118,19 @@ def page(
     )
 
 
-def said(text: str) -> Markup:
-    """A formula as MathML, anything else in words."""
-    return formula(text) or remark(text)
+def _text(name: str) -> str:
+    return (files("verification.paper.report") / name).read_text(encoding="utf-8")
+
+
+def _together(results: "Sequence[Result]", about: "Paper") -> dict[str, tuple[int, float]]:
+    """For claims that share results: how many judged here do, and the seconds of all of them."""
+    group = {claim.id: claim.group for claim in about.claims if claim.group is not None}
+    found: dict[int, list[Result]] = {}
+    for result in results:
+        if result.id in group:
+            found.setdefault(group[result.id], []).append(result)
+    totals = {number: (len(each), sum(one.seconds for one in each)) for number, each in found.items()}
+    return {result.id: totals[group[result.id]] for result in results if result.id in group}
 
 
 def sentence(text: str) -> Markup:
@@ -127,7 +171,8 @@ def diagrams(path: Path) -> list[Picture]:
     found = []
     for name, title, answers, unit in titles:
         figure = drawn(title, unit, [row for row in rows if row.question == name], known)
-        found.append(Picture(f"work-{name}", f"{title}: {answers}.", "", image(figure, "png")))
+        figure.patch.set_alpha(0)  # so that the page may be dark
+        found.append(Picture(f"work-{name}", f"{title}: {answers}.", "", image(figure, "webp")))
     return found
 
 

@@ -124,7 +124,9 @@ def judge(claim: Claim, digits: int = 15) -> Result:
     """The result of one claim; the module that judges it is imported when it is the first of that module."""
     start = time.perf_counter()
     try:
-        judgement = judge_of(claim)(claim)
+        found = judge_of(claim)
+        start = time.perf_counter()  # importing a module is not judging
+        judgement = found(claim)
     except Exception as error:  # a judge that fails leaves its claim open, and says so; the others go on
         judgement = _open(f"the judge failed: {type(error).__name__}: {error}")
     return _result(claim, judgement, digits, time.perf_counter() - start)

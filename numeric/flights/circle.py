@@ -9,7 +9,7 @@ class Circle(Family):
     """Paper: section 3.1."""
 
     name, path = "circle", "closed form in angles"
-    stops, tells = False, True
+    stops, tells, narrow = False, True, 32
     renormalise_every = 128  # a bounce grows no vector more than eightfold
     position = ("theta",)
     direction = ("phi",)

@@ -165,6 +165,7 @@ class Family(ABC):
     tells = False  # kernels tell orbits in people's coordinates, by `framed` and `curving`
     renormalise_every = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
+    narrow = 16  # where there are half as many registers, half as long: more would be kept in memory all the time
     position: tuple[str, ...] = ()
     direction: tuple[str, ...] = ()
     boundary: Boundary

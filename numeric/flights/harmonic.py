@@ -127,6 +127,7 @@ class Ellipse(Harmonic):
     """One harmonic: the middle of the chord lies along `support`, so nothing is to be solved."""
 
     name, path = "ellipse", "closed form in unit numbers"
+    narrow = 32  # few values are alive at a time
 
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)

@@ -42,7 +42,8 @@ class Engine(NamedTuple):
     @property
     def width(self) -> int:
         """Lanes to a block."""
-        return self.lanes or self.family.width
+        width = self.family.width
+        return self.lanes or (width if not self.kernels or machine.wide() else min(width, self.family.narrow))
 
     @property
     def tells(self) -> bool:

@@ -262,6 +262,13 @@ def _processor() -> tuple[str, ...] | None:
     return None if llvm is None else (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
 
 
+@memoised
+def wide() -> bool:
+    """Whether the processor has the 32 registers of AVX-512."""
+    words = " ".join(_processor() or ()).replace(",", " ").split()
+    return "avx512f" in words or "+avx512f" in words
+
+
 def _target() -> Untyped:
     llvm = _llvm()
     name, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from numeric import PinballMap
 from numeric.flights.family import Family, Landing
 from numeric.kernels import engine as engines
 from numeric.kernels.engine import Engine, _pieces
@@ -178,8 +179,23 @@ def test_rows_are_padded_to_whole_blocks_with_the_last_ball(ways, count, width, 
     assert np.array_equal(lam, state[0] / 16)
 
 
-def test_an_engine_has_the_lanes_of_its_family_unless_told_otherwise():
-    assert (Engine(Drift(), "", []).width, Engine(Drift(), "", [], lanes=4).width) == (32, 4)
+@pytest.mark.parametrize(("registers", "width"), [(32, 32), (16, 16)])
+def test_an_engine_has_the_lanes_of_its_family_and_of_the_processor_unless_told_otherwise(
+    monkeypatch, registers, width
+):
+    monkeypatch.setattr("numeric.kernels.machine.wide", lambda: registers == 32)
+
+    assert (Engine(Drift(), "", []).width, Engine(Drift(), "", [], lanes=4).width) == (width, 4)
+    assert Engine(Drift(), "", [], kernels=False).width == 32
+
+
+def test_the_bits_of_an_orbit_do_not_depend_on_the_lanes_that_a_processor_has(monkeypatch):
+    told = []
+    for registers in (32, 16):
+        monkeypatch.setattr("numeric.kernels.machine.wide", lambda registers=registers: registers == 32)
+        told.append(PinballMap("cuspless", lam=0.9).orbit(np.linspace(-2, 2, 37), 0.3, 20))
+
+    assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(*told, strict=True))
 
 
 @pytest.mark.parametrize("bounces", [1, 3, 4, 8])

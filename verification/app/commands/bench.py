@@ -66,7 +66,7 @@ def command(
     cases: list[Accuracy] = []
     whole: list[Call] = []
     chosen = scenes or known
-    with output.progress("Measuring", 3 * len(chosen)) as step:
+    with output.progress("Measuring", 3 * len(chosen) + (not scenes)) as step:
         for name in chosen:
             step(f"{name}, float64")
             papers = name in labelled.SCENES
@@ -77,8 +77,12 @@ def command(
             rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if papers else []
             step(f"{name}, hard cases")
             cases += labelled.accuracy(name) if accuracy else []
+        pieces: list[Row] = []
+        if not scenes:
+            step("sides and discs")
+            pieces = list(bench.pieces_rows(runs))
     facts = bench.machine_facts()
-    measured = [row.as_data() for row in rows]
+    measured = [row.as_data() for row in (*rows, *pieces)]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []
     document = {"machine": facts, "rows": measured, "calls": [call.as_data() for call in whole]}
     document |= {"accuracy": [case._asdict() | {"error_unit": "2**-52"} for case in cases]}
@@ -86,6 +90,7 @@ def command(
     for name in chosen:
         show(output.console, name, [row for row in rows if row.scene == name])
     show_ratios(output.console, rows)
+    show_pieces(output.console, pieces)
     show_calls(output.console, whole)
     if baselines and not is_checkout():
         output.console.print(f"\n{MISSING}")
@@ -135,6 +140,17 @@ def show_ratios(console: "Console", rows: "list[Row]") -> None:
         ]
         shown = [f"{ratio:.2f}" if ratio else "-" for ratio in ratios]
         console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
+
+
+def show_pieces(console: "Console", rows: "Sequence[Row]") -> None:
+    """Tables of sides and arcs, as multiples of the square in the same run."""
+    from verification.measure.work.row import duration
+
+    if rows:
+        console.print(f"\n{'times the square':<20}{'bounces':>10}{'time a bounce':>15}   at lam = 0.999999")
+    for row in rows:
+        ratio = row.seconds_per_bounce / rows[0].seconds_per_bounce
+        console.print(f"{row.scene:<20}{ratio:>10.2f}{duration(row.seconds_per_bounce):>15}")
 
 
 def show_calls(console: "Console", calls: "Sequence[Call]") -> None:

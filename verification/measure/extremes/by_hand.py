@@ -6,21 +6,47 @@ ahead, and on the arc that a particle leaves it is the other point where its lin
 closely each line passes a corner or a tangent on its way, as a share of the numbers from which its ends are added up.
 """
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from sympy import Rational
 
 from numeric import PinballMap
 from numeric.flights.corners import CIRCLE, LINE, Piece, piece_of
 from numeric.flights.pieces import Pieces
 from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import phase_starts
+from symbolic import tables
+from symbolic.tables.table import Table, theta
 from verification.measure.extremes.kernels import Wide
 
 WIDE = np.longdouble
 START = WIDE(2.0**-58)  # as a share of the table: of another piece, what is nearer is rounding
 NEARBY = WIDE(2.0**-40)  # the same: of corners and tangents, what may lie behind the start
 SKEW = WIDE(2.0**-20)  # the same: by so much a tangent lies beyond the landing of a line that all but touches
+
+
+def spikes(count: int) -> Table:
+    """A star of straight sides, every second corner of which lies nearer to the origin; rational, not convex."""
+    corners = []
+    for i in range(count):
+        part, far = 2 * np.pi * i / count, 0.6 if i % 2 else 1.0
+        corners.append(tuple(Rational(round(far * f(part) * 10**6), 10**6) for f in (np.cos, np.sin)))
+    ring = enumerate(pairwise([*corners, corners[0]]))
+    sides = [tables.arc(f"side{i}", x + theta * (X - x), y + theta * (Y - y), 0, 1) for i, ((x, y), (X, Y)) in ring]
+    return tables.Table(f"spikes{count}", tuple(sides))  # a star about the origin, so that nothing need be proved of it
+
+
+def discs(count: int) -> Table:
+    """The unit square with a row and as many columns of so many discs in it."""
+    step = Rational(1, count)
+    holes = [
+        tables.disc(f"disc{i}.{j}", (step * (i + Rational(1, 2)), step * (j + Rational(1, 2))), step / 4)
+        for i in range(count)
+        for j in range(count)
+    ]
+    return tables.Table(f"discs{count * count}", (*tables.square().components, *holes))
 
 
 class Hit(NamedTuple):

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -31,14 +32,18 @@ from numeric.kernels import machine
 from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text, operations
 from numeric.pinball.sampling import phase_starts
+from symbolic import tables
 from verification.arithmetic.balls import bits_of, working
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import ExactMap, errors
+from verification.measure.extremes.by_hand import discs, spikes
 from verification.measure.extremes.orbits import DIGITS, RADII, SCENES, scene
 
 Array = NDArray[np.float64]
 LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
 FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # laws of a user's own: a polynomial, and one sine
+WANDERING = "999999/1000000"
+PIECES = "llvm, lam = 0.999999"
 BALLS, RUNS = 4096, 5
 WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
 CHECKED = 24  # balls whose errors are measured
@@ -163,6 +168,25 @@ def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
 
         once()
         yield Row(name, "float64", kernel, error, best(once, runs) / 300 / BALLS, runs)
+
+
+def pieces_rows(runs: int = RUNS) -> Iterable[Row]:
+    """Tables of straight sides and discs, few and many: kernels all measured in turn, at a contraction close to 1.
+
+    At a smaller one particles settle between parallel walls, and never meet what is between.
+    """
+    ready = []
+    for table in (tables.square(), tables.regular(100), discs(6), discs(10), spikes(40), spikes(100)):
+        map = PinballMap(table, lam=WANDERING)
+        ready.append((table.name, map, attracted(map, BALLS, 10)))
+    times: dict[str, list[float]] = {name: [] for name, *_ in ready}
+    for _ in range(runs + 1):
+        for name, map, own in ready:
+            lam = np.full(BALLS, float(map.lam))
+            once = partial(map.engine.run, KernelSpec(map.law), own, lam, map.shape, 50, (), 1)
+            times[name].append(best(once, 1) / 50 / BALLS)
+    for name, *_ in ready:
+        yield Row(name, "float64", PIECES, None, min(times[name][1:]), runs, WANDERING)
 
 
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:

@@ -89,6 +89,16 @@ def test_both_enclose_the_same_functions(check, word):
     assert met > 15
 
 
+def test_an_angle_nearer_to_a_right_one_than_the_precision_is_enclosed(check):
+    """Of 2**k, at 64 bits, where the cosine of the angle is a few units in the last place, or less than one."""
+    for k in range(40, 80):
+        x = Fraction(2**k) + Fraction(k, 2**7)
+        with working(300):
+            theirs = exactly(x).atan()
+
+        assert overlap(theirs, check.I.of(x, 64).atan())
+
+
 @pytest.mark.parametrize("word", ["exp", "sinh", "cosh"])
 def test_an_exponential_beyond_any_use_proves_nothing_and_takes_no_time(check, word):
     for x in (Fraction(2) ** 17, Fraction(2) ** 1000):

@@ -269,6 +269,16 @@ def test_a_table_of_several_pieces_and_its_order_are_read(check):
     assert said(check, cycle(turned, ["0", "0"], [0, 2])).startswith("not proved: admissible")
 
 
+def test_a_bounce_beyond_the_end_of_its_piece_is_none_though_no_chord_is_in_the_way(check):
+    """The axis of a lens: its upper arc is there as a whole, or without the middle."""
+    lower = {"x": "theta", "y": "theta**2/8 - 1", "from": "-1", "to": "1"}
+    upper = {"x": "-theta", "y": "1 - theta**2/8", "from": "-1", "to": "1"}
+    whole, part = ({"component": [lower, upper | {"to": end}], "lam": "1/3"} for end in ("1", "-1/2"))
+
+    assert said(check, cycle(whole, ["0", "0"], [0, 1])).startswith("proved")
+    assert said(check, cycle(part, ["0", "0"], [0, 1])).startswith("not proved: admissible: a bounce may be off")
+
+
 def test_a_wall_that_is_put_into_the_way_is_seen(check):
     wall = {"x": "1/2", "y": "theta/4", "from": "-1/2", "to": "1"}
     scene = {"component": [*STADIUM, wall], "lam": "1/3"}

@@ -100,7 +100,7 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
     with np.errstate(all="ignore"):
         for j, piece in enumerate(known):
             corner = [piece.start[i] - z[i] for i in (0, 1)]
-            own_size = sum(abs(x) for x in piece.start)
+            own_size = max(_added_up(one, piece.start) for one in (piece, known[family.following.index(j)]))
             if not family.closed[j]:
                 near.append((v[0] * corner[0] + v[1] * corner[1], abs(_cross(v, corner)), size + own_size))
             own = at == j
@@ -121,6 +121,11 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
     with np.errstate(invalid="ignore"):
         x, y = (z[i] + best * v[i] for i in (0, 1))
     return Hit(best, where, x, y, aside.astype(float), straight.astype(float), (size + weight).astype(float))
+
+
+def _added_up(piece: Piece, point: Any) -> Any:
+    """The moduli of the numbers from which a piece adds up a point of its own: its origin, and the way from there."""
+    return sum(abs(piece.origin[i]) + abs(point[i] - piece.origin[i]) for i in (0, 1))
 
 
 def _cross(v: Any, w: Any) -> Any:

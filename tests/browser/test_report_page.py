@@ -1,5 +1,7 @@
 """The report in a real browser: it shows, filters, prints, fits a phone, and is accessible."""
 
+from pathlib import Path
+
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
@@ -134,5 +136,17 @@ def test_it_fits_its_window_and_is_accessible(page, report, size, scheme):
 
     page.get_by_role("button", name="open or fold all").click()
     assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+
+
+@pytest.mark.parametrize("name", ["flower", "limacon", "stadium"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_reports_of_tables_are_accessible(page, name, scheme):
+    page.emulate_media(color_scheme=scheme)
+    page.set_viewport_size(PHONE)
+    page.goto((Path(__file__).parents[2] / "docs" / "reports" / f"{name}.html").as_uri())
+
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     found = Axe().run(page)
     assert found.violations_count == 0, found.generate_report()

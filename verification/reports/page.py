@@ -20,6 +20,8 @@ MEANINGS = {
     Known.SAMPLED: "from random or gridded samples; the error is a standard error or half a 95 % interval",
 }
 
+FRAME = '<div class="{}" tabindex="0" role="group" aria-label="{}">{}</div>'  # can be scrolled by keyboard
+
 
 def page(report: Report, parts: Parts) -> str:
     """The whole page. Two runs differ in seconds, and in how far they got."""
@@ -70,7 +72,7 @@ def shown(block: Block, parts: Parts) -> Markup:
         return Markup("<p>{}</p>").format(remark(block.text))
     if isinstance(block, Formula):
         head = Markup('<p class="name">{} {}</p>').format(remark(block.name), tag(block.known))
-        return head + Markup('<div class="formula">{}</div>').format(mathml(block.latex, display=True))
+        return head + Markup(FRAME).format("formula", block.name, mathml(block.latex, display=True))
     if isinstance(block, Listing):
         return _table(block)
     if isinstance(block, Picture):
@@ -90,8 +92,7 @@ def _table(block: Listing) -> Markup:
     )
     caption = Markup('<p class="caption">{}</p>').format(remark(block.caption))
     table = Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(head, rows)
-    framed = Markup('<div class="table" tabindex="0" role="region" aria-label="{}">{}</div>')
-    return caption + framed.format(block.caption.split(":")[0][:60], table) + _command(block.command)
+    return caption + Markup(FRAME).format("table", block.caption.split(":")[0][:60], table) + _command(block.command)
 
 
 def _cell(cell: str | Number) -> Markup:

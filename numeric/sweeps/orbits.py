@@ -80,7 +80,7 @@ def memory(map: PinballMap, particles: int, fields: Sequence[str] = ("theta", "p
     Where no kernel tells the orbit, there are a piece of each row of the state, and of all that it is translated to.
 
     >>> memory(PinballMap("egg", lam=0.5, alpha=0.08), particles=1000) // 10**6
-    34
+    35
     """
     rows = max(2, piece // particles)
     told = 0 if map.engine.tells else len(map.family.fields(map.law)) + len(TOLD)

@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 from hashlib import sha256
 from importlib import import_module
+from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 from verification.paper.claims.claim import Claim, Sentence
@@ -237,6 +238,13 @@ def judge_of(claim: Claim) -> Judge:
     return JUDGES[module(claim.home).__name__, claim.id]
 
 
+class _AsItStands(SourceFileLoader):
+    """Reads the text of a module, and no bytecode, which may be that of another text of the same second and length."""
+
+    def get_code(self, fullname: str) -> CodeType:
+        return self.source_to_code(self.get_data(self.path), self.path)
+
+
 def module(home: str) -> ModuleType:
     """A module of this package by its dotted name, or one outside by its path, run once for each text that it had."""
     if not home.endswith(".py"):
@@ -245,7 +253,7 @@ def module(home: str) -> ModuleType:
     try:
         name = f"claims_{sha256(str(path).encode() + path.read_bytes()).hexdigest()[:12]}_{path.stem}"
         if name not in sys.modules:
-            spec = spec_from_file_location(name, path)
+            spec = spec_from_file_location(name, path, loader=_AsItStands(name, str(path)))
             assert spec is not None
             assert spec.loader is not None
             found = module_from_spec(spec)

@@ -8,7 +8,7 @@ import pytest
 from flint import arb
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Rational
+from sympy import Interval, Rational
 
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from verification.arithmetic.balls import balls, exact_balls, working
@@ -172,6 +172,18 @@ def test_the_cuspless_orbit_doubles_subcritically():
 
     assert proof.certified
     assert proof.supercritical is False
+
+
+def test_a_value_outside_the_range_of_its_parameter_is_not_admissible():
+    """The equations have a solution there, but no table."""
+    doubling = Problem(egg(3), (0, 0), BifurcationKind.FLIP, "alpha", Rational(1, 2))
+    found = certify(doubling, [0.0, math.pi, 0.05], 20)
+    narrow = Interval(0, Rational(1, 100))
+    beyond = replace(doubling, table=replace(egg(3), shapes=(replace(egg(3).shapes[0], range=narrow),)))
+
+    assert found.certified
+    assert found.value > 0.02
+    assert proved(replace(found.claim, problem=beyond)).checks["admissible"] is None
 
 
 def test_a_fold_is_no_flip():

@@ -35,7 +35,7 @@ from math import factorial
 from typing import Any
 
 from flint import acb, arb, arb_mat
-from sympy import Rational, diff
+from sympy import Interval, Rational, diff
 
 from symbolic.cycles.normal_forms import QUARTIC, Map, bounce, chord, composed
 from symbolic.cycles.thresholds import alpha_tilde
@@ -43,7 +43,7 @@ from symbolic.expressions.text import kernel, load
 from symbolic.tables import egg
 from symbolic.tables.table import Table, theta
 from symbolic.tables.table import lam as letter
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import balls, real_ball, working
 from verification.arithmetic.progress import Tick, silent
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chain import trace_and_determinant
@@ -119,7 +119,9 @@ def proved(claim: Claim) -> Proof:
         if problem.mirror:
             whole = whole + [-x for x in whole]
         parts = problem.components * (len(whole) // problem.period)
-        checks["admissible"] = _admissible(problem, parts, whole, shape) if found else None
+        checks["admissible"] = (
+            _admissible(problem, parts, whole, shape) if found and _allowed(problem, zero[-1]) else None
+        )
         checks["minimal_period"] = minimal(problem.table, parts, whole) if found else None
         if problem.kind is None:
             return Proof(claim, checks, enclosure)
@@ -137,6 +139,15 @@ def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shap
     if placed is not True or convex(problem.table, shape) is True:
         return placed
     return first_hits(problem.table, parts, whole, shape)
+
+
+def _allowed(problem: Problem, free: arb) -> bool:
+    """Does the free parameter lie in its range: a shape where the table is one, a contraction from 0 to 1?"""
+    ranges = {"lam": Interval(0, 1)} | {p.symbol.name: p.range for p in problem.table.shapes}
+    if problem.free not in ranges:
+        return True
+    low, high = ranges[problem.free].start, ranges[problem.free].end
+    return bool((low.is_infinite or free >= real_ball(low)) and (high.is_infinite or free <= real_ball(high)))
 
 
 def _form(problem: Problem, zero: list[arb], bits: int) -> NormalForm | None:

@@ -15,12 +15,13 @@ import llvmlite.binding as llvm
 import numpy as np
 
 from numeric import PinballMap
-from numeric.kernels.machine import KernelSpec
+from numeric.kernels.machine import KernelSpec, wide
 from numeric.kernels.text import kernel_text, operations
 from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.bench import BALLS, LAWS, attracted
 
-CHAINS, LANES, PASSES = 12, 8, 20_000
+LANES, PASSES = 8, 20_000
+CHAINS = 12 if wide() else 6  # vectors of eight doubles that the registers hold beside what they work with
 BOUNCES, RUNS = 100, 100
 STEPS = {
     "fma": "call {t} @llvm.fma.v8f64({t} {x}, {t} %a, {t} %b)",

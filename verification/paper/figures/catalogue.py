@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from verification.plots.sheet import Panels
 
 DRAFT, FULL = 1.0, 8.0  # resolutions
-LINES = 6000  # points that are small as lines
+LINES = 2500  # points that are small as lines
 WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
 ENDINGS = {".png": {"Software": None}, ".pdf": {"CreationDate": None, "Producer": None}, ".svg": {"Date": None}}
 

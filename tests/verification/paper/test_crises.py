@@ -9,9 +9,9 @@ from flint import arb
 from numeric import PinballMap
 from verification.named.crises import KINDS, crisis, extent, narrowed, power, scaling, spread, stay, widenings
 from verification.named.locate import egg_crisis
-from verification.paper.claims.claim import Claim, Verdict
+from verification.paper.claims.claim import Verdict
 from verification.paper.egg.crises import distance, sides
-from verification.paper.report.report import judge
+from verification.paper.report.report import catalogue, judge
 from verification.proofs.manifolds.known import SHAPE, contact
 
 
@@ -163,9 +163,9 @@ def test_a_cycle_that_closes_with_a_turn_has_no_certificate_and_the_tangency_is_
     assert found.proof.certified
 
 
-@pytest.mark.parametrize(("printed", "verdict"), [("0.66", Verdict.SUPPORTED)])
-def test_the_boundary_crisis_is_judged_by_tangency_and_by_balls(printed, verdict):
-    result = judge(Claim("egg.boundary_crisis", "6.7", "", "numerical", printed))
+def test_the_boundary_crisis_is_judged_by_tangency_and_by_balls():
+    (claim,) = (claim for claim in catalogue() if claim.id == "egg.boundary_crisis")
+    result = judge(claim)
 
-    assert result.verdict is verdict
+    assert result.verdict is Verdict.SUPPORTED
     assert "homoclinic tangency" in result.method

@@ -8,16 +8,18 @@ What is proved, for `LOW < HIGH`:
 - at `HIGH` one orbit that leaves along the branch enters `taken`.
 
 Call `lam` good when some trapping region apart from `taken` is entered by all orbits of the branch. A trapping region
-is one for all nearby contractions too, since the image of a compact set stays within its interior; and a piece of the
-branch, from a point to its image, is compact and moves continuously. So good contractions are an open set, which holds
-`LOW`. `HIGH` is none: what is in `taken` stays there. Therefore there is a first contraction in `(LOW, HIGH]` at which
-the trapping region about the branch is lost: the crisis of [GrebogiOttYorke1983].
+is one for all nearby contractions too: the image of a compact set stays within its interior, that of the strip of phase
+points after a bounce, since the table is one smooth closed curve, convex, and the map continuous. And a piece of the
+branch, from a point to its image after a round, with its turned copies, is compact and moves continuously; every orbit
+of the branch passes it. So good contractions are an open set, which holds `LOW`. `HIGH` is none: what is in `taken`
+stays there. Therefore there is a first contraction in `(LOW, HIGH]` at which every such region is lost. Where what is
+kept is a chaotic attractor, this is its boundary crisis [GrebogiOttYorke1983]; that is not proved here.
 
 Both sets of boxes are what the outer images of a few cells grow to, so a document need not list them.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
@@ -47,7 +49,7 @@ from verification.proofs.manifolds.enclosed import (
 )
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import orbit_of, orbit_said
-from verification.proofs.manifolds.saddle import Orbit, horner, local, saddle
+from verification.proofs.manifolds.saddle import Orbit, Saddle, horner, local, saddle
 from verification.proofs.manifolds.tangency import one_cycle, scale
 from verification.proofs.manifolds.touching import bounce
 
@@ -59,7 +61,8 @@ CUTS = 16  # of the contractions, over each of which the saddle is enclosed
 MOST_BOUNCES, SAMPLES = 400, 20_000
 SOON, SEEN, AT_REST = (30, 60, 120, 300), 200, -0.02  # bounces before an exponent and for it; cycles stay below
 GRID = {"columns": 1 << 13, "rows": 1 << 13, "parts": 16}
-SLACK = 1e-14  # more than a turn of 2*pi taken off in float64 errs
+SLACK = 1e-14  # for each turn of 2*pi taken off, more than that errs in float64
+FAR, NEAR = 10.0, 1e-5  # radians: of a start at most, and between the saddle at LOW and where it is said to be
 CHECKS = ("saddle", "manifold", "kept", "taken", "apart", "leaves")
 Array = NDArray[np.float64]
 
@@ -93,12 +96,16 @@ class BoundaryCrisis:
     sink: tuple[float, float]
 
     def __post_init__(self) -> None:
+        if len(self.scene.table.components) != 1:
+            raise ValueError(f"crisis: {self.scene.name} has several components; accepted: one smooth closed curve")
         closure, (low, high) = self.saddle.closure, self.lam
         turns = {Fraction(0)} | {Fraction(*g.shift) for g in symmetries(self.scene.table) if g.turn == 1}
         if len(self.saddle.start) != 1 or closure.turn != 1 or Fraction(*closure.shift) % 1 not in turns:
             raise ValueError(f"crisis: a round of the {self.saddle.name} is not one bounce and a turn of the table")
         if not self.scene.law.uniform:
             raise ValueError(f"crisis: law = {self.scene.law}; accepted: the paper's, phi = -lam*eta")
+        if not all(abs(x) < FAR for x in (*self.saddle.start, *self.sink)):
+            raise ValueError(f"crisis: the saddle at {self.saddle.start} or the sink at {self.sink} is out of range")
         if self.side not in (1, -1) or not 0 < low < high < 1 or not 0 <= self.start <= 1:
             raise ValueError(f"crisis: side = {self.side}, lam = {low}:{high} or start = {self.start} is out of range")
 
@@ -106,8 +113,9 @@ class BoundaryCrisis:
     def name(self) -> str:
         """What is stated."""
         shape = "".join(f", {name} = {value}" for name, value in self.scene.shape.items())
-        low, high = self.lam
-        return f"boundary crisis of {self.scene.name}{shape}, {self.saddle.name}: lam between {low} and {high}"
+        (low, high), (p, q), (at,) = self.lam, self.saddle.closure.shift, self.saddle.start
+        saddle = f"saddle at theta = {at:.5f}, {p}/{q} of a turn a bounce, side {self.side:+d}"
+        return f"boundary crisis of {self.scene.name}{shape}, {saddle}: lam between {low} and {high}"
 
     @cached_property
     def checks(self) -> dict[str, bool | None]:
@@ -115,17 +123,17 @@ class BoundaryCrisis:
         found: dict[str, bool | None] = dict.fromkeys(CHECKS)
         low = self.lam[0]
         try:
-            self._continued()
+            curve = self._continued()
             found["saddle"] = True
-            branches = [self._branch(lam, bits) for lam, bits in zip(self.lam, (BITS, MANY_BITS), strict=True)]
+            branches = [self._branch(*one) for one in zip(curve, self.lam, (BITS, MANY_BITS), strict=True)]
             found["manifold"] = True
-        except (TooWideError, ArithmeticError):
+        except (ValueError, ArithmeticError):
             return found
         below, throughout = (PinballImages(self.scene, pair) for pair in ((low, low), self.lam))
         taken = self._grown(throughout, _points(np.array([self.sink[0]]), np.array([self.sink[1]])))
         found["taken"] = None if taken is None else True
         ends = np.linspace(0, 1, PIECES + 1)
-        pieces = _boxed(self._launched(branches[0], ends[:-1], ends[1:]))
+        pieces = _boxed(self._turned(self._launched(branches[0], ends[:-1], ends[1:])))
         for _ in range(ROUNDS * len(self.saddle.start)):
             pieces = None if pieces is None else _next(below, pieces)
         kept = None if pieces is None else self._grown(below, pieces)
@@ -146,22 +154,34 @@ class BoundaryCrisis:
         """The map, by its rule."""
         return Pinball(self.scene.table, turn=self.saddle.closure.shift[1])
 
-    def _continued(self) -> None:
-        """Proves that the saddle is one curve of cycles over all contractions, each a saddle; or `TooWideError`."""
+    def _continued(self) -> tuple[Saddle, Saddle]:
+        """The saddle over the first and the last part of the contractions, of one curve of cycles over all of them.
+
+        `TooWideError` where that is not proved, or where the saddle at the lower end is not where it is said to be.
+        """
         ends = [self.lam[0] + (self.lam[1] - self.lam[0]) * Fraction(k, CUTS) for k in range(CUTS + 1)]
         with working(BITS):
-            map = self.map.over(complex_balls(BITS))
-            thin = [enclosed_saddle(self.saddle, map, _exact(x)) for x in ends]
-            for k, (a, b) in enumerate(pairwise(ends)):
-                around = enclosed_saddle(self.saddle, map, acb(_exact(a).real.union(_exact(b).real)))
-                if not (one_cycle(around, thin[k]) and one_cycle(around, thin[k + 1])):
+            map, orbit, parts = self.map.over(complex_balls(BITS)), self.saddle, list[Saddle]()
+            before = enclosed_saddle(orbit, map, _exact(ends[0]))
+            if not abs(before.points[0] - orbit.start[0]) < NEAR:
+                raise TooWideError("saddle", "the saddle at the lower contraction is another than said")
+            for a, b in pairwise(ends):
+                around = enclosed_saddle(orbit, map, acb(_exact(a).real.union(_exact(b).real)))
+                orbit = replace(orbit, start=tuple(float(x.real.mid()) for x in around.points))
+                after = enclosed_saddle(orbit, map, _exact(b))
+                if not (one_cycle(around, before) and one_cycle(around, after)):
                     raise TooWideError("saddle", "the cycle at an end may be another than the one in between")
+                parts.append(replace(around, orbit=orbit))
+                before = after
+        return parts[0], parts[-1]
 
-    def _branch(self, lam: Fraction, bits: int) -> "Branch":
+    def _branch(self, around: Saddle, lam: Fraction, bits: int) -> "Branch":
         """The series of the unstable manifold at one contraction, its remainder proved; `TooWideError`."""
         with working(bits):
-            size = scale(self.saddle, self.map, float(lam), True, OUTER)
-            at = enclosed_saddle(self.saddle, self.map.over(complex_balls(bits)), _exact(lam))
+            size = scale(around.orbit, self.map, float(lam), True, OUTER)
+            at = enclosed_saddle(around.orbit, self.map.over(complex_balls(bits)), _exact(lam))
+            if not one_cycle(around, at):
+                raise TooWideError("saddle", "the branch may be that of another cycle")
             made = enclosed(at, True, bits // 4, size.unit, size.chief)
             error = remainder(made, OUTER)
             if not made.factor.real > 1:
@@ -179,6 +199,13 @@ class BoundaryCrisis:
                 before, here = (horner([c.real for c in jet.c], z) + error for jet in branch.series.pair())
                 found.append((before, map.angle(before, here)[0]))
         return found
+
+    def _turned(self, points: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
+        """Phase points with their turned copies: a round is a bounce and a turn, so an orbit passes one of them."""
+        with working(BITS):
+            turn = self.saddle.closure.angle(balls(BITS))
+            copies = range(Fraction(*self.saddle.closure.shift).denominator)
+            return [(theta + k * turn, phi) for k in copies for theta, phi in points]
 
     def _leaves(self, branch: Branch, taken: tuple[Grid, Mask]) -> bool:
         """Does the orbit from `start` enter the cells? Followed in balls, each landing a first hit."""
@@ -242,11 +269,12 @@ def bracket(
 
     >>> from verification.proofs.manifolds.known import CONTACTS
     >>> triangle, ends = CONTACTS["boundary"].unstable, (Fraction(3, 5), Fraction(663, 1000))
-    >>> bracket(Scene("egg", alpha="0.08"), triangle, 1, ends).name
-    'boundary crisis of egg, alpha = 2/25, triangle of the vertices: lam between 3/5 and 663/1000'
+    >>> bracket(Scene("egg", alpha="0.08"), triangle, 1, ends).name.partition(",")[0]
+    'boundary crisis of egg'
     """
-    high = float(lam[1])
+    low, high = (float(x) for x in lam)
     plane = Pinball(scene.table, turn=orbit.closure.shift[1]).over(ARRAYS)
+    orbit = replace(orbit, start=tuple(saddle(orbit, plane.over(FLOAT64), low).points))
     made = local(saddle(orbit, plane.over(FLOAT64), high), True, 28)
     unit, factor = scale(orbit, plane, high, True, OUTER).unit, float(made.factor)
     start = (np.arange(SAMPLES) + 0.5) / SAMPLES
@@ -298,7 +326,8 @@ def _next(map: PinballImages, boxes: Boxes) -> Boxes | None:
 def _turned_back(boxes: Boxes) -> Boxes:
     """The same boxes with whole turns taken off, rounded outwards."""
     turns = 2 * np.pi * np.rint((boxes.x[0] + boxes.x[1]) / (4 * np.pi))
-    return boxes._replace(x=(boxes.x[0] - turns - SLACK, boxes.x[1] - turns + SLACK))
+    slack = SLACK * (1 + np.abs(turns))
+    return boxes._replace(x=(boxes.x[0] - turns - slack, boxes.x[1] - turns + slack))
 
 
 def _exact(x: Fraction) -> acb:

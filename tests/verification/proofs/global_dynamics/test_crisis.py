@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from symbolic.tables.scene import Scene
@@ -31,6 +32,26 @@ def test_the_boundary_crisis_of_the_egg_lies_between_two_contractions(found, tmp
     assert "lam between 3/5 and 663/1000  (certified" in capsys.readouterr().out
     assert BoundaryCrisis.from_dict(json.loads(file.read_text())) == found
     assert BELOW < Fraction(BOUNDARY[SHAPE][1]) < ABOVE
+
+
+def test_every_turned_copy_of_a_piece_of_the_branch_is_kept(found):
+    """Orbits that begin nearer to the saddle pass another copy: of them one copy alone says nothing."""
+    branch = found._branch(found._continued()[0], found.lam[0], 160)
+    piece = found._launched(branch, np.array([0.0]), np.array([1.0]))
+    copies = [float(theta.mid()) for theta, _ in found._turned(piece)]
+
+    assert np.allclose(np.diff(copies), 2 * np.pi / 3)
+    assert len(copies) == 3
+
+
+def test_another_saddle_than_the_one_that_is_named_is_refused(found):
+    elsewhere = replace(found.saddle, start=(found.saddle.start[0] + 2e-5,))
+    assert replace(found, saddle=elsewhere).checks["saddle"] is None
+
+
+def test_a_table_of_several_components_is_refused(found):
+    with pytest.raises(ValueError, match="several components"):
+        replace(found, scene=Scene("cuspless"))
 
 
 def test_nothing_leaves_below_the_crisis(found):

@@ -6,7 +6,7 @@ from .grow import branch
 from .known import CONTACTS, SHAPE, Crisis, boundary, contact, crisis, decimals, table
 from .plane_map import Pinball
 from .proof import TangencyClaim, TangencyProof, orbit_of, orbit_said
-from .saddle import Orbit, horner, local
+from .saddle import Orbit, Saddle, horner, local
 from .tangency import Gap, one_cycle, scale
 from .touching import bounce
 
@@ -18,6 +18,7 @@ __all__ = [
     "Gap",
     "Orbit",
     "Pinball",
+    "Saddle",
     "TangencyClaim",
     "TangencyProof",
     "TooWideError",

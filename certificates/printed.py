@@ -43,6 +43,9 @@ CLAIMS: dict[str, tuple[str, ...]] = {  # of the paper's report: what says `cert
     "egg.cascade": DOUBLINGS,
     "egg.figure_attractors": ("doubling-4",),
     "egg.exponent_period3": ("egg-period-3",),
+    "egg.period4_doubles": ("symmetry-breaking", "doubling-3"),
+    "egg.negative_exponents": ("doubling-3",),
+    "egg.tolerance_sensitive": ("doubling-3",),
     "egg.noise": ("beside-12", "beside-24", "beside-8", "beside-16"),
 }
 WITHOUT: dict[str, str] = {  # and why
@@ -62,6 +65,9 @@ FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enou
 ALSO: dict[str, str] = {  # parts of a sentence that have none here; `pinball locate ... --certificate FILE` writes one
     "egg.cascade": "doublings 7 and 8: cycles of 64 and 128 bounces take the second reader too long",
     "egg.exponent_period32": "exponents of cycles of 32 bounces, at contractions with no name",
+    "egg.isolated_resolution": "doublings of period 12 at alpha = 0.0795",
+    "egg.representative": "pitchforks and doublings at alpha = 0.075 and 0.09",
+    "map.cascades_of_different_periods": "doublings of periods 9 and 18",
     "egg.isolated_regions": "doublings of periods 48, 8, 16 and 32, at the end of cascades",
 }
 

@@ -229,10 +229,11 @@ def check_command(file: str, output: Output) -> int:
 def _boxes_checked(given: dict[str, Any], output: Output) -> int:
     """What has no value to show: a trapping region's boxes are mapped anew, and those of a crisis grow again."""
     from verification.named.locate import WORDS
-    from verification.proofs.global_dynamics import crisis, regions
+    from verification.proofs.global_dynamics.crisis import BoundaryCrisis
+    from verification.proofs.global_dynamics.regions import KIND, Region, checked
 
     started = time.perf_counter()
-    name, checks = (regions if given["kind"] == regions.KIND else crisis).checked(given)
+    name, checks = checked(given, (Region if given["kind"] == KIND else BoundaryCrisis).from_dict)
     seconds, certified = time.perf_counter() - started, all(checks.values())
     output.write({"name": name, "certified": certified, "checks": checks, "seconds": seconds})
     output.console.print(f"{name}  ({'certified' if certified else 'not certified'}, {seconds:.2f} s)")

@@ -130,14 +130,15 @@ class BoundaryCrisis:
         except (ValueError, ArithmeticError):
             return found
         below, throughout = (PinballImages(self.scene, pair) for pair in ((low, low), self.lam))
-        taken = self._grown(throughout, _points(np.array([self.sink[0]]), np.array([self.sink[1]])))
-        found["taken"] = None if taken is None else True
+        seed = _boxed([(arb(self.sink[0]), arb(self.sink[1]))])
+        taken = None if seed is None else self._grown(throughout, seed)
+        found["taken"] = _proved(taken is not None)
         ends = np.linspace(0, 1, PIECES + 1)
         pieces = _boxed(self._turned(self._launched(branches[0], ends[:-1], ends[1:])))
-        for _ in range(ROUNDS * len(self.saddle.start)):
+        for _ in range(ROUNDS):
             pieces = None if pieces is None else _next(below, pieces)
         kept = None if pieces is None else self._grown(below, pieces)
-        found["kept"] = None if kept is None else True
+        found["kept"] = _proved(kept is not None)
         if kept is None or taken is None:
             return found
         found["apart"] = _proved(not _meets(kept, taken))
@@ -296,15 +297,6 @@ def bracket(
     return BoundaryCrisis(scene, orbit, side, lam, *grid, float(start[k]), sink)
 
 
-def checked(given: Mapping[str, Any]) -> tuple[str, dict[str, bool | None]]:
-    """What a document states, and its checklist worked through anew; a wrong name is refused."""
-    crisis = BoundaryCrisis.from_dict(given)
-    if given.get("name") != crisis.name:
-        said = ascii(given.get("name"))[:80]
-        raise ValueError(f"certificate: name = {said} is not what it states, which is {crisis.name!r}")
-    return crisis.name, crisis.checks
-
-
 def _boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
     """Boxes about phase points of a table of one component; None where one is not finite."""
     (left, right), (bottom, top) = (
@@ -341,10 +333,6 @@ def _outwards(x: arb, up: bool) -> float:
 
 def _as_images(boxes: Boxes) -> Images:
     return Images(np.arange(boxes.chart.size), boxes, np.zeros(0, dtype=np.int64))
-
-
-def _points(theta: Array, phi: Array) -> Boxes:
-    return Boxes(np.zeros(theta.size, dtype=np.int64), (theta, theta), (phi, phi))
 
 
 def _cells(member: Mask) -> Cells:

@@ -17,11 +17,11 @@ With `p = bend0 - slope0` the derivative takes a slope to `-sigma*(bend1 - p/(by
 equation of a law with the slope `-sigma`, which is `-lam` for the paper's.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,7 @@ from verification.proofs.global_dynamics.graph import (
 from verification.proofs.global_dynamics.images import PinballImages
 
 KIND, SCHEMA = "trapping region", 1
+Checked = tuple[str, dict[str, bool | None]]
 SEED, STARTS, LONG = 1, 2000, 2000
 MOST_PARTS, MOST_BOXES = 16, 1 << 24
 
@@ -110,13 +111,25 @@ class Region:
             raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
 
 
-def checked(given: Mapping[str, Any]) -> tuple[str, dict[str, bool | None]]:
+class Statement(Protocol):
+    """What a document about boxes states."""
+
+    @property
+    def name(self) -> str:
+        """In words."""
+
+    @property
+    def checks(self) -> dict[str, bool | None]:
+        """What is proved of it, item by item."""
+
+
+def checked(given: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Statement] = Region.from_dict) -> Checked:
     """What a document states, and its checklist worked through anew; a wrong name is refused."""
-    region = Region.from_dict(given)
-    if given.get("name") != region.name:
+    stated = read(given)
+    if given.get("name") != stated.name:
         said = ascii(given.get("name"))[:80]
-        raise ValueError(f"certificate: name = {said} is not what it states, which is {region.name!r}")
-    return region.name, region.checks
+        raise ValueError(f"certificate: name = {said} is not what it states, which is {stated.name!r}")
+    return stated.name, stated.checks
 
 
 def region(map: PinballImages, graph: MorseGraph, index: int, parts: int = 1) -> Region | None:

@@ -145,6 +145,27 @@ def test_ctrl_c_ends_every_process(tmp_path, started):
     assert running(tmp_path) == []
 
 
+def test_ctrl_c_waits_while_processes_start_though_another_thread_hears_it():
+    """A mask binds one thread; libraries of linear algebra start threads of their own."""
+    program = """
+import os, signal, threading, time
+from verification.paper.report.workers import _undisturbed
+signal.signal(signal.SIGINT, signal.default_int_handler)
+threading.Thread(target=time.sleep, args=(2,), daemon=True).start()
+try:
+    with _undisturbed():
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.2)
+        print("started")
+    print("not heard")
+except KeyboardInterrupt:
+    print("heard")
+"""
+    run = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+
+    assert run.stdout.split("\n")[:2] == ["started", "heard"]
+
+
 @pytest.mark.parametrize("name", ["map.A", "cuspless.lambda_c", "egg.alpha_hat"])
 def test_a_judge_loads_no_module_that_its_digest_leaves_out(name):
     """Imports inside functions and names that a room hands out when asked are followed as well."""

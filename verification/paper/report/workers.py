@@ -13,6 +13,7 @@ from multiprocessing import get_all_start_methods, get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
+from threading import current_thread, main_thread
 from typing import Any, Generic, TypeVar
 
 Item = TypeVar("Item")
@@ -103,18 +104,25 @@ def _context(modules: Sequence[str]) -> BaseContext:
 def _undisturbed() -> Iterator[None]:
     """Ctrl-C waits until processes have started: a half started one would find nobody and die of a traceback.
 
-    They inherit the mask, so that Ctrl-C goes to the one that asks, from their first instruction on. The tracker of
-    multiprocessing's resources, where its start is left to a later moment, lets the signal through again.
+    They inherit the mask, so that Ctrl-C goes to the one that asks, from their first instruction on. A mask binds one
+    thread, and libraries have threads of their own that the signal may reach: what it then sets off waits as well.
+    The tracker of multiprocessing's resources, where its start is left to a later moment, lets the signal through.
     """
-    if not hasattr(signal, "pthread_sigmask"):
+    usual = signal.getsignal(signal.SIGINT)
+    if not hasattr(signal, "pthread_sigmask") or usual is None or current_thread() is not main_thread():
         yield
         return
     resource_tracker.ensure_running()
+    heard: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, usual)
+        if heard:
+            signal.raise_signal(signal.SIGINT)
 
 
 def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[Item]:

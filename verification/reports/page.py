@@ -1,7 +1,11 @@
-"""The report as one page of HTML that needs no network: formulas as MathML, pictures and certificates inside."""
+"""The report as one page of HTML that needs no network, and as a LaTeX article.
+
+The page has formulas as MathML, pictures and certificates inside; the article's pictures are PDF files among the parts.
+"""
 
 import base64
 import json
+import re
 from functools import partial
 from importlib.resources import files
 
@@ -9,6 +13,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 from verification.paper.report.mathml import formula, mathml, remark
+from verification.paper.report.report import escaped
 from verification.reports.asked import FILE, Parts
 from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Number, Picture, Words
 from verification.reports.report import Report
@@ -120,3 +125,72 @@ def _certificate(block: Certificate) -> Markup:
         '<p class="certificate"><a download="{0}.json" href="{1}">certificate {0}.json</a>: {2} '
         "<code>pinball check {0}.json</code></p>"
     ).format(block.name, address("application/json", document.encode()), remark(str(escape(block.document["name"]))))
+
+
+HEAD = r"""\documentclass{article}
+\usepackage[a4paper,margin=2.2cm]{geometry}
+\usepackage{amsmath,graphicx,longtable,xurl}
+\usepackage[T1]{fontenc}
+\usepackage{textcomp}
+\setlength{\parindent}{0pt}\setlength{\parskip}{4pt}
+"""
+GREEK = re.compile(r"(?<![A-Za-z\\])(lambda|lam|theta|alpha|phi|eta|kappa|nu)(?![A-Za-z])")
+
+
+def latex(report: Report, parts: Parts) -> str:
+    """The whole document."""
+    asked = report.asked
+    lines = [HEAD, r"\begin{document}", rf"\section*{{What becomes of {tex(asked.title)}}}"]
+    lines += [rf"\url{{{_tex_address(asked.scene.text)}}}", ""]
+    for section in report.sections:
+        lines += [rf"\section{{{tex(section.title)}}}", *(typeset(each, parts) for each in section.blocks)]
+    made = ", ".join(f"{name} {number}" for name, number in report.versions.items())
+    lines += [tex(f"Made in {report.seconds:.0f} s with {made}; seed {asked.seed}."), r"\end{document}"]
+    return "\n\n".join(lines) + "\n"
+
+
+def tex(text: str) -> str:
+    r"""Text with its special signs escaped and the code's letters as the paper's.
+
+    >>> tex("lambda = 1/2, 50 %")
+    '$\\lambda$ = 1/2, 50 \\%'
+    """
+    safe = escaped(text).replace("±", r"$\pm$")
+    return GREEK.sub(lambda found: rf"$\{ {'lam': 'lambda', 'phi': 'varphi'}.get(found[1], found[1]) }$", safe)
+
+
+def typeset(given: Block, parts: Parts) -> str:
+    """A block in LaTeX."""
+    if isinstance(given, Words):
+        return tex(given.text)
+    if isinstance(given, Formula):
+        return rf"\emph{{{tex(given.name)}}} ({given.known.value})" + f"\n\\[ {given.latex} \\]"
+    if isinstance(given, Listing):
+        width = rf"p{{{0.92 / len(given.columns):.3f}\linewidth}}" * len(given.columns)
+        rows = " \\\\\n".join(" & ".join(_tex_cell(cell) for cell in row) for row in (given.columns, *given.rows))
+        table = rf"{{\small\begin{{longtable}}{{{width}}}" + "\n" + rows + "\n" + r"\end{longtable}}"
+        return f"{tex(given.caption)}\n\n{table}{_tex_command(given.command)}"
+    if isinstance(given, Picture):
+        path = (parts.folder / f"{given.name}.pdf").resolve()
+        image = rf"\includegraphics[width=\linewidth,height=.4\textheight,keepaspectratio]{{{path}}}"
+        return f"\\begin{{center}}{image}\\end{{center}}\n{tex(given.caption)}{_tex_command(given.command)}"
+    return _tex_certificate(given)
+
+
+def _tex_certificate(given: Certificate) -> str:
+    return rf"\texttt{{{tex(given.name)}.json}}: {tex(str(given.document['name']))}"
+
+
+def _tex_cell(cell: str | Number) -> str:
+    if isinstance(cell, str):
+        return tex(cell)
+    return rf"{tex(cell.words)} \emph{{\footnotesize {cell.known.value.split(',')[0]}}}"
+
+
+def _tex_command(text: str) -> str:
+    return rf"\par{{\footnotesize\url{{{_tex_address(text)}}}}}" if text else ""
+
+
+def _tex_address(text: str) -> str:
+    r"""What `\url` takes: a per cent sign or a brace would be read by TeX."""
+    return text.replace("%", r"\%").replace("{", r"\{").replace("}", r"\}")

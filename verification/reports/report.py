@@ -170,14 +170,14 @@ def worked(
 
 def written(done: Report, parts: Parts, page: Path, latex: str | Path | None = None) -> None:
     """Writes the page, and the article where it is asked for."""
-    from verification.reports import latex as article
+    from verification.reports.page import latex as article
     from verification.reports.page import page as html
 
     temporary = page.with_name(f".{page.name}")
     temporary.write_text(html(done, parts), encoding="utf-8")
     temporary.replace(page)
     if latex is not None:
-        Path(latex).write_text(article.latex(done, parts), encoding="utf-8")
+        Path(latex).write_text(article(done, parts), encoding="utf-8")
 
 
 def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterator[Step]:

@@ -34,13 +34,11 @@ def test_a_ball_from_the_join_that_does_not_settle_is_no_support(monkeypatch):
     assert verdict(on_observed.below_star, "cuspless.below_star_converges") is Verdict.OPEN
 
 
-@pytest.mark.parametrize(("which", "values"), [("BELOW", ("0.08",)), ("ABOVE", ("0.05",))])
-def test_chaos_below_or_none_above_is_no_support(monkeypatch, which, values):
-    monkeypatch.setattr(on_observed, "BELOW", ("0.05",))
-    monkeypatch.setattr(on_observed, "ABOVE", ("0.5",))
-    assert verdict(on_observed.nontrivial_larger, "cuspless.nontrivial_larger") is Verdict.SUPPORTED
+@pytest.mark.parametrize("half", ["settles_near_zero", "chaos"])
+def test_chaos_for_larger_contractions_only_takes_both_proofs(monkeypatch, half):
+    assert verdict(on_observed.nontrivial_larger, "cuspless.nontrivial_larger") is Verdict.CONFIRMED
 
-    monkeypatch.setattr(on_observed, which, values)
+    monkeypatch.setattr(on_observed, half, lambda: Finding(Outcome.UNKNOWN, ""))
     assert verdict(on_observed.nontrivial_larger, "cuspless.nontrivial_larger") is Verdict.OPEN
 
 

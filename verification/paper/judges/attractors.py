@@ -6,6 +6,7 @@ attracts is sampled: none of `n` random starts reached anything else, so the sha
 """
 
 from collections.abc import Iterable
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -17,15 +18,18 @@ from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
 from numeric.dynamics.exponents import angles, jump, slopes
 from symbolic import tables
+from symbolic.cycles.cycle import cuspless_horizontal, is_double_normal
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.splitting import least_rate, splits
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.motion.flight import flight
+from symbolic.tables.scene import Scene
 from symbolic.tables.table import lam, phi
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled
+from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown
 from verification.paper.judges.ellipse import settles, two_cycles
+from verification.proofs.global_dynamics.fates import Fate
 from verification.proofs.manifolds.known import boundary
 
 SEED, STARTS, FEW = 1, 200, 40
@@ -156,19 +160,57 @@ def whispering_gallery(claim: Claim) -> Judgement:
     )
 
 
-@judges("cuspless.compact_near_zero", "cuspless.period2_attracts")
-def near_zero(claim: Claim) -> Judgement:
-    """Every start reaches the two points of the horizontal orbit, which is proved to attract."""
-    sampled_at = ("0.01", "0.03", "0.05", "0.07")
-    shares = [[a.share.count for a in cycles(found("cuspless", x), 2) if a.share] for x in sampled_at]
-    everywhere = all(counts == [STARTS] for counts in shares)
-    proof = proved_at("0.03", 2, "cuspless")
-    said = (
-        f"at lam = {', '.join(sampled_at)} each of {STARTS} random starts reaches the period-2 orbit on y = 0 (a share "
-        f"below {3 / STARTS:.0%} of others is not excluded); that it attracts is proved"
+NEAR_ZERO = Fraction(1, 20)
+HORIZONTAL = (
+    (0, 0.0, 0.0),
+    (1, 0.0, 0.0),
+)  # component, theta, phi: the flattest point of the arc, and the wall's middle
+
+
+@cache
+def near_zero() -> Fate:
+    """Boxes of all of phase space for all small contractions at once."""
+    return Fate(Scene("cuspless"), (Fraction(0), NEAR_ZERO), (2048, 128), 8, (HORIZONTAL,))
+
+
+def settles_near_zero() -> Finding:
+    """Almost every orbit converges to the horizontal one."""
+    return by(
+        f"for 0 < lam <= {NEAR_ZERO} almost every orbit converges to the horizontal one of period 2",
+        answer(
+            near_zero().proved,
+            "every orbit ends in boxes about it, where the map contracts, or about the vertical one, where it "
+            "stretches, so that those which stay have no area",
+        ),
+        shown("the horizontal orbit is normal to the boundary at both ends", is_double_normal(cuspless_horizontal())),
     )
-    derived = "two points, far from the joins and from grazing, attract every start sampled"
-    return sampled(derived, said, everywhere and bool(proof))
+
+
+@judges("cuspless.period2_attracts")
+def period2_attracts(claim: Claim) -> Judgement:
+    """Almost every start, for all small contractions: those that come to the vertical orbit have no area."""
+    return Judgement(
+        settles_near_zero(),
+        f"proved for 0 < lam <= {NEAR_ZERO}: all but a set of starts of no area, which holds the stable manifold of "
+        "the vertical orbit and what lands on a join",
+    )
+
+
+@judges("cuspless.compact_near_zero")
+def compact_near_zero(claim: Claim) -> Judgement:
+    """Where the boxes lie to which orbits may return."""
+    parts, bounds = near_zero().parts, [1.1, 0.1]  # the joins are at 2*pi/3 on the arc and at 0.433 on the wall
+    ends = [np.maximum(-p.boxes.x[0], p.boxes.x[1]) < np.array(bounds)[p.boxes.chart] for p in parts or ()]
+    inside = all(map(np.all, ends)) if ends else None
+    return Judgement(
+        by(
+            f"for 0 <= lam <= {NEAR_ZERO}",
+            answer(inside, "boxes with |theta| <= 1.1 on the arc and |y| <= 0.1 on the wall hold all limit sets"),
+            settles_near_zero(),
+        ),
+        f"for 0 <= lam <= {NEAR_ZERO} the limit set of every orbit lies in four rectangles, away from the joins and "
+        "from grazing; for lam > 0 the two points of the horizontal orbit attract almost every start",
+    )
 
 
 @judges("cuspless.accumulates_on_joins")

@@ -25,7 +25,7 @@ from symbolic.tables.geometry import arc_length, curvature, velocity
 from symbolic.tables.table import theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, equal, greater, judges, sampled, shown, zero
-from verification.paper.judges.attractors import STARTS, chaotic, cycles, found, unsettled
+from verification.paper.judges.attractors import NEAR_ZERO, settles_near_zero
 from verification.paper.judges.exponents import (
     BALLS,
     BOUNCES,
@@ -37,6 +37,7 @@ from verification.paper.judges.exponents import (
     uneven,
     visited,
 )
+from verification.paper.judges.hyperbolicity import chaos
 from verification.paper.judges.located import TENTHS, at_most_zero
 from verification.proofs.slap_map.exponent import ChaoticProof, slap_exponent
 
@@ -281,7 +282,6 @@ def near_cusp(claim: Claim) -> Judgement:
 
 
 BELOW = ("0.01", "0.03", "0.05", "0.07", "0.071")
-ABOVE = ("0.08", "0.2", "0.5", "0.9")
 
 
 @judges("cuspless.stable_if_flatter")
@@ -324,14 +324,11 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.nontrivial_larger")
 def nontrivial_larger(claim: Claim) -> Judgement:
-    """No chaotic attractor below `lambda_star`, one above."""
-    small, large = ([found("cuspless", x) for x in some] for some in (BELOW, ABOVE))
-    trivial = all(len(cycles(some, 2)) == len(some) == 1 and not unsettled(some) for some in small)
-    said = (
-        f"{STARTS} random starts each: at lam = {', '.join(BELOW)} all reach the period-2 orbit, at lam = "
-        f"{', '.join(ABOVE)} some or all a chaotic attractor"
+    """Nothing but the period-2 orbit near 0; from `lambda_star` on a region in which no cycle attracts."""
+    return Judgement(
+        by("none near 0, and one above", settles_near_zero(), chaos()),
+        f"only the period-2 orbit for 0 < lam <= {NEAR_ZERO}; a chaotic attractor from lambda_star = 0.07122 on",
     )
-    return sampled("from lambda_star = 0.07122 on", said, trivial and all(chaotic(some) for some in large))
 
 
 @judges("cuspless.visits_more_boundary")

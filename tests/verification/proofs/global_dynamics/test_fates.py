@@ -1,0 +1,81 @@
+"""Where almost every orbit ends: known answers, and what must not be proved."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix
+
+from numeric import PinballMap
+from symbolic.tables.scene import Scene
+from verification.proofs.global_dynamics.boxes import BallArray
+from verification.proofs.global_dynamics.fates import Fate, _contraction, _staying
+from verification.proofs.global_dynamics.images import Slopes
+
+HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))
+LOW = Fate(Scene("cuspless"), (Fraction(0), Fraction(1, 100)), (1024, 16), 4, (HORIZONTAL,))
+MINOR = ((0, np.pi / 2, 0.0), (0, -np.pi / 2, 0.0))
+ELLIPSE = Fate(Scene("ellipse", a="3/2"), (Fraction(1, 10), Fraction(1, 10)), (512, 64), 4, (MINOR,))
+
+
+def test_in_the_ellipse_almost_every_orbit_ends_on_the_minor_axis_as_is_known():
+    assert ELLIPSE.proved
+    assert sorted(part.sink for part in ELLIPSE.parts) == [False, True]  # the major axis is a saddle
+
+
+def test_orbits_end_in_the_boxes_that_are_said_to_hold_what_returns():
+    rng = np.random.default_rng(1)
+    end = PinballMap("cuspless", lam="1/100").exponents(rng.uniform(-2, 2, 200), rng.uniform(-1.5, 1.5, 200), 1, 400)
+    (sink,) = (part.boxes for part in LOW.parts if part.sink)
+    at = {int(c): k for k, c in enumerate(sink.chart)}
+    rows = np.array([at[int(c)] for c in end.component])
+
+    assert np.all((sink.x[0][rows] < end.theta) & (end.theta < sink.x[1][rows]))
+    assert np.all((sink.y[0][rows] < end.phi) & (end.phi < sink.y[1][rows]))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        replace(LOW, cycles=()),  # an attracting cycle is not named
+        replace(LOW, cycles=(((0, 0.5, 0.0), (1, 0.0, 0.0)),)),  # this is no cycle
+        replace(LOW, cycles=(HORIZONTAL, HORIZONTAL)),
+        replace(LOW, cycles=(((0, 1.0472, 0.0), (0, -1.0472, 0.0)),)),  # the vertical orbit is a saddle
+        replace(LOW, lam=(Fraction(93, 1000), Fraction(94, 1000)), grid=(512, 64)),  # period 2 loses its stability
+        replace(LOW, scene=Scene("circle"), cycles=(MINOR,)),  # each diameter is neutral
+        replace(LOW, lam=(Fraction(7, 100), Fraction(71, 1000)), grid=(512, 64)),  # boxes that return meet a join
+        replace(LOW, grid=(64, 4)),
+    ],
+)
+def test_what_is_not_so_or_not_seen_is_not_proved(wrong):
+    assert not wrong.proved
+
+
+def slopes(*rows):
+    """Derivatives that take `(dtheta, dphi)` to `(a*dtheta + b*dphi, 0)`."""
+    a, b = np.array(rows, dtype=float).T
+    return Slopes(*(BallArray(x, 0 * x) for x in (a, b, 0 * a, 0 * a, 0 * a)))
+
+
+def graph(size, *edges):
+    return csr_matrix((np.ones(len(edges), dtype=bool), tuple(zip(*edges, strict=True))), shape=(size, size))
+
+
+def test_factors_of_linear_maps_are_those_worked_out_by_hand():
+    round = graph(2, (0, 1), (1, 0))
+    each = np.arange(2)
+
+    assert _contraction(slopes((0.5, 0), (0.5, 0)), each, round) == pytest.approx(0.5, abs=1e-6)
+    assert _contraction(slopes((4, 0), (0.2, 0)), each, round) < 1  # 0.8 in a round
+    assert _contraction(slopes((4, 0), (0.3, 0)), each, round) > 1
+    assert _staying(slopes((2, 0), (2, 0)), each, round) == pytest.approx(2.0**-64, rel=1e-6)
+    assert _staying(slopes((4, 0), (0.2, 0)), each, round) > 1
+    assert _staying(slopes((1, 0), (-1, 0)), np.zeros(2, dtype=np.int64), graph(1, (0, 0))) is None  # it folds
+
+
+def test_where_as_many_walks_go_on_as_stretching_thins_points_out_nothing_is_proved():
+    full = graph(2, (0, 0), (0, 1), (1, 0), (1, 1))
+
+    assert _staying(slopes((2, 0), (2, 0)), np.arange(2), full) >= 1  # x -> 2*x (mod 1): every point stays
+    assert _staying(slopes((3, 0), (3, 0)), np.arange(2), full) < 1e-9  # the middle third leaves

@@ -19,6 +19,7 @@ from numeric.kernels.machine import START, KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
 PART = 1 << 16  # doubles recorded at a time: a page that stays in the cache
+STRETCH = 1 << 12  # bounces told at a time where they are wanted: the rows that are written to are neighbours
 ALONE = 4  # particles that are run in narrow blocks: it takes less long to wait for
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
@@ -168,9 +169,9 @@ class Engine(NamedTuple):
 class Course:
     """Particles on their way: `begin` takes them up, `advance` bounces them on and tells each bounce.
 
-    Of a single bounce, blocks of lanes write what they tell where the caller wants it. More bounces, what is left of a
-    block, and what is no float64 come by way of a page of our own, which stays in the cache: a block's lanes are far
-    apart in memory from one bounce to the next.
+    Whole blocks of lanes write what they tell where the caller wants it, a few bounces of all of them at a time: a
+    block's lanes are far apart in memory from one bounce to the next. What is left of a block, and what is no float64,
+    comes by way of a page of our own, which stays in the cache.
     """
 
     def __init__(
@@ -243,13 +244,24 @@ class Course:
     def _tell(self, rows: list[Array], threads: int | None) -> None:
         """Bounces all particles once for each row, and tells of it there."""
         starts, self.begun = not self.begun, True
-        alone = len(rows[0]) == 1 and all(row.dtype == np.float64 and row.strides[1] == row.itemsize for row in rows)
-        whole = self.count // self.width * self.width if alone else 0
+        step = rows[0].strides[0]
+        alike = all(row.dtype == np.float64 and row.strides == (step, row.itemsize) for row in rows)
+        whole = self.count // self.width * self.width if alike else 0
         if whole:
-            table = np.array([*(row.ctypes.data for row in rows), 0])
-            self._call(self.kernel(starts), 1, table, threads, (0, whole))
+            self._where_wanted(starts, rows, whole, threads)
         if whole < self.count:
             self._through_a_page(starts, rows, whole, threads)
+
+    def _where_wanted(self, starts: bool, rows: list[Array], whole: int, threads: int | None) -> None:
+        """As `_tell`, for whole blocks: a few bounces of all of them, so that memory is written from end to end."""
+        most, begin = max(1, STRETCH // whole), np.array([*(row.ctypes.data for row in rows), 0])
+        apart = rows[0].strides[0]
+        run, on = self.kernel(starts), self.kernel() if len(rows[0]) > most else None
+        for done in range(0, len(rows[0]), most):
+            table = begin + done * apart
+            table[-1] = apart // rows[0].itemsize
+            self._call(run, min(most, len(rows[0]) - done), table, threads, (0, whole))
+            run = on
 
     def _through_a_page(self, starts: bool, rows: list[Array], left: int, threads: int | None) -> None:
         """As `_tell`, for the particles from one on."""

@@ -7,7 +7,7 @@ translated; arc length then comes from the parameter, as it does where too many 
 
 import ctypes
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 HALF_PI = math.pi / 2
 SIDE_BY_SIDE = 1 << 12  # particles at a time: their state stays in the processor's second cache
+HUGE, LARGE = 1 << 21, 1 << 22  # bytes of a large page of memory; of a field that has memory of its own
 PIECE = 1 << 20  # numbers to a field of a piece of an orbit
 FIELDS = (*Orbit._fields, "s")
 
@@ -68,9 +69,8 @@ class Course:
     def advance(self, bounces: int, begin: bool = False, threads: int | None = None) -> dict[str, NDArray[Any]]:
         """What is told of the next bounces; from the start on, if it is asked for."""
         rows, top = bounces // self.every + begin, int(begin)
-        kinds = {"component": np.int64, "code": np.int64}
-        shape = rows, self.lam.size
-        out: dict[str, NDArray[Any]] = {n: np.empty(shape, kinds.get(n, self._kind(n))) for n in self.needed}
+        kinds = {"component": np.dtype(np.int64)}
+        out = room((rows, self.lam.size), {name: kinds.get(name, self._kind(name)) for name in self.needed})
         for name, values in out.items() if begin else ():
             values[0] = self._first()[name]
         code, lost = self._advanced(bounces, out, top, threads)
@@ -108,8 +108,8 @@ class Course:
 
     # ---- within
 
-    def _kind(self, name: str) -> Any:
-        return np.float64 if name == "theta" and "s" in self.names and not self.length else self.dtype
+    def _kind(self, name: str) -> np.dtype[Any]:
+        return np.dtype(np.float64) if name == "theta" and "s" in self.names and not self.length else self.dtype
 
     def _first(self) -> dict[str, NDArray[Any]]:
         """The start, or what was told last: nothing landed at a start, so `eta` is no number."""
@@ -211,6 +211,28 @@ class Course:
         return {n: out[n] if n in ("component", "code") else out[n].astype(self.dtype, copy=False) for n in self.names}
 
 
+def room(shape: tuple[int, int], kinds: Mapping[str, np.dtype[Any]]) -> dict[str, NDArray[Any]]:
+    """Arrays to be filled, in pages of two megabytes each: a system takes longer to clear many small pages than we write.
+
+    A large field has memory of its own, so that it may be kept without the others; small ones share theirs.
+    """
+    sizes = {name: shape[0] * shape[1] * kind.itemsize for name, kind in kinds.items()}
+    shared = max(sizes.values(), default=0) < LARGE
+    blocks = [list(kinds)] if shared else [[name] for name in kinds]
+    found = {}
+    for names in blocks:
+        total = sum(sizes[name] for name in names)
+        if total < HUGE:
+            found |= {name: np.empty(shape, kinds[name]) for name in names}
+            continue
+        memory = np.empty((total // HUGE + 2) * HUGE, np.uint8)  # NumPy asks for huge pages, which begin at multiples
+        at = -memory.ctypes.data % HUGE
+        for name in names:
+            found[name] = memory[at : at + sizes[name]].view(kinds[name]).reshape(shape)
+            at += sizes[name]
+    return found
+
+
 def _known(names: Sequence[str]) -> tuple[str, ...]:
     """Names of fields, each of them known."""
     names = (names,) if isinstance(names, str) else tuple(names)
@@ -220,7 +242,7 @@ def _known(names: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def _real(dtype: DTypeLike) -> Any:
+def _real(dtype: DTypeLike) -> np.dtype[Any]:
     """float64 or float32."""
     if (found := np.dtype(dtype)) not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise ValueError(f"dtype = {found} is not possible; give float64 or float32")
@@ -229,7 +251,7 @@ def _real(dtype: DTypeLike) -> Any:
 
 def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Array, Array], lam: Array) -> Array | None:
     """The derivative of one bounce of each particle as kernels tell it; None without them, or where one stops."""
-    found = np.empty((2, 2, lam.size))
+    found = room((4, lam.size), {"": np.dtype(float)})[""].reshape(2, 2, -1)
     out = dict(zip(MATRIX, found.reshape(4, -1), strict=True))
     code = map.engine.once(law, start, lam, map.shape, out)
     return None if code is None or code.any() else np.moveaxis(found, 2, 0)

@@ -222,12 +222,17 @@ def normalised(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
 
 
 class Series(NamedTuple):
-    """How an arc length is told: in closed form, or by a finite Fourier sum; first come offsets of components."""
+    """How an arc length is told: in closed form, or by a finite Fourier sum; first come offsets of components.
+
+    A sum of sines is `sin(step*theta)` times a polynomial in `cos(step*theta)`, whose powers take half the operations
+    of Clenshaw's rule: `powers` says that their coefficients are given, where these are small enough for it.
+    """
 
     offsets: int = 0
     step: int = 1  # of the sum, all frequencies are multiples of it
     terms: int = 0
     rises: int = 0  # as many as there are terms, or none on a boundary that mirrors `theta`
+    powers: bool = False
 
     @property
     def size(self) -> int:

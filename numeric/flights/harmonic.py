@@ -64,7 +64,7 @@ class Harmonic(Family):
         return position[0], position[1]
 
     def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
-        """`offset + mean*theta + sum_k a_k*sin(k*theta) + b_k*(1 - cos(k*theta))`, by Clenshaw's rule."""
+        """`offset + mean*theta + sum_k a_k*sin(k*theta) + b_k*(1 - cos(k*theta))`, by Horner's or Clenshaw's rule."""
         u = c, s = self.unit_of_theta(ops, position)
         for bit in f"{how.step:b}"[1:]:
             c, s = plane.squared((c, s))
@@ -77,6 +77,11 @@ class Harmonic(Family):
                 one, two = (c + c) * one + (a - two), one
             return one, two
 
+        if how.powers:
+            value = sines[-1]
+            for a in sines[-2::-1]:
+                value = value * c + a
+            return numbers[1] * theta + (s * value + numbers[0])
         wave = s * backwards(sines)[0]
         if rises:
             one, two = backwards(rises)

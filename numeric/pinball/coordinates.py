@@ -13,6 +13,7 @@ by term. The inverse is Newton's method on these, whose derivative is the speed 
 """
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -201,7 +202,10 @@ def _polished(states: States, index: int, theta: Array, x: Array, y: Array, low:
 MOST = 1 << 14  # terms; a boundary that needs more is not smooth
 SETTLED = 1e-9  # radians: the step after one this short is below rounding
 HIGHEST = 1 << 10  # degree of a Chebyshev series
-ROOM, MOST_TOLD = 8, 64  # waves told by kernels: their number is a multiple of the one, and at most the other
+ROOM, MOST_TOLD = 4, 64  # waves told by kernels: their number is a multiple of the one, and at most the other
+WHOLE = 1 << 1074  # times a double is a whole number
+SMALL = 2.0**-55  # of the mean speed: waves that are no longer seen in a perimeter
+MILD = 0.5  # of the mean speed: a sum of absolute coefficients up to which the rounding of powers is not seen either
 ROUNDING = 4e-16  # of the largest speed: what a transform of rounded samples leaves in a coefficient that is 0
 
 
@@ -238,6 +242,20 @@ class Waves(NamedTuple):
         k = self.frequencies[:, None]
         waves = self.sines[:, None] * np.sin(k * flat) + 2 * self.rises[:, None] * np.sin(k * flat / 2) ** 2
         return np.asarray((self.mean * flat + np.sum(waves[::-1], axis=0)).reshape(theta.shape))
+
+
+def in_powers(sines: Array) -> list[float]:
+    """The polynomial in `cos(x)` that times `sin(x)` is a sum of `sines[k-1]*sin(k*x)`, each coefficient rounded once.
+
+    >>> in_powers(np.array([1.0, 1.0, 1.0]))  # 1 + 2*c + (4*c**2 - 1)
+    [0.0, 2.0, 4.0]
+    """
+    total, before, now = [0] * len(sines), [0] * len(sines), [1] + [0] * (len(sines) - 1)
+    for a in sines:
+        whole = int(Fraction(float(a)) * WHOLE)
+        total = [x + whole * y for x, y in zip(total, now, strict=True)]
+        before, now = now, [2 * x - y for x, y in zip([0, *now[:-1]], before, strict=True)]
+    return [float(Fraction(x, WHOLE)) for x in total]
 
 
 def settled(coefficients: Array, values: Array) -> bool:
@@ -316,14 +334,19 @@ class ArcLength:
         waves = Waves.of(lambda at: self.states.speed(np.broadcast_to(index, at.shape), at))
         step = int(np.gcd.reduce(waves.frequencies)) or 1
         order = waves.frequencies // step
-        terms = ROOM * -(-int(order.max(initial=1)) // ROOM)
+        told = int(order[np.abs(waves.sines) + np.abs(waves.rises) > SMALL * waves.mean].max(initial=1))
+        terms = ROOM * -(-told // ROOM)
         if terms > MOST_TOLD:
             return None
-        sines, rises = np.zeros((2, terms))
+        sines, rises = np.zeros((2, max(terms, int(order.max(initial=1)))))
         sines[order - 1], rises[order - 1] = waves.sines, waves.rises
-        rising = terms if np.any(np.abs(rises) > ROUNDING * waves.mean) else 0
-        told = *self.offsets, waves.mean, *sines, *rises[:rising]
-        return Series(1, step, terms, rising), [float(x) for x in told]
+        sines, rises = sines[:terms], rises[:terms]
+        if np.any(np.abs(rises) > ROUNDING * waves.mean):
+            return Series(1, step, terms, terms), [float(x) for x in (*self.offsets, waves.mean, *sines, *rises)]
+        powers = in_powers(sines)
+        mild = bool(np.sum(np.abs(powers)) < MILD * waves.mean)
+        numbers = *self.offsets, waves.mean, *(powers if mild else sines)
+        return Series(1, step, terms, powers=mild), [float(x) for x in numbers]
 
     @cached_property
     def perimeter(self) -> float:

@@ -212,14 +212,14 @@ class Course:
 
 
 def room(shape: tuple[int, int], kinds: Mapping[str, np.dtype[Any]]) -> dict[str, NDArray[Any]]:
-    """Arrays to be filled, in pages of two megabytes each: a system takes longer to clear many small pages than we write.
+    """Arrays to be filled, in pages of two megabytes each: to clear as many small ones takes longer than to fill them.
 
     A large field has memory of its own, so that it may be kept without the others; small ones share theirs.
     """
     sizes = {name: shape[0] * shape[1] * kind.itemsize for name, kind in kinds.items()}
     shared = max(sizes.values(), default=0) < LARGE
     blocks = [list(kinds)] if shared else [[name] for name in kinds]
-    found = {}
+    found: dict[str, NDArray[Any]] = {}
     for names in blocks:
         total = sum(sizes[name] for name in names)
         if total < HUGE:

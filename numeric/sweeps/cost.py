@@ -46,6 +46,30 @@ class Cost(NamedTuple):
         """The keys of the JSON document."""
         return {**self._asdict(), "seconds": self.seconds}
 
+    def lines(self) -> list[str]:
+        """The estimate, for people."""
+        return [
+            f"{self.parts} parts, {self.collisions:.3g} bounces",
+            f"about {duration(self.seconds)}: {self.nanoseconds:.1f} ns a bounce, measured, on {self.workers} cores",
+            f"{size(self.bytes)} of results before compression",
+            f"{size(self.memory)} of memory at most, about, for {self.workers} parts at a time",
+        ]
+
+
+def duration(seconds: float) -> str:
+    """A time, for people."""
+    if seconds < 90:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def size(count: int) -> str:
+    """Bytes, for people."""
+    for unit, least in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= least:
+            return f"{count / least:.3g} {unit}"
+    return f"{count} bytes"
+
 
 def cost(sweep: Sweep, workers: int | None = None, stored: bool = True) -> Cost:
     """The cost of all parts of a sweep, whose results go into a store or stay in memory."""

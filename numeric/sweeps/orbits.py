@@ -8,6 +8,7 @@ same bits. Memory is that of one piece; `memory` says how much before anything r
 from collections.abc import Callable, Sequence
 from functools import partial
 from hashlib import sha256
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,7 @@ from numeric.kernels.engine import PART
 from numeric.kernels.machine import TOLD
 from numeric.pinball.map import PinballMap
 from numeric.pinball.orbits import PIECE, Course
-from numeric.pinball.states import MEANINGS, UNITS, counted
+from numeric.pinball.states import MEANINGS, STATUSES, UNITS, counted
 from numeric.sweeps.store import Stored, opened
 from numeric.sweeps.sweep import Axis, Field, Part, Sweep
 
@@ -89,6 +90,27 @@ def memory(map: PinballMap, particles: int, fields: Sequence[str] = ("theta", "p
 
 OTHERS = 1 << 20  # bytes that Zarr and Python take
 ROWS = 64  # numbers for each particle besides: starts, states, outcomes and what was told last, with their copies
+
+
+COLUMNS = ("component", "theta", "s", "x", "y", "eta", "phi", "code")
+
+
+def written(map: PinballMap, start: tuple[float, float, int], bounces: int, path: Path) -> str:
+    """Writes an orbit of one particle, a row for each bounce, in the format of the name; the status of the last one."""
+    theta, phi, component = start
+    if path.suffix == ".zarr":
+        code = record(map, path, theta, phi, bounces, component, fields=COLUMNS).code.values[-1, 0]
+    elif path.suffix in (".npz", ".parquet"):
+        arrow: Any = import_module("pyarrow") if path.suffix == ".parquet" else None
+        columns: dict[str, Any] = map.orbit(theta, phi, bounces, component, fields=COLUMNS)
+        if path.suffix == ".npz":
+            np.savez(path, **columns)
+        else:
+            import_module("pyarrow.parquet").write_table(arrow.table(columns), path)
+        code = columns["code"][-1]
+    else:
+        raise ValueError(f"--out {path}: accepted: a name that ends in .npz, .parquet or .zarr")
+    return str(STATUSES[code].name.lower())
 
 
 def _sweep(course: Course, bounces: int, piece: int) -> Sweep:

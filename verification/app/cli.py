@@ -11,9 +11,10 @@ import tempfile
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, wraps
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from threading import Timer
 from typing import TYPE_CHECKING, Any
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from rich.console import Console
 
-    from numeric import PinballMap
-
 
 LARGEST = 1 << 26  # bytes of a sweep's results that are written as JSON
 PATIENCE = 2.0  # seconds before a progress bar appears
@@ -35,9 +34,14 @@ PATIENCE = 2.0  # seconds before a progress bar appears
 
 @dataclass(frozen=True)
 class Output:
-    """Where a command writes: `console` for people, and the JSON file that `--json` names, if any."""
+    """Where a command writes: `console` for people, the file that `--json` names, and the picture of `--plot`.
+
+    `kind` says which module and function of `verification.plots` draws the results.
+    """
 
     path: str | None = None
+    plot: Path | None = None
+    kind: str = ""
 
     @cached_property
     def console(self) -> "Console":
@@ -46,8 +50,19 @@ class Output:
 
         return Console(stderr=self.path == "-", highlight=False, markup=False, soft_wrap=True)
 
-    def write(self, document: Mapping[str, Any]) -> None:
-        """Writes the JSON document where `--json` said; nowhere when it was not given."""
+    def write(self, document: Mapping[str, Any], *results: Any) -> None:
+        """Writes the JSON document where `--json` said, and where `--plot` said the picture of the same results."""
+        self._write(document)
+        if self.plot is None or not results:
+            return
+        from verification.plots.results import drawn
+
+        try:
+            write_whole(self.plot, drawn(self.kind, results, self.plot.suffix.lower()))
+        except OSError as error:
+            raise ValueError(f"--plot {self.plot} cannot be written ({error.strerror or error})") from None
+
+    def _write(self, document: Mapping[str, Any]) -> None:
         if self.path is None:
             return
         text = json.dumps(document, indent=2, allow_nan=False) + "\n"
@@ -102,15 +117,16 @@ class Output:
             bar.stop()
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Writes a file at once: a reader finds the old text or the new, and never half of either."""
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Writes a file at once: a reader finds the old content or the new, and never half of either."""
+    content = content.encode() if isinstance(content, str) else content
     if path.exists() and not path.is_file():  # a pipe or a device
-        path.write_text(text, encoding="utf-8")
+        path.write_bytes(content)
         return
     path = path.resolve()
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_bytes(content)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
@@ -118,16 +134,35 @@ def write_whole(path: Path, text: str) -> None:
 
 def _writable(context: click.Context, option: click.Parameter, value: str | None) -> Output:
     """Refuses an unwritable file before any work is done for it."""
-    if value is None or value == "-":
-        return Output(value)
+    if value is not None and value != "-":
+        _refuse(value, "a file, or - for standard output")
+    return Output(value)
+
+
+def _refuse(value: str, accepted: str) -> Path:
+    """The file as a path, when it may be written."""
     path = Path(value)
     if path.is_dir():
-        raise click.BadParameter(f"{value!r} is a directory; accepted: a file, or - for standard output")
+        raise click.BadParameter(f"{value!r} is a directory; accepted: {accepted}")
     if not path.parent.is_dir():
         raise click.BadParameter(f"{value!r}: there is no directory {str(path.parent)!r}; create it first")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise click.BadParameter(f"{value!r} may not be written; accepted: a file in a directory of yours")
-    return Output(value)
+    return path
+
+
+def _drawable(context: click.Context, option: click.Parameter, value: str | None) -> Path | None:
+    """Refuses, before any work is done for it, a picture of an unknown kind, or one that cannot be drawn or written."""
+    if value is None:
+        return None
+    from verification.plots.sheet import FORMATS
+
+    known = ", ".join(FORMATS)
+    if Path(value).suffix.lower() not in FORMATS:
+        raise click.BadParameter(f"{value!r} has no known ending; accepted: {known}")
+    if find_spec("matplotlib") is None:
+        raise ModuleNotFoundError(name="matplotlib")
+    return _refuse(value, f"a file that ends in {known}")
 
 
 json_option = click.option(
@@ -137,6 +172,20 @@ json_option = click.option(
     callback=_writable,
     help="Write the result as JSON; - is standard output, and then nothing else is printed there.",
 )
+
+
+def plot_option(kind: str, about: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Gives a command `--plot FILE`: what it hands to `Output.write` beside the document is drawn as `kind` says."""
+
+    def given(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def called(plot: Path | None, output: Output, **others: Any) -> Any:
+            return command(output=replace(output, plot=plot, kind=kind), **others)
+
+        about_it = f"Draw {about}, in a file that ends in .png, .svg, .pdf or .webp."
+        return click.option("--plot", metavar="FILE", callback=_drawable, help=about_it)(called)
+
+    return given
 
 
 COMMANDS = {
@@ -300,21 +349,6 @@ def finite(values: Any) -> Any:
     return values if abs(values) < float("inf") else None
 
 
-def duration(seconds: float) -> str:
-    """A time, for people."""
-    if seconds < 90:
-        return f"{seconds:.2g} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
-
-
-def size(count: int) -> str:
-    """Bytes, for people."""
-    for unit, least in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if count >= least:
-            return f"{count / least:.3g} {unit}"
-    return f"{count} bytes"
-
-
 def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
     """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
     fields: dict[str, Any] = {}
@@ -327,33 +361,6 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
     labels = {str(key): _read(value) for key, value in found.attrs.items()}
     whole = {**labels, "coords": coords, "fields": fields}
     return whole if store is None else {**whole, "store": str(store)}
-
-
-COLUMNS = ("component", "theta", "s", "x", "y", "eta", "phi", "code")
-
-
-def table(map: "PinballMap", start: tuple[float, float, int], bounces: int, path: Path) -> str:
-    """Writes an orbit of one particle, a row for each bounce, in the format of the name; the status of the last one."""
-    import numpy as np
-
-    from numeric.pinball.states import STATUSES
-
-    theta, phi, component = start
-    if path.suffix == ".zarr":
-        from numeric.sweeps.orbits import record
-
-        code = record(map, path, theta, phi, bounces, component, fields=COLUMNS).code.values[-1, 0]
-    elif path.suffix in (".npz", ".parquet"):
-        arrow: Any = import_module("pyarrow") if path.suffix == ".parquet" else None
-        columns: dict[str, Any] = map.orbit(theta, phi, bounces, component, fields=COLUMNS)
-        if path.suffix == ".npz":
-            np.savez(path, **columns)
-        else:
-            import_module("pyarrow.parquet").write_table(arrow.table(columns), path)
-        code = columns["code"][-1]
-    else:
-        raise ValueError(f"--out {path}: accepted: a name that ends in .npz, .parquet or .zarr")
-    return str(STATUSES[code].name.lower())
 
 
 def _read(value: Any) -> Any:

@@ -15,7 +15,7 @@ from .curves import (
     largest_shape,
 )
 from .events import curve_of, proof_of
-from .files import check, checked, document, read
+from .files import SCHEMA, check, checked, document, read
 from .locate import GMPY2, WORDS, Located, certify, closed_form, lambda_star
 from .questions import (
     KINDS,
@@ -33,6 +33,7 @@ from .questions import (
 __all__ = [
     "GMPY2",
     "KINDS",
+    "SCHEMA",
     "WORDS",
     "AccumulationCurve",
     "BifurcationCurve",

@@ -14,20 +14,31 @@ import numpy as np
 from sympy import Expr
 
 from numeric import PinballMap
+from symbolic.tables import egg
 from verification.arithmetic.balls import ARRAYS, FLOAT64
-from verification.cycles.branch import Branch, spectrum_of
+from verification.cycles.arc import Steps
+from verification.cycles.branch import Branch, spectrum_of, through
 from verification.cycles.cells import Array
-from verification.cycles.recurrence import BifurcationKind
+from verification.cycles.chords import Chords
+from verification.cycles.recurrence import BifurcationKind, Closure
+from verification.cycles.systems import Cycles
 from verification.named.curves import AccumulationCurve as Accumulation
 from verification.named.curves import BifurcationCurve, accumulation_curve, cascade, fold, largest_shape
+from verification.plots.results import MARK, closed, position
+from verification.plots.results import table as table_alone
+from verification.plots.sheet import AXES, figure
+from verification.proofs.corner.corner_orbit import CornerClaim
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, contact, table
 from verification.proofs.manifolds.saddle import local, saddle
 from verification.proofs.manifolds.tangency import Gap
+from verification.proofs.periodic.bifurcation import Claim
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from verification.named.locate import Located
     from verification.proofs.global_dynamics.graph import MorseGraph
 
 
@@ -44,12 +55,15 @@ MARKS = {
 
 def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> "Figure":
     """The parameters of `bounces` (all when None) along each branch, in a figure of its own."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    made = figure(8, 5)
+    axes = made.add_subplot()
+    along(axes, branches, bounces)
+    axes.set_title(", ".join(dict.fromkeys(b.system.label for b in branches)) + "  (dashed: unstable)", fontsize=10)
+    return made
 
-    figure = Figure(figsize=(8, 5), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+
+def along(axes: "Axes", branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> None:
+    """The parameters of `bounces` (all when None) along each branch, and what happens there."""
     seen: set[BifurcationKind] = set()
     for number, followed in enumerate(branches):
         shown = range(followed.system.recurrence.period) if bounces is None else bounces
@@ -68,10 +82,97 @@ def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) ->
         {"lam": r"$\lambda$", "alpha": r"$\alpha$"}.get(branches[0].system.parameter, branches[0].system.parameter)
     )
     axes.set_ylabel(r"$\theta$ of the bounces" if branches[0].system.parameter in ("lam", "alpha", "a") else "$x$")
-    axes.set_title(", ".join(dict.fromkeys(b.system.label for b in branches)) + "  (dashed: unstable)", fontsize=10)
     if seen:
         axes.legend(frameon=False, fontsize=9)
-    return figure
+
+
+NEAR = 0.12  # of the parameter's range, that a picture shows either side of a located value
+MOST = 64  # images of a part of a cycle under the symmetry that continues it
+NUMBERED = {"band-merging": "4", "interior-crisis": "1"}  # which one, where nothing is said
+
+
+def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
+    """What was located, the first of several: its cycle in the table, and the branch near it with the value marked.
+
+    A crisis is shown with its manifolds; the corner orbit with the position of its fourth bounce, as in section 5.2.
+    """
+    one = found[0]
+    claim: Any = one.proof.claim if one.proof else None
+    if claim is None:
+        raise ValueError(f"--plot: nothing was proved of {one.name} here, so there is no cycle to draw")
+    kind = one.name.removesuffix("-crisis")
+    if isinstance(claim, CornerClaim) and claim.lam is None:
+        return _through_corners(float(one.value) if claim.value == "lam" else float(claim.centre[1].mid()))
+    if not isinstance(claim, Claim | CornerClaim):
+        return portrait(kind if kind in CONTACTS else f"{one.name}-{number or NUMBERED.get(one.name)}", claim.alpha)
+    z = np.array([float(x.mid()) for x in claim.centre])
+    problem = claim.problem if isinstance(claim, Claim) else None
+    ring, free, lam = _diameter(), "alpha", getattr(claim, "lam", None)
+    if problem:
+        ring, free, lam = problem.ring, problem.free, problem.lam
+    low, high = next(((float(p.range.start), float(p.range.end)) for p in ring.table.shapes), (-1.0, 1.0))
+    low, high = (0.0, 1.0) if lam is None else (low, high)
+    interval = max(low, z[-1] - NEAR * (high - low)), min(high, z[-1] + NEAR * (high - low))
+    generic = np.append(np.cos(np.arange(len(z) - 1.0)), 1.0)  # a fold's branch stands upright in the parameter
+    system = Cycles(ring, free, {} if lam is None else {"lam": float(lam)})
+    followed = through(system, z, generic, interval, Steps(largest=0.004, most=200))
+    law = ring.law.at(**{free: Fraction(z[-1])}) if ring.law.parameters else ring.law
+    shape = {free: z[-1]} if ring.table.shapes else {}
+    map = PinballMap(ring.table, lam=z[-1] if lam is None else float(lam), law=law, **shape)
+    whole = _whole(ring.closure, z[:-1])
+    made = figure(7.0, 3.2)
+    left, right = made.subplots(1, 2, width_ratios=(1, 1.5))
+    table_alone(left, map)
+    closed(left, map, ring.components * (len(whole) // len(ring.components)), whole, color="black", lw=0.9)
+    if problem:
+        along(right, [followed])
+    else:  # the diameter stays where it is, and its multipliers meet
+        right.plot(
+            followed.values, [[abs(mu) for mu in each.multipliers] for each in followed.spectra()], color="black"
+        )
+        right.set_xlabel(AXES["alpha"])
+        right.set_ylabel(AXES["modulus"])
+    right.axvline(z[-1], color=MARK, lw=0.7)
+    right.set_title(f"{one.title} = {one.value[:14]}  (dashed: unstable)", loc="left")
+    return made
+
+
+def _diameter() -> Chords:
+    """Of the egg, whose multipliers become complex at alpha-hat."""
+    return Chords(egg(3), (0, 0))
+
+
+def _through_corners(lam: float) -> "Figure":
+    """The orbit through both corners of the cuspless cardioid, and where the fourth bounce from the upper one lands."""
+    map, corner = PinballMap("cuspless", lam=lam), 2 * np.pi / 3
+    made = figure(7.0, 3.2)
+    left, right = made.subplots(1, 2, width_ratios=(1, 1.5))
+    table_alone(left, map)
+    phi = np.linspace(-lam, lam, 1601) * np.pi / 2
+    orbit = map.orbit(np.full(phi.shape, corner), phi, 4, 0)
+    s = position(map, map.arclength.s(orbit.theta[4], orbit.component[4]))[0]
+    low = position(map, map.arclength.s(np.array([-corner, corner]), 0))[0]
+    nearest = int(np.nanargmin(np.where(orbit.code[4] == 0, np.hypot(s - low[1], orbit.theta[2] + corner), np.nan)))
+    left.plot(orbit.x[:, nearest], orbit.y[:, nearest], color="black", lw=0.9)
+    right.plot(phi, np.where(np.abs(np.diff(s, append=s[-1])) > 1, np.nan, s), color="black")
+    right.axvline(phi[nearest], color=MARK, lw=0.7)
+    for join in low:
+        right.axhline(join, color="0.6", lw=0.5, ls=":")
+    right.set_xlabel(AXES["phi"])
+    right.set_ylabel(AXES["s_4"])
+    right.set_title(rf"$\lambda$ = {lam:.12f}", loc="left")
+    return made
+
+
+def _whole(closure: Closure, x: Array) -> list[float]:
+    """All bounces of a cycle of which a part is given, that its symmetry continues."""
+    bounces, here = list(x), np.asarray(x)
+    for _ in range(MOST):
+        here = closure.turn * here + closure.radians
+        if np.max(np.abs(np.sin((here - x) / 2))) < 1e-9:
+            break
+        bounces += list(here)
+    return [float(bounce) for bounce in bounces]
 
 
 def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float], bool]]:
@@ -134,12 +235,8 @@ def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed:
 
 def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) -> "Figure":
     """Doublings, symmetry breaking, accumulation and the fold of the polygons that take over, in (lam, alpha)."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.5, 5.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+    made = figure(7.5, 5.2)
+    axes = made.add_subplot()
     top = largest_shape(K)
     if sample is not None:
         axes.pcolormesh(sample.lam, sample.alpha, sample.share, cmap="Reds", vmin=0, vmax=1.6, shading="nearest")
@@ -157,7 +254,7 @@ def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) 
     axes.set_ylabel(r"$\alpha$")
     axes.set_title(f"egg with K = {K}" + ("; red: share of starts that end in chaos" if sample is not None else ""))
     axes.legend(fontsize=8, frameon=True, loc="lower left")
-    return figure
+    return made
 
 
 def turns(K: int) -> list[tuple[int, int]]:
@@ -195,12 +292,10 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
 
     `below` moves the contraction below the tangency; `share` shortens the curves, for a quick look.
     """
-    from matplotlib.figure import Figure
-
     where = contact(kind, alpha)
     map, lam = table(alpha).over(FLOAT64), where.parameter - below
-    figure = Figure(figsize=(12, 5.2), layout="constrained")
-    whole, close = figure.subplots(1, 2)
+    made = figure(12, 5.2)
+    whole, close = made.subplots(1, 2)
     found, arrays = saddle(where.unstable, map, lam), map.over(ARRAYS)
     cloud = attractor(kind, alpha, lam)
     target = _touching_point(where, map)
@@ -233,7 +328,7 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
         whole.plot([], [], color=colour, label=word if word == "attractor" else f"{word} manifold")
     whole.plot([], [], "o", ms=4, color="black", label=found.orbit.name)
     whole.legend(loc="upper left", fontsize=8, framealpha=0.9)
-    return figure
+    return made
 
 
 def attractor(kind: str, alpha: Expr, lam: float) -> tuple[Any, Any]:
@@ -272,9 +367,7 @@ def _modulo(theta: Any) -> Any:
 
 def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
     """The Morse sets over phase space, and in pale colours the basins that are proved; a panel for each component."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.colors import to_rgb
-    from matplotlib.figure import Figure
 
     grid, leaf, count = graph.transitions.grid, graph.transitions.leaf, graph.transitions.count
     colours = np.ones((count + 1, 3))
@@ -288,9 +381,8 @@ def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
         colours[members] = to_rgb(paint)
     everything = np.append(leaf, False)
     picture = grid.painted(graph.transitions.chosen(everything), np.flatnonzero(leaf), count)
-    figure = Figure(figsize=(7.0, 3.2 * len(grid.charts)), layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = np.atleast_1d(figure.subplots(len(grid.charts), 1))
+    made = figure(7.0, 3.2 * len(grid.charts))
+    panels = np.atleast_1d(made.subplots(len(grid.charts), 1))
     for axes, chart, cells in zip(panels, grid.charts, picture, strict=True):
         axes.imshow(
             colours[cells].swapaxes(0, 1),
@@ -302,4 +394,4 @@ def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
         axes.set_xlabel(rf"$\theta$, {chart.name}")
         axes.set_ylabel(r"$\varphi$")
     panels[0].set_title(f"{label}: {len(graph.sets)} Morse sets, {len(attracting)} attracting")
-    return figure
+    return made

@@ -8,6 +8,7 @@ made and saved, and no longer.
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from io import BytesIO
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -117,6 +118,15 @@ STYLE: Any = {
     "svg.hashsalt": "pinball",
 }
 BLACK, DARK, MIDDLE, LIGHT = "#000000", "#1f4e79", "#c8691c", "#9fc5e8"  # in order of lightness
+INK = (0.07, 0.15, 0.33)
+PALE = 0.18  # opacity of a single point of a density
+PALETTE = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf")
+FORMATS: dict[str, dict[str, Any]] = {  # of files, and what keeps the time and versions out of them
+    ".png": {"metadata": {"Software": None}},
+    ".svg": {"metadata": {"Date": None}},
+    ".pdf": {"metadata": {"CreationDate": None, "Producer": None}},
+    ".webp": {"pil_kwargs": {"quality": 85, "method": 6}},
+}
 OUTLINE: dict[str, Any] = {"color": "0.35", "lw": 1.1, "solid_joinstyle": "miter"}
 FAINT: dict[str, Any] = {"color": "0.6", "lw": 0.5, "ls": ":"}
 CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew": 1.4, "zorder": 5}
@@ -131,6 +141,36 @@ def styled() -> Iterator[None]:
         raise ValueError("figure: Matplotlib is missing; install pinball-billiards[plot], or ask for --json") from None
     with matplotlib.rc_context(STYLE):
         yield
+
+
+def figure(width: float, height: float) -> "Figure":
+    """An empty figure, in inches, with a canvas of its own."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    made = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(made)
+    return made
+
+
+def image(drawn: "Figure", ending: str) -> bytes:
+    """A figure as a file of the kind that the ending names; the same figure gives the same bytes."""
+    from matplotlib import rcParams
+
+    buffer = BytesIO()
+    drawn.savefig(buffer, format=ending[1:], dpi=max(rcParams["savefig.dpi"], drawn.dpi), **FORMATS[ending])
+    return buffer.getvalue()
+
+
+def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array:
+    """Counts as an image: opaque where there are most, empty where there are none; the first row lowest.
+
+    >>> ink(np.array([[0, 9]]))[..., 3].tolist()
+    [[0.0, 1.0]]
+    """
+    dense = np.log1p(counts) / np.log1p(max(1, counts.max()))
+    alpha = np.where(counts > 0, PALE + (1 - PALE) * dense, 0.0)
+    return np.concatenate([np.broadcast_to(colour, (*counts.shape, 3)), alpha[..., None]], axis=-1)
 
 
 def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tuple[Figure, list[Axes]]":

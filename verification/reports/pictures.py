@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from verification.paper.figures.phase import outline
-from verification.plots.sheet import AXES, FAINT, OUTLINE, styled
+from verification.plots.results import outline
+from verification.plots.sheet import AXES, FAINT, INK, OUTLINE, PALETTE, figure, ink, styled
 from verification.reports.asked import Arrays, Parts
 
 if TYPE_CHECKING:
@@ -19,20 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-INK = (0.07, 0.15, 0.33)
-PALE = 0.18  # opacity of a single point
 LABELS = 14  # events with words on a diagram; further ones are lines only
-PALETTE = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf")
-
-
-def figure(width: float, height: float) -> "Figure":
-    """An empty figure, in inches, with a canvas of its own."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    made = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(made)
-    return made
 
 
 def saved(parts: Parts, name: str, drawn: "Figure") -> None:
@@ -41,17 +28,6 @@ def saved(parts: Parts, name: str, drawn: "Figure") -> None:
     temporary = parts.folder / f".{name}.svg"
     drawn.savefig(temporary, transparent=True, metadata={"Date": None})
     temporary.replace(parts.picture(name))
-
-
-def ink(counts: NDArray[Any]) -> Array:
-    """Counts as an image: opaque where there are most, empty where there are none; the first row lowest.
-
-    >>> ink(np.array([[0, 9]]))[..., 3].tolist()
-    [[0.0, 1.0]]
-    """
-    dense = np.log1p(counts) / np.log1p(max(1, counts.max()))
-    alpha = np.where(counts > 0, PALE + (1 - PALE) * dense, 0.0)
-    return np.concatenate([np.broadcast_to(INK, (*counts.shape, 3)), alpha[..., None]], axis=-1)
 
 
 def table(parts: Parts, name: str, map: PinballMap, start: float) -> None:

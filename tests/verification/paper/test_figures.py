@@ -246,7 +246,10 @@ def test_a_figure_goes_where_out_says_and_its_data_where_json_says(tmp_path, cap
     [
         (["egg-slep"], "NAME = egg-slep is no figure; accepted: ellipse-configuration, "),
         ([], "NAME = missing is no figure; accepted: "),
-        (["egg-slap", "--out", "egg.jpg"], "--out = egg.jpg has the ending '.jpg'; accepted endings: .png, .pdf, .svg"),
+        (
+            ["egg-slap", "--out", "egg.jpg"],
+            "--out = egg.jpg has the ending '.jpg'; accepted endings: .png, .svg, .pdf, .webp",
+        ),
         (["egg-slap", "--out", "no/egg.png"], "--out = no/egg.png: there is no folder 'no'; create it first"),
         (["egg-slap", "--all"], "egg-slap and --all: name one figure, or ask for all"),
     ],

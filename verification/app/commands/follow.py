@@ -1,14 +1,13 @@
 """`pinball follow`: what becomes of this cycle as lambda, or the table's shape, changes?"""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option
+from verification.app.cli import DONE, FAILED, Output, json_option, plot_option
 from verification.app.scene import varied_options
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @click.option("--switch", type=click.IntRange(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
 @click.option("--curves", is_flag=True, help="Follow the egg's events on, as curves in (alpha, lam).")
 @click.option("--digits", type=click.IntRange(1, 1000), help="Certify the events to so many digits.")
-@click.option("--plot", metavar="FILE", help="Draw the branches, as PNG, PDF or SVG.")
+@plot_option("dynamics.plotted", "the branches")
 @json_option
 def command(
     scene: Scene,
@@ -48,7 +47,6 @@ def command(
     switch: int,
     curves: bool,
     digits: int | None,
-    plot: str | None,
     output: Output,
 ) -> int:
     """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
@@ -107,9 +105,7 @@ def command(
         document["events"] = [noted(event, parameter, certificates.get(id(event))) for event in one.events]
         documents.append(document)
     drawn_on = curves_of(found, scene, output) if curves else []
-    output.write({"table": scene.name, "branches": documents, "curves": drawn_on})
-    if plot:
-        drawn(found, plot)
+    output.write({"table": scene.name, "branches": documents, "curves": drawn_on}, found)
     for document in documents:
         show(output.console, document)
     for row in drawn_on:
@@ -257,18 +253,6 @@ def show_curve(console: "Console", row: dict[str, Any]) -> None:
     )
     for point in row["special"]:
         console.print(f"  {point['what']} at ({point['alpha']:.9f}, {point['lam']:.9f})")
-
-
-def drawn(branches: list["Branch"], path: str) -> None:
-    """Writes the picture."""
-    from verification.plots.dynamics import plotted
-
-    if Path(path).suffix not in (".png", ".pdf", ".svg"):
-        raise ValueError(f"--plot {path} has no known ending; accepted: .png, .pdf, .svg")
-    try:
-        plotted(branches).savefig(path)
-    except OSError as error:
-        raise ValueError(f"--plot {path} cannot be written ({error.strerror or error})") from None
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:

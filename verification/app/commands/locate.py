@@ -13,11 +13,12 @@ import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
+from verification.app.cli import DONE, FAILED, Output, json_option, plot_option, write_whole
 from verification.app.scene import optional_options
 
 if TYPE_CHECKING:
     from verification.named.locate import Located
+    from verification.plots.results import Marked
 
 
 PARAMETERS = ("lam", "alpha", "n", "period")
@@ -32,6 +33,7 @@ PARAMETERS = ("lam", "alpha", "n", "period")
 @click.option("--period", metavar="INTEGER", help="Of a table's cycles; of the attractors that a window began with.")
 @click.option("--searches", type=click.IntRange(1, 100), default=3, show_default=True, help="For a table's cycles.")
 @click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
+@plot_option("dynamics.situated", "the cycle in the table, and the branch near the value")
 @json_option
 def command(
     name: str,
@@ -79,7 +81,7 @@ def command(
         step(name)
     if certificate is not None:
         _write(certificate, found)
-    output.write(found.to_dict())
+    output.write(found.to_dict(), [found], n or period)
     show(output, found)
     return DONE if found.certified else FAILED
 
@@ -115,7 +117,7 @@ def of_scene(
             )
         _write(certificate, found[0])
     document = {"name": name, "period": int(period), "parameter": parameter, "from": str(ends[0]), "to": str(ends[1])}
-    output.write({**document, "found": [one.to_dict() for one in found]})
+    output.write({**document, "found": [one.to_dict() for one in found]}, *([found] if found else []))
     for one in found:
         show(output, one)
     if not found:
@@ -145,6 +147,37 @@ def interval_of(scene: Scene, axis: str | None, lam: str | None) -> tuple[Scene,
             f"--shape {axis}: {name or 'this'} is no parameter here; accepted: {', '.join(known) or 'none'}"
         )
     return scene.at(lam=exact("--lam", lam)), name, (low, high)
+
+
+HAPPENS = {"flip": "period {n} doubles", "fold": "period {n} folds", "tangency": "manifolds touch"}  # on a diagram
+
+
+def marked(path: str, scene: Scene, parameter: str) -> "Marked":
+    """The value of a certificate of this scene, checked anew, and what happens there."""
+    from symbolic.tables.definition import table_boundary
+    from verification.named.files import SCHEMA, checked, read
+    from verification.plots.results import Marked
+
+    given = read(Path(path))
+    boundary, held = table_boundary(scene.table)
+    shape = {name: str(value) for name, value in held.items()} | dict(scene.law.numbers)
+    own = {key: value for key, value in boundary.items() if key != "name"}
+    own |= ({} if scene.law.uniform else {"law": scene.law.formula}) | {"shape": shape}
+    own |= {} if parameter == "lam" else {"lam": str(scene.lam)}
+    if given.get("schema") != SCHEMA or given.get("free") != parameter:
+        raise ValueError(f"--mark {path} says nothing of {parameter}; accepted: what locate --certificate wrote of it")
+    said = {"shape": {}, **given["scene"]}
+    for either in (own, said):
+        either["shape"] = {name: text for name, text in either["shape"].items() if name != parameter}
+    if said != own:
+        raise ValueError(f"--mark {path} is about another scene: {given.get('statement')}")
+    proof = checked(given)
+    if not proof.certified:
+        raise ValueError(f"--mark {path} does not prove what it says; pinball check {path} shows the checklist")
+    n = len(given.get("components", ()))
+    words = f"period {2 * n} loses its symmetry" if given.get("mirror") and given["kind"] == "flip" else None
+    words = words or HAPPENS.get(given["kind"], str(given["name"])).format(n=n)
+    return Marked(float(proof.value.mid()), words)
 
 
 def show(output: Output, found: "Located") -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, INTERRUPTED, Output, json_option
+from verification.app.cli import DONE, FAILED, INTERRUPTED, Output, json_option, plot_option
 from verification.app.scene import scene_options
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 @click.option("--bounces", type=click.IntRange(100, 10**8), default=4000, show_default=True, help="For exponents.")
 @click.option("--points", type=click.IntRange(0, 8192), default=256, show_default=True, help="Listed of each, in JSON.")
 @click.option("--certify", is_flag=True, help="Prove that each cycle exists and attracts.")
+@plot_option("results.attractors", "the attractors in the table and in phase space")
 @json_option
 def attractor_command(
     scene: Scene, orbits: int, seed: int, transient: int, bounces: int, points: int, certify: bool, output: Output
@@ -55,7 +56,7 @@ def attractor_command(
                 entry["checks"] = checked(scene, attractor)
                 proved = proved and all(value is True for value in entry["checks"].values())
                 step(f"period {attractor.period}")
-    output.write(document)
+    output.write(document, map, found)
     show_attractor(output.console, document)
     return DONE if proved and document["unsettled"] == 0 else FAILED
 
@@ -156,6 +157,7 @@ LONG = 10_000  # bounces of a transient, unless it is given
     "--budget", type=click.IntRange(1), default=SIZE, show_default=True, help="Bounces of all particles, then."
 )
 @click.option("--certified", is_flag=True, help="Also the proved ones: of cycles; of the cardioid's chaos at --lam 0.")
+@plot_option("results.exponents", "the exponents with their errors")
 @json_option
 def command(
     scene: Scene,
@@ -203,7 +205,7 @@ def command(
         with output.progress("Proving", 1) as step:
             certify(scene, survey, document)
             step("")
-    output.write(document)
+    output.write(document, document)
     show(output.console, document)
     if survey.ended == "interrupted":
         return INTERRUPTED

@@ -10,7 +10,7 @@ import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
+from verification.app.cli import DONE, FAILED, Output, json_option, plot_option, write_whole
 from verification.app.scene import table_options
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ SHOWN = 24  # Morse sets in the table for people
 @click.option("--parts", type=click.IntRange(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
 @click.option("--exponents", type=click.IntRange(1, 16), metavar="PARTS", help="Bound nu_plus; cuts of a box for it.")
 @click.option("--certificates", metavar="DIR", help="Write each trapping region, for `pinball check`.")
-@click.option("--plot", metavar="FILE", help="Draw the Morse sets over phase space, as PNG, PDF or SVG.")
+@plot_option("dynamics.morse_sets", "the Morse sets over phase space")
 @json_option
 def command(
     scene: Scene,
@@ -43,7 +43,6 @@ def command(
     parts: int,
     exponents: int | None,
     certificates: str | None,
-    plot: str | None,
     output: Output,
 ) -> int:
     """Which attractors are proved, and in what order? Exit status 1 when no trapping region smaller than all is found.
@@ -58,8 +57,6 @@ def command(
 
     if certificates is not None and not Path(certificates).is_dir():
         raise ValueError(f"--certificates {certificates!r} is no directory; create it first")
-    if plot and Path(plot).suffix not in (".png", ".pdf", ".svg"):
-        raise ValueError(f"--plot {plot} has no known ending; accepted: .png, .pdf, .svg")
     started = time.perf_counter()
     low, high = span(lams)
     map = PinballImages(scene.at(lam=low), (low, high))
@@ -84,13 +81,11 @@ def command(
         ],
         "seconds": time.perf_counter() - started,
     }
-    output.write(document)
+    output.write(document, graph, map.label)
     show(output.console, map.label, document)
     if certificates is not None:
         for number, found in enumerate(found for found in regions if found is not None):
             written(found, Path(certificates) / f"region{number}.json", output.console)
-    if plot:
-        drawn(graph, map.label, plot)
     return DONE if any(0 < found["boxes"] < leaves for found in document["regions"]) else FAILED
 
 
@@ -165,15 +160,3 @@ def written(region: "Region", path: Path, console: "Console") -> None:
     """Writes a certificate, which `pinball check` proves anew."""
     write_whole(path, json.dumps(region.to_dict()) + "\n")
     console.print(f"{path}: {region.name}")
-
-
-def drawn(graph: "MorseGraph", label: str, path: str) -> None:
-    """Writes the picture."""
-    from verification.plots.dynamics import morse_sets
-    from verification.plots.sheet import styled
-
-    with styled():
-        try:
-            morse_sets(graph, label).savefig(path)
-        except OSError as error:
-            raise ValueError(f"--plot {path} cannot be written ({error.strerror or error})") from None

@@ -12,7 +12,7 @@ import click
 
 from symbolic.tables.definition import UNIFORM
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, table
+from verification.app.cli import DONE, FAILED, Output, json_option, plot_option
 from verification.app.scene import scene_options, start_of, table_options
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
 @click.option("--digits", type=click.IntRange(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
 @click.option("--tolerance", metavar="T", help="In place of --digits: so many that the error is below it.")
 @click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="A table in .npz, .parquet or .zarr.")
+@plot_option("results.orbit", "the flights, and the bounces in phase space")
 @json_option
 def command(
     scene: Scene,
@@ -81,7 +82,9 @@ def command(
     if out is not None:
         if arithmetic != "float64":
             raise ValueError(f"--out {out} holds float64 columns; accepted: --arithmetic float64, or --json FILE")
-        picked |= {"out": str(out), "last": table(map, (float(theta), float(phi), index), bounces, out)}
+        from numeric.sweeps.orbits import written
+
+        picked |= {"out": str(out), "last": written(map, (float(theta), float(phi), index), bounces, out)}
         output.console.print(f"{bounces + 1} rows are in {out}")
         bounces = min(bounces, MOST - 1)
     if arithmetic == "float64":
@@ -92,7 +95,7 @@ def command(
         follow = in_multiprecision if arithmetic == "mpmath" else in_balls
         with output.progress("Bouncing", bounces) as step:
             entries = follow(map, scene.lam, (index, theta, phi), bounces, digits, step)
-    output.write({"bounces": entries} | picked)
+    output.write({"bounces": entries} | picked, map, entries)
     show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
     if "why" in picked:
         output.console.print(f"{arithmetic}: {picked['why']}")
@@ -155,6 +158,7 @@ ROWS = 33  # points shown to people
 @table_options
 @click.option("--iterates", type=click.IntRange(1, 1000), default=1, show_default=True, help="Up to which power.")
 @click.option("--points", type=click.IntRange(2, 1_000_000), default=200, show_default=True, help="On each component.")
+@plot_option("results.slap", "the graphs of the iterates, and the slope")
 @json_option
 def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> int:
     """The slap map: what remains at lambda = 0, where every exit is along the normal."""
@@ -186,7 +190,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
             for i in range(theta.size)
         ],
     }
-    output.write(document)
+    output.write(document, map, component, theta, values)
     rows = range(0, theta.size, max(1, theta.size // ROWS))
     show_slap(
         output.console,
@@ -225,6 +229,7 @@ CYCLES_MOST = 60  # cycles shown to people
 @click.option("--prove", type=click.IntRange(2, 6), help="Prove completeness up to this period, in balls.")
 @click.option("--budget", type=click.IntRange(1), default=100_000, show_default=True, help="Boxes of a proof.")
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the starts of the search.")
+@plot_option("results.cycles", "the first cycles in the table")
 @json_option
 def cycles_command(
     scene: Scene, period: int, count: int | None, prove: int | None, budget: int, seed: int, output: Output
@@ -269,7 +274,7 @@ def cycles_command(
         "second_count": counts,
         "completeness": completed,
     }
-    output.write(document)
+    output.write(document, scene, catalogue)
     show_cycles(output.console, catalogue, document)
     if solutions:
         worst = max(solutions, key=lambda solution: solution.condition)

@@ -15,20 +15,12 @@ import click
 
 from symbolic.tables.definition import POINTS, exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, document, duration, json_option, size
-from verification.app.scene import (
-    along,
-    optional_options,
-    over,
-    scene_options,
-    span,
-    varied_options,
-)
+from verification.app.cli import DONE, FAILED, Output, document, json_option, plot_option
+from verification.app.scene import along, optional_options, over, scene_options, span, varied_options
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from numeric.sweeps.cost import Cost
     from numeric.sweeps.sweep import Sweep
 
 
@@ -78,15 +70,15 @@ def sweep_options(command: Command) -> Command:
     return called
 
 
-def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
-    """Does a sweep, or says what it would cost, and shows what `lines` makes of the results."""
+def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
+    """Does a sweep, or says what it would cost, and shows what `lines` makes of it; `more` is for the picture."""
     from numeric.sweeps.cost import cost
     from numeric.sweeps.run import UnfinishedError, run
 
     if how.dry_run:
         expected = cost(sweep, how.workers, how.store is not None)
         how.output.write({"dry_run": True, "sweep": sweep.name, **expected.as_data()})
-        for line in estimated(expected):
+        for line in expected.lines():
             how.output.console.print(line)
         return DONE
     with how.output.progress(sweep.name, len(sweep.indices())) as advance:
@@ -103,23 +95,12 @@ def carried_out(sweep: "Sweep", how: How, lines: Lines) -> int:
         except UnfinishedError as stop:
             click.echo(f"pinball: {stop}", err=True)
             return FAILED
-    how.output.write(document(found, how.store))
+    how.output.write(document(found, how.store), found, *more)
     for line in lines(found):
         how.output.console.print(line)
     if how.store is not None:
         how.output.console.print(f"all of it is in {how.store}: xarray.open_zarr({str(how.store)!r})")
     return DONE
-
-
-def estimated(expected: "Cost") -> list[str]:
-    """A dry run, for people."""
-    return [
-        f"{expected.parts} parts, {expected.collisions:.3g} bounces",
-        f"about {duration(expected.seconds)}: {expected.nanoseconds:.1f} ns a bounce, measured, on "
-        f"{expected.workers} cores",
-        f"{size(expected.bytes)} of results before compression",
-        f"{size(expected.memory)} of memory at most, about, for {expected.workers} parts at a time",
-    ]
 
 
 @click.command(epilog="Example: pinball basins cuspless --lam 0.09 --columns 400 --rows 400 --store basins.zarr")
@@ -132,6 +113,7 @@ def estimated(expected: "Cost") -> list[str]:
 @click.option("--starts", type=click.IntRange(1, 10**7), default=1000, show_default=True, help="To find attractors.")
 @click.option("--transient", type=click.IntRange(10, 10**8), default=1000, show_default=True, help="Bounces of each.")
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the starts.")
+@plot_option("results.basins", "the basins, a colour for each attractor")
 @sweep_options
 def basins_command(
     scene: Scene,
@@ -210,6 +192,8 @@ MANY = 64  # distinct points; more are not counted
 @click.option("--transient", type=click.IntRange(0, 10**9), default=4000, show_default=True, help="Bounces before.")
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="For the exponents.")
 @seed_option
+@click.option("--mark", "marks", multiple=True, metavar="FILE", help="A certificate, checked and drawn by --plot.")
+@plot_option("results.bifurcation", "the attractors as a density, and the exponents")
 @sweep_options
 def bifurcation_command(
     scene: Scene,
@@ -220,17 +204,21 @@ def bifurcation_command(
     transient: int,
     bounces: int,
     seed: int,
+    marks: tuple[str, ...],
     how: How,
 ) -> int:
     """Where random particles are after a long time, for each contraction; starts as in the paper's appendix.
 
     With --shape NAME=LOW:HIGH:N it is a parameter of the table or of the law that varies, and --lams is one number.
+    Each --mark is a certificate that `pinball locate --certificate` wrote of this scene: a line where it is proved.
     """
     from numeric.sweeps.fields import bifurcation
+    from verification.app.commands.locate import marked
 
     text, parameter, values, lam = over(scene, lams, axis)
     sweep = bifurcation(text, values, orbits, points, bounces, transient, seed, parameter, lam)
-    return carried_out(sweep, how, bifurcation_lines)
+    shown = [] if how.dry_run else [marked(path, scene, parameter) for path in marks]
+    return carried_out(sweep, how, bifurcation_lines, shown)
 
 
 def bifurcation_lines(found: "xr.Dataset") -> list[str]:
@@ -290,6 +278,7 @@ def command() -> None:
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
+@plot_option("results.parameter_space", "the largest exponent over both parameters")
 @sweep_options
 def parameter_space(
     scene: Scene | None,
@@ -349,6 +338,7 @@ def picture(found: "xr.Dataset") -> list[str]:
 @click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
+@plot_option("results.by_attractor", "the exponents with their errors")
 @sweep_options
 def exponents(
     scene: Scene,

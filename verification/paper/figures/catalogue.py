@@ -11,7 +11,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.plots.sheet import styled
+from verification.plots.sheet import FORMATS, image, styled
 
 if TYPE_CHECKING:
     from verification.plots.sheet import Panels
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 DRAFT, FULL = 1.0, 8.0  # resolutions
 LINES = 2500  # points that are small as lines
 WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
-ENDINGS = {".png": {"Software": None}, ".pdf": {"CreationDate": None, "Producer": None}, ".svg": {"Date": None}}
 
 
 @dataclass(frozen=True)
@@ -54,15 +53,13 @@ class Picture:
     def image(self, panels: "Panels", ending: str) -> bytes:
         """The drawn panels as a file of that kind; the same panels give the same bytes."""
         with styled():
-            buffer = BytesIO()
-            self._pair[1](panels).savefig(buffer, format=ending[1:], metadata=ENDINGS[ending])
-            return buffer.getvalue()
+            return image(self._pair[1](panels), ending)
 
     def small(self, panels: "Panels") -> bytes:
         """The drawn panels for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
         count = sum(curve.x.size for panel in panels for curve in panel.curves.values())
         if count <= LINES and all(panel.raster is None for panel in panels):
-            form: dict[str, Any] = {"format": "svg", "metadata": ENDINGS[".svg"]}
+            form: dict[str, Any] = {"format": "svg", **FORMATS[".svg"]}
         else:
             form = {"format": "webp", "dpi": 140, "pil_kwargs": {"quality": 55}}
         with styled():
@@ -114,7 +111,7 @@ def ending(path: Path) -> str:
     >>> ending(Path("slap.PDF"))
     '.pdf'
     """
-    if path.suffix.lower() not in ENDINGS:
-        known = ", ".join(ENDINGS)
+    if path.suffix.lower() not in FORMATS:
+        known = ", ".join(FORMATS)
         raise ValueError(f"--out = {path} has the ending {path.suffix or 'none'!r}; accepted endings: {known}")
     return path.suffix.lower()

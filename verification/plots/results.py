@@ -1,0 +1,396 @@
+"""What a command computed, as a picture: `--plot FILE` hands over the numbers that were printed, and these draw them.
+
+Many points are drawn as densities, whose opacity is the logarithm of a count. Tables of several components, with
+holes or without, are drawn like others; so are laws, which no picture depends on.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from verification.plots.sheet import AXES, FAINT, INK, OUTLINE, PALETTE, Array, figure, image, ink, styled
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from numeric.dynamics.attractors import Attractor
+    from numeric.pinball.states import Slap
+    from symbolic.tables.scene import Scene
+    from verification.cycles.search import Catalogue
+
+OUTLINE_POINTS = 721  # of a component
+DOTS = 2000  # points that are drawn one by one; more are a density
+FLIGHTS = 600  # of an orbit or of a chaotic attractor, drawn in the table
+ACROSS = 6.2  # inches of the axes of a wide figure
+ROWS = 500  # of the density of a bifurcation diagram, at least; it has a column for each value
+SMALL = 12  # tables on a sheet of cycles
+LABELLED = 10  # attractors and iterates that a legend names
+MARK = "#b3261e"
+CELLS: dict[str, Any] = {"origin": "lower", "aspect": "auto", "interpolation": "nearest"}
+
+
+class Marked(NamedTuple):
+    """A proved value of the parameter, and what happens there."""
+
+    value: float
+    words: str
+
+
+def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
+    """The picture of a command's results as a file: `kind` is a module of this room and a function that draws them."""
+    module, _, name = kind.partition(".")
+    with styled():
+        return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
+
+
+def fine(made: "Figure", columns: int) -> None:
+    """Dots enough for as many columns side by side."""
+    made.set_dpi(max(made.dpi, columns / ACROSS))
+
+
+def outline(map: PinballMap) -> tuple[Array, Array]:
+    """The boundary in the plane; a nan ends a component that the next one does not continue."""
+    x: list[Array] = []
+    y: list[Array] = []
+    for index, (low, high) in enumerate(map.states.ends):
+        theta = np.linspace(low, high, OUTLINE_POINTS)
+        here = map.states.point(np.full(OUTLINE_POINTS, index), theta)
+        if x and np.hypot(here[0][0] - x[-1][-1], here[1][0] - y[-1][-1]) > 1e-6:
+            x.append(np.array([np.nan]))
+            y.append(np.array([np.nan]))
+        x.append(here[0])
+        y.append(here[1])
+    return np.concatenate(x), np.concatenate(y)
+
+
+def position(map: PinballMap, s: Array) -> tuple[Array, tuple[float, float]]:
+    """Arc length as the paper has it, within half the perimeter, on a table without holes; and its two ends.
+
+    >>> position(PinballMap("circle"), np.array([4.0]))[0].round(4).tolist()
+    [-2.2832]
+    """
+    length = map.arclength.perimeter
+    if np.isnan(outline(map)[0]).any():
+        low = min(map.arclength.offsets)
+        return s, (low, low + length)
+    return np.remainder(s + length / 2, length) - length / 2, (-length / 2, length / 2)
+
+
+def joins(axes: "Axes", map: PinballMap) -> None:
+    """A faint line where one component ends and another begins."""
+    ends = [ends[0] for ends in map.states.ends]
+    if len(ends) > 1:
+        s = np.array([map.arclength.s(np.array(low), index) for index, low in enumerate(ends)], dtype=float)
+        for place in position(map, s)[0]:
+            axes.axvline(place, **FAINT)
+
+
+def table(axes: "Axes", map: PinballMap) -> None:
+    """The boundary alone, to scale."""
+    axes.plot(*outline(map), **OUTLINE)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def phase(axes: "Axes", map: PinballMap) -> tuple[float, float]:
+    """Labels and limits of the phase space of `s` and `sin(phi)`; the ends of `s`."""
+    ends = position(map, np.zeros(1))[1]
+    joins(axes, map)
+    axes.set_xlim(*ends)
+    axes.set_ylim(-1, 1)
+    axes.set_xlabel(AXES["s"])
+    axes.set_ylabel(AXES["sin_phi"])
+    return ends
+
+
+def cloud(axes: "Axes", x: Array, y: Array, colour: str, size: float = 2.5) -> None:
+    """Points within the limits of the axes, as dots while they are few, and as a density."""
+    from matplotlib.colors import to_rgb
+
+    if x.size <= DOTS:
+        axes.plot(x, y, "o", ms=size, mew=0, color=colour)
+        return
+    x_ends, y_ends = axes.get_xlim(), axes.get_ylim()
+    counts, _, _ = np.histogram2d(y, x, bins=(300, 420), range=(y_ends, x_ends))
+    axes.imshow(ink(counts, to_rgb(colour)), extent=(*x_ends, *y_ends), **CELLS)
+
+
+def pair() -> "tuple[Figure, Axes, Axes]":
+    """A figure with the table on its left and phase space on its right."""
+    made = figure(7.0, 3.0)
+    left, right = made.subplots(1, 2, width_ratios=(1, 1.25))
+    return made, left, right
+
+
+def orbit(map: PinballMap, entries: Sequence[Mapping[str, Any]]) -> "Figure":
+    """The flights of one particle in the table, later ones darker, and its bounces in phase space."""
+    from matplotlib.collections import LineCollection
+
+    made, left, right = pair()
+    x, y, s, phi = (np.array([float(entry[key]) for entry in entries]) for key in ("x", "y", "s", "phi"))
+    table(left, map)
+    shown = slice(max(0, x.size - FLIGHTS - 1), None)
+    points = np.stack([x[shown], y[shown]], axis=1)
+    opacity = np.linspace(0.25, 1.0, max(1, len(points) - 1)) * min(1.0, 0.25 + 40 / len(points))
+    paint = [(*INK, float(share)) for share in opacity]
+    left.add_collection(LineCollection(list(np.stack([points[:-1], points[1:]], axis=1)), colors=paint, linewidths=0.7))
+    left.plot(x[:1], y[:1], "o", ms=4, mfc="none", color=MARK)
+    phase(right, map)
+    cloud(right, position(map, s)[0], np.sin(phi), "#12264f")
+    right.plot(position(map, s[:1])[0], np.sin(phi[:1]), "o", ms=5, mfc="none", color=MARK, label="start")
+    more = f", the last {FLIGHTS} drawn" if x.size > FLIGHTS + 1 else ""
+    left.set_title(f"{x.size - 1} bounces{more}", loc="left")
+    right.legend(loc="upper right")
+    return made
+
+
+def attractors(map: PinballMap, found: "Sequence[Attractor]") -> "Figure":
+    """Each attractor in a colour: its flights in the table, its points in phase space, and its share of the starts."""
+    made, left, right = pair()
+    made.set_size_inches(7.0, 3.5)
+    table(left, map)
+    phase(right, map)
+    for number, one in enumerate(found):
+        colour = PALETTE[number % len(PALETTE)]
+        component, theta, phi = one.points
+        few = slice(None) if one.period else slice(0, FLIGHTS)
+        leg = map.orbit(theta[few], phi[few], 1, component[few])
+        going = leg.code[1] == 0
+        left.plot(leg.x[:, going], leg.y[:, going], color=colour, lw=1.1 if one.period else 0.25, alpha=0.9)
+        s = position(map, np.asarray(map.arclength.s(theta, component)))[0]
+        cloud(right, s, np.sin(phi), colour, 4.0 if one.period else 1.5)
+        name = f"period {one.period}" if one.period else one.kind.name.lower()
+        share = f", {one.share.count / one.share.of:.1%}" if one.share else ""
+        if number < LABELLED:
+            right.plot([], [], "o", ms=5, mew=0, color=colour, label=name + share)
+    made.legend(loc="outside lower center", ncols=min(4, max(1, len(found))))
+    return made
+
+
+def exponents(document: Mapping[str, Any]) -> "Figure":
+    """Both exponents of each attractor with twice their standard errors, and how the errors fell with the count."""
+    made = figure(7.0, 3.4)
+    left, right = made.subplots(1, 2)
+    groups = [group for group in document["groups"] if group["nu_plus"] is not None]
+    left.axhline(0, **FAINT)
+    for number, group in enumerate(groups):
+        colour = PALETTE[number % len(PALETTE)]
+        for name, face in (("nu_plus", colour), ("nu_minus", "none")):
+            if group[name] is not None:
+                error = 2 * (group[f"{name}_stderr"] or 0.0)
+                left.errorbar(number, group[name], error, fmt="o", ms=5, mfc=face, color=colour, capsize=3)
+        trace = [row for row in group.get("trace", ()) if row["nu_plus_stderr"]]
+        if trace and not group.get("period"):  # a cycle's exponents are those of its multipliers
+            count = [row["collisions"] for row in trace]
+            right.loglog(count, [row["nu_plus_stderr"] for row in trace], "o-", ms=3, color=colour)
+        name = f"period {group['period']}" if group.get("period") else group["kind"]
+        if number < LABELLED:
+            left.plot([], [], "o", color=colour, label=f"{name}, {group['orbits']} orbits")
+    left.set_xticks([])
+    left.set_xlim(-0.7, max(0.7, len(groups) - 0.3))
+    left.set_ylabel(r"$\nu_+$ (filled), $\nu_-$ (open)")
+    right.set_xlabel("bounces counted")
+    right.set_ylabel(r"standard error of $\nu_+$")
+    if groups:
+        made.legend(loc="outside lower center", ncols=min(3, len(groups)))
+    return made
+
+
+def basins(found: "xr.Dataset") -> "Figure":
+    """The attractor that each start reaches, a colour for each; what reaches none of them is left blank."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import Patch
+
+    from numeric.sweeps.fields import attractors_of
+
+    label, known = np.asarray(found.label.values), attractors_of(found.attrs["settings"])
+    paint = np.array([to_rgba(PALETTE[i % len(PALETTE)]) for i in range(len(known))] + [(0.0, 0.0, 0.0, 0.0)])
+    made = figure(7.0, 4.0)
+    fine(made, label.shape[1])
+    axes = made.add_subplot()
+    sides = [_sides(np.asarray(found[name].values)) for name in ("s", "sin_phi")]
+    axes.imshow(paint[label], extent=(*sides[0], *sides[1]), **CELLS)
+    axes.set_xlabel(AXES["s"])
+    axes.set_ylabel(AXES["sin_phi"])
+    axes.set_title(found.attrs.get("title", ""), loc="left")
+    names = [f"period {one['period']}" if one["period"] else one["kind"] for one in known]
+    shown = list(enumerate(names))[:LABELLED]
+    handles = [Patch(color=PALETTE[i], label=f"{name}, {np.mean(label == i):.1%}") for i, name in shown]
+    made.legend(handles=handles, loc="outside lower center", ncols=min(4, max(1, len(handles))))
+    return made
+
+
+def _sides(centres: Array) -> tuple[float, float]:
+    """The two sides of a row of cells, from their centres."""
+    half = (centres[-1] - centres[0]) / (2 * max(1, centres.size - 1)) or 0.5
+    return float(centres[0] - half), float(centres[-1] + half)
+
+
+def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
+    """The attractors against the parameter as a density, proved values as lines, and the exponents below."""
+    parameter = str(found.chaotic.dims[0])
+    values = np.asarray(found[parameter].values)
+    one = int(found.component.max()) == 0
+    place = np.asarray((found.theta if one else found.s).values).reshape(values.size, -1)
+    place = np.where(np.isfinite(found.s.values.reshape(place.shape)), place, np.nan)
+    made = figure(7.0, 5.2)
+    fine(made, values.size)
+    top, bottom = made.subplots(2, 1, sharex=True, height_ratios=(2.8, 1))
+    ends = (-np.pi, np.pi) if one else (float(np.nanmin(place)), float(np.nanmax(place)))
+    place = np.remainder(place + np.pi, 2 * np.pi) - np.pi if one else place
+    columns = np.broadcast_to(np.arange(values.size)[:, None], place.shape)
+    kept = np.isfinite(place)
+    ranges = (ends, (-0.5, values.size - 0.5))
+    rows = max(ROWS, values.size * 5 // 8)
+    counts, _, _ = np.histogram2d(place[kept], columns[kept], bins=(rows, values.size), range=ranges)
+    sides = _sides(values)
+    top.imshow(ink(counts), extent=(*sides, *ends), **CELLS)
+    top.set_ylabel(AXES["theta" if one else "s"])
+    if one:
+        top.set_yticks([-np.pi, 0, np.pi], [r"$-\pi$", "$0$", r"$\pi$"])
+    nu, error = np.asarray(found.nu_plus.values), np.asarray(found.nu_plus_error.values)
+    largest = np.nanargmax(np.where(np.isfinite(nu), nu, -np.inf), axis=1)
+    upper, width = (np.take_along_axis(x, largest[:, None], 1)[:, 0] for x in (nu, error))
+    bottom.axhline(0, **FAINT)
+    bottom.plot(values, np.nanmin(np.where(np.isfinite(nu), nu, np.inf), axis=1), color="0.6", lw=0.7, label="smallest")
+    bottom.fill_between(values, upper - 2 * width, upper + 2 * width, color=INK, alpha=0.25, lw=0)
+    bottom.plot(values, upper, color=INK, lw=0.8, label="largest of the orbits, with twice its error")
+    bottom.set_ylim(max(float(np.nanmin(nu)), -2.0) - 0.05, None)
+    bottom.set_xlabel(AXES.get(parameter, parameter))
+    bottom.set_ylabel(r"$\nu_+$")
+    bottom.legend(loc="lower right")
+    labelled(top, bottom, sorted(mark for mark in marks if sides[0] <= mark.value <= sides[1]), sides)
+    top.set_xlim(*sides)
+    return made
+
+
+def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[float, float]) -> None:
+    """Lines at values of the parameter, and their words above them, moved apart where they would lie on each other."""
+    near, at = 0.022 * (ends[1] - ends[0]), -np.inf
+    for value, words in marks:
+        for axes in (top, bottom):
+            axes.axvline(value, color=MARK, lw=0.5, alpha=0.7)
+        at = max(value, at + near)
+        coords: dict[str, Any] = dict.fromkeys(("xycoords", "textcoords"), ("data", "axes fraction"))
+        look: dict[str, Any] = {"rotation": 60, "fontsize": 7, "color": MARK, "annotation_clip": False}
+        top.annotate(words, (value, 1.0), (at, 1.02), **coords, **look)
+
+
+def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "Slap") -> "Figure":
+    """The slap map's iterates over arc length, the diagonal, and the slope of the map."""
+    s, ends = position(map, np.asarray(map.arclength.s(theta, component)))
+    order = np.argsort(s)
+    made = figure(7.0, 3.6)
+    left, right = made.subplots(1, 2)
+    left.plot(ends, ends, **FAINT)
+    looks: tuple[dict[str, Any], ...] = ({"color": INK, "lw": 1.4}, {"color": "#c8691c"}, {"color": "#2ca02c"})
+    for k in range(1, len(values.theta)):
+        images = position(map, np.asarray(map.arclength.s(values.theta[k], values.component[k])))[0]
+        images = np.where(values.code[k] == 0, images, np.nan)[order]
+        look = looks[k - 1] if k <= len(looks) else {"color": "0.6", "lw": 0.6}
+        label = f"$T_0^{{{k}}}$" if k > 1 else "$T_0$"
+        left.plot(s[order], _broken(images), zorder=9 - k, label=label if k < LABELLED else None, **look)
+    right.axhspan(-1, 1, color="0.85", lw=0)
+    right.plot(s[order], _broken(values.slope[order]), color=INK)
+    bound = 1.3 * float(np.nanquantile(np.abs(values.slope), 0.98)) if np.isfinite(values.slope).any() else 1.5
+    right.set_ylim(-max(bound, 1.5), max(bound, 1.5))
+    left.set_ylim(*ends)
+    left.set_ylabel("$T_0^n(s)$" if len(values.theta) > 2 else "$T_0(s)$")
+    right.set_ylabel("$T_0'(s)$")
+    for axes in (left, right):
+        joins(axes, map)
+        axes.set_xlabel("$s$")
+        axes.set_xlim(*ends)
+    if len(values.theta) > 2:
+        made.legend(loc="outside lower center", ncols=min(6, len(values.theta) - 1))
+    return made
+
+
+def _broken(values: Array) -> Array:
+    """A graph with a gap where it jumps: by much more than most of its steps.
+
+    >>> _broken(np.array([0.0, 1.0, 2.0, 30.0, 31.0, 32.0])).tolist()
+    [0.0, 1.0, nan, 30.0, 31.0, 32.0]
+    """
+    steps = np.abs(np.diff(values, append=values[-1:]))
+    usual = np.nanquantile(steps, 0.75) if np.isfinite(steps).any() else 0.0
+    return np.where(steps > 8 * usual, np.nan, values)
+
+
+def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequence[float], **look: Any) -> None:
+    """A cycle in the table, as the polygon of its bounces."""
+    x, y = map.states.point(np.array([*components, components[0]]), np.array([*theta, theta[0]], dtype=float))
+    axes.plot(x, y, solid_joinstyle="round", **look)
+
+
+def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":
+    """Each cycle in a table of its own, the first ones of the list; stable ones drawn full, unstable ones dashed."""
+    map, found = PinballMap(scene), catalogue.cycles
+    rows = max(1, -(-min(len(found), SMALL) // 4))
+    made = figure(7.0, 2.0 * rows + 0.3)
+    panels = np.ravel(made.subplots(rows, 4))
+    for axes in panels:
+        axes.set_axis_off()
+    for axes, one in zip(panels, found, strict=False):
+        stable = one.spectrum.stable
+        table(axes, map)
+        look: dict[str, Any] = {"color": PALETTE[0], "lw": 1.3} if stable else {"color": MARK, "lw": 0.9, "ls": "--"}
+        closed(axes, map, one.components, one.theta, **look)
+        largest = max(abs(m) for m in one.spectrum.multipliers)
+        axes.set_title(f"{one.period}:  $|\\mu| = {largest:.3g}$", fontsize=8)
+    more = f", the first {SMALL} shown" if len(found) > SMALL else ""
+    made.suptitle(f"{len(found)} cycles{more}: period, and the larger multiplier; dashed: unstable", fontsize=9)
+    return made
+
+
+def parameter_space(found: "xr.Dataset") -> "Figure":
+    """The largest exponent over a shape and the contraction, red where positive; a line where some are chaotic."""
+    from matplotlib.colors import TwoSlopeNorm
+
+    shape = str(found.chaotic.dims[0])
+    nu, chaotic = np.asarray(found.nu_max.values, dtype=float), np.asarray(found.chaotic.values > 0, dtype=float)
+    lams, shapes = np.asarray(found.lam.values), np.asarray(found[shape].values)
+    made = figure(7.0, 4.4)
+    fine(made, lams.size)
+    axes = made.add_subplot()
+    most = max(1e-3, float(np.nanmax(nu)))
+    shown = axes.imshow(
+        nu,
+        extent=(*_sides(lams), *_sides(shapes)),
+        **CELLS,
+        cmap="RdBu_r",
+        norm=TwoSlopeNorm(0.0, max(-4 * most, min(-1e-3, float(np.nanmin(nu)))), most),
+    )
+    if min(nu.shape) > 1 and 0 < chaotic.mean() < 1:
+        axes.contour(lams, shapes, chaotic, [0.5], colors="black", linewidths=0.4)
+    axes.set_xlabel(AXES["lam"])
+    axes.set_ylabel(AXES.get(shape, shape))
+    made.colorbar(shown, label=r"largest $\nu_+$ of the orbits", pad=0.01)
+    return made
+
+
+def by_attractor(found: "xr.Dataset") -> "Figure":
+    """Both exponents of each attractor against the parameter, with twice their standard errors."""
+    parameter = str(found.orbits.dims[0])
+    values = np.asarray(found[parameter].values)
+    made = figure(7.0, 3.8)
+    axes = made.add_subplot()
+    axes.axhline(0, **FAINT)
+    for name, colour, words in (("nu_plus", "#c8691c", r"$\nu_+$"), ("nu_minus", "#1f4e79", r"$\nu_-$")):
+        label: str | None = words
+        for group in range(found.group.size):
+            nu, error = (np.asarray(found[key].isel(group=group).values) for key in (name, f"{name}_error"))
+            kept = (found.orbits.isel(group=group).values > 0) & np.isfinite(nu)
+            look: dict[str, Any] = {"fmt": "o", "ms": 2.5, "mew": 0, "color": colour, "elinewidth": 0.7, "capsize": 1.5}
+            axes.errorbar(values[kept], nu[kept], 2 * np.nan_to_num(error[kept]), label=label, **look)
+            label = None
+    axes.set_xlabel(AXES.get(parameter, parameter))
+    axes.set_ylabel("exponents, per bounce")
+    axes.legend()
+    return made

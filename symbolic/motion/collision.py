@@ -83,7 +83,8 @@ def implicit_derivative() -> Matrix:
     """`d(s1, -eta1)/d(s0, phi0)` for any two components, by differentiating the flight equation.
 
     Rows: landing arc length and minus the incidence angle. The Frenet equations `X' = cos psi`,
-    `Y' = sin psi`, `psi' = -kappa` are all that is used of the boundary.
+    `Y' = sin psi`, `psi' = -kappa` are all that is used of the boundary. None of them changes when the plane is
+    turned, so that the flight may run along the first axis.
     """
     s0, s1, landing = symbols("s0 s1 landing", real=True)
     ends = {}
@@ -101,7 +102,7 @@ def implicit_derivative() -> Matrix:
     def partial(expression: Expr, variable: Symbol) -> Expr:
         flown = {X1: X0 + t * cos(direction), Y1: Y0 + t * sin(direction)}
         found = diff(expression, variable).subs(frenet).subs(flown)
-        return simplify(found.subs(psi1, direction + landing + pi / 2))  # landing is eta1
+        return found.subs({psi0: phi - pi / 2, psi1: landing + pi / 2})  # landing is eta1
 
     slope = [-partial(flight, x) / partial(flight, s1) for x in (s0, phi)]
     angle = [partial(minus_eta, x) + partial(minus_eta, s1) * dx for x, dx in zip((s0, phi), slope, strict=True)]

@@ -46,7 +46,8 @@ from verification.proofs.corner.corner import (
     parameter,
 )
 
-Angles = dict[tuple[int, int], Callable[..., Any]]
+Angle = Callable[..., Any]
+Angles = dict[tuple[int, int], Angle]
 TURN = 6.283185307179586
 
 
@@ -138,11 +139,8 @@ class Flights:
     def _root(self, piece: Piece, target: int, low: float, high: float) -> Piece | None:
         """The landing on a component, enclosed by an interval Newton step from a guess in floats."""
         angle, near = self.balls[piece.component, target], self.floats[piece.component, target]
-        start, phi = float(piece.theta.mid()), float(piece.phi.mid())
-        for _ in range(60):
-            middle = (low + high) / 2  # the angle falls along the boundary
-            low, high = (middle, high) if near(start, middle)[0] > phi else (low, middle)
-        guess = (low + high) / 2 - (TURN if high > TURN / 2 else 0)
+        root = _falling_root(near, float(piece.theta.mid()), float(piece.phi.mid()), low, high)
+        guess = root - (TURN if high > TURN / 2 else 0)
         radius = 4 * float(piece.theta.rad() + piece.phi.rad()) + 1e-12
         for _ in range(6):
             box = arb(guess, radius)
@@ -153,6 +151,21 @@ class Flights:
                 return Piece(target, image, -piece.slope * over[1] / over[2], phi_1)
             radius *= 2
         return None
+
+
+def _falling_root(near: Angle, start: float, phi: float, low: float, high: float) -> float:
+    """Where the chord angle, which falls along the boundary, is `phi`: Newton, and bisection where it would leave."""
+    here = (low + high) / 2
+    for _ in range(60):
+        value, _, slope = near(start, here)
+        low, high = (here, high) if value > phi else (low, here)
+        following = here - (value - phi) / slope if slope else low
+        if not low < following < high:  # NaN among others
+            following = (low + high) / 2
+        if abs(following - here) <= 1e-15:
+            return following
+        here = following
+    return here
 
 
 def _all(*pieces: Piece | None) -> list[Piece] | None:

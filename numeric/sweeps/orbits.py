@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, DTypeLike
 from numeric.kernels.engine import PART
 from numeric.kernels.machine import TOLD
 from numeric.pinball.map import PinballMap
-from numeric.pinball.orbits import PIECE, Course
+from numeric.pinball.orbits import HUGE, LARGE, PIECE, Course
 from numeric.pinball.states import MEANINGS, STATUSES, UNITS, counted
 from numeric.sweeps.store import Stored, opened
 from numeric.sweeps.sweep import Axis, Field, Part, Sweep
@@ -81,11 +81,12 @@ def memory(map: PinballMap, particles: int, fields: Sequence[str] = ("theta", "p
     Where no kernel tells the orbit, there are a piece of each row of the state, and of all that it is translated to.
 
     >>> memory(PinballMap("egg", lam=0.5, alpha=0.08), particles=1000) // 10**6
-    35
+    44
     """
     rows = max(2, piece // particles)
     told = 0 if map.engine.tells else len(map.family.fields(map.law)) + len(TOLD)
-    return 8 * (particles * (rows * (len(fields) + 2 + told) + ROWS) + PART) + OTHERS
+    margins = 2 * HUGE * (len(fields) if 8 * rows * particles >= LARGE else 1)  # of fields that begin at large pages
+    return 8 * (particles * (rows * (len(fields) + 2 + told) + ROWS) + PART) + margins + OTHERS
 
 
 OTHERS = 1 << 20  # bytes that Zarr and Python take

@@ -303,8 +303,8 @@ def test_the_memory_that_writing_an_orbit_takes_is_said_before(tmp_path):
     start = np.linspace(-3, 3, 500), 0.3
     record(egg, tmp_path / "first", *start, 2, fields=names, piece=piece, threads=1)
     tracemalloc.start()
-    record(egg, tmp_path / "orbit", *start, 1500, fields=names, piece=piece, threads=1)
+    record(egg, tmp_path / "orbit", *start, 2500, fields=names, piece=piece, threads=1)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
 
-    assert peak < memory(egg, 500, names, piece) < 2 * peak < 8 * 500 * 1500 * 3
+    assert peak < memory(egg, 500, names, piece) < 2 * peak < 8 * 500 * 2500 * 3

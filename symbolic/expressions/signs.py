@@ -16,9 +16,12 @@ judged by the same rule, one variable fewer, so ends of ranges are never lost an
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
+from math import comb
+from typing import Any
 
 from sympy import (
-    Dummy,
+    QQ,
+    ZZ,
     Expr,
     Interval,
     Poly,
@@ -314,28 +317,38 @@ def bernstein(p: Expr, box: Box) -> list[Expr]:
     >>> bernstein(x**2 - 3 * x + 3, {x: Interval(0, 1)})
     [3, 3, 1]
     """
-    terms = Poly(p, *box).as_dict()
+    poly = Poly(p, *box)
+    ends = [end for interval in box.values() for end in (interval.start, interval.end) if end.is_finite]
+    rational = poly.domain in (ZZ, QQ) and all(end.is_Rational for end in ends)
+    number = QQ.from_sympy if rational else S
+    terms = {powers: number(c) for powers, c in poly.as_dict().items()}
     for i, interval in enumerate(box.values()):
         degree = max(powers[i] for powers in terms)
-        images = [_image(interval, k, degree) for k in range(degree + 1)]
-        mapped: dict[tuple[int, ...], Expr] = {}
+        low, high = (number(end) if end.is_finite else None for end in (interval.start, interval.end))
+        images = [_image(low, high, number(S.One), k, degree) for k in range(degree + 1)]
+        mapped: dict[tuple[int, ...], Any] = {}
         for powers, coefficient in terms.items():
             for k, c in enumerate(images[powers[i]]):
                 key = (*powers[:i], k, *powers[i + 1 :])
-                mapped[key] = mapped.get(key, S.Zero) + coefficient * c
+                mapped[key] = mapped.get(key, 0) + coefficient * c
         terms = mapped
-    return [terms[powers] for powers in sorted(terms)]
+    found = (terms[powers] for powers in sorted(terms))
+    return [QQ.to_sympy(c) if rational else expand(c) for c in found]
 
 
-def _image(interval: Interval, power: int, degree: int) -> list[Expr]:
-    """Coefficients in `u`, constant first, of `x**power * (1 + u)**degree` with `x` mapped to the orthant."""
-    u = Dummy()
-    low, high = interval.start, interval.end
-    if low is -oo or high is oo:
-        mapped = (high - u if low is -oo else low + u) ** power
-    else:
-        mapped = (low + high * u) ** power * (1 + u) ** (degree - power)
-    return [S(c) for c in Poly(mapped, u).all_coeffs()[::-1]]
+def _image(low: Any, high: Any, one: Any, power: int, degree: int) -> list[Any]:
+    """Coefficients in `u`, constant first, of `x**power * (1 + u)**degree` with `x` mapped to the orthant.
+
+    `x = (low + high*u)/(1 + u)`; where an end is infinite (None), `x = low + u` or `x = high - u`, without `(1 + u)`.
+    """
+    rest = 0 if low is None or high is None else degree - power
+    constant, slope = (high, -one) if low is None else (low, one if high is None else high)
+    found = [0 * one] * (power + rest + 1)
+    for k in range(power + 1):
+        term = comb(power, k) * constant ** (power - k) * slope**k
+        for j in range(rest + 1):
+            found[k + j] += comb(rest, j) * term
+    return found
 
 
 def _size(interval: Interval) -> tuple[bool, bool, Expr]:

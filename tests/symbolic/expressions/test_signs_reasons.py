@@ -148,4 +148,5 @@ def test_bernstein_coefficients_are_those_of_a_hand_calculation():
     assert bernstein(x**2 - 3 * x + 3, {x: Interval(2, oo)}) == [1, 1, 1]
     assert bernstein(x**2 - 3 * x + 3, {x: BACK}) == [3, 3, 1]
     assert bernstein(x**2 - 3 * x + 3, {x: Interval(-oo, 1)}) == [1, 1, 1]
+    assert bernstein(x, {x: Interval(-1, 0)}) == [-1, 0]  # vanishes at an end of the closed interval
     assert bernstein(1 + 2 * x * y, {x: UNIT, y: RAY}) == [1, 0, 1, 2]  # 1 + u + 2*u*v, no v

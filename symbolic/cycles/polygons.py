@@ -20,6 +20,7 @@ triangle [ArroyoMarkarianSanders2012] strange attractors.
 """
 
 from collections.abc import Sequence
+from functools import cache
 
 from sympy import (
     Expr,
@@ -111,6 +112,7 @@ def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
     return (pi + asin(T / (alpha * sqrt(K**2 + T**2))) - atan(T / K)) / K
 
 
+@cache
 def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: Expr) -> tuple[Expr, Expr]:
     """Trace and determinant of one bounce of a polygon, in the frame that turns with it."""
     matrix = derivative_matrix(K0, K0, t, cos(exit_angle), cos(incidence))

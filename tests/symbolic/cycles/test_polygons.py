@@ -82,12 +82,13 @@ def test_a_bounce_has_the_multiplier_one_at_the_fold_for_no_other_curvature(K, p
     table = egg(K).at(alpha=SHAPE)
     top = acos(-SHAPE) / K
     gamma, delta = half_turn(p, q), atan(largest_tilt(K).subs(alpha, SHAPE))
-    trace, det = turn_trace_and_determinant(K0, t, gamma - delta, gamma + delta)
+    leaves, lands = Symbol("leaves"), Symbol("lands")
+    trace, det = turn_trace_and_determinant(K0, t, leaves, lands)
     length = 2 * (1 - SHAPE**2) * cos(gamma)
     kappa = curvature(table.components[0]).subs(theta, top)
 
     fold = saddle_node(K, p, q).subs(alpha, SHAPE)
-    residual = (1 - trace + det).subs({t: length, lam: fold})
+    residual = (1 - trace + det).subs({t: length, lam: fold, leaves: gamma - delta, lands: gamma + delta})
 
     assert abs(number(residual.subs(K0, kappa))) < NOTHING
     assert abs(number(residual.subs(K0, kappa + Rational(1, 100)))) > mp.mpf(10) ** -3
@@ -112,10 +113,10 @@ def test_both_branches_obey_the_collision_law_on_their_chords_and_fold_from_eith
         assert max(ways) > mp.mpf(10) ** -3
 
         out, back = exits if ways[0] < ways[1] else exits[::-1]
-        trace, det = turn_trace_and_determinant(K0, t, Symbol("out"), Symbol("back"))
+        trace, det = turn_trace_and_determinant(K0, t, Symbol("leaves"), Symbol("lands"))
         chord = after - here
         values = {K0: curvature(component).subs(theta, value), t: mp.sqrt(mp.mpf(chord.dot(chord))), lam: contraction}
-        values |= {Symbol("out"): out, Symbol("back"): back}
+        values |= {Symbol("leaves"): out, Symbol("lands"): back}
         signs.append(mp.sign(number((1 - trace + det).subs(values))))
 
     assert sorted(signs) == [-1, 1]  # a saddle and a node
@@ -178,8 +179,8 @@ def test_the_characteristic_polynomial_on_the_branch_is_that_of_the_bounce_it_ha
     x, bounce = Rational(2, 5), (pi - Rational(2, 5)) / K
     table = egg(K).at(alpha=SHAPE)
     gamma, delta = half_turn(p, q), atan(tilt_tangent(K).subs({theta: bounce, alpha: SHAPE}))
-    trace, det = turn_trace_and_determinant(K0, t, Symbol("out"), Symbol("back"))
-    values = {Symbol("out"): gamma - delta, Symbol("back"): gamma + delta, lam: (gamma - delta) / (gamma + delta)}
+    trace, det = turn_trace_and_determinant(K0, t, Symbol("leaves"), Symbol("lands"))
+    values = {Symbol("leaves"): gamma - delta, Symbol("lands"): gamma + delta, lam: (gamma - delta) / (gamma + delta)}
     values |= {K0: curvature(table.components[0]).subs(theta, bounce), t: 2 * (1 - SHAPE * cos(x)) * cos(gamma)}
     expected = cos(gamma + delta) * (at**2 - at * trace.subs(values) + det.subs(values))
 

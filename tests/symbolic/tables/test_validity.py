@@ -51,7 +51,7 @@ BAD = {
     "a wall there and back": (lambda: parametric(cos(theta), 0), "runs back along itself"),
     "an uneven eight": (lambda: parametric(cos(theta), sin(2 * theta) + sin(theta) / 2), "meets itself, or stops"),
     "a limacon": (lambda: polar(1 + 2 * cos(theta)), "is not positive for every theta"),
-    "a limacon by coordinates": (lambda: parametric(*limacon(2)), "meets itself, or stops, near theta = -12[01] and 12[01]"),
+    "a limacon by coordinates": (lambda: parametric(*limacon(2)), "itself, or stops, near theta = -12[01] and 12[01]"),
     "a limacon with a cusp": (lambda: polar(1 + 2 * cos(theta), undefined=cardioid.undefined), "crosses itself, near"),
     "a cusp not named": (lambda: polar(1 + cos(theta)), "or its cusp named"),
     "a point": (lambda: polar(0), "is not positive"),

@@ -15,6 +15,11 @@ bits), at every size, and so are tables given by a radius once more, by points a
 
     python benchmarks/adversarial.py pieces [POINTS [WORD]]     the table of docs/tables.md
     python benchmarks/adversarial.py inside [POINTS]
+
+Splines are judged by every zero of every cubic, halved to its last bit; where a line passes the end of a piece or a
+tangent within rounding and the two differ, the exact map decides with 50 digits:
+
+    python benchmarks/adversarial.py splines [POINTS [WORD]]
 """
 
 import sys
@@ -24,9 +29,19 @@ from sympy import Rational
 
 from numeric import PinballMap
 from symbolic import tables
-from verification.measure.extremes.by_hand import discs, hard, judged, spikes
+from verification.maps.exact import ExactMap, errors
+from verification.measure.extremes.by_hand import cubic_hits, discs, hard, judged, spikes
 from verification.measure.extremes.kernels import Wide, made_unit
-from verification.measure.extremes.orbits import LAM, LONG_RADII, bounced, cases, conditions, own_cases
+from verification.measure.extremes.orbits import (
+    DIGITS,
+    LAM,
+    LONG_RADII,
+    bounced,
+    cases,
+    conditions,
+    own_cases,
+    spline_cases,
+)
 
 EPS = 2.0**-52
 
@@ -175,8 +190,73 @@ def inside(count, word):
             say(f"| {name} | {label} | {own[0].size} | {int(np.sum(~going))} | {out} |")
 
 
+def ring(count, radius):
+    """The spline through so many points about the origin, at six decimals."""
+    angle = 2 * np.pi * np.arange(count) / count
+    x, y = 1.5 * radius(angle) * np.cos(angle), radius(angle) * np.sin(angle)
+    return tables.from_points([(f"{a:.6f}", f"{b:.6f}") for a, b in zip(x, y, strict=True)])
+
+
+HOLED = [
+    [[(0, 0), (4, 0)], [(4, 0), (5, 2), (4, 3), (3, 3)], [(3, 3), (1, 2), (0, 4)], [(0, 4), (-1, 1), (0, 0)]],
+    [[(1, 1), (2, 1)], [(2, 1), (2, 2), (1, 1)]],
+]
+SPLINES = {
+    "convex": lambda: ring(9, lambda angle: 1 + 0.02 * np.cos(3 * angle)),
+    "dented": lambda: ring(30, lambda angle: 1 + 0.2 * np.cos(3 * angle)),
+    "deeply dented": lambda: ring(30, lambda angle: 1 + 0.5 * np.cos(3 * angle)),
+    "rough": lambda: ring(30, lambda angle: 1 + np.random.default_rng(1).uniform(-0.2, 0.2, angle.size)),
+    "of 100 points": lambda: ring(100, lambda angle: 1 + 0.2 * np.cos(3 * angle)),
+    "corners": lambda: tables.from_path(HOLED[:1]),
+    "holed": lambda: tables.from_path(HOLED),
+}
+ASTRAY = 1e-6  # of the table: farther from the judge's landing is another one
+
+
+def splines(count, word):
+    """Splines: what stopped, what is in doubt, and what landed elsewhere than the judge and the exact map say."""
+    say(f"{count} points a case; errors sideways in units of 2**-52 of the table")
+    say("| spline | flights | points | stopped | in doubt | wrong | largest error |")
+    say("|---|---|---|---|---|---|---|")
+    for name, made in SPLINES.items():
+        if word not in name:
+            continue
+        map, rows = PinballMap(made(), lam=LAM), {}
+        for seed in range(-(-count // BLOCK)):
+            for case in spline_cases(name, map, min(count, BLOCK), seed):
+                old = rows.get(case.label, (0, 0, 0, 0, 0.0))
+                *sums, largest = counted(case)
+                rows[case.label] = (*(x + y for x, y in zip(old, sums, strict=False)), max(old[4], largest))
+        for label, row in rows.items():
+            say(f"| {' | '.join([name, label.partition(', ')[2], *map_text(row)])} |")
+
+
+def map_text(row):
+    """Counts, and a number."""
+    return [*(str(x) for x in row[:4]), f"{row[4]:.2g}"]
+
+
+def counted(case):
+    """Points, stopped, in doubt, wrong, and the largest error to the side of those that are right."""
+    own, after, going = bounced(case)
+    truth = cubic_hits(case.map, own)
+    x, y = case.map.states.point(after[0].astype(int), after[1])
+    size = max(np.max(np.abs(x)), np.max(np.abs(y)))
+    with np.errstate(invalid="ignore"):
+        gap = np.hypot(x - truth.x, y - truth.y).astype(float) / size
+    astray = going & ~(gap <= ASTRAY)
+    wrong = int(np.sum(astray & truth.sure))
+    exact = ExactMap(case.map, DIGITS)
+    for i in np.flatnonzero(astray & ~truth.sure):
+        place, _ = errors(case.map, exact, [row[i : i + 1] for row in own], [row[i : i + 1] for row in after])
+        wrong += int(not place[0] * EPS < ASTRAY)
+    right = going & ~astray & truth.sure
+    error = np.max(gap[right] * truth.straight[right], initial=0) / EPS
+    return going.size, int(np.sum(~going)), int(np.sum(going & ~truth.sure)), wrong, error
+
+
 if __name__ == "__main__":
     words = sys.argv[1:]
-    ways = {"pieces": by_hand, "inside": inside}
+    ways = {"pieces": by_hand, "inside": inside, "splines": splines}
     way = ways[words.pop(0)] if words and words[0] in ways else main
     way(int(float(words[0])) if words else 1_000_000, words[1] if len(words) > 1 else "")

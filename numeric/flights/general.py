@@ -108,10 +108,13 @@ class General(Family):
         straight = ops.select(own, speed, modulus(along))
         if getattr(ops, "context", None) is not None:  # with more digits, which leave no such doubt: one distance
             straight, doubt = speed, ops.number(NEAR)
-        for index, (low, high) in enumerate(self.joins):
-            here = ops.number(0.25) < modulus(where - ops.number(float(index)))
+        alike = len(set(self.joins)) == 1
+        for index, (low, high) in enumerate(self.joins[:1] if alike else self.joins):
             gap = ops.number(0.0) - ops.maximum(ops.number(low) - at, at - ops.number(high))
-            aside = ops.select(here, far, gap * straight)
+            aside = gap * straight
+            if not alike:
+                elsewhere = ops.number(0.25) < modulus(where - ops.number(float(index)))
+                aside = ops.select(elsewhere, far, aside)
             code = ops.select(aside < doubt, ops.number(float(Status.JOIN.code)), code)
         nowhere = ops.number(
             float((Status.LOST if self.closed else Status.JOIN).code)

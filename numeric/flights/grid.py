@@ -1,4 +1,4 @@
-"""A grid of cells over a table of many pieces: a flight looks at the pieces in the cells on its way, and at no others.
+"""Which pieces a flight may meet, on tables of many: those in the cells of a grid on its way, and no others.
 
 From a cell without pieces a flight goes on at once to the end of the largest empty square of cells that begins there;
 which one that is depends on the signs of its direction, so every cell has four. As squares grow with the distance from
@@ -18,11 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends.protocol import Backend, M, N, Pair, modulus
+from numeric.flights.family import Boundary
 
 WIDER = 2.0**-40
 OVER = 2.0**101  # beyond all lengths
 PIECE = 2.5  # cells for each piece: fewer have longer lists, more take longer to cross
 FEWEST, MOST = 4, 128  # cells in a row
+SAME = 1e-9  # two corners closer than this, against the size of the table, are one
 Array = NDArray[np.float64]
 
 
@@ -140,3 +142,102 @@ def met(
 
     begin = [nought * best[0], nought * best[0] - one, *best]
     return ops.repeat(lambda at: (-half < at[1]) | (at[0] < at[2]), listed, begin, 16 * len(grid.items), True)[2:]
+
+
+# ---- one box for each piece, of curves that are no sides or arcs
+
+
+class Box(NamedTuple):
+    """A box along the chord of a piece, and `numbers` from which a zero on the piece is computed.
+
+    `frame` is the box's middle, half its longer side, and the ratio of its sides. The `numbers` are coefficients,
+    component, ends of the parameter, 0, and two corners, each with the components that end and begin there, or -1.
+    """
+
+    component: int
+    frame: tuple[float, ...]
+    numbers: list[float]
+
+
+def boxed(boundary: Boundary, pieces: Sequence[tuple[int, float, float]], rows: Sequence[Sequence[float]]) -> list[Box]:
+    """The boxes of pieces cubic in the parameter, in the order of the boundary.
+
+    A piece lies in the hull of its four control points, and they in the box.
+    """
+    size = max(abs(x) for row in rows for x in (row[0], row[4]))
+    corners = joined(boundary, pieces, size)
+    found: list[Box] = []
+    for (index, low, high), ends in zip(pieces, corners, strict=True):
+        one, two = (boundary.curve(np.array([index]), np.array([theta]))[:, 0] for theta in (low, high))
+        third = (high - low) / 3
+        hull = np.array([one[:2], one[:2] + third * one[2:4], two[:2] - third * two[2:4], two[:2]])
+        chord = hull[3] - hull[0]
+        way = chord / np.hypot(*chord) if np.any(chord) else np.array([1.0, 0.0])
+        frame = np.array([way, (-way[1], way[0])])
+        spread = (hull - hull[0]) @ frame.T
+        least, most = spread.min(axis=0), spread.max(axis=0)
+        slack = WIDER * size * (1 + len(found) / len(pieces))  # no two alike, lest three boxes be met at one length
+        half, thick = (most - least) / 2 + slack
+        middle = hull[0] + (least + most) / 2 @ frame
+        numbers = [*rows[index], float(index), low, high, 0.0, *ends[0], *ends[1]]
+        found.append(Box(index, tuple(map(float, (*middle, *(half * way), thick / half))), [*map(float, numbers)]))
+    return found
+
+
+def joined(
+    boundary: Boundary, pieces: Sequence[tuple[int, float, float]], size: float
+) -> list[tuple[tuple[float, ...], ...]]:
+    """The two corners of every piece, each with the components that end and begin there, or -1.
+
+    Where one piece ends and the next begins is one corner, with the same numbers for both.
+    """
+    ends = [
+        [boundary.curve(np.array([index]), np.array([theta]))[:2, 0] for theta in (low, high)]
+        for index, low, high in pieces
+    ]
+    loop, after = 0, []
+    for i, (_, end) in enumerate(ends):
+        back = float(np.hypot(*(end - ends[loop][0]))) <= SAME * size
+        after.append(loop if back else (i + 1) % len(pieces))
+        loop = i + 1 if back else loop
+    before = {following: i for i, following in enumerate(after)}
+    corners = []
+    for i, (index, low, _) in enumerate(pieces):
+        last = before.get(i)
+        ended = pieces[last][0] if last is not None and pieces[last][2] >= boundary.ends[pieces[last][0]][1] else -1
+        begins = index if low <= boundary.ends[index][0] else -1
+        corners.append((*map(float, ends[i][0]), float(ended), float(begins)))
+    return [(corners[i], corners[after[i]]) for i in range(len(pieces))]
+
+
+def grown(boundary: Boundary, pieces: Sequence[tuple[int, float, float]]) -> list[list[float]]:
+    """A tree of boxes round pieces in the order of the boundary, halved again and again; no box for none.
+
+    Nodes stand in the order of a walk through it: middle, half the sides, the node to go on to where the box is not
+    met, and the piece of a leaf, else -1. Two columns are empty.
+    """
+    boxes = []
+    for index, low, high in pieces:
+        theta = np.linspace(low, high, 17)
+        x, y, _, _, ax, ay = boundary.curve(np.full(theta.shape, index), theta)
+        bulge = (high - low) ** 2 / 16**2 / 4 * max(np.max(np.abs(ax)), np.max(np.abs(ay)))
+        boxes.append((x.min() - bulge, x.max() + bulge, y.min() - bulge, y.max() + bulge))
+    slack = WIDER * max(abs(side) for box in boxes for side in box)
+    nodes: list[list[float]] = []
+
+    def node(first: int, last: int) -> None:
+        held = boxes[first:last]
+        left, right = min(b[0] for b in held), max(b[1] for b in held)
+        low, high = min(b[2] for b in held), max(b[3] for b in held)
+        leaf = float(first) if last - first == 1 else -1.0
+        mine = [(left + right) / 2, (low + high) / 2, (right - left) / 2 + slack, (high - low) / 2 + slack, 0.0, leaf]
+        nodes.append([*map(float, mine), 0.0, 0.0])
+        at = len(nodes) - 1
+        if last - first > 1:
+            middle = (first + last) // 2
+            node(first, middle)
+            node(middle, last)
+        nodes[at][4] = float(len(nodes))
+
+    node(0, len(pieces))
+    return nodes

@@ -3,12 +3,15 @@
 Round a convex curve the corners between pieces lie to the right of a line through the boundary up to one of them, and
 to its left from there on. So the piece on which a flight lands is found by halving, in as many steps as the number of
 pieces has binary digits, and one polynomial is solved there; on the piece of departure the known root is divided out.
-Elsewhere a flight goes down a tree of boxes round the pieces, and what it meets is solved as `numeric.flights.general`
-does. State: the component, the parameter `theta`, and the direction `v`.
+Elsewhere every piece has a box along its chord, and pieces are tried in the order in which the flight may come to
+their boxes: a few at most. Many boxes stand in a tree. A piece turns by a quarter of a turn at most and one way, so on
+it the flight function has one zero if its two ends lie on different sides of the flight, and two or none elsewhere.
+Whether an end of the piece of departure lies left or right is told by what is left when the known zero is divided out,
+and so is a landing on that piece. State: the component, the parameter `theta`, and the direction `v`.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -16,11 +19,11 @@ from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import Boundary, Landing
 from numeric.flights.general import FAR, General
+from numeric.flights.grid import SAME, boxed, grown
 
 FEW = 2  # pieces, each of which the general flight tries as fast
-SAME = 1e-9  # two corners closer than this, against the size of the table, are one
 BEND = 1e-9  # of the turning, against its largest value: less is rounding
-WIDER = 2.0**-40  # a box is larger by this share of the table than what it holds
+SCANNED = 64  # pieces, up to which all their boxes are looked at: beyond, a tree takes less long
 
 
 class Spline(General):
@@ -35,9 +38,17 @@ class Spline(General):
         self.rows = [[float(x) for x in program(boundary.ops, *boundary.numbers)] for program in programs]
         self.closed = False
         self.convex = convex(boundary)
-        self.tree = None if self.convex else grown(boundary, self.pieces)
-        how = "the piece by halving" if self.convex else "pieces from a tree of boxes"
+        self.boxes = [] if self.convex else boxed(boundary, self.pieces, self.rows)
+        self.tree = [] if self.convex else grown(boundary, self.pieces)
+        self.few = len(self.boxes) <= SCANNED
+        how = (
+            "the piece by halving"
+            if self.convex
+            else f"pieces {'in the order' if self.few else 'from a tree'} of boxes"
+        )
         self.path = f"{how}, the zero of a cubic on it" if self.convex else f"{how}, every zero on them, first hit"
+        if not self.convex:
+            self.width = 8
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
@@ -46,10 +57,12 @@ class Spline(General):
 
     @property
     def identity(self) -> str:
-        return repr((self.rows, self.convex, self.tree))
+        return repr((self.rows, self.convex, self.tree, self.boxes))
 
     def _row(self, ops: Backend[N, M], which: N) -> list[N]:
         """The eight coefficients of a component."""
+        if getattr(ops, "context", None) is None:
+            return ops.look_up_row(self.rows, which)
         columns = zip(*self.programmed(ops), strict=True)
         return [ops.look_up(list(column), which) for column in columns]
 
@@ -68,10 +81,13 @@ class Spline(General):
         row = self._row(ops, component)
         x0, y0, *_ = evaluated(ops, row, theta)
         v = exit[0], exit[1]
-        if self.tree is None:
-            best = self._across(ops, (component, theta), row, (x0, y0), v)
+        flight = (component, theta), row, (x0, y0), v
+        if self.convex:
+            best = self._across(ops, *flight)
+        elif self.few and getattr(ops, "context", None) is None:
+            best = self._first(ops, *flight)
         else:
-            best = self._nearest(ops, self.tree, (component, theta), (x0, y0), v)
+            best = self._nearest(ops, *flight)
         return self._landed(ops, shape, best, v, (component, x0, y0))
 
     def _across(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
@@ -107,46 +123,213 @@ class Spline(General):
         x, y, *_ = evaluated(ops, other, at)
         return [plane.dot(v, (x - z0[0], y - z0[1])), where, at]
 
-    def _nearest(self, ops: Backend[N, M], tree: "Tree", start: Pair[N], z0: Pair[N], v: Pair[N]) -> list[N]:
-        """The nearest landing: down the tree wherever the flight meets a box before the best so far."""
-        nought, half = ops.number(0.0), ops.number(0.5)
-        size = modulus(v[0]), modulus(v[1])
-        end = ops.number(float(len(tree.skip)))
+    def _first(self, ops: Any, start: Pair[Any], own: list[Any], z0: Pair[Any], v: Pair[Any]) -> list[Any]:
+        """The nearest landing: on the pieces whose box the flight may meet, the nearest box first."""
+        far, (component, theta) = ops.number(FAR), start
+        each = ops.number(0.0) * theta
+        best, sides = self._own(ops, start, own, v, [far + each, component + each, theta])
 
-        def column(values: Sequence[float], node: N) -> N:
-            return ops.look_up([ops.number(x) for x in values], node)
+        def tried(state: list[Any]) -> list[Any]:
+            floor, *best = state
+            one, two, third = self._ahead(ops, component, z0, v, floor)
+            best = self._met(ops, one, component, sides, z0, v, best)
+            closer = -two[0] < best[0]
+            best = ops.when(closer, best, lambda: self._met(ops, two, component, sides, z0, v, best))
+            return [third, *best]
 
-        def meets(node: N, best: N) -> M:
-            c = column(tree.x, node) - z0[0], column(tree.y, node) - z0[1]
-            w, h = column(tree.wide, node), column(tree.high, node)
-            reach, away = size[0] * w + size[1] * h, plane.dot(v, c)
-            beside: M = modulus(plane.cross(v, c)) <= size[1] * w + size[0] * h
-            found: M = beside & (nought < away + reach) & (away - reach < best)
+        return list(ops.repeat(lambda at: -at[0] < at[1], tried, [far + each, *best], len(self.boxes)))[1:]
+
+    def _own(self, ops: Any, start: Pair[Any], own: list[Any], v: Pair[Any], best: list[Any]) -> tuple[Any, Any]:
+        """The nearest of `best` and the landings on the piece of departure, whose known zero is divided out.
+
+        Also on which sides of the flight the two ends of this piece lie.
+        """
+        component, theta = start
+        low, high = (ops.look_up([ops.number(ends[i]) for ends in self.ends], component) for i in (0, 1))
+        _, _, dx, dy, ax, ay = evaluated(ops, own, theta)
+        half, nought = ops.number(0.5), ops.number(0.0)
+        terms = (dx, dy), (half * ax, half * ay), (own[3], own[7])
+        q, along = [plane.cross(v, term) for term in terms], [plane.dot(v, term) for term in terms]
+        low, high = low - theta, high - theta
+        first, last = ((q[2] * end + q[1]) * end + q[0] for end in (low, high))
+        middle = half * (low + high) * q[1] + (low * high * q[2] + q[0])
+        lowest, highest = least(ops, first, least(ops, middle, last)), most(ops, first, most(ops, middle, last))
+
+        def solved() -> list[Any]:
+            w = half * q[1]
+            root = ops.sqrt(ops.maximum(plane.exact_cross(ops, (w, q[0]), (q[2], w)), nought))
+            w = -(w + ops.times_sign(root, w))
+            real = nought < root
+            change = ops.negated(nought < first * last)
+            roots = [w / q[2], q[0] / w]
+            gaps = [most(ops, low - x, x - high) for x in roots]
+            found = best
+            for x, gap, other in zip(roots, gaps, gaps[::-1], strict=True):
+                inside = (gap <= nought) | (change & (gap < other) & (nought < other))
+                x = least(ops, most(ops, x, low), high)
+                t = ((along[2] * x + along[1]) * x + along[0]) * x
+                nearer = real & inside & (nought < t) & (t < found[0])
+                found = [
+                    ops.select(nearer, new, old) for new, old in zip([t, component, theta + x], found, strict=True)
+                ]
             return found
 
-        def walked(state: list[N]) -> list[N]:
+        best = ops.when((lowest <= nought) & (nought <= highest), best, solved)
+        return best, (low * first, high * last)
+
+    def _ahead(self, ops: Any, component: Any, z0: Pair[Any], v: Pair[Any], floor: Any) -> tuple[Any, Any, Any]:
+        """The nearest two pieces whose box the flight may meet, none nearer than `floor`, and how near the third is.
+
+        A piece comes with minus a length before which it is not met, and with its number. There is one mask for each
+        choice: to combine masks takes longer than to choose.
+        """
+        nought, never = ops.number(0.0), ops.number(-FAR)
+        aside, begin = plane.cross(z0, v), plane.dot(v, z0)
+        one, two, third = [never, nought], [never, nought], never
+        for j, box in enumerate(self.boxes):
+            x, y, dx, dy, ratio = (ops.number(value) for value in box.frame)
+            across, along = modulus(v[0] * dy - v[1] * dx), modulus(v[0] * dx + v[1] * dy)
+            wide, long = ratio * along + across, ratio * across + along
+            away = begin - (v[0] * x + v[1] * y)
+            beside = modulus(v[0] * y + (aside - v[1] * x)) - wide
+            key = ops.select(most(ops, beside, away - long) <= nought, away + long, never)
+            key = ops.select(component == ops.number(float(box.component)), never, key)
+            key = ops.select(floor < key, never, key)
+            number, first, second = ops.number(float(j)), one[0] < key, two[0] < key
+            third = most(ops, third, least(ops, two[0], key))
+            two = [
+                most(ops, two[0], least(ops, one[0], key)),
+                ops.select(first, one[1], ops.select(second, number, two[1])),
+            ]
+            one = [most(ops, one[0], key), ops.select(first, number, one[1])]
+        return one, two, third
+
+    def _side(self, ops: Any, corner: Sequence[Any], component: Any, ends: Pair[Any], v: Pair[Any], aside: Any) -> Any:
+        """How far a corner lies to the left of the flight; of the piece of departure this is known better."""
+        x, y, before, after = corner
+        side = v[0] * y + (aside - v[1] * x)
+        return ops.select(component == before, ends[1], ops.select(component == after, ends[0], side))
+
+    def _met(
+        self, ops: Any, piece: list[Any], component: Any, ends: Pair[Any], z0: Pair[Any], v: Pair[Any], best: list[Any]
+    ) -> list[Any]:
+        """The nearest of `best` and the landings on a piece that has no known zero."""
+        key, number = piece
+        nought, one, half = (ops.number(x) for x in (0.0, 1.0, 0.5))
+        row = ops.look_up_row([box.numbers for box in self.boxes], number)
+        (where, low, high), corners, row = row[8:11], (row[12:16], row[16:20]), row[:8]
+        aside = plane.cross(z0, v)
+        s0, s1 = (self._side(ops, corner, component, ends, v, aside) for corner in corners)
+        reached, folded = -key < best[0], ops.negated((s0 < nought) & (nought <= s1) | (s1 < nought) & (nought <= s0))
+        p = [plane.cross(v, (row[i], row[i + 4])) for i in range(4)]
+        p[0] = plane.cross(v, (row[0] - z0[0], row[4] - z0[1]))
+        third = (high - low) * ops.number(1 / 3)
+
+        def value(u: Any) -> Any:
+            return ((p[3] * u + p[2]) * u + p[1]) * u + p[0]
+
+        def slope(u: Any) -> Any:
+            return (ops.number(3.0) * p[3] * u + ops.number(2.0) * p[2]) * u + p[1]
+
+        first, last = value(low), value(high)
+        inner = [ops.select(s0 < nought, -x, x) for x in (first + third * slope(low), last - third * slope(high))]
+        rise = last - first
+        guess, none = low - (high - low) * first / rise, nought * low
+        begin = [rise, low, high, guess, none, none, ops.select(folded, nought, one + none)]
+
+        def parted() -> list[Any]:
+            """Of a piece that turns back: the part that is met first, and where it turns back."""
+            root = ops.sqrt(ops.maximum(p[2] * p[2] - ops.number(3.0) * p[3] * p[1], nought))
+            w = -(p[2] + ops.times_sign(root, p[2]))
+            near, other = p[1] / w, w / (ops.number(3.0) * p[3])
+            m = ops.select((low <= near) & (near <= high), near, other)
+            m = least(ops, most(ops, m, low), high)
+            x, y, dx, dy, ax, ay = evaluated(ops, row, m)
+            at_m, bend = value(m), plane.cross(v, (ax, ay))
+            t, forward = plane.dot(v, (x - z0[0], y - z0[1])), nought < plane.dot(v, (dx, dy))
+            onward = nought < t
+            left = (forward & onward) | ops.negated(forward | onward)
+            reach = ops.sqrt(ops.maximum(-(at_m + at_m) / bend, nought))
+            back = ops.select(onward, ops.select(left, one, -one), nought)
+            found = [
+                ops.select(left, at_m - first, last - at_m),
+                ops.select(left, low, m),
+                ops.select(left, m, high),
+                ops.select(left, most(ops, m - reach, low), least(ops, m + reach, high)),
+                back,
+                m,
+                ops.select(ops.select(s0 < nought, -at_m, at_m) < nought, one, nought),
+            ]
+            return [ops.select(folded, x, y) for x, y in zip(found, begin, strict=True)]
+
+        rise, bottom, top, guess, back, m, meets = ops.when(
+            reached & folded & (least(ops, *inner) <= nought), begin, parted
+        )
+        meets = reached & (half < meets)
+
+        def arrival(rise: Any, bottom: Any, top: Any, guess: Any, meets: Any, best: list[Any]) -> tuple[Any, Any]:
+            sign = ops.times_sign(one, rise)
+            at = ops.polynomial_zero([sign * x for x in p], guess, bottom, top, one, (0, 3), meets)
+            x, y, *_ = evaluated(ops, row, at)
+            t = plane.dot(v, (x - z0[0], y - z0[1]))
+            nearer = meets & (nought < t) & (t < best[0])
+            return t, [ops.select(nearer, new, old) for new, old in zip([t, where, at], best, strict=True)]
+
+        t, best = arrival(rise, bottom, top, guess, meets, best)
+        behind = meets & (t <= nought) & (half < modulus(back))
+
+        def other() -> list[Any]:
+            """The other part, where the first zero lies behind the departure."""
+            left = back < nought
+            ends = ops.select(left, low, m), ops.select(left, m, high)
+            return list(arrival(-rise, *ends, half * (ends[0] + ends[1]), behind, best)[1])
+
+        return list(ops.when(behind, best, other))
+
+    def _nearest(self, ops: Any, start: Pair[Any], own: list[Any], z0: Pair[Any], v: Pair[Any]) -> list[Any]:
+        """The nearest landing: down the tree wherever the flight meets a box before the best so far.
+
+        With more digits than doubles have, every zero on a piece is sought as on any table: nothing is shared there
+        with what is found by boxes, which can be held against it.
+        """
+        component, theta = start
+        one, half, nought, far = (ops.number(x) for x in (1.0, 0.5, 0.0, FAR))
+        exact, each = getattr(ops, "context", None) is not None, nought * theta
+        size, end = (modulus(v[0]), modulus(v[1])), ops.number(float(len(self.tree)))
+        best, sides = [far + each, component + each, theta], (nought, nought)
+        if not exact:
+            best, sides = self._own(ops, start, own, v, best)
+
+        def walked(state: list[Any]) -> list[Any]:
             """On to the next node, until a piece is reached or the tree is at its end."""
             node, _, best = state
-            inside = meets(node, best)
-            found = ops.select(inside, column(tree.piece, node), -ops.number(1.0))
-            return [ops.select(inside, node + ops.number(1.0), column(tree.skip, node)), found, best]
+            x, y, wide, high, skip, piece, *_ = ops.look_up_row(self.tree, node)
+            c = x - z0[0], y - z0[1]
+            reach, away = size[0] * wide + size[1] * high, plane.dot(v, c)
+            beside = modulus(plane.cross(v, c)) <= size[1] * wide + size[0] * high
+            meets = beside & (nought < away + reach) & (away - reach < best)
+            return [ops.select(meets, node + one, skip), ops.select(meets, piece, -one), best]
 
-        def tried(state: list[N]) -> list[N]:
+        def tried(state: list[Any]) -> list[Any]:
             node, *best = state
-            waiting = [node, -ops.number(1.0) + nought * node, best[0]]
             node, piece, _ = ops.repeat(
-                lambda at: (at[1] < -half) & (at[0] < end - half), walked, waiting, len(tree.skip) + 1
+                lambda at: (at[1] < -half) & (at[0] < end - half),
+                walked,
+                [node, each - one, best[0]],
+                len(self.tree) + 1,
             )
             reached = -half < piece
-            index, low, high = (ops.look_up([ops.number(row[i]) for row in tree.pieces], piece) for i in range(3))
+            index, low, high, _ = ops.look_up_row([box.numbers[8:12] for box in self.boxes], ops.maximum(piece, nought))
+            if not exact:
+                elsewhere = reached & (half * half < modulus(index - component))
+                return [node, *self._met(ops, [ops.select(elsewhere, far, -far), piece], component, sides, z0, v, best)]
             row = self._row(ops, index)
-            curve: Callable[[N], list[N]] = lambda at: evaluated(ops, row, at)  # noqa: E731
-            hit = self._hits(ops, curve, (index, low, high, high - low), start, z0, v, best)
+            hit = self._hits(
+                ops, lambda at: evaluated(ops, row, at), (index, low, high, high - low), start, z0, v, best
+            )
             return [node, *(ops.select(reached, new, old) for new, old in zip(hit, best, strict=True))]
 
-        begin = nought * start[1]
-        state = [begin, ops.number(FAR) + begin, start[0] + begin, start[1] + begin]
-        return ops.repeat(lambda at: at[0] < end - half, tried, state, len(tree.skip) + 1)[1:]
+        return list(ops.repeat(lambda at: at[0] < end - half, tried, [each, *best], len(self.tree) + 1))[1:]
 
 
 def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
@@ -182,51 +365,14 @@ def evaluated(ops: Backend[N, M], row: Sequence[N], u: N) -> list[N]:
     return [value for pair in zip(*values, strict=True) for value in pair]
 
 
-class Tree(NamedTuple):
-    """A tree of boxes in the order of a walk through it: a box that is not met leads on to the node `skip`.
-
-    `piece` is that of a leaf, else -1; `pieces` are a component and the ends of its parameter.
-    """
-
-    x: list[float]
-    y: list[float]
-    wide: list[float]
-    high: list[float]
-    skip: list[float]
-    piece: list[float]
-    pieces: list[tuple[float, float, float]]
+def least(ops: Any, x: Any, y: Any) -> Any:
+    """The smaller one."""
+    return ops.select(x < y, x, y)
 
 
-def grown(boundary: Boundary, pieces: Sequence[tuple[int, float, float]]) -> Tree:
-    """The tree of pieces in the order of the boundary, halved again and again."""
-    boxes = []
-    for index, low, high in pieces:
-        theta = np.linspace(low, high, 17)
-        x, y, _, _, ax, ay = boundary.curve(np.full(theta.shape, index), theta)
-        bulge = (high - low) ** 2 / 16**2 / 4 * max(np.max(np.abs(ax)), np.max(np.abs(ay)))
-        boxes.append((x.min() - bulge, x.max() + bulge, y.min() - bulge, y.max() + bulge))
-    slack = WIDER * max(abs(side) for box in boxes for side in box)
-    tree = Tree([], [], [], [], [], [], [(float(i), low, high) for i, low, high in pieces])
-
-    def node(first: int, last: int) -> None:
-        held = boxes[first:last]
-        left, right = min(b[0] for b in held), max(b[1] for b in held)
-        low, high = min(b[2] for b in held), max(b[3] for b in held)
-        at = len(tree.skip)
-        tree.x.append(float(left + right) / 2)
-        tree.y.append(float(low + high) / 2)
-        tree.wide.append(float(right - left) / 2 + slack)
-        tree.high.append(float(high - low) / 2 + slack)
-        tree.skip.append(0.0)
-        tree.piece.append(float(first) if last - first == 1 else -1.0)
-        if last - first > 1:
-            middle = (first + last) // 2
-            node(first, middle)
-            node(middle, last)
-        tree.skip[at] = float(len(tree.skip))
-
-    node(0, len(pieces))
-    return tree
+def most(ops: Any, x: Any, y: Any) -> Any:
+    """The larger one."""
+    return ops.select(y < x, x, y)
 
 
 def convex(boundary: Boundary) -> bool:

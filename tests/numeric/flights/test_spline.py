@@ -14,6 +14,8 @@ from numeric.kernels.machine import KernelSpec
 from numeric.pinball.coordinates import States
 from symbolic import tables
 from verification.maps.exact import ExactMap, errors
+from verification.measure.extremes.by_hand import cubic_hits
+from verification.measure.extremes.orbits import bounced, spline_cases
 
 
 def wavy(count, depth):
@@ -54,6 +56,7 @@ def starts(map, count, steep=1.45):
 def test_a_bounce_is_right_to_the_last_bits(name):
     map = mapped(name)
     assert map.family.name == "spline"
+    assert map.family.few
     assert map.family.convex == (name in ("convex", "many"))
     where, at, phi = starts(map, 12)
     own = map.states.enter(where, at, phi, map.law)
@@ -80,6 +83,25 @@ def test_the_first_hit_is_that_of_the_flight_that_tries_every_piece(name):
     assert np.mean(both) > 0.999
     off = both & (np.hypot(a.x - b.x, a.y - b.y) * np.cos(a.eta) > 1e-12)
     assert not np.any(off)
+
+
+@pytest.mark.parametrize("name", ["convex", "dented", "holed", "from a tree"])
+def test_hard_flights_land_where_every_zero_of_every_cubic_in_eighty_bits_says(name):
+    """Short ones along the wall among them, whose landing lies within 1e-12 of the start."""
+    tree = name == "from a tree"
+    map = PinballMap(TABLES["dented"](), lam=0.9, kernels=False) if tree else mapped(name)
+    if tree:
+        map.family.few = False  # as where there are more than `numeric.flights.spline.SCANNED` pieces
+    lost = 0
+    for case in spline_cases(name, map, 1000):
+        own, after, going = bounced(case)
+        truth = cubic_hits(map, own)
+        x, y = map.states.point(after[0].astype(int), after[1])
+        size, sure = max(np.max(np.abs(x)), np.max(np.abs(y))), going & truth.sure
+        aside = (np.hypot(x - truth.x, y - truth.y).astype(float)[sure]) * truth.straight[sure]
+        assert np.all(aside < 4 * 2.0**-52 * size), case.label
+        lost += np.sum(truth.sure & ~going)
+    assert lost == 0 or map.family.convex  # what stops a particle is an end of a piece within rounding
 
 
 @pytest.mark.parametrize("name", ["many", "dented"])

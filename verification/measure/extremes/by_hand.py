@@ -260,3 +260,80 @@ def judged(map: PinballMap, starts: Starts) -> Verdict:
     with np.errstate(invalid="ignore"):
         aside = np.hypot(landed[0] - truth.x, landed[1] - truth.y).astype(float) * truth.straight / truth.size
     return Verdict(stopped, wrong, np.where(stopped, 0, aside / 2.0**-52), np.where(stopped, truth.aside, 0))
+
+
+class CubicHit(NamedTuple):
+    """First hits on a boundary of cubics; where all that lies ahead is in doubt by rounding, `sure` is false."""
+
+    x: Any
+    y: Any
+    straight: Any  # cosine of the incidence angle
+    sure: Any
+
+
+def cubic_hits(map: PinballMap, fields: list[Any]) -> CubicHit:
+    """Of particles on pieces cubic in `theta` from 0 to 1: every zero of every cubic, halved to its last bit in 80.
+
+    Of the cubic from which a particle leaves the known zero is divided out. `sure` is false where a line passes an end
+    of a piece or a tangent by less than `2**-44` of the table, before the hit or at it.
+    """
+    ops: Any = Wide()
+    rows = [[WIDE(x) for x in program(ops)] for _, program in map.ir.programs]
+    table = max(abs(float(x)) for row in rows for x in (row[0], row[4])) + 1e-300
+    at, theta = fields[0].astype(int), fields[1].astype(WIDE)
+    own = np.array(rows)[at].T
+    z = [((r[3] * theta + r[2]) * theta + r[1]) * theta + r[0] for r in (own[:4], own[4:])]
+    v = np.array(fields[2:4]).astype(WIDE)
+    v = v / np.hypot(*v)
+    count, nought = theta.size, 0 * theta
+    best, straight, doubt = nought + np.inf, nought.copy(), nought + np.inf
+    for j, row in enumerate(rows):
+        leaves = at == j
+        plain = [np.array([row[i] + nought, row[i + 4] + nought]) for i in range(4)]
+        plain[0] = plain[0] - z
+        second, first = plain[2] + 3 * theta * plain[3], plain[1] + (2 * plain[2] + 3 * theta * plain[3]) * theta
+        moved = [first, second, plain[3], 0 * plain[3]]  # by the way from `theta`, the known zero divided out
+        terms = [np.where(leaves, a, b) for a, b in zip(moved, plain, strict=True)]
+        low, high = np.where(leaves, -theta, 0), np.where(leaves, 1 - theta, 1)
+        p = [_cross(v, term) for term in terms]
+        root = np.sqrt(np.maximum(p[2] ** 2 - 3 * p[3] * p[1], 0))
+        w = -(p[2] + np.where(p[2] < 0, -root, root))
+        with np.errstate(all="ignore"):
+            turns = [np.where(leaves, -p[1] / (2 * p[2]), w / (3 * p[3])), np.where(leaves, np.nan, p[1] / w)]
+        cuts = np.sort([low, high, *(np.clip(np.nan_to_num(turn), low, high) for turn in turns)], axis=0)
+        for k, cut in enumerate(cuts):  # ends and tangents that the line all but touches
+            ahead = _length(v, terms, cut, leaves)
+            miss = abs(_value(p, cut) * np.where(leaves, cut, 1))
+            close = (miss < 2.0**-44 * table) & (
+                (ahead > 2.0**-44 * table) | (~leaves & (abs(ahead) < 2.0**-44 * table))
+            )
+            doubt = np.where(close & (k >= 0), np.minimum(doubt, ahead), doubt)
+        for a, b in pairwise(cuts):
+            f, g = _value(p, a), _value(p, b)
+            here = np.flatnonzero((f < 0) != (g < 0))
+            if here.size:
+                q, a, b, up = [x[here] for x in p], a[here], b[here], (f < 0)[here]
+                for _ in range(66):
+                    middle = (a + b) / 2
+                    left = (_value(q, middle) < 0) == up
+                    a, b = np.where(left, middle, a), np.where(left, b, middle)
+                some = [term[:, here] for term in terms]
+                t = _length(v[:, here], some, b, leaves[here])
+                nearer = (t > 0) & (t < best[here])
+                u = b + np.where(leaves[here], theta[here], 0)
+                d = np.array([row[1] + (2 * row[2] + 3 * row[3] * u) * u, row[5] + (2 * row[6] + 3 * row[7] * u) * u])
+                straight[here] = np.where(nearer, abs(_cross(v[:, here], d)) / np.hypot(*d), straight[here])
+                best[here] = np.where(nearer, t, best[here])
+    x, y = (z[i] + best * v[i] for i in (0, 1))
+    assert x.size == count
+    return CubicHit(x, y, straight.astype(float), np.isfinite(best) & ~(doubt < best + 2.0**-40 * table))
+
+
+def _value(p: list[Any], x: Any) -> Any:
+    return ((p[3] * x + p[2]) * x + p[1]) * x + p[0]
+
+
+def _length(v: Any, terms: list[Any], x: Any, leaves: Any) -> Any:
+    """How far along the line a point of a cubic lies, whose terms come with the known zero divided out or not."""
+    along = _value([v[0] * term[0] + v[1] * term[1] for term in terms], x)
+    return np.where(leaves, along * x, along)

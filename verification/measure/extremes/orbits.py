@@ -313,6 +313,37 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
         yield Case(f"{name}, tangent to a bulge", map, zero[good], back.theta[good], aim[good])
 
 
+def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
+    """`count` balls of every kind on a table of pieces cubic in `theta` from 0 to 1."""
+    rng, parts = np.random.default_rng(seed), len(map.ir.parts)
+    side, tiny = rng.choice([-1, 1], count), 10.0 ** rng.uniform(-12, -1, count)
+    at, theta = rng.integers(0, parts, count), rng.uniform(0, 1, count)
+    end = np.where(side > 0, tiny, 1 - tiny)
+    angle = np.arcsin(rng.uniform(-1, 1, count) * (1 - 1e-12))
+    along = rng.choice([-1, 1], count) * (np.pi / 2 - rng.permutation(tiny))
+    yield Case(f"{name}, random", map, at, theta, angle)
+    yield Case(f"{name}, grazing to 1e-12", map, at, theta, along)
+    yield Case(f"{name}, from the end of a piece", map, at, end, angle)
+    yield Case(f"{name}, along the wall from the end of a piece", map, at, end, along)
+    x, y = map.states.point(at, theta)
+    corner = map.states.point(rng.integers(0, parts, count), np.zeros(count))
+    aim = map.states.angle_to_normal(at, theta, corner[0] - x, corner[1] - y) + side * tiny
+    good = np.abs(aim) < 1.57
+    yield Case(f"{name}, aimed at the end of a piece", map, at[good], theta[good], aim[good])
+    bent = np.concatenate(
+        [map.states.boundary.bending(np.full(101, i), np.linspace(0, 1, 101))[1] for i in range(parts)]
+    )
+    if not np.any(bent > 1e-3):
+        return
+    bulge = rng.choice(np.flatnonzero(bent > 1e-3), count)
+    where, touched = bulge // 101, np.clip(bulge % 101 / 100 + rng.uniform(-0.005, 0.005, count), 0, 1)
+    back = map.step(touched, side * (np.pi / 2 - 1e-9), where)  # back from where a tangent ends
+    x, y = map.states.point(where, touched)
+    aim = map.states.angle_to_normal(back.component, back.theta, x - back.x, y - back.y) + side * tiny
+    good = (np.abs(aim) < 1.57) & (back.code == 0)
+    yield Case(f"{name}, tangent to a bulge", map, back.component[good], back.theta[good], aim[good])
+
+
 def _cuspless(rng: np.random.Generator, side: Any, tiny: Array, angle: Array) -> Iterator[Case]:
     map, count = PinballMap("cuspless", lam=LAM), angle.size
     zero, join = np.zeros(count, dtype=np.int64), 2 * np.pi / 3

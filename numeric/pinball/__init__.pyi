@@ -2,12 +2,14 @@
 
 from . import sampling
 from .map import PinballMap
-from .orbits import PIECE, Course
+from .orbits import HUGE, LARGE, PIECE, Course
 from .sampling import GENERIC, Growth, Starts, boundary, interior_starts, phase_grid, phase_starts
 from .states import MEANINGS, STATUSES, UNITS, Exponents, Orbit, Slap, counted
 
 __all__ = [
     "GENERIC",
+    "HUGE",
+    "LARGE",
     "MEANINGS",
     "PIECE",
     "STATUSES",

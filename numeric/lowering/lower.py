@@ -8,12 +8,12 @@ from collections.abc import Callable
 from functools import reduce
 from typing import Any
 
-from sympy import Add, Dummy, Expr, Float, I, Mul, Pow, S, Symbol, cos, expand, pi, sin, sqrt, tan
+from sympy import Abs, Add, Dummy, Expr, Float, I, Mul, Pow, S, Symbol, cos, expand, pi, sin, sqrt, tan
 from sympy import sympify as exact
 
 from numeric.lowering.program import Builder, LawIR, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
-from symbolic.expressions.signs import vanishes
+from symbolic.expressions.signs import Box, vanishes
 from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, waves
@@ -23,7 +23,7 @@ from symbolic.tables.law import Law
 from symbolic.tables.polynomial import cubic
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Component, Table, eta, lam, theta
-from symbolic.tables.validity import closed_and_finite
+from symbolic.tables.validity import closed_and_finite, parameter_box, root
 
 DEEP = 12  # operations within each other, beyond which derivatives are not written out
 DEGREE = 16  # the highest harmonic of a chord polynomial: its text grows with the third power
@@ -348,7 +348,7 @@ def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     def program(numbers: list[Expr]) -> Program:
         return _program(symbols, lambda nodes: [nodes(x) for x in numbers])
 
-    found = [_piece(component) for component in table.components]
+    found = [_piece(component, parameter_box(table)) for component in table.components]
     if None in found:
         found = [("cubic", [*c[0], *c[1]]) if c is not None else None for c in map(cubic, table.components)]
     known = [piece for piece in found if piece is not None]
@@ -366,8 +366,11 @@ def _polynomial_curve(nodes: Any, known: list[list[Expr]]) -> list[Any]:
     return found
 
 
-def _piece(component: Component) -> tuple[str, list[Expr]] | None:
-    """A component's kind and its fourteen numbers, in the order in which the flight reads them."""
+def _piece(component: Component, ranges: Box) -> tuple[str, list[Expr]] | None:
+    """A component's kind and its fourteen numbers, in the order in which the flight reads them.
+
+    A circle of which the ranges of the parameters leave the radius' sign open is an ellipse.
+    """
     x, y = component.point
     low, high = component.start, component.end
     corner = component.at(low)
@@ -388,8 +391,9 @@ def _piece(component: Component) -> tuple[str, list[Expr]] | None:
     D = expand(A[0] * B[1] - A[1] * B[0])
     middle, half = (low + high) / 2, (high - low) / 2
     marks = [cos(middle), sin(middle), sin(half), cos(half)]
-    radius = sqrt(square) if circular else S.One
-    return "circle" if circular else "ellipse", [*centre, *A, *B, *corner, D, radius, *marks]
+    radius = root(square, ranges) if square.free_symbols else sqrt(square)
+    circular = circular and not radius.has(Abs)
+    return "circle" if circular else "ellipse", [*centre, *A, *B, *corner, D, radius if circular else S.One, *marks]
 
 
 def _bound(value: Expr) -> str | None:

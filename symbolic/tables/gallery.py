@@ -131,10 +131,11 @@ def named(name: str, K: int = 3) -> Table:
 
 
 Number: TypeAlias = Expr | int | str
+Length: TypeAlias = Number | Shape  # a `Shape` stays free, so that the length may vary
 HALF = Rational(1, 2)
 
 
-def polygon(*corners: tuple[Number, Number], name: str = "polygon") -> Table:
+def polygon(*corners: tuple[Number, Number], name: str = "polygon", shapes: Iterable[Shape] = ()) -> Table:
     """The table with these corners, in counterclockwise order.
 
     >>> [side.name for side in polygon((0, 0), (1, 0), (0, 1)).components]
@@ -142,7 +143,7 @@ def polygon(*corners: tuple[Number, Number], name: str = "polygon") -> Table:
     """
     if len(corners) < 3:
         raise ValueError(f"{name}: {len(corners)} corners make no polygon; give at least 3")
-    return piecewise(*_sides(corners), name=name)
+    return piecewise(*_sides(corners), name=name, shapes=shapes)
 
 
 def regular(n: int, radius: Number = 1) -> Table:
@@ -159,27 +160,27 @@ def regular(n: int, radius: Number = 1) -> Table:
     return Table(f"regular{n}", tuple(_sides(corners)))  # convex, so that nothing need be proved of it
 
 
-def square(side: Number = 1) -> Table:
+def square(side: Length = 1) -> Table:
     """The square with a corner at the origin.
 
     >>> square().components[2].at(S.Zero)
     (1, 1)
     """
     a = _positive("square: side", side)
-    return polygon((0, 0), (a, 0), (a, a), (0, a), name="square")
+    return polygon((0, 0), (a, 0), (a, a), (0, a), name="square", shapes=_free(side))
 
 
-def triangle(side: Number = 1) -> Table:
+def triangle(side: Length = 1) -> Table:
     """The equilateral triangle on the x axis.
 
     >>> triangle(2).components[2].at(S.Zero)
     (1, sqrt(3))
     """
     a = _positive("triangle: side", side)
-    return polygon((0, 0), (a, 0), (a / 2, a * sqrt(3) / 2), name="triangle")
+    return polygon((0, 0), (a, 0), (a / 2, a * sqrt(3) / 2), name="triangle", shapes=_free(side))
 
 
-def stadium(straight: Number = 2, radius: Number = 1) -> Table:
+def stadium(straight: Length = 2, radius: Length = 1) -> Table:
     """Two half circles joined by straight sides of length `straight`. [Bunimovich1979]
 
     >>> stadium().components[0].at(S.Zero)
@@ -192,10 +193,11 @@ def stadium(straight: Number = 2, radius: Number = 1) -> Table:
         arc("left", -half - r * cos(theta), -r * sin(theta), -pi / 2, pi / 2),
         arc("bottom", theta, -r, -half, half),
         name="stadium",
+        shapes=_free(straight, radius),
     )
 
 
-def reuleaux(radius: Number = 1) -> Table:
+def reuleaux(radius: Length = 1) -> Table:
     """The Reuleaux triangle: three arcs of this radius, each about the corner opposite to it.
 
     >>> reuleaux().components[0].at(S.Zero)
@@ -205,27 +207,28 @@ def reuleaux(radius: Number = 1) -> Table:
     corners = [(S.Zero, S.Zero), (r, S.Zero), (r / 2, r * sqrt(3) / 2)]
     starts = [S.Zero, 2 * pi / 3, -2 * pi / 3]
     arcs = [round_arc(f"arc{i}", corners[i - 1], r, starts[i - 1], starts[i - 1] + pi / 3) for i in (1, 2, 3)]
-    return piecewise(*arcs, name="reuleaux")
+    return piecewise(*arcs, name="reuleaux", shapes=_free(radius))
 
 
-def lemon(half_angle: Number = "1/3") -> Table:
+def lemon(half_angle: Length = "1/3") -> Table:
     """Two arcs of the unit circle with two corners; each arc subtends `2*pi*half_angle`, less than a half turn.
 
     >>> lemon("1/3").components[0].at(S.Zero)
     (1/2, 0)
     """
-    share = exact_number("lemon: half_angle", half_angle)
-    if not 0 < share < HALF:
+    share, low, high = _within("lemon: half_angle", half_angle)
+    if not 0 < low <= high < HALF:
         raise ValueError(f"lemon: half_angle = {half_angle} is out of range; accepted: numbers between 0 and 1/2")
     angle, shift = share * pi, cos(share * pi)
     return piecewise(
         round_arc("right", (-shift, 0), S.One, -angle, angle),
         arc("left", shift - cos(theta), -sin(theta), -angle, angle),
         name="lemon",
+        shapes=_free(half_angle),
     )
 
 
-def semi_ellipse(a: Number = 2) -> Table:
+def semi_ellipse(a: Length = 2) -> Table:
     """The upper half of the ellipse with half axes `a` and 1.
 
     >>> semi_ellipse().components[0].at(pi / 2)
@@ -233,17 +236,17 @@ def semi_ellipse(a: Number = 2) -> Table:
     """
     half = _positive("semi_ellipse: a", a)
     top = arc("top", half * cos(theta), sin(theta), S.Zero, pi)
-    return piecewise(top, arc("base", theta, S.Zero, -half, half), name="semi_ellipse")
+    return piecewise(top, arc("base", theta, S.Zero, -half, half), name="semi_ellipse", shapes=_free(a))
 
 
-def mushroom(stem: Number = "1/2", foot: Number = 1) -> Table:
+def mushroom(stem: Length = "1/2", foot: Length = 1) -> Table:
     """A half disc of radius 1 on a stem of half width `stem` and length `foot`.
 
     >>> mushroom().components[3].at(S.Zero)
     (0, -1)
     """
     w, h = _positive("mushroom: stem", stem), _positive("mushroom: foot", foot)
-    if not w < 1:
+    if not _within("mushroom: stem", stem)[2] < 1:
         raise ValueError(f"mushroom: stem = {stem} is wider than the cap; accepted: numbers between 0 and 1")
     return piecewise(
         round_arc("cap", (0, 0), S.One, 0, pi),
@@ -253,18 +256,21 @@ def mushroom(stem: Number = "1/2", foot: Number = 1) -> Table:
         arc("right side", w, theta, -h, 0),
         arc("right brim", theta, 0, w, 1),
         name="mushroom",
+        shapes=_free(stem, foot),
     )
 
 
-def sinai(radius: Number = "1/4") -> Table:
+def sinai(radius: Length = "1/4") -> Table:
     """The unit square about the origin with a disc of this radius in its middle.
 
     >>> [part.name for part in sinai().components]
     ['side1', 'side2', 'side3', 'side4', 'disc']
     """
     r = _positive("sinai: radius", radius)
+    if not _within("sinai: radius", radius)[2] < HALF:
+        raise ValueError(f"sinai: radius = {radius} is too large for the cell; accepted: numbers between 0 and 1/2")
     sides = _sides([(-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF)])
-    return piecewise(*sides, disc("disc", (0, 0), r), name="sinai")
+    return piecewise(*sides, disc("disc", (0, 0), r), name="sinai", shapes=_free(radius))
 
 
 def diamond() -> Table:
@@ -311,11 +317,24 @@ def _sides(corners: Sequence[tuple[Number, Number]]) -> list[Component]:
     ]
 
 
-def _positive(label: str, given: Number) -> Expr:
+def _within(label: str, given: Length) -> tuple[Expr, Expr, Expr]:
+    """A length, or the symbol of one that stays free, and the ends between which it lies."""
+    if isinstance(given, Shape):
+        return given.symbol, given.range.start, given.range.end
     value = exact_number(label, given)
-    if not value.is_positive:
-        raise ValueError(f"{label} = {given} is no length; accepted: positive numbers")
+    return value, value, value
+
+
+def _positive(label: str, given: Length) -> Expr:
+    value, low, _ = _within(label, given)
+    if not low.is_positive:
+        raise ValueError(f"{label} = {low} is no length; accepted: positive numbers")
     return value
+
+
+def _free(*lengths: Length) -> list[Shape]:
+    """Those that stay free."""
+    return [length for length in lengths if isinstance(length, Shape)]
 
 
 GALLERY: Mapping[str, Callable[..., Table]] = MappingProxyType(

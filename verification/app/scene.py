@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text
+from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text, range_ends, range_text
 from symbolic.tables.law import Law, parameters_of_law
 from symbolic.tables.scene import Scene
 
@@ -74,7 +74,8 @@ def scene(
     value = _contraction(lam)
     numbers |= {parameter: parameter_text(f"--shape {parameter}", text) for parameter, text in own.items()}
     if table in GALLERY:
-        return Scene(_of_gallery(table, values), lam=value, law=law, **numbers)
+        made, ranged = _of_gallery(table, values)
+        return Scene(made, lam=value, law=law, **(numbers | ranged))
     if table:
         return Scene(table, lam=value, law=law, K=POINTS if K is None else K, **numbers)
     try:
@@ -133,11 +134,24 @@ def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
     return tuple(text for text in given if text not in varied), next(iter(varied), None)
 
 
-def _starting(given: tuple[str, ...], axis: str, known: set[str]) -> tuple[str, ...]:
-    """What --shape sets, with the lower end for the parameter that varies where nothing else gives it a number."""
-    name, equals, ends = axis.partition("=")
-    known |= {text.partition("=")[0].strip() for text in given}
-    return given if not equals or name.strip() in known else (*given, f"{name}={ends.partition(':')[0]}")
+def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool) -> tuple[str, ...]:
+    """What --shape sets, with the lower end for the parameter that varies where nothing else gives it a number.
+
+    A length of a table `by_name` is a parameter because it varies: it is given the ends for its range.
+
+    >>> _starting(("straight=2",), "straight=1:3:9", set(), True)
+    ('straight=2:1..3',)
+    """
+    name, equals, ends = (part.strip() for part in axis.partition("="))
+    if not equals:
+        return given
+    low, high = (*ends.split(":"), "")[:2]
+    said = {text.partition("=")[0].strip(): text for text in given}
+    if by_name and high not in ("", low) and ":" not in said.get(name, ""):
+        said[name] = f"{said.get(name, f'{name}={low}')}:{low}..{high}"
+    elif name not in known:
+        said.setdefault(name, f"{name}={low}")
+    return tuple(said.values())
 
 
 def _from_file(
@@ -156,21 +170,28 @@ def _from_file(
     return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)
 
 
-def _of_gallery(name: str, values: dict[str, str]) -> Any:
-    """One of the gallery's tables, with the lengths that were given."""
+def _of_gallery(name: str, values: dict[str, str]) -> "tuple[Table, dict[str, str]]":
+    """One of the gallery's tables, with the lengths that were given; those with a range stay free, and have text."""
     from inspect import signature
 
+    from sympy import Interval, Symbol
+
     from symbolic.tables.gallery import GALLERY as MAKERS
+    from symbolic.tables.table import Shape
 
     make = MAKERS[name]
     known = list(signature(make).parameters)
-    for key in values:
+    lengths: dict[str, Any] = {}
+    ranged = {key: parameter_text(f"--shape {key}", text) for key, text in values.items() if ":" in text}
+    for key, text in values.items():
         if key not in known:
             raise ValueError(f"{name}: --shape {key} is none of its lengths; accepted: {', '.join(known) or 'none'}")
-    for key, text in values.items():
-        if ":" in text:
-            raise ValueError(f"{name}: --shape {key}={text}: a length has no range; accepted: one number")
-    return make(**{key: exact(f"--shape {key}", text) for key, text in values.items()})
+        if key in ranged:
+            ends = Interval(*range_ends(key, range_text(ranged[key])))
+            lengths[key] = Shape(Symbol(key, real=True), ends, "is outside of the range that was given")
+        else:
+            lengths[key] = exact(f"--shape {key}", text)
+    return make(**lengths), ranged
 
 
 def _fitting(name: str, known: tuple[str, ...], shape: dict[str, str | None]) -> dict[str, str]:
@@ -247,7 +268,8 @@ def table_options(command: Command, varies: bool = False, optional: bool = False
         if varies:
             others["axis"] = axis
             if axis is not None and file is None:
-                given = _starting(given, axis, {key for key, text in (("a", a), ("alpha", alpha)) if text is not None})
+                known = {key for key, text in (("a", a), ("alpha", alpha)) if text is not None}
+                given = _starting(given, axis, known, table in GALLERY)
         elif axis is not None:
             raise ValueError(f"--shape {axis} varies a parameter; this command takes one number, as in b=1/10")
         if optional:

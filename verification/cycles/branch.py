@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 
 NOISE = 1e-9  # a test function that small has no sign
+APPROACHES = 3  # to a join, whose parameter may depend on that of the branch
+DIFFERENCE = 2.0**-20  # of the parameter, to see how a join moves
 NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
 Interval = tuple[float, float]
 
@@ -236,18 +238,24 @@ def _form(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, par
 
 def border(system: Cycles, last: Point) -> Event | None:
     """The border collision next to the last point of a path, where a bounce lies on the join itself."""
-    ring = system.recurrence
-    joins = ring.nearest_joins(last.z[:-1]) if isinstance(ring, Chords) else []
-    gaps = [(abs(end - last.z[i]), i, end) for i, end in enumerate(joins) if end is not None]
+    ring, z = system.recurrence, last.z
+    if not isinstance(ring, Chords):
+        return None
+    gaps = [(abs(end - z[i]), i) for i, end in enumerate(ring.nearest_joins(z[:-1], system.at(z))) if end is not None]
     if not gaps or min(gaps)[0] > 1e-3:
         return None
-    _, bounce, end = min(gaps)
-    row = np.zeros(len(last.z))
-    row[bounce] = 1.0
-    try:
-        z, _ = arc.corrected(system, last.z, row, end)
-    except LostError:
-        return None
+    bounce = min(gaps)[1]
+    for _ in range(APPROACHES):
+        here, beside = z, np.append(z[:-1], z[-1] + DIFFERENCE)
+        ends = [ring.nearest_joins(at[:-1], system.at(at))[bounce] or 0.0 for at in (here, beside)]
+        row = np.zeros(len(z))
+        row[bounce], row[-1] = 1.0, -(ends[1] - ends[0]) / DIFFERENCE
+        try:
+            z, _ = arc.corrected(system, z, row, ends[0] + row[-1] * here[-1])
+        except LostError:
+            return None
+        if not row[-1]:
+            break
     return Event(BifurcationKind.BORDER_COLLISION, Point(z, last.tangent, last.s, last.tests), ring, z[:-1])
 
 

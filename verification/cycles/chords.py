@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from symbolic.expressions.text import load
+from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_angle, chord_kernel, law_kernel
 from symbolic.tables.definition import table_boundary
 from symbolic.tables.law import PAPERS_LAW, Law
@@ -189,10 +189,10 @@ class Chords:
     def obstacle(self, x: Array, at: Parameters) -> str:
         """A bounce beyond its component, or next to its neighbour."""
         if len(self.table.components) > 1:
+            ends = self.ends(at)
             for i, (part, value) in enumerate(zip(self.components, x, strict=True)):
-                component = self.table.components[part]
-                if not float(component.start) <= value <= float(component.end):
-                    return f"bounce {i} left the {component.name} at theta = {value:.6g}"
+                if not ends[part][0] <= value <= ends[part][1]:
+                    return f"bounce {i} left the {self.table.components[part].name} at theta = {value:.6g}"
         ring, parts = around(self.closure, x), (*self.components, self.components[0])
         apart = np.abs(np.sin((ring[2:] - ring[1:-1]) / 2))
         for i in range(self.period):
@@ -221,12 +221,22 @@ class Chords:
                 return f"the chord from bounce {i} meets the boundary on its way, at theta = {landed.theta[i]:.6g}"
         return ""
 
-    def nearest_joins(self, x: Array) -> list[float | None]:
+    def ends(self, at: Parameters) -> list[tuple[float, float]]:
+        """Where the parameter of each component of the table starts and ends.
+
+        >>> from symbolic.tables import cuspless
+        >>> Chords(cuspless, (1, 0)).ends({})[1]  # the wall
+        (-0.4330127018922193, 0.4330127018922193)
+        """
+        found = _ends(self.table)(*(at[name] for name in self.shapes))
+        return list(zip(map(float, found[::2]), map(float, found[1::2]), strict=True))
+
+    def nearest_joins(self, x: Array, at: Parameters) -> list[float | None]:
         """The nearer end of its component for each bounce; None without joins."""
         if len(self.table.components) == 1:
             return [None] * self.period
-        parts = [self.table.components[part] for part in self.components]
-        both = [(float(c.start), float(c.end)) for c in parts]
+        known = self.ends(at)
+        both = [known[part] for part in self.components]
         return [min(ends, key=lambda e: abs(e - value)) for ends, value in zip(both, x, strict=True)]
 
     def _angles(self, way: int, here: Array, there: Array, shape: list[float], order: int) -> list[Array]:
@@ -240,6 +250,14 @@ class Chords:
                 for row, value in zip(found, angles(*pair, order)(here[chosen], there[chosen], *shape), strict=True):
                     row[chosen] = value
         return list(found)
+
+
+@cache
+def _ends(table: Table) -> Callable[..., Any]:
+    """Start and end of the parameter of every component, one after the other, from the free shapes."""
+    known = [end for component in table.components for end in (component.start, component.end)]
+    named = {f"end{i}": end for i, end in enumerate(known)}
+    return load(kernel("ends", [p.symbol for p in table.shapes], named), FLOAT64)
 
 
 @cache

@@ -26,6 +26,8 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
+from symbolic.tables.curves import curves
+from symbolic.tables.table import Table
 from verification.cycles import arc
 from verification.cycles.arc import End, LostError, Path, Point, Steps
 from verification.cycles.branch import Branch, Event, Interval, through
@@ -129,21 +131,36 @@ def _over_the_join(
     ring, x = branch.system.recurrence, event.x
     if not isinstance(ring, Chords):
         return []
-    joins = [(i, end) for i, end in enumerate(ring.nearest_joins(x)) if end is not None and abs(end - x[i]) < TOUCHING]
+    at = branch.system.at(event.point.z)
+    nearest, ends = ring.nearest_joins(x, at), ring.ends(at)
+    joins = [(i, end) for i, end in enumerate(nearest) if end is not None and abs(end - x[i]) < TOUCHING]
     found = []
     for some in (some for size in range(1, len(joins) + 1) for some in combinations(joins, size)):
         parts, moved, inwards = list(ring.components), x.copy(), {}
         for bounce, end in some:
-            own = ring.table.components[parts[bounce]]
-            after = abs(end - float(own.end)) < TOUCHING
-            parts[bounce] = (parts[bounce] + (1 if after else -1)) % len(ring.table.components)
-            entered = ring.table.components[parts[bounce]]
-            moved[bounce] = float(entered.start if after else entered.end)
+            after = abs(end - ends[parts[bounce]][1]) < TOUCHING
+            parts[bounce] = next_to(ring.table, parts[bounce], after)
+            moved[bounce] = ends[parts[bounce]][0 if after else 1]
             inwards[bounce] = 1.0 if after else -1.0  # parameters grow counterclockwise, from the join inwards
         system = Cycles(replace(ring, components=tuple(parts)), branch.system.parameter, branch.system.fixed)
         other = _inwards(system, np.append(moved, event.value), inwards, interval, steps, tick)
         found += [other] if other else []
     return found
+
+
+def next_to(table: Table, part: int, after: bool) -> int:
+    """The component that follows another one, or comes before it, on the same closed curve.
+
+    >>> from symbolic.tables.gallery import sinai
+    >>> next_to(sinai(), 3, True), next_to(sinai(), 0, False)  # four sides, and a disc
+    (0, 3)
+    """
+    first = 0
+    for curve in curves(table):
+        if part < first + len(curve):
+            break
+        first += len(curve)
+    return first + (part - first + (1 if after else -1)) % len(curve)
 
 
 def _inwards(

@@ -64,7 +64,7 @@ def _bends_inwards(component: Component, table: Table, shape: tuple[arb, ...]) -
         return True
     function = load(kernel("turning", [theta, *(p.symbol for p in table.shapes)], {"bend": bend}), balls(BITS))
     with working(BITS):
-        start, end = (_ball(x) for x in (component.start, component.end))
+        start, end = _ends(component, table, BITS)(*shape)
         queue, spent = [(Fraction(0), Fraction(1))], 0
         while queue:
             low, high = queue.pop()
@@ -111,14 +111,15 @@ def closes_smoothly(table: Table) -> bool:
     return len(table.components) == 1 and bool(part.end - part.start == 2 * pi) and turned
 
 
-def inside(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
+def inside(table: Table, components: tuple[int, ...], zero: list[arb], shape: tuple[arb, ...] = ()) -> bool | None:
     """True when every bounce is proved to lie in the interior of its component, or on a closed one."""
     for index, value in zip(components, zero, strict=False):
         part = table.components[index]
         if len(table.components) == 1 or _whole(part):
             continue
-        if not (value > _ball(part.start) and value < _ball(part.end)):
-            return False if value < _ball(part.start) or value > _ball(part.end) else None
+        start, end = _ends(part, table, BITS)(*shape)
+        if not (value > start and value < end):
+            return False if value < start or value > end else None
     return True
 
 
@@ -146,9 +147,16 @@ def _whole(component: Component) -> bool:
     return bool(component.end - component.start == 2 * pi) and all(map(is_periodic, component.point))
 
 
-def _ball(x: Expr) -> arb:
-    value: arb = load(kernel("end", [], {"end": x}), balls(BITS))()[0] + arb(0)
-    return value
+def _ends(component: Component, table: Table, bits: int) -> Callable[..., tuple[arb, arb]]:
+    """Where a component's parameter starts and ends, in balls, from the free shape parameters."""
+    letters = [p.symbol for p in table.shapes]
+    program = load(kernel("ends", letters, {"start": component.start, "end": component.end}), balls(bits))
+
+    def ends(*shape: arb) -> tuple[arb, arb]:
+        start, end = program(*shape)
+        return start + arb(0), end + arb(0)
+
+    return ends
 
 
 def _exact(x: Fraction) -> arb:
@@ -202,13 +210,7 @@ def _boundary(table: Table, shape: tuple[arb, ...]) -> Boundary:
         program = _places(table, index)
         return lambda at: program(at, *shape)
 
-    ends = [
-        tuple(
-            load(kernel("end", [], {"end": e}), balls(BITS_OF_HIT))()[0] + arb(0)
-            for e in (component.start, component.end)
-        )
-        for component in table.components
-    ]
+    ends = [_ends(component, table, BITS_OF_HIT)(*shape) for component in table.components]
     return Boundary([placed(i) for i in range(len(table.components))], ends)
 
 

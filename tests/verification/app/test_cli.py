@@ -234,6 +234,14 @@ def test_a_table_of_the_gallery_and_a_shape_of_ones_own_are_typed_like_the_paper
     assert set(GALLERY) == set(tables.GALLERY)
 
 
+def test_a_length_with_a_range_is_a_parameter_and_the_others_are_numbers(scenes):
+    assert main(["show", "stadium", "--lam", "9/10", "--shape", "straight=2:1..3", "--shape", "radius=1/2"]) == 0
+
+    ((stadium, table),) = scenes
+    assert stadium.ranges == {"straight": (1, 3)}
+    assert table == tables.stadium(2, Rational(1, 2))
+
+
 def test_a_scene_file_is_taken_by_a_command_and_its_contraction_may_be_changed(scenes, tmp_path):
     path = tmp_path / "sinai.toml"
     path.write_text(Scene(tables.sinai("1/5"), lam="1/2").text)

@@ -6,14 +6,16 @@ from math import pi
 
 import numpy as np
 import pytest
-from sympy import Rational
+from sympy import Interval, Rational, Symbol, solve, sqrt
 
 from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
-from symbolic.tables.table import alpha
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables.gallery import mushroom, semi_ellipse, sinai
+from symbolic.tables.table import Shape, alpha
 from verification.cycles.chords import Chords
 from verification.named.files import checked, document
-from verification.named.questions import bifurcations, certify, find_cycles, follow
+from verification.named.questions import PeriodicOrbit, bifurcations, certify, find_cycles, follow
 
 EGG = Scene("egg", alpha="2/25", lam="1/2")
 
@@ -43,6 +45,50 @@ def test_a_branch_is_followed_to_its_fold_and_the_fold_is_certified():
     assert abs(Rational(found.value) - exact.evalf(40)) <= Rational(found.radius) + Rational(1, 10**39)
     assert branch.flips == branch.pitchforks == branch.border_collisions == ()
     assert str(found).endswith("certified)")
+
+
+def ranged(name, low, high):
+    return Shape(Symbol(name, real=True), Interval(Rational(low), Rational(high)), "lies outside")
+
+
+def test_a_length_of_a_table_of_pieces_varies_and_its_doubling_is_where_the_matrices_say():
+    """Half an ellipse, 1 high: straight down from the top and back, the multipliers are -1 and -lam**2 there."""
+    half = Scene(semi_ellipse(ranged("a", "1/2", 1)), a="9/10", lam="1/2")
+    straight = PeriodicOrbit(half, (0, 1), (pi / 2, 0.0), (0.0, 0.0), (-1.3, -0.2))  # on the base, whose ends move
+    (doubling,) = follow(straight, a=("1/2", "1")).flips
+    found = certify(doubling, digits=20)
+    width = Symbol("width", positive=True)
+    down, up = (
+        derivative_matrix(K0=x, K1=y, t=1, cos_phi0=1, cos_eta1=1, lam=Rational(1, 2)) for x, y in curvatures(width)
+    )
+    (exact,) = solve((up * down).trace() + 1 + Rational(1, 4), width)
+
+    assert found.certified
+    assert exact == sqrt(Rational(9, 10))
+    assert abs(Rational(found.value) - exact.evalf(40)) <= Rational(found.radius) + Rational(1, 10**39)
+
+
+def curvatures(a):
+    """The curvatures at both ends of each flight: the top bends with the radius a**2, the base is straight."""
+    return ((-1 / a**2, 0), (0, -1 / a**2))
+
+
+def test_a_branch_ends_where_the_corner_that_moves_comes_to_a_bounce():
+    """No bounce on a mushroom's cap or brims knows the stem, until the stem is as wide as the bounce is far."""
+    scene = Scene(mushroom(stem=ranged("stem", "1/10", "9/10")), stem="1/5", lam="1/2")
+    bounces = 0.6325819859434174, -0.4334163350532527, 2.509010667646376, 0.4334163350532527
+    square = PeriodicOrbit(scene, (0, 1, 0, 5), bounces, (0.0,) * 4, (5.6, 0.05))
+    branch = follow(square, stem=("1/10", "9/10"))
+    (collision,) = branch.border_collisions
+
+    assert abs(collision.value + bounces[1]) < 1e-14
+    assert max(branch.branch.values) == pytest.approx(collision.value, abs=1e-7)
+
+
+@pytest.mark.parametrize(("low", "high"), [("1/10", "3/5"), ("0", "1/4")])
+def test_a_length_may_not_vary_to_where_there_is_no_table(low, high):
+    with pytest.raises(ValueError, match=r"sinai: radius = .* accepted: "):
+        sinai(ranged("radius", low, high))
 
 
 def test_a_parameter_of_ones_own_varies_as_the_paper_s_do():

@@ -151,7 +151,8 @@ def varied(scene: Scene, shape: str) -> tuple[str, str]:
     known = [*scene.shape, *dict(scene.law.numbers)]
     if not known:
         raise ValueError(
-            f"--shape: {scene.name} has none; accepted: the ellipse, the egg, and tables with parameters of their own"
+            f"--shape: {scene.name} has none; accepted: the ellipse, the egg, and tables with parameters of their own, "
+            f"to which lengths of a table by name belong, as in straight=1:3"
         )
     if given and name not in known:
         raise ValueError(f"--shape {shape}: {name} is no parameter that varies here; accepted: {', '.join(known)}")

@@ -135,7 +135,7 @@ def proved(claim: Claim) -> Proof:
 
 def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shape: tuple[arb, ...]) -> bool | None:
     """In a convex table the bounces lie inside their parts; in any other each chord is examined too."""
-    placed = inside(problem.table, parts, whole)
+    placed = inside(problem.table, parts, whole, shape)
     if placed is not True or convex(problem.table, shape) is True:
         return placed
     return first_hits(problem.table, parts, whole, shape)

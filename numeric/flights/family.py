@@ -166,6 +166,7 @@ class Family(ABC):
     renormalise_every = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
     narrow = 16  # where there are half as many registers, half as long: more would be kept in memory all the time
+    order = ""  # of instructions there: for this kind of processor, where that proved faster than for the one at hand
     position: tuple[str, ...] = ()
     direction: tuple[str, ...] = ()
     boundary: Boundary

@@ -29,6 +29,7 @@ class Harmonic(Family):
     direction = ("vx", "vy")
     pairs = 0, 2
     tells = True
+    order = "generic"
 
     def point(self, ops: Backend[N, M], *values: N) -> list[N]:
         """The boundary point at `cos(theta)`, `sin(theta)` and the shape."""

@@ -15,11 +15,12 @@ from numeric.backends.functions import CLOSED, Series
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.family import Family
 from numeric.kernels import machine
-from numeric.kernels.machine import START, KernelSpec, fields, rescaled
+from numeric.kernels.machine import LINE, START, KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
 PART = 1 << 16  # doubles recorded at a time: a page that stays in the cache
-STRETCH = 1 << 12  # bounces told at a time where they are wanted: the rows that are written to are neighbours
+STRETCH = 1 << 17  # bounces told at a time where they are wanted: the rows that are written to are neighbours
+STREAM = 1 << 23  # bytes that are more than a processor's own cache holds: past it they take less long to write
 ALONE = 4  # particles that are run in narrow blocks: it takes less long to wait for
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
@@ -214,10 +215,11 @@ class Course:
         """The rows of the state, by name."""
         return {name: row[: self.count] for name, row in zip(self.names, self.state, strict=False)}
 
-    def kernel(self, starts: bool = False, told: bool = True) -> machine.Run | None:
+    def kernel(self, starts: bool = False, told: bool = True, streams: bool = False) -> machine.Run | None:
         """The kernel that starts or goes on, and tells or does not."""
         engine = self.engine
-        spec = KernelSpec(self.law, told=self.told if told else (), starts=starts, length=self.how)
+        told_of = self.told if told else ()
+        spec = KernelSpec(self.law, told=told_of, starts=starts, length=self.how, streams=streams)
         return machine.compiled(engine.family, engine.identity, engine.names, spec, self.width)
 
     def advance(
@@ -254,14 +256,17 @@ class Course:
 
     def _where_wanted(self, starts: bool, rows: list[Array], whole: int, threads: int | None) -> None:
         """As `_tell`, for whole blocks: a few bounces of all of them, so that memory is written from end to end."""
-        most, begin = max(1, STRETCH // whole), np.array([*(row.ctypes.data for row in rows), 0])
-        apart = rows[0].strides[0]
-        run, on = self.kernel(starts), self.kernel() if len(rows[0]) > most else None
-        for done in range(0, len(rows[0]), most):
+        bounces, apart = rows[0].shape[0], rows[0].strides[0]
+        begin = np.array([*(row.ctypes.data for row in rows), 0])
+        streams = sum(row.nbytes for row in rows) >= STREAM and not np.any(np.append(begin, apart) % LINE)
+        most, done = max(1, STRETCH // whole), 0
+        while done < bounces:
+            first = starts and not done
+            part = 1 if first and streams else min(most, bounces - done)
             table = begin + done * apart
             table[-1] = apart // rows[0].itemsize
-            self._call(run, min(most, len(rows[0]) - done), table, threads, (0, whole))
-            run = on
+            self._call(self.kernel(first, streams=streams and not first), part, table, threads, (0, whole))
+            done += part
 
     def _through_a_page(self, starts: bool, rows: list[Array], left: int, threads: int | None) -> None:
         """As `_tell`, for the particles from one on."""

@@ -24,6 +24,7 @@ TOLD = ("component", "theta", "phi", "eta", "x", "y")
 MATRIX = ("ds1/ds0", "ds1/dphi0", "dphi1/ds0", "dphi1/dphi0")
 START = ("first component", "first theta", "first phi")  # the last rows of a kernel that starts by them
 FAR = 2.0**100  # a double holds 2**1000
+LINE = 64  # bytes that go to memory together
 
 
 class KernelSpec(NamedTuple):
@@ -36,11 +37,12 @@ class KernelSpec(NamedTuple):
     starts: bool = False  # from component, parameter and exit angle, in place of a state
     once: bool = False  # the same, from where they lie and with no state afterwards
     length: Series = CLOSED  # how arc length is told
+    streams: bool = False  # what is told goes to memory past the caches, at multiples of `LINE` bytes
 
     @property
     def text(self) -> str:
         """The question as part of a name."""
-        words = [word for word in ("record", "exponents", "starts", "once") if getattr(self, word)]
+        words = [word for word in ("record", "exponents", "starts", "once", "streams") if getattr(self, word)]
         how = ["-".join(map(str, self.length))] if "s" in self.told and self.length.terms else []
         return "-".join([self.law, *words, *self.told, *how])
 

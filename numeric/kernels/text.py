@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 from numeric.backends.llvm import LLVMBackend, LLVMVector
 from numeric.flights.family import ELASTIC, SLAP, Family, Landing
-from numeric.kernels.machine import MATRIX, START, TANGENT, KernelSpec, fields, rescaled
+from numeric.kernels.machine import LINE, MATRIX, START, TANGENT, KernelSpec, fields, rescaled, wide
 
 NAME = re.compile(r"%[A-Za-z0-9_]+")
 HEAD = (
@@ -121,7 +121,7 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
     if spec.told:
         particle = [LLVMVector(ops, name) for name in state[:own]]
         told = _told(ops, family, spec, parameters, series, lam, particle, landed)
-        _tell(ops, [x.text for x in told], goals, far_apart)
+        _tell(ops, [x.text for x in told], goals, far_apart, spec.streams)
     elif spec.record:
         _record(ops, texts[:own])
     ops.lines += ["  %following = add i64 %i, 1", "  %more = icmp slt i64 %following, %until"]
@@ -159,7 +159,10 @@ def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], 
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
     declared = [*sorted(ops.called), *mode.declared]
-    return "\n".join([title, *arrays, HEAD, *alive(lines), "  ret void", "}", *declared, TAIL, ""])
+    order = f' "tune-cpu"="{family.order}"' if family.order and mode is X86 and not wide() else ""
+    tail = TAIL.replace(" }", f"{order} }}")
+    seen, marks = (["  fence seq_cst"], ["!0 = !{i32 1}"]) if spec.streams else ([], [])  # by others, before it returns
+    return "\n".join([title, *arrays, HEAD, *alive(lines), *seen, "  ret void", "}", *declared, tail, *marks, ""])
 
 
 def _joined(
@@ -251,12 +254,13 @@ def _entry(ops: LLVMBackend, table: str, kind: str, i: int) -> str:
     return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %{table}, i64 {i}')}, align 8")
 
 
-def _tell(ops: LLVMBackend, texts: list[str], goals: Sequence[str], apart: str) -> None:
+def _tell(ops: LLVMBackend, texts: list[str], goals: Sequence[str], apart: str, streams: bool) -> None:
     """Store what is told of bounce `%i` where each thing goes."""
     place = ops.emit(f"add i64 {ops.emit(f'mul i64 %i, {apart}')}, %at")
     for text, goal in zip(texts, goals, strict=True):
         address = ops.emit(f"getelementptr double, ptr {goal}, i64 {place}")
-        ops.lines.append(f"  store {ops.type} {text}, ptr {address}, align 8")
+        how = f"{LINE}, !nontemporal !0" if streams else "8"
+        ops.lines.append(f"  store {ops.type} {text}, ptr {address}, align {how}")
 
 
 def _record(ops: LLVMBackend, texts: list[str]) -> None:

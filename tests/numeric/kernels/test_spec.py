@@ -74,6 +74,7 @@ def test_a_vector_starts_with_no_growth_counted():
 def test_a_question_has_a_name_and_rows():
     assert KernelSpec("slap").text == "slap"
     assert KernelSpec("pinball", record=True).text == "pinball-record"
+    assert KernelSpec("pinball", told=("phi",), streams=True).text == "pinball-streams-phi"
     assert KernelSpec("elastic", record=True, exponents=True).text == "elastic-record-exponents"
     assert fields(Circle(), KernelSpec("pinball")) == ("theta", "phi")
     assert fields(Circle(), KernelSpec("slap", exponents=True)) == ("theta", *TANGENT)

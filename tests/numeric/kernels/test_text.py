@@ -43,6 +43,20 @@ def test_operations_are_those_of_a_bounce_without_rare_branches():
     assert set(operations("").values()) == {0}
 
 
+def test_a_kernel_that_streams_is_done_with_what_it_tells_before_it_returns():
+    map = PinballMap("ellipse", lam=0.7, a=2)
+    one, other = (
+        kernel_text(map.family, map.engine.names, KernelSpec(map.law, told=("phi", "x"), streams=streams))
+        for streams in (False, True)
+    )
+
+    assert one.count("nontemporal") == one.count("fence") == 0
+    assert other.count("align 64, !nontemporal !0") == 2
+    assert other.index("fence seq_cst") > other.rindex(
+        "ldmxcsr(ptr %mode)" if "ldmxcsr(ptr %mode)" in other else "exit:"
+    )
+
+
 def test_what_a_branch_needs_is_alive_and_what_only_the_dead_need_is_not():
     lines = [
         "head:",

@@ -10,7 +10,7 @@ from sympy import Rational, cos, sin
 
 from numeric import PinballMap
 from numeric.backends.scalars import ScalarBackend
-from numeric.kernels.engine import STRETCH
+from numeric.kernels.engine import STREAM, STRETCH
 from numeric.kernels.machine import TOLD
 from numeric.pinball.orbits import FIELDS, HUGE, LARGE, SIDE_BY_SIDE, Course, room
 from symbolic import tables
@@ -127,11 +127,21 @@ def test_the_bits_do_not_depend_on_how_an_orbit_is_asked_for(table):
 @pytest.mark.parametrize("name", ["egg", "cuspless"])  # told as doubles throughout, and with components
 def test_an_orbit_of_several_stretches_of_whole_blocks_has_the_bits_of_its_particles(name):
     map = PinballMap(name, lam=0.9, **({"alpha": 0.08} if name == "egg" else {}))
-    at, bounces = np.linspace(-1, 1, 200), 3 * STRETCH // 200
+    at, bounces = np.linspace(-1, 1, 512), 2 * STRETCH // 512 + 3
     whole = map.orbit(at, 0.3, bounces)
 
-    for i in (0, 3, 198, 199):
+    for i in (0, 3, 510, 511):
         assert same(map.orbit(at[i], 0.3, bounces), (rows[:, i] for rows in whole))
+
+
+@pytest.mark.parametrize("count", [1000, 1001])  # rows begin at lines of memory, and they do not
+def test_an_orbit_that_goes_to_memory_past_the_caches_has_the_bits_of_its_pieces(count):
+    map, at, names = PinballMap("ellipse", lam=0.9, a=1.5), np.linspace(-3, 3, count), ("theta", "phi", "s")
+    bounces = STREAM // (8 * len(names) * count) + 2
+    whole = map.orbit(at, 0.3, bounces, fields=names)
+    pieces = [*map.orbit_pieces(at, 0.3, bounces, fields=names, piece=100 * count)]
+
+    assert same((np.concatenate([piece[name] for piece in pieces]) for name in names), whole.values())
 
 
 def test_fields_have_their_own_place_in_pages_of_memory_and_small_ones_share_them():

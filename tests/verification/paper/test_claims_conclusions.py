@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from flint import arb
 
 from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.claims.claim import Verdict
@@ -34,9 +35,10 @@ def test_the_sudden_creation_is_proved_by_the_trapping_region(monkeypatch: pytes
     assert verdict(on_conclusions.sudden_creation, "map.sudden_creation") is Verdict.OPEN
 
 
-def test_kinks_have_the_size_that_the_jump_of_the_curvature_gives(monkeypatch: pytest.MonkeyPatch):
-    assert verdict(on_conclusions.kink_structure, "map.kink_structure") is Verdict.SUPPORTED
-    monkeypatch.setattr(on_conclusions, "jump", lambda *_: 0.0)
+@pytest.mark.parametrize("other", [{}, {0: (arb(5), arb(10))}, {0: (arb(0), arb(0, 3))}])
+def test_kinks_follow_only_from_a_cycle_within_the_trapping_region(monkeypatch: pytest.MonkeyPatch, other):
+    assert verdict(on_conclusions.kink_structure, "map.kink_structure") is Verdict.CONFIRMED
+    monkeypatch.setattr(on_conclusions, "saddles", lambda _: other)
 
     assert verdict(on_conclusions.kink_structure, "map.kink_structure") is Verdict.OPEN
 

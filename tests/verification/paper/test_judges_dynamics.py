@@ -5,12 +5,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from flint import arb
+from flint import acb, arb
 from sympy import Rational
 
 from symbolic.cycles.defocusing import away, least_stretch
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
+from verification.arithmetic.balls import working
 from verification.paper.claims.claim import Verdict
 from verification.paper.judges import attractors as on_attractors
 from verification.paper.judges import cardioid_attractor as on_defocusing
@@ -18,6 +19,9 @@ from verification.paper.judges import exponents as on_exponents
 from verification.paper.judges import located as on_contraction
 from verification.paper.judges.exponents import Spectrum, spectrum, uneven, visited
 from verification.paper.report.report import catalogue
+from verification.proofs.manifolds.enclosed import attracting, complex_balls
+from verification.proofs.manifolds.known import SHARPER, TRIANGLE, table
+from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.slap_map.exponent import slap_exponent
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
@@ -167,3 +171,36 @@ def test_elastic_orbits_fill_phase_space_evenly_and_damped_ones_do_not():
 
     assert uneven(counts[1]) < 0.1 < uneven(counts[0])
     assert counts.sum() == 2 * 8 * 4001
+
+
+def test_the_triangle_of_the_vertices_is_not_said_to_attract():
+    map, here = table(Rational("0.095")).over(complex_balls(160)), acb(arb("0.5175349092", 1e-9))
+    with working(160):
+        assert attracting(Orbit("near the flat points", (1.2383336,), TRIANGLE.closure), map, here) is True
+        assert attracting(SHARPER, map, here) is None
+        assert attracting(SHARPER, map, acb(arb("0.51", 0.1))) is None  # balls that hold no proof
+
+
+@pytest.mark.parametrize(("judge", "name"), [("windows", "windows_above"), ("near_tenth", "coexistence_near_tenth")])
+def test_windows_and_chaos_side_by_side_need_both_proved(judge, name, monkeypatch):
+    yes, no = Finding(Outcome.PROVED, ""), Finding(Outcome.UNKNOWN, "")
+    values = {"interior-crisis-1": "0.428", "window-merging-9": "0.505", "boundary": "0.662"}
+    place = {"0.095": "0.5175349092"}
+    monkeypatch.setattr(
+        on_attractors, "strange", lambda alpha, kind="boundary": (yes, arb(place.get(alpha, values[kind])))
+    )
+    monkeypatch.setattr(on_attractors, "proved_at", lambda *_, **__: yes)
+    on_attractors.both_near_tenth.cache_clear()
+    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is Verdict.CONFIRMED
+
+    monkeypatch.setattr(
+        on_attractors, "strange", lambda alpha, kind="boundary": (no, arb(place.get(alpha, values[kind])))
+    )
+    on_attractors.both_near_tenth.cache_clear()
+    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is Verdict.OPEN
+
+    monkeypatch.setattr(on_attractors, "strange", lambda alpha, kind="boundary": (yes, arb("0.43")))  # in no order
+    monkeypatch.setattr(on_attractors, "attracting", lambda *_: None)
+    on_attractors.both_near_tenth.cache_clear()
+    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is Verdict.OPEN
+    on_attractors.both_near_tenth.cache_clear()

@@ -106,14 +106,18 @@ def test_strange_attractors_below_a_printed_limit_refute_it_and_their_absence_su
     assert no_chaos_below(claim).verdict is Verdict.OPEN
 
 
-def test_the_chaotic_interval_is_judged_by_both_ends():
+def test_the_chaotic_interval_is_judged_by_both_ends(monkeypatch):
     claim = CLAIMS["egg.chaotic_interval"]
 
     found = chaotic_interval(claim)
-    assert found.verdict is Verdict.OPEN
-    assert "The lower does not agree and the upper agrees" in found.printed.reason
+    assert found.verdict is Verdict.CORRECTED
+    assert "The lower does not agree and the upper agrees" in found.derived
     assert chaotic_interval(replace(claim, printed="[0.394, 0.66]")).verdict is Verdict.SUPPORTED
     assert chaotic_interval(replace(claim, printed="[0.394, 0.70]")).verdict is Verdict.OPEN
+
+    unproved = Finding(Outcome.UNKNOWN, "not proved")
+    monkeypatch.setattr(on_stability, "strange", lambda _, kind="": (unproved, arb("0.398" if kind else "0.662")))
+    assert chaotic_interval(claim).verdict is Verdict.OPEN
 
 
 def test_periods_are_those_of_the_paper_s_cascade():

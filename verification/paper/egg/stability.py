@@ -231,7 +231,17 @@ def chaotic_interval(claim: Claim) -> Judgement:
         f"{last:.4f}; the cascade ends at 0.3935 (egg.cascade) and the attractor at 0.6621 (egg.boundary_crisis). "
         f"The {ends[0]} and the {ends[1]} with the printed end to {NEAR}"
     )
-    return sampled("about [0.394, 0.662], with windows", said, all(agrees))
+    (early, lower), (late, upper) = strange("0.08", "band-merging"), strange("0.08")
+    if not lower < low - NEAR or not abs(upper - high) < NEAR:
+        return sampled("about [0.394, 0.662], with windows", said, all(agrees))
+    return Judgement(
+        counterexample(f"below {low}", early),
+        f"from next to {lower.str(5, radius=False)}, if not earlier, up to next to {upper.str(5, radius=False)}, in "
+        f"the sense of sets of contractions of positive measure; {said}",
+        by("strange attractors at both ends", early, late),
+        "Chaotic attractors are found from below 0.398 on, about [0.39, 0.66]: next to lambda = 0.39769 eight bands "
+        "become four at a homoclinic tangency, with strange attractors beside it.",
+    )
 
 
 @judges("egg.chaos_beyond_cascade")

@@ -98,17 +98,32 @@ def size(x: Any) -> arb:
 
 def enclosed_saddle(orbit: Orbit, map: PlaneMap, parameter: acb) -> Saddle:
     """The one cycle near the start, for every parameter in a ball, with real multipliers either side of the circle."""
+    found = enclosed_cycle(orbit, map, parameter)
+    stable, unstable = multipliers_of(orbit, map, found, parameter)
+    if not (abs(stable) < 1 and abs(unstable) > 1):
+        raise TooWideError("saddle", f"the multipliers of the {orbit.name} are not separated")
+    return Saddle(orbit, map, parameter, tuple(found), stable, unstable)
+
+
+def enclosed_cycle(orbit: Orbit, map: PlaneMap, parameter: acb) -> list[acb]:
+    """The points of the one cycle near the start, for every parameter in a ball; `TooWideError`."""
 
     def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
         ring = padded(orbit, map, x)
         values = [map.rule(ring[i : i + 3], parameter) for i in range(len(x))]
         return values, matrix(orbit, slopes(orbit, map, x, parameter))
 
-    found = only_zero(rule, [acb(x) for x in orbit.start])
-    stable, unstable = multipliers_of(orbit, map, found, parameter)
-    if not (abs(stable) < 1 and abs(unstable) > 1):
-        raise TooWideError("saddle", f"the multipliers of the {orbit.name} are not separated")
-    return Saddle(orbit, map, parameter, tuple(found), stable, unstable)
+    return only_zero(rule, [acb(x) for x in orbit.start])
+
+
+def attracting(orbit: Orbit, map: PlaneMap, parameter: acb) -> bool | None:
+    """Is there a cycle near the start, whose multipliers of a round lie inside the unit circle? None: not proved."""
+    try:
+        points = enclosed_cycle(orbit, map, parameter)
+    except TooWideError:
+        return None
+    trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
+    return True if abs(determinant) < 1 and abs(trace) < abs(1 + determinant) else None
 
 
 def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Sequence[acb]) -> list[acb]:

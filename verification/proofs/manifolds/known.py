@@ -175,8 +175,10 @@ CONTACTS = {
 CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # as those of periods 8 and 16 are called
 
 FLATTER = Orbit(TRIANGLE.name, (-0.053420925,), TRIANGLE.closure)
-BOUNDARY = {  # the boundary tangency at two shapes, and its contraction there
+SHARPER = Orbit(TRIANGLE.name, (-0.228435096,), TRIANGLE.closure)
+BOUNDARY = {  # the boundary tangency at three shapes, and its contraction there
     SHAPE: (CONTACTS["boundary"], "0.66214427335822441948"),
+    Rational(19, 200): (Contact(SHARPER, SHARPER, 5, 1, 0.03705487, -0.01623858, 0.51753491), "0.51753490920795741937"),
     Rational(1, 20): (Contact(FLATTER, FLATTER, 5, 1, 0.04529252, -0.06772806, 0.91652073), "0.91652073292391123465"),
 }
 
@@ -320,6 +322,22 @@ def boundary(alpha: Expr) -> TangencyProof:
     True
     """
     return worked_through(TangencyClaim(BOUNDARY[alpha][0], alpha, BOUNDARY[alpha][1], 12))
+
+
+PROVED = {  # contractions of contacts at alpha = 0.08, and to how many digits the proof's balls serve best
+    "band-merging": ("0.39768736899279139077682306799053", 20),
+    "interior-crisis-1": ("0.428419190754595226515935", 12),
+    "window-merging-9": ("0.504527312767549985147168", 12),
+}
+
+
+def touching(kind: str) -> TangencyProof:
+    """The proof of one of these at `alpha = 0.08`.
+
+    >>> all(touching("window-merging-9").strange.values())
+    True
+    """
+    return worked_through(TangencyClaim(CONTACTS[kind], SHAPE, *PROVED[kind]))
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

@@ -44,6 +44,7 @@ class Result:
     method: str = "the identity [0, 1] holds"
     seconds: float = 0.0
     erratum: str = ""
+    unsettled: str = ""
 
     def to_dict(self):
         return {**self.__dict__, "verdict": self.verdict.value}

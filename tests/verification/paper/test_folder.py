@@ -95,6 +95,20 @@ def verdicts(folder, **options):
     return {result.id: result.verdict for result in verify(claims=folder, **options)}
 
 
+def test_why_a_claim_is_not_settled_is_shown_as_long_as_it_is_not(folder):
+    changed(folder / "paper.toml", "[sections]", 'unsettled = "why.toml"\n\n[sections]')
+    (folder / "why.toml").write_text('[reasons]\n"x.square" = "no method"\n"x.half" = "no time"\n')
+    changed(folder / "judges.py", "return identity(claim, (q + 1) ** 2)", "return 1 / 0")
+    found = {result.id: (result.verdict, result.unsettled) for result in verify(claims=folder)}
+
+    assert found["x.square"] == (Verdict.OPEN, "no method")
+    assert found["x.half"] == (Verdict.CORRECTED, "")
+
+    (folder / "why.toml").write_text('[reasons]\n"x.cube" = "no method"\n')
+    with pytest.raises(ValueError, match=r"speaks of 'x.cube', which is no claim"):
+        paper(folder)
+
+
 def test_the_claims_of_a_folder_are_judged_by_its_own_judges(folder):
     """The one that has the name of a claim of the package's own paper as well."""
     found = verdicts(folder)

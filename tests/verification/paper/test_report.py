@@ -30,6 +30,7 @@ class Result:
     method: str = "both sides reduce to the same polynomial"
     seconds: float = 0.25
     erratum: str = ""
+    unsettled: str = ""
 
     def to_dict(self):
         return {**self.__dict__, "verdict": self.verdict.value}
@@ -127,6 +128,7 @@ def test_json_has_the_keys_of_the_contract_in_order():
 
     assert list(claim) == [
         "id", "section", "quote", "printed", "derived", "verdict", "value", "radius", "method", "seconds", "erratum",
+        "unsettled",
     ]  # fmt: skip
 
 

@@ -36,7 +36,8 @@ class Paper:
     """What a folder says of a paper: where it was printed, its sections in order, its claims in the order given.
 
     A section may name a source of its own. `judges` are modules, `figures` is one with a function `pictures`, `seconds`
-    a record of what judging takes; all are paths, empty where the folder has none.
+    a record of what judging takes, `unsettled` the reasons why claims are not settled; all are paths, empty where the
+    folder has none.
     """
 
     folder: Path
@@ -49,6 +50,7 @@ class Paper:
     sentences: tuple[Path, ...] = ()
     figures: str = ""
     seconds: str = ""
+    unsettled: str = ""
 
     @property
     def about(self) -> dict[str, object]:
@@ -65,7 +67,7 @@ class Paper:
         return [Sentence.from_dict(entry) for path in self.sentences for entry in _toml(path)["sentence"]]
 
 
-NAMED = {"title": str, "citation": str, "figures": str, "seconds": str}
+NAMED = {"title": str, "citation": str, "figures": str, "seconds": str, "unsettled": str}
 LISTED = ("authors", "letters", "claims", "sentences", "judges")
 ENTRY = {"id": str, "section": str, "quote": str, "printed": (str, list), "kind": str, "over": dict, "base": str}
 
@@ -86,7 +88,7 @@ def read(folder: Path) -> Paper:
     twice = [name for name, number in Counter(claim.id for claim in claims).items() if number > 1]
     if twice or not claims:
         raise ValueError(f"{path}: {f'two claims have the id {twice[0]!r}' if twice else 'there is no [[claim]]'}")
-    beside = {name: str(folder / whole[name]) if name in whole else "" for name in ("figures", "seconds")}
+    beside = {name: str(folder / whole[name]) if name in whole else "" for name in ("figures", "seconds", "unsettled")}
     judges, sentences = ([folder / name for name in lists[key]] for key in ("judges", "sentences"))
     return Paper(
         folder,
@@ -190,8 +192,18 @@ def _with_judges(found: Paper) -> Paper:
         if name not in ids:
             raise ValueError(f"{where} judges {name!r}, which is no claim of {found.folder}")
     seconds, groups = recorded(found)
+    why = _toml(Path(found.unsettled)).get("reasons", {}) if found.unsettled else {}
+    for name in why:
+        if name not in ids:
+            raise ValueError(f"{found.unsettled} speaks of {name!r}, which is no claim of {found.folder}")
     new = (
-        replace(claim, home=homes[claim.id], seconds=seconds.get(claim.id, claim.seconds), group=groups.get(claim.id))
+        replace(
+            claim,
+            home=homes[claim.id],
+            seconds=seconds.get(claim.id, claim.seconds),
+            group=groups.get(claim.id),
+            unsettled=why.get(claim.id, ""),
+        )
         for claim in found.claims
     )
     return replace(found, claims=tuple(new))

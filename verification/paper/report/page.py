@@ -228,6 +228,8 @@ def _claim(result: "Result") -> str:
         facts.append(f"- within: {result.radius}")
     if result.erratum:
         facts.append(f"- erratum: {_sentence(result.erratum)}")
+    if result.unsettled:
+        facts.append(f"- why not settled: {_sentence(result.unsettled)}")
     facts += [_long("method", result.method), f"- seconds: {result.seconds:.2f}"]
     return "\n\n".join([f"### `{result.id}`: {result.verdict.value}", _quote(result.quote), "\n".join(facts)])
 

@@ -47,6 +47,7 @@ class Result:
     seconds: float
     erratum: str = ""
     witness: Mapping[str, str] = field(default_factory=dict)
+    unsettled: str = ""
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
@@ -153,6 +154,7 @@ def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> 
         seconds,
         judgement.erratum if judgement.verdict in (Verdict.CORRECTED, Verdict.REFUTED) else "",
         {str(letter): str(value) for letter, value in judgement.witness(claim).items()},
+        claim.unsettled if judgement.verdict in (Verdict.SUPPORTED, Verdict.OPEN) else "",
     )
 
 

@@ -1,6 +1,8 @@
 """Sphinx: `make docs` builds the pages into docs/_build."""
 
 import re
+import sys
+from pathlib import Path
 
 from pybtex.plugin import register_plugin
 from pybtex.style.formatting.plain import Style
@@ -12,6 +14,8 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinxcontrib.bibtex"]
 source_suffix = {".md": "markdown"}
 html_theme = "furo"
 html_title = "Pinball billiards"
+html_static_path = ["static"]
+html_css_files = ["page.css"]
 exclude_patterns = ["_build"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 3
@@ -46,6 +50,15 @@ def plain(app, what, name, obj, options, lines):
     lines[:] = [re.sub(r"\[([A-Z][A-Za-z]+\d{4})\]", r":cite:p:`\1`", line.replace("|", r"\|")) for line in lines]
 
 
+def pictures(app):
+    """Makes the pictures of the gallery that are missing, each from the code below it."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    from gallery import make
+
+    make([])
+
+
 def setup(app):
     """Called by Sphinx."""
+    app.connect("builder-inited", pictures)
     app.connect("autodoc-process-docstring", plain)

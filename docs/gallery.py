@@ -1,16 +1,24 @@
-"""Draws the tables of docs/tables.md, each with an orbit and with its phase space: `python docs/gallery.py`.
+"""Makes the pictures of docs/gallery.md from the code that stands below each: `python docs/gallery.py [NAME ...]`.
 
-`python docs/gallery.py times` prints what a bounce costs on each of them.
+Without names it makes those that are missing, as `make docs` does. A picture is made as large as its command says and
+cut down for the page; it has no background, and the page turns its inks round in the dark.
 
-The lines are grey and blue on no background, so that the picture does in light and in dark.
+`python docs/gallery.py tables` draws the tables of docs/tables.md, each with an orbit and with its phase space, grey
+and blue on no background; `python docs/gallery.py times` prints what a bounce costs on each of them.
 """
 
+import io
+import re
+import runpy
+import shlex
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import matplotlib
 import numpy as np
+from PIL import Image
 
 matplotlib.use("svg")
 matplotlib.rcParams |= {"svg.hashsalt": "tables", "svg.fonttype": "none"}  # the same bytes each time; text as text
@@ -19,6 +27,8 @@ from matplotlib import pyplot as plt  # noqa: E402  (after the backend)
 from numeric import PinballMap, phase_starts  # noqa: E402
 from numeric.kernels.machine import KernelSpec  # noqa: E402
 from symbolic import tables  # noqa: E402
+from verification.app.cli import main  # noqa: E402
+from verification.plots.sheet import STYLE  # noqa: E402
 
 PICTURE = Path(__file__).parent / "figures" / "tables.svg"
 GREY, BLUE = "#7d8590", "#2f81f7"
@@ -35,6 +45,62 @@ SCENES = [
     (tables.polar("1 + cos(5*theta)/4", "star"), "0.9"),
     (tables.from_points(PEBBLE, "pebble"), "0.9"),
 ]
+
+
+FORMS = ((1200, 80), (1200, 60), (1200, 40), (900, 50), (900, 30), (600, 40))  # width and quality, the best first
+PAGE = Path(__file__).parent / "gallery.md"
+BYTES = 72_000  # of a picture on the page, at most
+
+
+def entries() -> dict[str, tuple[str, str]]:
+    """For each picture of the page, `sh` or `python` and the code below it."""
+    found = re.findall(r"!\[[^\]]*\]\(gallery/([\w-]+)\.webp\)\s+```(sh|python)\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    return {name: (language, code) for name, language, code in found}
+
+
+def made(name: str, folder: Path) -> Path:
+    """Runs the code of one picture, and gives the small form of what it drew."""
+    language, code = entries()[name]
+    with tempfile.TemporaryDirectory() as place:
+        large = Path(place) / f"{name}.webp"
+        code = code.replace(large.name, str(large))
+        with matplotlib.rc_context():
+            STYLE["savefig.transparent"] = True
+            if language == "sh":
+                program, *words = shlex.split(code.replace("\\\n", " "))
+                status = main(words)
+            else:
+                program, status = "pinball", 0
+                (Path(place) / "code.py").write_text(code)
+                runpy.run_path(str(Path(place) / "code.py"))
+            STYLE.pop("savefig.transparent")
+        if program != "pinball" or status not in (0, 1) or not large.exists():
+            raise ValueError(f"{PAGE.name}: the code of {name} draws no {name}.webp")
+        (folder / f"{name}.webp").write_bytes(small(large))
+    return folder / f"{name}.webp"
+
+
+def small(path: Path) -> bytes:
+    """A picture for a page: not too wide, and as good as its bytes allow."""
+    with Image.open(path) as large:
+        for wide, quality in FORMS:
+            fitted = large.convert("RGBA")
+            fitted.thumbnail((wide, 10 * wide), Image.Resampling.LANCZOS)
+            buffer = io.BytesIO()
+            fitted.save(buffer, "webp", quality=quality, alpha_quality=quality, method=6)
+            if buffer.tell() <= BYTES:
+                break
+    return buffer.getvalue()
+
+
+def make(names: list[str]) -> None:
+    """Makes the pictures of these names; without names, those that are not there."""
+    folder = PAGE.with_suffix("")
+    folder.mkdir(exist_ok=True)
+    for name in names or [name for name in entries() if not (folder / f"{name}.webp").exists()]:
+        began = time.perf_counter()
+        path = made(name, folder)
+        sys.stdout.write(f"{path}: {path.stat().st_size} bytes, {time.perf_counter() - began:.1f} s\n")
 
 
 def drawn() -> None:
@@ -87,4 +153,4 @@ def timed(runs: int = 30) -> None:
 
 
 if __name__ == "__main__":
-    timed() if sys.argv[1:] == ["times"] else drawn()
+    {"times": timed, "tables": drawn}.get(" ".join(sys.argv[1:]), lambda: make(sys.argv[1:]))()

@@ -9,6 +9,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from matplotlib import image as images
 
 from verification.app.cli import main
 
@@ -26,9 +27,15 @@ COMMANDS = [
 ]
 
 
-spec = importlib.util.spec_from_file_location("rooms", DOCS / "rooms.py")
-ROOMS = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(ROOMS)
+def loaded(name):
+    """A script among the pages, as a module."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+ROOMS, GALLERY = loaded("rooms"), loaded("gallery")
 
 
 def named(page):
@@ -90,6 +97,26 @@ def test_links_between_pages_lead_somewhere(page):
 def test_files_that_a_page_names_are_there(page):
     for path in PATHS.findall(page.read_text()):
         assert list(ROOT.glob(path.rstrip("/"))), path
+
+
+def test_every_picture_of_the_gallery_has_its_code_and_is_small():
+    """`python docs/gallery.py` makes what is missing."""
+    shown = re.findall(r"\]\(gallery/([\w-]+)\.webp\)", GALLERY.PAGE.read_text())
+    there = {path.stem: path.stat().st_size for path in (DOCS / "gallery").iterdir()}
+
+    assert sorted(shown) == sorted(GALLERY.entries()) == sorted(there)
+    assert len(shown) >= 24
+    assert max(there.values()) < 80_000
+    assert sum(there.values()) < 2_000_000
+
+
+def test_a_picture_of_the_gallery_is_what_its_code_draws(tmp_path):
+    """One that is cheap; to the eye, since fonts and codecs differ in the last digit."""
+    drawn = images.imread(GALLERY.made("ellipse", tmp_path)).astype(float)
+    shown = images.imread(DOCS / "gallery" / "ellipse.webp").astype(float)
+
+    assert drawn.shape == shown.shape
+    assert abs(drawn - shown).mean() < 2.0
 
 
 def test_the_picture_of_the_rooms_is_what_the_import_contracts_say():

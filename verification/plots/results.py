@@ -6,6 +6,7 @@ holes or without, are drawn like others; so are laws, which no picture depends o
 
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -324,9 +325,12 @@ def _broken(values: Array) -> Array:
 
 
 def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequence[float], **look: Any) -> None:
-    """A cycle in the table, as the polygon of its bounces."""
+    """A cycle in the table, each chord once: one that runs back on itself would fill the gaps of a dashed line."""
     x, y = map.states.point(np.array([*components, components[0]]), np.array([*theta, theta[0]], dtype=float))
-    axes.plot(x, y, solid_joinstyle="round", **look)
+    ends = [tuple(end) for end in np.round(np.stack([x, y], axis=1), 6)]
+    chords = {frozenset(pair): i for i, pair in reversed(list(enumerate(pairwise(ends))))}
+    at = np.array(sorted(chords.values()))
+    axes.plot(*(np.stack([z[at], z[at + 1], np.full(at.size, np.nan)], axis=1).ravel() for z in (x, y)), **look)
 
 
 def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":

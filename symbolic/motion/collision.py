@@ -44,6 +44,8 @@ from sympy import (
     Symbol,
     cos,
     diff,
+    expand,
+    factor,
     integrate,
     log,
     pi,
@@ -107,7 +109,8 @@ def implicit_derivative() -> Matrix:
     slope = [-partial(flight, x) / partial(flight, s1) for x in (s0, phi)]
     angle = [partial(minus_eta, x) + partial(minus_eta, s1) * dx for x, dx in zip((s0, phi), slope, strict=True)]
     cosines = {cos(phi): cos_phi0, cos(landing): cos_eta1}
-    return Matrix([slope, angle]).applyfunc(lambda entry: simplify(entry).subs(cosines))
+    matrix = Matrix([slope, angle]).subs(cosines)
+    return Matrix([[factor(by_place), expand(by_angle)] for by_place, by_angle in matrix.tolist()])
 
 
 def derivative_matrix(

@@ -41,7 +41,11 @@ from verification.paper.claims.judges import (
 from verification.paper.egg.egg import ROUND, SHAPES, at
 from verification.proofs.slap_map.exponent import OneZero, one_zero
 
-W2 = tilt() ** 2  # 1 - P on the diameters
+
+@cache
+def squared_tilt() -> Expr:
+    """`1 - P` on the diameters."""
+    return tilt() ** 2
 
 
 def P_at(shape: Expr) -> Expr:
@@ -223,7 +227,7 @@ def doubling_curve(claim: Claim) -> Judgement:
 def mu_at_alpha_tilde(claim: Claim) -> Judgement:
     """`-P = ((1-lam)/(1+lam))**2` there, so -1 is a multiplier, and the other is `-lam**2`."""
     trace, det = diameter()
-    both = zero("", trace - trace_of(1 - W2), det - lam**2, 1 + trace_of(S.Zero) + lam**2 - (1 - lam) ** 2)
+    both = zero("", trace - trace_of(1 - squared_tilt()), det - lam**2, 1 + trace_of(S.Zero) + lam**2 - (1 - lam) ** 2)
     return Judgement(
         by(
             "1 + trace + det = (1+lam)^2*P + (1-lam)^2 = 0 at alpha-tilde; the other is -lam^2",
@@ -238,7 +242,9 @@ def mu_at_alpha_tilde(claim: Claim) -> Judgement:
 def on_the_curve() -> Finding:
     """`W**2` is `2*(1+lam**2)/(1+lam)**2` at alpha-tilde, and grows with alpha."""
     level = 2 * (1 + lam**2) / (1 + lam) ** 2
-    return conjunction(zero("", W2.subs(alpha, alpha_tilde()) - level), positive(tilt().diff(alpha), {alpha: SHAPES}))
+    return conjunction(
+        zero("", squared_tilt().subs(alpha, alpha_tilde()) - level), positive(tilt().diff(alpha), {alpha: SHAPES})
+    )
 
 
 @judges("egg.period2_unstable_above")
@@ -290,7 +296,7 @@ def stable_below(claim: Claim) -> Judgement:
         by(
             "-((1-lam)/(1+lam))^2 < P < 1 there",
             on_the_curve(),
-            positive(W2, {alpha: ROUND}),
+            positive(squared_tilt(), {alpha: ROUND}),
             positive(1 - det, {lam: Interval.Ropen(0, 1)}),
         ),
         "The moduli are below one only for alpha > 0 and lambda < 1: at alpha = 0 one eigenvalue is "
@@ -310,7 +316,7 @@ def complex_region(claim: Claim) -> Judgement:
     low = tilt().subs(alpha, alpha_hat()) - (1 - lam) / (1 + lam)
     high = tilt().subs(alpha, complex_up_to()) - 1
     trace, _ = diameter()
-    P = 1 - W2
+    P = 1 - squared_tilt()
     return Judgement(
         by(
             "P = 4*lam/(1+lam)^2 at alpha-hat and P = 0 at alpha-tilde(1), and P falls with alpha",

@@ -19,7 +19,8 @@ stays for `n` bounces, of the segment, is no longer than the width times the sum
 walks of `n` clusters. If these sums tend to 0, the points that stay for ever have measure 0 on each horizontal segment,
 hence in the plane (Fubini).
 
-For `lam > 0` the map is a diffeomorphism wherever it is smooth: its determinant is not 0. So what comes to such a set,
+For `lam > 0` the map is a diffeomorphism wherever it is smooth: its determinant is not 0. (Of a law other than the
+paper's its slope is enclosed over all incidence angles and places; it must keep its sign.) So what comes to such a set,
 or to a join, after some number of bounces has measure 0 too. Therefore *almost every orbit converges to the cycles of
 the sinks*, when every Morse set is part of one or the other.
 """
@@ -148,8 +149,8 @@ def _reach(ends: Array, source: Indices, count: int) -> Array:
 
 def _contraction(s: Slopes, where: Indices, walks: csr_matrix) -> float:
     """The least `q` found with `|M|*v <= q*v'` along all walks; `where` is the cluster of each entry."""
-    by_theta = -(s.law * (s.bend_there * s.by_theta - s.bend_here))
-    by_phi = -(s.law * (s.bend_there * s.by_phi + 1))
+    by_theta = s.drift * s.by_theta - s.law * (s.bend_there * s.by_theta - s.bend_here)
+    by_phi = s.drift * s.by_phi - s.law * (s.bend_there * s.by_phi + 1)
     size = np.zeros((4, walks.shape[0]))
     for entry, x in zip(size, (s.by_theta, s.by_phi, by_theta, by_phi), strict=True):
         np.maximum.at(entry, where, np.where(np.isfinite(x.r), x.magnitude(), np.inf))
@@ -176,7 +177,7 @@ def _staying(s: Slopes, where: Indices, walks: csr_matrix) -> float | None:
         slope = hull(cones[0][where], cones[1][where])
         with np.errstate(all="ignore"):
             stretch = s.by_theta + s.by_phi * slope
-            image = -(s.law * (s.bend_there - (s.bend_here - slope) / stretch))
+            image = s.drift - s.law * (s.bend_there - (s.bend_here - slope) / stretch)
         sign = np.sign(stretch.m)
         one = sign == sign[np.searchsorted(where, where)]
         if not np.all(one & (np.abs(stretch.m) > stretch.r) & np.isfinite(stretch.r) & np.isfinite(image.r)):
@@ -222,7 +223,7 @@ class Fate:
     def parts(self) -> list[Cluster] | None:
         """The components of clusters, over all of the range at once; `ValueError` unless the table is convex."""
         map = PinballImages(self.scene, self.lam)
-        return clusters(map, refined(map, Grid(map.charts, *self.grid), self.coarsest))
+        return None if not invertible(map) else clusters(map, refined(map, Grid(map.charts, *self.grid), self.coarsest))
 
     @cached_property
     def checks(self) -> dict[str, bool | None]:
@@ -240,6 +241,14 @@ class Fate:
     def proved(self) -> bool:
         """Is all of it proved?"""
         return all(value is True for value in self.checks.values())
+
+
+def invertible(map: PinballImages) -> bool:
+    """Is the law's slope proved to vanish nowhere? Else what comes to a set of no area may have area."""
+    if map.law is None:
+        return True  # it is `lam > 0`
+    slopes = [map.slopes(*some)[0] for some in map.incidences()]
+    return all(np.all(slope.positive()) for slope in slopes) or all(np.all(slope.negative()) for slope in slopes)
 
 
 def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None:

@@ -8,12 +8,14 @@ image more closely. The exit angle needs no more than the angles `tau` of the ta
 
     phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi,
 
-or another law of `eta` and `lam`.
+or another law of `eta`, `lam` and the landing's `theta`, of period `2*pi` on a closed curve.
 
 Where the arc holds a join, the image is given for both sides of it. Paper: section 2.
 """
 
+from collections.abc import Iterator
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +23,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.lowering.lower import lower_law
+from symbolic.tables.curves import is_periodic
 from symbolic.tables.scene import Scene
 from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.global_dynamics.boxes import (
@@ -41,7 +44,7 @@ from verification.proofs.global_dynamics.boxes import (
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 TRIES = 7  # widenings of a guessed arc
-STEPS = 1 << 12  # pieces of the incidence angles, for the steepest exit
+STEPS, PLACES = 1 << 12, 1 << 6  # pieces of the incidence angles, and of each component under a law of the place
 QUARTER = 1.5707963267948966  # below pi/2
 CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
 
@@ -59,7 +62,8 @@ class Piece(NamedTuple):
 class Slopes(NamedTuple):
     """The landing's derivatives by `theta` and `phi`, how fast the tangent turns at start and landing, the law's slope.
 
-    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = -law*d eta1`.
+    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = drift*d theta1 - law*d eta1`;
+    `drift` is 0 for a law that is the same everywhere.
     """
 
     by_theta: BallArray
@@ -67,14 +71,14 @@ class Slopes(NamedTuple):
     bend_here: BallArray
     bend_there: BallArray
     law: BallArray
+    drift: BallArray = BallArray(0.0)
 
 
 class PinballImages:
     """The map of a scene whose table is proved convex, for every contraction from `lam[0]` to `lam[1]`.
 
     Phase space is the strip `|phi| <= top`, in which every particle is after one bounce: `lam*pi/2` for the paper's
-    law, and what balls bound for another one. An orbit that lands on a join has no next bounce; its images here are
-    those of both sides.
+    law, a bound in balls for others. A landing on a join has no next bounce; its images are those of both sides.
 
     >>> egg = PinballImages(Scene("egg", alpha="0.08", lam="1/2"))
     >>> egg.label
@@ -82,8 +86,6 @@ class PinballImages:
     """
 
     def __init__(self, scene: Scene, lam: tuple[Fraction, Fraction] | None = None) -> None:
-        if scene.law.placed:
-            raise ValueError(f"law = {scene.law} depends on the place; boxes are mapped by laws of eta and lam")
         self.scene = scene
         low, high = lam or (Fraction(str(scene.lam)), Fraction(str(scene.lam)))
         if not 0 <= low <= high < 1 or high == 0:
@@ -92,42 +94,54 @@ class PinballImages:
         self.map = PinballMap(scene, lam=high)
         if convex(self.map.table) is not True:
             raise ValueError(f"{scene.name}: the table is not proved convex; accepted: convex tables")
-        ends = [exactly(end) for end in (low, high)]
-        self.lam = hull(ends[0].lower(), ends[1].upper())
+        self.lam = hull(exactly(low).lower(), exactly(high).upper())
         self.ops = ArrayOps()
-        shape = [Fraction(x) for x in self.map.exact_shape]
-        self.shape = [exactly(x) for x in shape]
+        self.shape = [exactly(Fraction(x)) for x in self.map.exact_shape]
         self.closed = len(self.map.ir.parts) == 1
         if self.closed and not closes_smoothly(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
-        self.law = None if scene.law.uniform else lower_law(scene.law)
+        self.law, self.placed = None if scene.law.uniform else lower_law(scene.law), scene.law.placed
+        if self.placed and self.closed and not is_periodic(scene.law.phi):
+            raise ValueError(
+                f"law = {scene.law}: a whole turn of theta is not seen to change nothing, as boxes need it"
+            )
         self.top = float((self.lam * self.ops.pi / 2).upper()) if self.law is None else self._steepest()
 
     def _steepest(self) -> float:
         """A bound below a quarter turn for the exit angles of the law, over all incidence angles and contractions."""
-        scene, (low, high) = self.scene, self.range
-        scene.law.check((low, high))
-        ends = np.linspace(-1, 1, STEPS + 1) * float((self.ops.pi / 2).upper())
-        size = float(np.max(self.exit(hull(ends[:-1], ends[1:])).magnitude()))
-        if not size < QUARTER:
-            raise ValueError(f"law = {scene.law}: |phi| is not proved to stay below pi/2 by a margin, as boxes need it")
-        return size
+        law = self.scene.law
+        law.check(self.range, law.places(self.map.table))
+        size = max(float(np.max(self.exit(*some).magnitude())) for some in self.incidences())
+        if size < QUARTER:
+            return size
+        raise ValueError(f"law = {law}: |phi| is not proved to stay below pi/2 by a margin, as boxes need it")
 
-    def exit(self, eta: BallArray) -> BallArray:
-        """The exit angles, by the mean-value theorem about the middles of the incidence angles."""
+    def incidences(self) -> Iterator[tuple[BallArray, BallArray]]:
+        """All incidence angles in pieces, on each piece of the boundary that the law tells apart."""
+        angles = np.linspace(-1, 1, STEPS + 1) * float((self.ops.pi / 2).upper())
+        ends, cuts = (self.ends, PLACES) if self.placed else (self.ends[:1], 1)
+        for start, end in ends:
+            for near, far in pairwise(np.linspace(float(start.lower()), float(end.upper()), cuts + 1)):
+                yield hull(angles[:-1], angles[1:]), hull(near, far)
+
+    def exit(self, eta: BallArray, theta: BallArray) -> BallArray:
+        """The exit angles, by the mean-value theorem about the middles of incidence angles and places."""
         if self.law is None:
             return -(self.lam * eta)
         with np.errstate(all="ignore"):
-            middle = BallArray(np.asarray(eta.m))
-            at = spread(self.law.exit(self.ops, middle, self.lam, BallArray(0.0))[0], middle.m)
-            return at - self.slope(eta) * (eta - middle)
+            middle, place = BallArray(np.asarray(eta.m)), BallArray(np.asarray(theta.m) if self.placed else 0.0)
+            at = spread(self.law.exit(self.ops, middle, self.lam, place)[0], middle.m)
+            slope, drift = self.slopes(eta, theta)
+            found = at - slope * (eta - middle)
+            return found + drift * (theta - place) if self.placed else found
 
-    def slope(self, eta: BallArray) -> BallArray:
-        """`-d phi/d eta` over incidence angles."""
+    def slopes(self, eta: BallArray, theta: BallArray) -> tuple[BallArray, BallArray]:
+        """`-d phi/d eta` and `d phi/d theta` over incidence angles and places."""
         if self.law is None:
-            return self.lam
-        return spread(self.law.slopes(self.ops, eta, self.lam, BallArray(0.0))[0], np.asarray(eta.m))
+            return self.lam, BallArray(0.0)
+        slope, drift = self.law.slopes(self.ops, eta, self.lam, theta if self.placed else BallArray(0.0))
+        return spread(slope, np.asarray(eta.m)), spread(drift, np.asarray(eta.m)) if self.placed else BallArray(0.0)
 
     @property
     def charts(self) -> tuple[Chart, ...]:
@@ -139,8 +153,7 @@ class PinballImages:
 
     @property
     def label(self) -> str:
-        shape = "".join(f", {name} = {value}" for name, value in self.scene.shape.items())
-        low, high = self.range
+        shape, (low, high) = "".join(f", {name} = {value}" for name, value in self.scene.shape.items()), self.range
         law = "" if self.law is None else f", phi = {self.scene.law}"
         return f"{self.scene.name}{shape}{law}, lam = {low}" + ("" if low == high else f" to {high}")
 
@@ -165,10 +178,7 @@ class PinballImages:
         return collected(rows, np.arange(boxes.chart.size))
 
     def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
-        """What the derivative over whole boxes is made of, for each piece of the arcs where they land.
-
-        An entry of infinite radius is not known; a box without an arc has such entries.
-        """
+        """The derivative over whole boxes, for each piece of their arcs; entries of infinite radius are not known."""
         with np.errstate(all="ignore"):
             flights = _Flights(self, boxes)
             pieces = flights.pieces(*flights.arcs())
@@ -191,9 +201,8 @@ class _Flights:
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
         """Start, velocity of the boundary, its speed and bend, and the direction of flight."""
         x, y, dx, dy, ddx, ddy = self.map.place(self.chart, theta)
-        square = dx * dx + dy * dy
+        square, (c, s) = dx * dx + dy * dy, turned(phi)
         speed = self.map.ops.sqrt(square)
-        c, s = turned(phi)
         v, w = (s * dx - c * dy) / speed, (s * dy + c * dx) / speed
         return {"x": x, "y": y, "speed": speed, "bend": (dx * ddy - dy * ddx) / square, "v": v, "w": w, "cos": c}
 
@@ -235,13 +244,13 @@ class _Flights:
         """Landings of the midpoints, and how far the box's landings may lie before and after, in float64."""
         ends = self.map.map.states.ends
         low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
-        theta = np.clip(self.theta.m, low, high) if not self.map.closed else self.theta.m
+        theta = self.theta.m if self.map.closed else np.clip(self.theta.m, low, high)
         step = self.map.map.step(theta, self.phi.m, self.chart)
-        chart, landed = step.component, np.where(step.code == 0, step.theta, np.nan)
-        chart = np.where(step.code == 0, chart, self.chart)
+        chart = np.where(step.code == 0, step.component, self.chart)
+        landed = np.where(step.code == 0, step.theta, np.nan)
         x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(np.nan_to_num(landed))))
-        at = {name: value.m for name, value in self.centre.items()}
         with np.errstate(all="ignore"):
+            at = {name: value.m for name, value in self.centre.items()}
             along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
             slope = np.abs(at["v"] * dy - at["w"] * dx)
             rate = np.abs(at["cos"] * at["speed"] - at["bend"] * along) * self.reach[0].r
@@ -297,14 +306,13 @@ class _Flights:
         Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
         """
         arc = hull(low, high)
-        turn = _turn(self._tangent(on, self.thetas), self.map.place(chart, arc)[2:4])
-        eta = _incidence(self.phis[on] + turn)
-        theta = arc
+        eta = _incidence(self.phis[on] + _turn(self._tangent(on, self.thetas), self.map.place(chart, arc)[2:4]))
+        theta, phi = arc, None
         if smooth:
-            theta, eta = self._mean_value(on, chart, arc, eta)
+            theta, eta, phi = self._mean_value(on, chart, arc, eta)
             theta = _both(arc, theta)
-        phi = self.map.exit(eta)
-        top = self.map.top
+        exit, top = self.map.exit(eta, theta), self.map.top
+        phi = exit if phi is None else _both(phi, exit)
         low_y, high_y = np.maximum(phi.lower(), -top), np.minimum(phi.upper(), top)
         known = np.isfinite(phi.r) & (low_y <= high_y)
         none = np.isfinite(phi.r) & (low_y > high_y) & (not smooth)  # no landing has such an angle
@@ -316,15 +324,22 @@ class _Flights:
     def _tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
         return self.map.place(self.chart[on], theta[on])[2:4]
 
-    def _mean_value(self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray) -> tuple[BallArray, BallArray]:
-        """Landing and angle of incidence by the mean-value theorem, about the landing of the midpoint."""
-        by_theta, by_phi, here, there, _ = self.slopes(on, chart, arc)
+    def _mean_value(
+        self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
+    ) -> tuple[BallArray, BallArray, BallArray | None]:
+        """Landing, incidence and, under a law of the place, exit, by the mean-value theorem about the midpoint's."""
+        by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
         middle = self._midpoint(on, chart, arc)
         theta = middle + by_theta * reach[0] + by_phi * reach[1]
         turn = _turn(self._tangent(on, self.theta), self.map.place(chart, middle)[2:4])
-        fine = self.phi[on] + turn + (there * by_theta - here) * reach[0] + (there * by_phi + 1) * reach[1]
-        return theta, _both(eta, _incidence(fine))
+        by = there * by_theta - here, there * by_phi + 1
+        fine = self.phi[on] + turn + by[0] * reach[0] + by[1] * reach[1]
+        phi = None
+        if self.map.placed:  # place and incidence move together
+            phi = self.map.exit(_incidence(self.phi[on] + turn), middle)
+            phi = phi + (drift * by_theta - law * by[0]) * reach[0] + (drift * by_phi - law * by[1]) * reach[1]
+        return theta, _both(eta, _incidence(fine)), phi
 
     def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
         """The derivatives over the boxes `on`, whose landings lie in an arc."""
@@ -334,10 +349,11 @@ class _Flights:
         slope = at["v"] * dy - at["w"] * dx
         slope = BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
         by_theta = (at["bend"] * along - at["cos"] * at["speed"]) / slope
-        law = self.map.lam
+        law, drift = self.map.lam, BallArray(0.0)
         if self.map.law is not None:
-            law = self.map.slope(_incidence(self.phis[on] + _turn(self._tangent(on, self.thetas), [dx, dy])))
-        return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy), law)
+            turn = self.phis[on] + _turn(self._tangent(on, self.thetas), [dx, dy])
+            law, drift = self.map.slopes(_incidence(turn), arc)
+        return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy), law, drift)
 
     def _midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
         """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
@@ -364,8 +380,7 @@ def _turn(first: list[BallArray], last: list[BallArray]) -> BallArray:
 def _incidence(eta: BallArray) -> BallArray:
     """Angles of incidence known up to whole turns, as they are: they lie within a quarter turn.
 
-    An enclosure within three quarters of a turn holds no number that is a whole turn away from such an angle; of a
-    wider one nothing is kept.
+    An enclosure within three quarters of a turn holds no number a whole turn away from one; a wider one is not kept.
     """
     return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))
 

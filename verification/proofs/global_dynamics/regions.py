@@ -14,7 +14,7 @@ no long walk does. The boundary parameter takes the place of arc length: that mu
 which no mean over a long time sees.
 
 With `p = bend0 - slope0` the derivative takes a slope to `-sigma*(bend1 - p/(by_theta + by_phi*slope0))`, the mirror
-equation of a law with the slope `-sigma`, which is `-lam` for the paper's.
+equation of a law with the slope `-sigma`, which is `-lam` for the paper's; a law of the place adds its drift.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -235,6 +235,7 @@ class Derivatives(NamedTuple):
     bend_here: BallArray
     bend_there: BallArray
     law: BallArray
+    drift: BallArray
 
 
 @dataclass(frozen=True)
@@ -299,7 +300,7 @@ def _arriving(
     slope = hull(*cones)[found.source]
     with np.errstate(all="ignore"):
         stretch = found.by_theta + found.by_phi * slope
-        new = -(found.law * (found.bend_there - (found.bend_here - slope) / stretch))
+        new = found.drift - found.law * (found.bend_there - (found.bend_here - slope) / stretch)
         known = np.isfinite(new.r)
         ends = np.where(known, new.lower(), -np.inf), np.where(known, new.upper(), np.inf)
     low, high = np.full(count * charts, np.inf), np.full(count * charts, -np.inf)

@@ -35,6 +35,17 @@ def test_orbits_end_in_the_boxes_that_are_said_to_hold_what_returns():
     assert np.all((sink.y[0][rows] < end.phi) & (end.phi < sink.y[1][rows]))
 
 
+def test_under_another_law_it_is_proved_where_the_law_is_strictly_monotonic_and_nowhere_else():
+    """Both laws have the slope `lam` along the normal, where the orbits end; the second one turns back on its way."""
+    monotonic, folded = (
+        replace(ELLIPSE, scene=Scene("ellipse", a="3/2", law=law))
+        for law in ("-lam*(2*eta + sin(eta))/3", "-lam*sin(2*eta)/2")
+    )
+
+    assert monotonic.proved
+    assert not folded.proved
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

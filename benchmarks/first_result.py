@@ -24,9 +24,10 @@ from verification.measure.work.bench import LAWS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "leave_out.md"
+TABLES = SCENES | {"stadium": {}}  # and one that is not the paper's, by its name
 ORBITS = {
     name: f"PinballMap({name!r}, lam=0.95" + "".join(f", {key}={value!r}" for key, value in shape.items()) + ")"
-    for name, shape in SCENES.items()
+    for name, shape in TABLES.items()
 }
 QUESTIONS = {"end": {}, "orbit": {"record": True}, "exponents": {"exponents": True}}
 EVERYTHING = KernelSpec(
@@ -57,10 +58,13 @@ WORDS = """# What a scene does not need
 Each line is a fresh process that asks one question of one scene, with the kernel in the cache. *Operations* are the
 vector instructions of one bounce, compares and selects included, and *share* is what is left of the kernel that
 does everything for that table: general `lam`, a tangent vector and a record. *State* is the doubles kept for a
-ball. A component index is part of the state of the cuspless table only; the other four have one component and no
-index. *Modules* are those of `numeric` and the packages beside it (of llvmlite only its version is read). *Memory*
-is the peak of the resident set above that of a process that only imports NumPy, and *time* the processor's from
-NumPy's import to the answer, the shortest of three runs on a busy machine.
+ball. A component index is part of the state of the cuspless table and of the stadium; the others have one component
+and no index. *Modules* are those of `numeric` and the packages beside it (of llvmlite only its version is read).
+*Memory* is the peak of the resident set above that of a process that only imports NumPy, and *time* the processor's
+from NumPy's import to the answer, the shortest of three runs on a busy machine.
+
+The stadium stands for the tables of `tables.GALLERY`: asked for by name, `PinballMap("stadium", straight=2)`, what its
+kernel is made from is kept like that of the paper's tables. `tables.stadium()` is the exact table, and needs SymPy.
 
 `python benchmarks/first_result.py page` writes this page; `tests/verification/measure/test_leave_out_page.py` holds
 operations, state and modules to their line. The split by kind of instruction is in [kernels.md](kernels.md).
@@ -92,7 +96,7 @@ def milliseconds(program, runs, folder, before=lambda: None):
 
 def program(name, law, asked):
     """The text of a process that asks one question of one scene."""
-    shape = "".join(f", {key}={value!r}" for key, value in SCENES[name].items())
+    shape = "".join(f", {key}={value!r}" for key, value in TABLES[name].items())
     return PROBE.format(name=name, lam=LAWS[law], shape=shape, asked=ASKED[asked])
 
 
@@ -111,7 +115,7 @@ def probe(text, folder, runs=1, warm=True):
 
 def counted(name, law, asked):
     """Operations, the share of the kernel that does everything, and the doubles of a ball's state."""
-    map = PinballMap(name, lam=LAWS[law], **SCENES[name])
+    map = PinballMap(name, lam=LAWS[law], **TABLES[name])
     question = KernelSpec(law, **QUESTIONS[asked])
     own, whole = (
         sum(operations(kernel_text(map.family, map.engine.names, one)).values()) for one in (question, EVERYTHING)
@@ -140,7 +144,7 @@ def page(runs):
     bare = "import json, pathlib, sys, time\nimport numpy\nbegan = time.process_time()\ntops = own = []\n" + end
     with tempfile.TemporaryDirectory() as folder:
         alone = probe(bare, folder, runs)
-        for name in SCENES:
+        for name in TABLES:
             for law in LAWS:
                 for asked in QUESTIONS:
                     said = probe(program(name, law, asked), folder, runs)
@@ -158,7 +162,7 @@ def page(runs):
 
 
 def main(runs):
-    """The times of the five tables."""
+    """The times of the paper's tables, and of the stadium."""
     with tempfile.TemporaryDirectory() as folder:
 
         def forget():

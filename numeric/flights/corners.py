@@ -1,12 +1,12 @@
 """Sides and arcs in a row: their numbers, which follows which, the closed curves, and what a flight may pass there."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from numeric.backends import functions as plane
-from numeric.backends.protocol import modulus
+from numeric.backends.protocol import Backend, M, N, modulus
 from numeric.flights.family import Boundary
 from numeric.flights.general import UNSURE
 
@@ -168,3 +168,27 @@ def passing(flight: Flight, corner: Pair, side: Any, start: Any, t: Any) -> Mask
     slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
     ahead = plane.dot(flight.v, (x - flight.z0[0], y - flight.z0[1]))
     return (modulus(side) <= slack) & (slack < ahead) & (ahead < t)
+
+
+def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
+    """The piece of a closed curve whose first corner lies to the right of a line from `component`, and its last not.
+
+    `side` of a corner, that of the piece which begins there, is negative to the right. Also those of the first corner
+    after the departure and of the last, and of the two corners of the piece.
+    """
+    one, many = ops.number(1.0), ops.number(float(count))
+
+    def which(k: N) -> N:
+        at = component + k
+        return ops.select(at < many, at, at - many)
+
+    low, high = one + ops.number(0.0) * component, many + ops.number(0.0) * component
+    first, last = side(which(one)), side(component)
+    below, above = first, last
+    for _ in range(max(1, (count - 2).bit_length())):
+        middle = ops.rounded(ops.number(0.5) * (low + high) - ops.number(0.25))
+        value = side(which(middle))
+        right = value < ops.number(0.0)
+        low, high = ops.select(right, middle, low), ops.select(right, high, middle)
+        below, above = ops.select(right, value, below), ops.select(right, above, value)
+    return [first, last, which(low), below, above]

@@ -45,6 +45,7 @@ from numeric.flights.corners import (
     column,
     convex,
     following,
+    halved,
     loops,
     passable,
     passing,
@@ -53,7 +54,6 @@ from numeric.flights.corners import (
 )
 from numeric.flights.family import Boundary, Family, Landing, Status, grazing, reflected
 from numeric.flights.general import UNSURE, refuse_long
-from numeric.flights.spline import halved
 
 FAR = 2.0**100  # as far as nothing was met
 Row = Sequence[Any]

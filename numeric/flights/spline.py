@@ -10,13 +10,14 @@ Whether an end of the piece of departure lies left or right is told by what is l
 and so is a landing on that piece. State: the component, the parameter `theta`, and the direction `v`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
+from numeric.flights.corners import halved
 from numeric.flights.family import Boundary, Landing
 from numeric.flights.general import FAR, General
 from numeric.flights.grid import SAME, boxed, grown
@@ -330,30 +331,6 @@ class Spline(General):
             return [node, *(ops.select(reached, new, old) for new, old in zip(hit, best, strict=True))]
 
         return list(ops.repeat(lambda at: at[0] < end - half, tried, [each, *best], len(self.tree) + 1))[1:]
-
-
-def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
-    """The piece of a closed curve whose first corner lies to the right of a line from `component`, and its last not.
-
-    `side` of a corner, that of the piece which begins there, is negative to the right. Also those of the first corner
-    after the departure and of the last, and of the two corners of the piece.
-    """
-    one, many = ops.number(1.0), ops.number(float(count))
-
-    def which(k: N) -> N:
-        at = component + k
-        return ops.select(at < many, at, at - many)
-
-    low, high = one + ops.number(0.0) * component, many + ops.number(0.0) * component
-    first, last = side(which(one)), side(component)
-    below, above = first, last
-    for _ in range(max(1, (count - 2).bit_length())):
-        middle = ops.rounded(ops.number(0.5) * (low + high) - ops.number(0.25))
-        value = side(which(middle))
-        right = value < ops.number(0.0)
-        low, high = ops.select(right, middle, low), ops.select(right, high, middle)
-        below, above = ops.select(right, value, below), ops.select(right, above, value)
-    return [first, last, which(low), below, above]
 
 
 def evaluated(ops: Backend[N, M], row: Sequence[N], u: N) -> list[N]:

@@ -11,13 +11,14 @@ from typing import Any
 from sympy import Abs, Add, Dummy, Expr, Float, I, Mul, Pow, S, Symbol, cos, expand, pi, sin, sqrt, tan
 from sympy import sympify as exact
 
-from numeric.lowering.program import Builder, LawIR, Node, Part, Program, ShapeRange, TableIR
+from numeric.lowering.program import Builder, LawIR, Named, Node, Part, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.expressions.signs import Box, vanishes
 from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, waves
 from symbolic.tables.formula import levels
+from symbolic.tables.gallery import of_gallery
 from symbolic.tables.geometry import Symmetry, group, velocity
 from symbolic.tables.law import Law
 from symbolic.tables.polynomial import cubic
@@ -74,10 +75,12 @@ def lower_law(law: Law) -> LawIR:
     return LawIR(str(law), program(law.phi), program(law.slope, law.phi.diff(theta)), law.placed)
 
 
-def exact_table(table: Table | Scene | str, K: int, shape: dict[str, Any]) -> Table:
+def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any]) -> Table:
     """The exact table of a map, with the numbers of its shape."""
     if isinstance(table, Scene):
         return table.table
+    if isinstance(table, Named):
+        return of_gallery(table.name, dict(table.lengths))
     given = tables.named(table, K) if isinstance(table, str) else table
     return given.at(**{name: exact(value) for name, value in shape.items()}) if shape else given
 

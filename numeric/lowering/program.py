@@ -5,17 +5,19 @@ A program is a list of lines in a closed vocabulary, without names, branches or 
 hashed, and written to a file from which it is read back without importing SymPy.
 
 A table IR is what the kernels need to know of a table: programs and a few facts, as plain data. It is made once from
-the exact table, through `numeric.lowering.lower`, the only place where SymPy is imported. Those of the paper's tables
+the exact table, through `numeric.lowering.lower`, the only place where SymPy is imported. Those of tables with a name
 are kept on disk, so that a warm run never imports it.
 """
 
 import json
 import operator
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numeric.lowering import cache
 from symbolic.expressions.numbers import NumberSystem, R
+from symbolic.tables.definition import GALLERY, exact_text
 from symbolic.tables.scene import Scene
 
 if TYPE_CHECKING:
@@ -294,24 +296,43 @@ class TableIR(NamedTuple):
         )
 
 
-def table_ir(table: "Table | Scene | str", K: int = 3) -> TableIR:
-    """The table IR of an exact table, of one of the paper's tables by name, or of a scene's table with its numbers.
+class Named(NamedTuple):
+    """A table of `symbolic.tables.gallery` by its name, with the lengths that are not left out, as exact text."""
+
+    name: str
+    lengths: tuple[tuple[str, str], ...] = ()
+
+
+def by_name(name: str, lengths: Mapping[str, Any]) -> Named:
+    """A table of the gallery; which lengths it has is asked when it is made.
+
+    >>> by_name("stadium", {"straight": "0.50"})
+    Named(name='stadium', lengths=(('straight', '1/2'),))
+    """
+    decimals = {key: str(value) if isinstance(value, float) else value for key, value in sorted(lengths.items())}
+    return Named(name, tuple((key, exact_text(f"{name}: {key}", value)) for key, value in decimals.items()))
+
+
+def table_ir(table: "Table | Scene | Named | str", K: int = 3) -> TableIR:
+    """The table IR of an exact table, of one of the paper's or the gallery's by name, or of a scene's with its numbers.
 
     A shape parameter that has a range stays open. What has a name or a text is kept between runs, and needs SymPy once.
 
     >>> table_ir("circle").same_as
     'circle'
     """
-    if not isinstance(table, str | Scene):
+    if not isinstance(table, str | Scene | Named):
         from numeric.lowering.lower import lower
 
         return lower(table)
     if isinstance(table, Scene):
         name = table.family_text or table.boundary
+    elif isinstance(table, Named):
+        name = repr(table)
     elif table in PAPER:
         name = f"{table}{K}" if table == "egg" else table
     else:
-        raise ValueError(f"no table is called {table!r}; the paper's are {', '.join(PAPER)}")
+        raise ValueError(f"no table is called {table!r}; accepted: {', '.join((*PAPER, *GALLERY))}")
     kept = cache.read("table_ir", name, cache.sources(*SOURCES))
     if kept is not None:
         try:

@@ -14,7 +14,7 @@ from numeric.flights.registry import family_of
 from numeric.kernels.engine import Engine
 from numeric.kernels.machine import MATRIX, TOLD, KernelSpec, starting
 from numeric.lowering.cache import key_of
-from numeric.lowering.program import TableIR, table_ir
+from numeric.lowering.program import Named, TableIR, by_name, table_ir
 from numeric.pinball.coordinates import States
 from numeric.pinball.orbits import PIECE, Course, Single, derivatives
 from numeric.pinball.sampling import Growth
@@ -30,6 +30,7 @@ from numeric.pinball.states import (
     real,
     shape_value,
 )
+from symbolic.tables.definition import GALLERY
 from symbolic.tables.scene import Law, Scene
 
 if TYPE_CHECKING:
@@ -42,8 +43,9 @@ Array = NDArray[np.float64]
 class PinballMap:
     """The map `T_lambda` of a table. Paper: section 2.
 
-    `table` is a scene, which says everything, or an exact table, or the name of one of the paper's; then shape
-    parameters are keywords, exact or decimal, and a decimal means the decimal it shows. `lam` is one number or one
+    `table` is a scene, which says everything, or an exact table, or the name of one of the paper's or of
+    `tables.GALLERY`; then shape parameters and lengths are keywords, exact or decimal, and a decimal means the decimal
+    it shows. `lam` is one number or one
     for each particle, and comes before a scene's own. `law` is another law than the paper's, with numbers for its
     own parameters. With `kernels=False` the same steps run on NumPy arrays.
 
@@ -55,7 +57,7 @@ class PinballMap:
 
     def __init__(
         self,
-        table: "Scene | Table | str",
+        table: "Scene | Table | Named | str",
         lam: Contraction | None = None,
         K: int = 3,
         kernels: bool = True,
@@ -65,6 +67,8 @@ class PinballMap:
         proved = isinstance(table, Scene) and lam is None  # a scene has checked its law
         if isinstance(table, Scene):
             law, (table, lam, K, shape) = table.law, _unpacked(table, lam, shape)
+        elif isinstance(table, str) and table in GALLERY:
+            table, shape = by_name(table, shape), {}
         self.reflection = law if isinstance(law, Law) else Law() if law is None else Law(law)
         self.ir: TableIR = table_ir(table, K)
         self.lam = contraction(1 if lam is None else lam)

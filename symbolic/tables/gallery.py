@@ -10,6 +10,7 @@ so that the inside of the table lies to the left of every component.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
+from inspect import signature
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TypeAlias
@@ -103,15 +104,24 @@ def _egg(points: Expr) -> Table:
     return polar(1 + alpha * cos(points * theta), "egg", [convex])
 
 
-circle = polar(1, "circle")
-ellipse = parametric(
-    a * cos(theta), sin(theta), "ellipse", [Shape(a, Interval(1, oo), "makes the y axis the longer one")]
+# What `validated` would prove of the paper's tables at every import, a test proves once.
+circle = Table("circle", (arc("circle", cos(theta), sin(theta), -pi, pi),))
+ellipse = Table(
+    "ellipse",
+    (arc("ellipse", a * cos(theta), sin(theta), -pi, pi),),
+    (Shape(a, Interval(1, oo), "makes the y axis the longer one"),),
 )
-cardioid = polar(1 + cos(theta), "cardioid", undefined=[Mark("cusp", 0, pi)])
-cuspless = piecewise(
-    arc("arc", *cardioid.components[0].point, -2 * pi / 3, 2 * pi / 3),
-    arc("wall", -Rational(1, 4), -theta, -sqrt(3) / 4, sqrt(3) / 4),
-    name="cuspless",
+cardioid = Table(
+    "cardioid",
+    (arc("cardioid", (1 + cos(theta)) * cos(theta), (1 + cos(theta)) * sin(theta), -pi, pi),),
+    undefined=(Mark("cusp", 0, pi),),
+)
+cuspless = Table(
+    "cuspless",
+    (
+        arc("arc", *cardioid.components[0].point, -2 * pi / 3, 2 * pi / 3),
+        arc("wall", -Rational(1, 4), -theta, -sqrt(3) / 4, sqrt(3) / 4),
+    ),
     origin=(1, S.Zero),
 )
 
@@ -343,3 +353,16 @@ GALLERY: Mapping[str, Callable[..., Table]] = MappingProxyType(
         for make in (square, triangle, stadium, reuleaux, lemon, semi_ellipse, mushroom, sinai, diamond)
     }
 )
+
+
+def of_gallery(name: str, lengths: Mapping[str, Number]) -> Table:
+    """The table of the gallery with this name, and lengths other than its own.
+
+    >>> of_gallery("square", {"side": "1/2"}).components[2].at(S.Zero)
+    (1/2, 1/2)
+    """
+    known = list(signature(GALLERY[name]).parameters)
+    for key in lengths:
+        if key not in known:
+            raise ValueError(f"{name}: {key} is none of its lengths; it has: {', '.join(known) or 'none'}")
+    return GALLERY[name](**lengths)

@@ -6,7 +6,7 @@ import pytest
 
 from numeric.lowering import program
 from numeric.lowering.lower import lower
-from numeric.lowering.program import ShapeRange, TableIR, table_ir
+from numeric.lowering.program import ShapeRange, TableIR, by_name, table_ir
 from symbolic import tables
 from symbolic.tables.scene import Scene
 
@@ -61,6 +61,18 @@ def test_eggs_are_kept_apart_by_their_number_of_points(tmp_path, monkeypatch):
     assert two == lower(tables.named("egg", 2)) != three
     assert len(list(tmp_path.iterdir())) == 2
     assert (table_ir("egg", 2), table_ir("egg", 3)) == (two, three)
+
+
+def test_a_table_of_the_gallery_by_name_is_the_exact_one_with_its_lengths_and_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
+    made = {radius: lower(tables.stadium(radius=radius)) for radius in ("1", "1/2")}
+    for _ in range(2):  # the second time from the file
+        for written, radius in (("1/2", "1/2"), (0.5, "1/2"), (1, "1")):
+            assert table_ir(by_name("stadium", {"radius": written})) == made[radius]
+        assert table_ir(by_name("stadium", {})) == made["1"]
+
+    assert len(list(tmp_path.glob("table_ir-*"))) == 3  # lengths that are left out are a text of their own
+    assert table_ir(by_name("sinai", {})) == lower(tables.sinai())
 
 
 def test_the_table_of_a_scene_is_kept_for_every_law_and_contraction_and_for_no_other_shape(tmp_path, monkeypatch):

@@ -55,7 +55,11 @@ def test_a_start_that_is_none(theta, phi, words):
         ("egg", {"alpha": float("nan")}, "egg: alpha = nan is no number"),
         ("ellipse", {"a": "1/2"}, r"ellipse: a = 1/2 makes the y axis the longer one; a must lie in \[1, oo\)"),
         ("ellipse", {"b": 2}, "ellipse: no shape parameter b; it has: a"),
-        ("square", {}, "no table is called 'square'"),
+        ("hexagon", {}, "no table is called 'hexagon'; accepted: circle, ellipse, .*, diamond"),
+        ("stadium", {"length": 2}, "stadium: length is none of its lengths; it has: straight, radius"),
+        ("stadium", {"radius": -1}, "stadium: radius = -1 is no length; accepted: positive numbers"),
+        ("stadium", {"radius": "wide"}, "stadium: radius"),
+        ("stadium", {"radius": float("nan")}, "stadium: radius"),
     ],
 )
 def test_a_table_that_is_none(name, shape, words):

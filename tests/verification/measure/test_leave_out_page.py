@@ -2,7 +2,6 @@
 
 import pytest
 
-from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.bench import module
 
 PAGE = module("first_result")
@@ -19,7 +18,7 @@ def cells(line):
 
 def test_the_page_has_a_line_for_every_scene_law_and_question():
     assert [tuple(cells(line)[:3]) for line in LINES] == [
-        (name, law, asked) for name in SCENES for law in PAGE.LAWS for asked in PAGE.QUESTIONS
+        (name, law, asked) for name in PAGE.TABLES for law in PAGE.LAWS for asked in PAGE.QUESTIONS
     ]
 
 
@@ -32,7 +31,7 @@ def test_operations_and_state_are_as_on_the_page(line):
     assert part <= 1
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", PAGE.TABLES)
 def test_a_process_imports_the_modules_on_the_page_and_no_more(name, tmp_path):
     asked = {"circle": "end", "ellipse": "orbit"}.get(name, "exponents")
     line = next(line for line in LINES if line.startswith(f"| {name} | pinball | {asked} "))

@@ -3,11 +3,13 @@
 from . import cache
 from .cache import key_of, sources
 from .lower import exact_table, lower_law, symmetries
-from .program import LawIR, TableIR, table_ir
+from .program import LawIR, Named, TableIR, by_name, table_ir
 
 __all__ = [
     "LawIR",
+    "Named",
     "TableIR",
+    "by_name",
     "cache",
     "exact_table",
     "key_of",

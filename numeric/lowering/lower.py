@@ -1,7 +1,6 @@
 """Lowering: an exact table of the symbolic storey comes in, a table IR goes out.
 
-This is the only module of `numeric` that imports SymPy; it is imported when a table IR is not on
-disk, and never while a map runs.
+The only module of `numeric` that imports SymPy, when a table IR is not on disk, and never while a map runs.
 """
 
 from collections.abc import Callable
@@ -18,7 +17,6 @@ from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, waves
 from symbolic.tables.formula import levels
-from symbolic.tables.gallery import of_gallery
 from symbolic.tables.geometry import Symmetry, group, velocity
 from symbolic.tables.law import Law
 from symbolic.tables.polynomial import cubic
@@ -77,10 +75,8 @@ def lower_law(law: Law) -> LawIR:
 
 def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any]) -> Table:
     """The exact table of a map, with the numbers of its shape."""
-    if isinstance(table, Scene):
-        return table.table
-    if isinstance(table, Named):
-        return of_gallery(table.name, dict(table.lengths))
+    if isinstance(table, Scene | Named):
+        return table.table if isinstance(table, Scene) else tables.of_gallery(table.name, dict(table.lengths))
     given = tables.named(table, K) if isinstance(table, str) else table
     return given.at(**{name: exact(value) for name, value in shape.items()}) if shape else given
 

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numeric.lowering import cache
 from symbolic.expressions.numbers import NumberSystem, R
-from symbolic.tables.definition import GALLERY, exact_text
-from symbolic.tables.scene import Scene
+from symbolic.tables.scene import GALLERY, Scene, exact_text
 
 if TYPE_CHECKING:
     from symbolic.tables.table import Table

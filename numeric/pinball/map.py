@@ -30,8 +30,7 @@ from numeric.pinball.states import (
     real,
     shape_value,
 )
-from symbolic.tables.definition import GALLERY
-from symbolic.tables.scene import Law, Scene
+from symbolic.tables.scene import GALLERY, Law, Scene
 
 if TYPE_CHECKING:
     from numeric.pinball.coordinates import ArcLength

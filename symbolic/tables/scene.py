@@ -36,6 +36,8 @@ from symbolic.tables.definition import (
     value_text,
     word_entry,
 )
+from symbolic.tables.definition import GALLERY as GALLERY
+from symbolic.tables.definition import exact_text as exact_text
 from symbolic.tables.law import Law as Law
 from symbolic.tables.law import parameters_of_law
 

@@ -177,11 +177,7 @@ TYPES = "symbolic.expressions.numbers"  # protocols, of which no digit and no in
         (
             "numeric.kernels.text",
             machine.SOURCES,
-            {
-                TYPES,
-                "numeric.lowering.lower",
-                *(f"symbolic.tables.{name}" for name in ("table", "scene", "definition")),
-            },
+            {TYPES, "numeric.lowering.lower", "symbolic.tables.table", "symbolic.tables.scene"},
         ),
         ("numeric.lowering.lower", program.SOURCES, {TYPES}),
     ],

@@ -82,7 +82,6 @@ def test_without_attractors_nothing_is_said_of_them(monkeypatch):
     monkeypatch.setattr(on_attractors, "egg", lambda *_: ())
     monkeypatch.setattr(on_basins, "found", lambda *_, **__: ())
 
-    assert on_attractors.three(CLAIMS["egg.three_attractors"]).verdict is Verdict.OPEN
     assert on_attractors.higher_periods(CLAIMS["egg.higher_period_attractors"]).verdict is Verdict.OPEN
     assert on_basins.after_crisis(CLAIMS["egg.after_crisis"]).verdict is Verdict.OPEN
 

@@ -1,16 +1,20 @@
 """The judges of the egg's attractors and of named values, driven to each verdict that they can reach."""
 
 from dataclasses import replace
+from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from flint import arb
 from sympy import Rational
 
 from symbolic.expressions.signs import Finding, Outcome
+from symbolic.tables.scene import Scene
 from verification.named.locate import locate
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import basins as on_basins
+from verification.paper.egg import crises as on_crises
 from verification.paper.egg import elastic as on_elastic
 from verification.paper.egg import period2 as on_egg_period2
 from verification.paper.egg import period3 as on_egg_period3
@@ -19,6 +23,8 @@ from verification.paper.judges import attractors as on_attractors
 from verification.paper.judges import ellipse as on_circle
 from verification.paper.judges import located as on_located
 from verification.paper.report.report import catalogue
+from verification.proofs.global_dynamics.crisis import kept_apart
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.slap_map import exponent as slap_critical
 from verification.proofs.slap_map.exponent import PeriodicPoints, one_zero
 
@@ -79,13 +85,19 @@ def test_beyond_the_crisis_a_third_attractor_leaves_it_open(monkeypatch):
     assert on_basins.after_crisis(claim).verdict is Verdict.OPEN
 
 
-def test_three_chaotic_attractors_are_supported_above_042_and_not_where_there_are_six(monkeypatch):
+def test_three_attractors_are_kept_apart_below_the_crisis_and_not_above(monkeypatch):
     claim = CLAIMS["egg.three_attractors"]
-    monkeypatch.setattr(on_attractors, "THREE", ("0.425",))
-    assert on_attractors.three(claim).verdict is Verdict.SUPPORTED
+    assert on_crises.three(claim).verdict is Verdict.CONFIRMED
 
-    monkeypatch.setattr(on_attractors, "THREE", ("0.395",))
-    assert on_attractors.three(claim).verdict is Verdict.OPEN
+    at = Fraction(428, 1000), Fraction(429, 1000)
+    monkeypatch.setattr(on_crises, "CELLS_APART", (192, 64, 1))  # boxes that meet those of another diameter
+    assert not on_crises.apart(at)
+    monkeypatch.setattr(on_crises, "CELLS_APART", (3071, 1024, 2))  # a turn by a third is no whole number of columns
+    assert not on_crises.apart(at)
+    monkeypatch.undo()
+    assert not on_crises.apart((Fraction(45, 100), Fraction(46, 100)))  # the tangency is not there
+    map = PinballImages(Scene("egg", alpha="0.08"), (Fraction(9, 20), Fraction(9, 20)))
+    assert kept_apart(map, (768, 256, 2), [(arb(0), arb(0))]) is None  # one attractor, beyond the crisis
 
 
 def test_localised_and_delocalised_chaos_are_told_apart(monkeypatch):

@@ -1,31 +1,39 @@
 """Claims on the egg's crises, and on how its attractor and the basins of period 3 grow. Paper: section 6.7.
 
-A crisis is a tangency of manifolds, with particles that leave beside it. All else is sampled, except that the period-3
-orbits attract, which is proved.
+A crisis is a tangency of manifolds, with particles that leave beside it. Proved are the three regions about the
+diameters, and that the period-3 orbits attract; all else is sampled.
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 
 import mpmath
 import numpy as np
+from flint import acb, arb, fmpq
 from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
-from verification.arithmetic.balls import FLOAT64
+from symbolic.cycles.cycle import egg_diameter, is_double_normal
+from symbolic.expressions.signs import Finding
+from symbolic.tables.scene import Scene
+from verification.arithmetic.balls import FLOAT64, balls, working
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import judges, sampled
-from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, unsettled
+from verification.paper.claims.judges import answer, by, judges, sampled, shown
+from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, strange, unsettled
+from verification.proofs.global_dynamics.crisis import kept_apart
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.manifolds.enclosed import complex_balls, enclosed_cycle
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
 from verification.proofs.manifolds.saddle import local, saddle
 
 EXACT_SHAPE = Rational(2, 25)
-SEED = 1
+SEED, BITS = 1, 160
 BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions at which the attractor's distance to the boundary is taken
 
 
@@ -115,6 +123,48 @@ ONE = ("0.445", "0.48", "0.52", "0.56", "0.6", "0.63", "0.655")  # one attractor
 CELLS = 300  # along each side of phase space, in (theta, sin(phi))
 STARTS, MANY = 200, 4000
 LEFT = "0.7"
+
+
+APART = Fraction(42, 100), Fraction(43, 100)
+CELLS_APART = (3072, 1024, 2)
+NEAR = 0.8  # radians from the ends of a diameter, at most
+
+
+@cache
+def apart(lam: tuple[Fraction, Fraction] = APART) -> Finding:
+    """Three trapping regions, each about one diameter, with the saddle at whose tangency strange attractors are."""
+    low, high = (arb(fmpq(x.numerator, x.denominator)) for x in lam)
+    chaos, value = strange(SHAPE, "interior-crisis-1")
+    said = f"for {lam[0]} <= lam <= {lam[1]}"
+    if not low < value < high:
+        return answer(None, f"{said}: the tangency lies elsewhere")
+    orbit = CONTACTS["interior-crisis-1"].unstable
+    with working(BITS):
+        plane = table(EXACT_SHAPE).over(complex_balls(BITS))
+        before, here = (x.real for x in enclosed_cycle(orbit, plane, acb(value))[:2])
+        angle = table(EXACT_SHAPE).over(balls(BITS)).angle(before, here)[0]
+    map = PinballImages(Scene("egg", alpha=SHAPE), lam)
+    kept = kept_apart(map, CELLS_APART, [(arb(0), arb(0)), (before, angle)])
+    near = kept is not None and bool(np.all(np.abs(np.arcsin(np.sin(kept))) < NEAR))
+    return by(
+        f"{said} the boxes that grow from an end of a diameter, and from the saddle of a tangency there, are a "
+        f"trapping region, within {NEAR} radians of that diameter, and apart from its copies turned by thirds. What is "
+        "near an orbit of tangency lies in the region of its saddle",
+        answer(near or None, f"{CELLS_APART[0]} by {CELLS_APART[1]} cells"),
+        shown("the diameter is normal to the boundary at both ends", is_double_normal(egg_diameter())),
+        chaos,
+    )
+
+
+@judges("egg.three_attractors")
+def three(claim: Claim) -> Judgement:
+    """Apart for every contraction of a range, each chaotic for a set of positive measure in it."""
+    return Judgement(
+        apart(),
+        "three trapping regions, one about each diameter, for every lam from 0.42 to 0.43, and a strange attractor in "
+        "each for a set of lam of positive measure, next to 0.42842; in windows cycles attract there, in some two to a "
+        "region",
+    )
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,6 @@ from verification.proofs.manifolds.saddle import Orbit
 SEED, STARTS, FEW, BITS = 1, 200, 40, 160
 SHAPE = "0.08"
 JOIN = 3**0.5 / 4
-THREE = ("0.421", "0.425", "0.43", "0.435", "0.44", "0.443")  # from 0.42 to the merging crisis
 
 
 @cache
@@ -309,23 +308,6 @@ def near_tenth(claim: Claim) -> Judgement:
         found,
         f"both at alpha = 0.095, for a set of contractions of positive measure in every neighbourhood of lam = {here}; "
         "not shown: that the chaos seen from 0.4 to 0.5 is that",
-    )
-
-
-@judges("egg.three_attractors")
-def three(claim: Claim) -> Judgement:
-    """Between 0.42, where the paper's section begins, and the first crisis: one chaotic attractor to each diameter."""
-    each = {x: chaotic(egg(x)) for x in THREE}
-    apart = all(sorted(map(sorted, map(vertices, some))) == [[0], [1], [2]] for some in each.values())
-    said = (
-        f"at lam = {', '.join(THREE)} {STARTS} random starts find three chaotic attractors, each at one vertex "
-        "and no two at the same"
-    )
-    return sampled(
-        "three from 0.4104 (two to each diameter, mirror images, before) to the crisis at 0.4434, apart from windows, "
-        "where cycles attract; in some of these there are six, as in the one at 0.42",
-        said,
-        apart,
     )
 
 

@@ -28,6 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import acb, arb, fmpq
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
@@ -224,18 +225,7 @@ class BoundaryCrisis:
         return False
 
     def _grown(self, map: PinballImages, start: Boxes) -> tuple[Grid, Mask] | None:
-        """The cells that boxes meet, with all that their images meet, again and again; None where they have no end."""
-        grid = Grid(map.charts, self.columns, self.rows)
-        member = _marked(grid, grid.met(_as_images(start)))
-        new = member
-        while new.any():
-            cells = _cells(new)
-            met, lost = mapped(map, grid, cells, self.parts)
-            if lost.any() or met.out.any():
-                return None
-            new = _marked(grid, met) & ~member
-            member |= new
-        return grid, member
+        return grown(map, (self.columns, self.rows, self.parts), start)
 
     def to_dict(self) -> dict[str, Any]:
         """The statement as a JSON document."""
@@ -295,6 +285,36 @@ def bracket(
     k = (first + last) // 2
     sink = float(found.theta[k]), float(found.phi[k])
     return BoundaryCrisis(scene, orbit, side, lam, *grid, float(start[k]), sink)
+
+
+def grown(map: PinballImages, grid: tuple[int, int, int], start: Boxes) -> tuple[Grid, Mask] | None:
+    """The cells that boxes meet, with all that their images meet, again and again; None where they have no end."""
+    cells = Grid(map.charts, *grid[:2])
+    member = new = _marked(cells, cells.met(_as_images(start)))
+    while new.any():
+        met, lost = mapped(map, cells, _cells(new), grid[2])
+        if lost.any() or met.out.any():
+            return None
+        new = _marked(cells, met) & ~member
+        member = member | new
+    return cells, member
+
+
+def kept_apart(map: PinballImages, grid: tuple[int, int, int], points: Sequence[tuple[arb, arb]]) -> Array | None:
+    """The polar angles of a trapping region grown from phase points, apart from its copies turned by thirds; or None.
+
+    `grid` is columns, a multiple of three, rows and parts; the map is that of a table which turns by thirds.
+    """
+    start = _boxed(points)
+    found = None if start is None or grid[0] % 3 or not map.closed else grown(map, grid, start)
+    if found is None:
+        return None
+    member = found[1][0]
+    wide = binary_dilation(np.pad(member, ((1, 1), (0, 0)), mode="wrap"), np.ones((3, 3)))[1:-1]
+    if any(np.any(wide & np.roll(member, k * grid[0] // 3, 0)) for k in (1, 2)):
+        return None
+    low, high = map.charts[0].x
+    return low + (high - low) * (np.flatnonzero(member.any(1)) + 0.5) / grid[0]
 
 
 def _boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:

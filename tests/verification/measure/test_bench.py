@@ -199,3 +199,11 @@ def test_a_ball_at_rest_is_compared_with_the_same_ball_on_its_way():
 
     assert (row.call, row.bar) == ("exponents, 100 bounces", 1.1)
     assert 0 < row.ratio < 100
+
+
+def test_balls_come_to_rest_on_tables_of_every_kind(monkeypatch):
+    monkeypatch.setattr(calls, "FEW_AT_REST", (8, 10, 20))
+    rows = [*calls.call_rows("conic", 1), *calls.pieces_at_rest(1)]
+
+    assert [row.scene for row in rows] == ["conic", "square", "regular6", "discs36"]
+    assert {row.call for row in rows} == {"exponents, 20 bounces"}

@@ -54,7 +54,7 @@ def command(
     from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
     from verification.measure.work.bench import MISSING, baseline_rows, is_checkout
-    from verification.measure.work.calls import call_rows
+    from verification.measure.work.calls import call_rows, pieces_at_rest
     from verification.measure.work.choice import earlier, moved, of_bench
 
     before = earlier(Path(compare)) if compare else []
@@ -72,7 +72,7 @@ def command(
             papers = name in labelled.SCENES
             rows += bench.kernel_rows(name, runs) if papers else bench.own_rows(name, runs)
             rows += baseline_rows(name, runs) if baselines else []
-            whole += call_rows(name, runs) if papers and calls else []
+            whole += call_rows(name, runs) if calls else []
             step(f"{name}, multiprecision")
             rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if papers else []
             step(f"{name}, hard cases")
@@ -81,6 +81,7 @@ def command(
         if not scenes:
             step("sides and discs")
             pieces = list(bench.pieces_rows(runs))
+            whole += pieces_at_rest(min(runs, 3)) if calls else []
     facts = bench.machine_facts()
     measured = [row.as_data() for row in (*rows, *pieces)]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []

@@ -13,11 +13,14 @@ import numpy as np
 from numeric import PinballMap
 from numeric.kernels.machine import TOLD, KernelSpec, starting
 from numeric.pinball.sampling import phase_starts
-from verification.measure.extremes.orbits import SCENES
+from symbolic import tables
+from verification.measure.extremes.by_hand import discs
+from verification.measure.extremes.orbits import SCENES, scene
 from verification.measure.work.bench import LAWS, attracted
 
 LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
 REST = 512, 1_000, 100_000  # balls at rest: how many, bounces of a short run, of a long one
+FEW_AT_REST = 64, 4_000, 40_000  # where a bounce takes ten times as long
 
 
 class Call(NamedTuple):
@@ -61,7 +64,10 @@ def taking_turns(one: Callable[[], object], other: Callable[[], object], runs: i
 
 
 def call_rows(name: str, runs: int) -> Iterable[Call]:
-    """The calls on one of the paper's tables."""
+    """The calls on one of the paper's tables; of one given by its radius, what balls at rest cost."""
+    if name not in SCENES:
+        yield at_rest(name, min(runs, 3), FEW_AT_REST)
+        return
     yield from single_rows(name, runs)
     yield from batch_rows(name, runs)
     yield at_rest(name, min(runs, 3))
@@ -132,10 +138,16 @@ def made(name: str) -> PinballMap:
     return PinballMap(name, lam=LAWS["pinball"], **dict(SCENES[name]))
 
 
-def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST) -> Call:
+def pieces_at_rest(runs: int) -> Iterable[Call]:
+    """The same on tables of straight sides and discs."""
+    for table in (tables.square(), tables.regular(6), discs(6)):
+        yield at_rest(table.name, runs, FEW_AT_REST, PinballMap(table, lam="9/10"))
+
+
+def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: PinballMap | None = None) -> Call:
     """Exponents of balls of which many come to rest, where subnormal numbers would be: a bounce must cost the same."""
     count, short, long = sizes
-    map = PinballMap(name, lam="9/10", **dict(SCENES[name]))
+    map = map or scene(name, "9/10")
     starts = phase_starts(map, count, seed=1)
 
     def once(bounces: int) -> object:

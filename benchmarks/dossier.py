@@ -2,8 +2,9 @@
 
     python benchmarks/dossier.py
 
-writes the page from `bench.json` (`pinball bench --json`) and `work_precision.json` in `benchmarks/records`,
-`docs/leave_out.md`, `docs/mutation.md`, `verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`;
+writes the page from `bench.json` and `bench_avx2.json` (`pinball bench --json`, on two processors) and
+`work_precision.json` in `benchmarks/records`, `docs/leave_out.md`, `docs/mutation.md`,
+`verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`;
 each is written by the command that the page names. The words are in `dossier.md` beside this file. Nothing is measured
 here, and a test holds the page to its sources.
 """
@@ -57,6 +58,35 @@ def bounce(bench):
     head = ["table", "random", "hardest case", "time", "exponents", "kept as angles and points"]
     head += [f"{name}, times" for name in RIVALS.values()]
     return table([*head, "plain Python, times"], lines)
+
+
+def calls(bench):
+    """A line for each call that `pinball bench` holds to a bar, a column for each table: ratios, or else times."""
+    found, bars = {}, {}
+    for row in [row for row in bench["calls"] if row["scene"] in SCENES]:
+        what = row["call"], row["against"] if row["against"].startswith("a ") else ""
+        value = duration(row["seconds"]) if what[1] else f"{row['ratio']:.2g}"
+        found[what, row["scene"]] = value if row["ratio"] <= row["bar"] else f"**{value}**"
+        bars[what] = duration(row["bar"] * row["reference"]) if what[1] else f"{row['bar']:g}"
+    lines = [[call, bars[call, by], *(found.get(((call, by), s), "") for s in SCENES)] for call, by in bars]
+    return table(["call", "bar", *SCENES], lines)
+
+
+def elsewhere(bench):
+    """What balls at rest cost on tables that are not the paper's, as ratios."""
+    rows = [row for row in bench["calls"] if row["scene"] not in SCENES]
+    return ", ".join(f"{row['scene']} {row['ratio']:.2g}" for row in rows), max(row["bar"] for row in rows)
+
+
+def kernels(benches):
+    """A line for each processor and question of a kernel: the time of a bounce on each table."""
+    lines = []
+    for bench in benches:
+        own = {(row["scene"], row["arithmetic"], row["kernel"]): row["seconds_per_bounce"] for row in bench["rows"]}
+        for kernel, words in (("llvm", "at the end"), ("llvm, exponents", "with both exponents")):
+            times = [duration(own[scene, "float64", kernel]) for scene in SCENES]
+            lines.append([bench["machine"]["processor"], words, *times])
+    return table(["processor", "asked for", *SCENES], lines)
 
 
 def pair(case):
@@ -192,6 +222,7 @@ def fuzz(text, corpus):
 def page():
     """The text of the page."""
     bench, work = load("benchmarks/records/bench.json"), load("benchmarks/records/work_precision.json")
+    other = load("benchmarks/records/bench_avx2.json")
     record, rows = load("verification/measure/extremes/recorded.json"), [Row.from_dict(row) for row in work["rows"]]
     loose = [f"`{name}`" for name, about in work["questions"].items() if not about["certified"]]
     return TEXT.read_text().format(
@@ -199,6 +230,10 @@ def page():
         bounce=bounce(bench),
         bounds=f"{BOUNDS[0]} and {BOUNDS[1]}",
         threads=threads(bench),
+        kernels=kernels([bench, other]),
+        other=other["machine"]["processor"],
+        calls=calls(other),
+        elsewhere="{} (bar {:g})".format(*elsewhere(other)),
         uncertified=f" (of {', '.join(loose)} a long run)" if loose else "",
         many=MANY,
         questions=questions(work, rows),

@@ -208,7 +208,7 @@ def test_windows_and_chaos_side_by_side_need_both_proved(judge, name, monkeypatc
 
 @pytest.mark.parametrize("name", ["period2_attracts", "compact_near_zero"])
 def test_boxes_too_large_to_prove_anything_leave_the_claims_near_zero_open(name, monkeypatch):
-    judge, coarse = getattr(on_attractors, name), replace(on_attractors.near_zero(), grid=(64, 4))
+    judge, coarse = getattr(on_attractors, name), replace(on_attractors.near_zero(), grid=(64, 8))
     assert verdict(judge, f"cuspless.{name}") is Verdict.CONFIRMED
 
     monkeypatch.setattr(on_attractors, "near_zero", lambda: coarse)

@@ -21,14 +21,13 @@ import numpy as np
 from PIL import Image
 
 matplotlib.use("svg")
-matplotlib.rcParams |= {"svg.hashsalt": "tables", "svg.fonttype": "none"}  # the same bytes each time; text as text
-from matplotlib import pyplot as plt  # noqa: E402  (after the backend)
+from matplotlib import pyplot as plt
 
-from numeric import PinballMap, phase_starts  # noqa: E402
-from numeric.kernels.machine import KernelSpec  # noqa: E402
-from symbolic import tables  # noqa: E402
-from verification.app.cli import main  # noqa: E402
-from verification.plots.sheet import STYLE  # noqa: E402
+from numeric import PinballMap, phase_starts
+from numeric.kernels.machine import KernelSpec
+from symbolic import tables
+from verification.app.cli import main
+from verification.plots.sheet import STYLE
 
 PICTURE = Path(__file__).parent / "figures" / "tables.svg"
 GREY, BLUE = "#7d8590", "#2f81f7"
@@ -133,7 +132,8 @@ def drawn() -> None:
         for side in phase.spines.values():
             side.set_color(GREY)
     figure.tight_layout()
-    figure.savefig(PICTURE, transparent=True, metadata={"Date": None})
+    with matplotlib.rc_context({"svg.hashsalt": "tables", "svg.fonttype": "none"}):  # the same bytes; text as text
+        figure.savefig(PICTURE, transparent=True, metadata={"Date": None})
     plt.close(figure)
 
 

@@ -205,7 +205,7 @@ def chord_of_length_zero(c: dict[int, Expr], scale: Expr = S.One) -> str | None:
     `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part. `scale` is theta in this angle.
 
     >>> chord_of_length_zero({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
-    'the boundary meets itself, or stops, near theta = -89 and 90 degrees'
+    'the boundary meets itself, or stops, near theta = -91 and 90 degrees'
     """
     T, C = Dummy("T", real=True), Dummy("C", real=True)
     n = max(abs(k) for k in c)

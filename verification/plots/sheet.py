@@ -115,6 +115,7 @@ STYLE: Any = {
     "lines.linewidth": 0.9,
     "path.simplify": True,
     "savefig.dpi": 200,
+    "svg.fonttype": "path",
     "svg.hashsalt": "pinball",
 }
 BLACK, DARK, MIDDLE, LIGHT = "#000000", "#1f4e79", "#c8691c", "#9fc5e8"  # in order of lightness

@@ -1,14 +1,19 @@
 """`pinball bench`: every arithmetic has a row, its error is measured, and the diagram spans them all."""
 
 import json
+import sys
 from decimal import Decimal
+from types import ModuleType
 
 import numpy as np
 import pytest
 from rich.console import Console
 
+from numeric import PinballMap
+from symbolic import tables
 from verification.app.cli import main
-from verification.app.commands.bench import show_ratios
+from verification.app.commands.bench import show_ratios, show_tables
+from verification.measure.extremes.by_hand import outline
 from verification.measure.extremes.orbits import cases, own_cases
 from verification.measure.work import bench as baselines
 from verification.measure.work import calls
@@ -133,6 +138,70 @@ def test_tables_that_are_not_the_papers_are_told_as_multiples_of_the_egg_of_the_
     show_ratios(Console(), [Row(scene, "float64", kernel, None, seconds, 1) for scene, kernel, seconds in ways])
 
     assert capsys.readouterr().out.splitlines()[-1].split() == ["star", "2.50", "2.00", "-"]
+
+
+@pytest.fixture(scope="module")
+def scalar():
+    """The loops that numba compiles, as plain Python: they are read in the same way, and need no numba."""
+    with pytest.MonkeyPatch.context() as patch:
+        plain = ModuleType("numba")
+        plain.njit = lambda function: function
+        patch.setitem(sys.modules, "numba", plain)
+        return baselines.module("scalar_numba")
+
+
+SMALL = {  # of the same pieces as tables that take longer to make
+    "heptagon": lambda: PinballMap(tables.regular(7), lam="19/20"),
+    "oval": lambda: PinballMap(outline(6, 0.03, "oval"), lam="19/20"),
+    "dented": lambda: PinballMap(outline(9, 0.2, "dented"), lam="19/20"),
+}
+ALIKE = ("square", "triangle", "stadium", "sinai", "egg_polynomial", "egg_sine", *SMALL)
+
+
+@pytest.mark.parametrize("name", ALIKE)
+def test_a_scalar_loop_lands_where_the_map_lands(name, scalar):
+    map = SMALL[name]() if name in SMALL else calls.compared(name, "19/20")
+    rng, component = np.random.default_rng(4), np.arange(20) % len(map.states.ends)  # every piece is left
+    theta, phi = rng.uniform(*np.array(map.states.ends)[component].T), rng.uniform(-1.4, 1.4, 20)
+    pieces, places, angles = baselines.scalar_way(scalar, name, map)(component, theta, phi, 3)
+
+    for i, ball in enumerate(zip(component, theta, phi, strict=True)):
+        where, at, out = int(ball[0]), float(ball[1]), float(ball[2])
+        for _ in range(3):
+            landing = map.step(at, out, where)
+            where, at, out = int(landing.component), float(landing.theta), float(landing.phi)
+            assert landing.code == 0
+        assert where == pieces[i]
+        assert abs(np.sin((at - places[i]) / 2)) < 5e-10
+        assert abs(out - angles[i]) < 1e-9
+
+
+def test_tables_are_told_as_multiples_with_their_bars_and_what_is_over_one_fails(capsys):
+    times = {"egg": 20, "square": 10, "stadium": 21, "regular100": 50, "discs36": 80}
+    rows = [Row(name, "float64", calls.KERNEL, None, seconds, 1) for name, seconds in times.items()]
+    loops = [Row(name, "float64", baselines.SCALAR, None, 400, 1) for name in times]
+
+    assert not show_tables(Console(width=120), [*rows, *loops])
+    shown = {line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines() if " of the " in line}
+    assert shown["square"][1:6] == ["0.50", "0.6", "of", "the", "egg"]
+    assert shown["stadium"][1:4] == ["1.05", "1", "*"]
+    assert shown["regular100"][1:6] == ["5.00", "6", "of", "the", "square"]
+    assert shown["discs36"][1:3] == ["8.00", "-"]
+    assert [line[-1] for line in shown.values()] == ["20.0", "40.0", "19.0", "8.0", "5.0"]
+
+    assert show_tables(Console(width=120), [row for row in rows if row.scene != "stadium"])
+    said = capsys.readouterr().out
+    assert "it needs numba" in said
+    assert all(line.split()[-1] == "-" for line in said.splitlines() if " of the " in line)
+
+
+def test_tables_are_measured_without_numba_and_every_one_that_has_a_bar_can_be_compared(monkeypatch):
+    monkeypatch.setattr(calls, "module", lambda name: None)
+    rows = list(calls.table_rows(1, names=("circle",)))
+
+    assert [(row.scene, row.kernel) for row in rows] == [("circle", calls.KERNEL)]
+    assert rows[0].seconds_per_bounce > 0
+    assert {against for against, _ in calls.BARS.values()} <= {*calls.BARS}
 
 
 def row(error, seconds, lam=LAWS["pinball"]):

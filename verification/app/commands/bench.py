@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 HEAD = f"     {'way':<38}{'time a bounce':>13}{'ratio':>10}   error / 2**-52"
 CALLS = f"{'table':<10}{'call':<36}{'time':>12}{'ratio':>8}{'bar':>7}   against"
+TABLES = f"{'table':<20}{'ratio':>8}{'bar':>7}{'':18}{'time a bounce':>13}{'scalar numba':>14}{'times':>8}"
 CASES = f"{'case':<40}{'balls':>6}{'position':>10}{'direction':>11}{'/condition':>19}"
 
 
@@ -48,13 +49,14 @@ def command(
     Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30
     digits more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the
     Pareto front: no other way is both faster and more exact. Whole calls have bars, as multiples
-    of what they are compared with; the exit status is 1 when one is over its bar. So it is with --compare when a
-    time, beside the others of its run, changed by more than a factor 1.5, or an error grew tenfold.
+    of what they are compared with, and so have tables beside the egg; the exit status is 1 when one is over its bar.
+    So it is with --compare when a time, beside the others of its run, changed by more than a factor 1.5, or an error
+    grew tenfold.
     """
     from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
     from verification.measure.work.bench import MISSING, baseline_rows, is_checkout
-    from verification.measure.work.calls import call_rows, pieces_at_rest
+    from verification.measure.work.calls import call_rows, pieces_at_rest, table_rows
     from verification.measure.work.choice import earlier, moved, of_bench
 
     before = earlier(Path(compare)) if compare else []
@@ -79,8 +81,8 @@ def command(
             cases += labelled.accuracy(name) if accuracy else []
         pieces: list[Row] = []
         if not scenes:
-            step("sides and discs")
-            pieces = list(bench.pieces_rows(runs))
+            step("tables beside the egg")
+            pieces = list(table_rows(runs, baselines))
             whole += pieces_at_rest(min(runs, 3)) if calls else []
     facts = bench.machine_facts()
     measured = [row.as_data() for row in (*rows, *pieces)]
@@ -91,7 +93,7 @@ def command(
     for name in chosen:
         show(output.console, name, [row for row in rows if row.scene == name])
     show_ratios(output.console, rows)
-    show_pieces(output.console, pieces)
+    good = show_tables(output.console, pieces)
     show_calls(output.console, whole)
     if baselines and not is_checkout():
         output.console.print(f"\n{MISSING}")
@@ -102,7 +104,7 @@ def command(
     )
     if compare:
         output.console.print(f"\nsince {compare}: " + ("; ".join(changes) or "nothing moved by more than a factor 1.5"))
-    return FAILED if changes or any(call.ratio > call.bar for call in whole) else DONE
+    return FAILED if changes or not good or any(call.ratio > call.bar for call in whole) else DONE
 
 
 def show(console: "Console", name: str, rows: "list[Row]") -> None:
@@ -143,15 +145,29 @@ def show_ratios(console: "Console", rows: "list[Row]") -> None:
         console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
 
 
-def show_pieces(console: "Console", rows: "Sequence[Row]") -> None:
-    """Tables of sides and arcs, as multiples of the square in the same run."""
+def show_tables(console: "Console", rows: "Sequence[Row]") -> bool:
+    """Bounces on many tables as multiples of the egg or the square in the same run; whether none is over its bar."""
+    from verification.measure.work.bench import SCALAR
+    from verification.measure.work.calls import BARS, KERNEL
     from verification.measure.work.row import duration
 
-    if rows:
-        console.print(f"\n{'times the square':<20}{'bounces':>10}{'time a bounce':>15}   at lam = 0.999999")
-    for row in rows:
-        ratio = row.seconds_per_bounce / rows[0].seconds_per_bounce
-        console.print(f"{row.scene:<20}{ratio:>10.2f}{duration(row.seconds_per_bounce):>15}")
+    times, good = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}, True
+    names = [name for name, kernel in times if kernel == KERNEL]
+    if names:
+        console.print(f"\n{TABLES}   at lam = 0.999999")
+    for name in names:
+        against, bar = BARS[name]
+        spent, scalar = times[name, KERNEL], times.get((name, SCALAR))
+        ratio = spent / times[against, KERNEL]
+        over = bar is not None and ratio > bar
+        good = good and not over
+        limit = f"{'-' if bar is None else f'{bar:g}':>7}{' *' if over else '  '} of the {against:<8}"
+        time = f"{duration(spent):>13}"
+        beside = f"{duration(scalar):>14}{scalar / spent:>8.1f}" if scalar else f"{'-':>14}{'-':>8}"
+        console.print(f"{name:<20}{ratio:>8.2f}{limit}{time}{beside}")
+    if names and (names[0], SCALAR) not in times:
+        console.print("scalar numba was not measured: it needs numba, and a checkout or the source distribution")
+    return good
 
 
 def show_calls(console: "Console", calls: "Sequence[Call]") -> None:

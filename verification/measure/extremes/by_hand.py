@@ -49,6 +49,14 @@ def discs(count: int) -> Table:
     return tables.Table(f"discs{count * count}", (*tables.square().components, *holes))
 
 
+def outline(points: int, depth: float, name: str) -> Table:
+    """A closed cubic spline through points of an ellipse with three dents; convex where they are shallow."""
+    angle = 2 * np.pi * np.arange(points) / points
+    r = 1 + depth * np.cos(3 * angle)
+    given = zip(1.5 * r * np.cos(angle), r * np.sin(angle), strict=True)
+    return tables.from_points([(f"{x:.6f}", f"{y:.6f}") for x, y in given], name)
+
+
 class Hit(NamedTuple):
     """The first hits of many particles."""
 

@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -32,18 +31,14 @@ from numeric.kernels import machine
 from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text, operations
 from numeric.pinball.sampling import phase_starts
-from symbolic import tables
 from verification.arithmetic.balls import bits_of, working
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import ExactMap, errors
-from verification.measure.extremes.by_hand import discs, spikes
 from verification.measure.extremes.orbits import DIGITS, RADII, SCENES, scene
 
 Array = NDArray[np.float64]
 LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
 FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # laws of a user's own: a polynomial, and one sine
-WANDERING = "999999/1000000"
-PIECES = "llvm, lam = 0.999999"
 BALLS, RUNS = 4096, 5
 WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
 CHECKED = 24  # balls whose errors are measured
@@ -170,25 +165,6 @@ def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
         yield Row(name, "float64", kernel, error, best(once, runs) / 300 / BALLS, runs)
 
 
-def pieces_rows(runs: int = RUNS) -> Iterable[Row]:
-    """Tables of straight sides and discs, few and many: kernels all measured in turn, at a contraction close to 1.
-
-    At a smaller one particles settle between parallel walls, and never meet what is between.
-    """
-    ready = []
-    for table in (tables.square(), tables.regular(100), discs(6), discs(10), spikes(40), spikes(100)):
-        map = PinballMap(table, lam=WANDERING)
-        ready.append((table.name, map, attracted(map, BALLS, 10)))
-    times: dict[str, list[float]] = {name: [] for name, *_ in ready}
-    for _ in range(runs + 1):
-        for name, map, own in ready:
-            lam = np.full(BALLS, float(map.lam))
-            once = partial(map.engine.run, KernelSpec(map.law), own, lam, map.shape, 50, (), 1)
-            times[name].append(best(once, 1) / 50 / BALLS)
-    for name, *_ in ready:
-        yield Row(name, "float64", PIECES, None, min(times[name][1:]), runs, WANDERING)
-
-
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
     """Seconds for one bounce of an orbit that is told in full."""
     component, theta = map.states.place(own)
@@ -301,6 +277,7 @@ FOLDER = ROOT / "benchmarks"
 MISSING = "The baselines need a checkout, or the source distribution: benchmarks/ is no part of the installed package."
 MEASURED = 24  # whose errors are measured
 LAM = 0.95
+SCALAR = "numba, one ball at a time"
 
 
 def is_checkout() -> bool:
@@ -324,6 +301,26 @@ def module(name: str) -> ModuleType | None:
     return found
 
 
+def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., tuple[Any, Any, Any]]:
+    """Component, parameter and exit angle after so many bounces in scalar numba.
+
+    A table that has no function of its name there is one of sides, arcs and cubics.
+    """
+    own, lam = getattr(scalar, name, None), float(map.lam)
+    given = float(map.shape[0]) if map.shape else 0.0
+    numbers = None if own else scalar.numbers(map.table)
+
+    def run(component: Any, theta: Any, phi: Any, bounces: int) -> tuple[Any, Any, Any]:
+        k, at, out = component.copy(), theta.copy(), phi.copy()
+        if own:
+            scalar.every(own, at, out, lam, bounces, given)
+        else:
+            scalar.every_on_pieces(numbers, k, at, out, lam, bounces)
+        return k, at, out
+
+    return run
+
+
 def baseline_rows(name: str, runs: int) -> Iterable[Row]:
     """The three baselines on a scene; of a table that is not the paper's the first."""
     rng = np.random.default_rng(2)
@@ -331,20 +328,16 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
     map = scene(name)
     low, high = map.states.ends[0]
     theta, phi = rng.uniform(low * 0.99, high * 0.99, 2048), rng.uniform(-1.4, 1.4, 2048)
-    value = map.shape[0] if map.shape else 0.0
-    scalar = module("scalar_numba")
-    if scalar is not None and hasattr(scalar, name):
-        step = getattr(scalar, name)
+    scalar, nought = module("scalar_numba"), np.zeros(2048, dtype=np.int64)
+    if scalar is not None:
+        compiled = scalar_way(scalar, name, map)
 
-        def compiled(bounces: int, count: int = 512) -> Any:
-            at, out = theta[:count].copy(), phi[:count].copy()
-            scalar.every(step, at, out, LAM, bounces, value)
-            return at, out
+        def looped() -> None:
+            compiled(nought[:512], theta[:512], phi[:512], 300)
 
-        error = _error(map, theta, phi, *compiled(1, MEASURED))
-        yield Row(
-            name, "float64", "numba, one ball at a time", error, best(lambda: compiled(300), runs) / 512 / 300, runs
-        )
+        _, at, out = compiled(nought[:MEASURED], theta[:MEASURED], phi[:MEASURED], 1)
+        error = _error(map, theta, phi, at, out)
+        yield Row(name, "float64", SCALAR, error, best(looped, runs) / 512 / 300, runs)
     if name in RADII:
         return
     arrays = module("arrays_lambdify")

@@ -1,4 +1,6 @@
-"""Whole calls, as users make them, beside the kernel that does their work: ratios, each with a bar.
+"""Whole calls, as users make them, beside the kernel that does their work, and tables beside the egg.
+
+They are ratios, each with a bar.
 
 Seconds differ between machines, ratios hardly: the two times of a ratio are the best of runs that take turns, in
 seconds of the processor, which other work on the machine does not lengthen. All of it runs on one thread.
@@ -6,6 +8,8 @@ seconds of the processor, which other work on the machine does not lengthen. All
 
 import time
 from collections.abc import Callable, Iterable
+from fractions import Fraction
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,13 +18,37 @@ from numeric import PinballMap
 from numeric.kernels.machine import TOLD, KernelSpec, starting
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
-from verification.measure.extremes.by_hand import discs
+from verification.measure.extremes.by_hand import discs, outline, spikes
 from verification.measure.extremes.orbits import SCENES, scene
-from verification.measure.work.bench import LAWS, attracted
+from verification.measure.work.bench import BALLS, FORMULAS, LAWS, SCALAR, Row, attracted, module, scalar_way
 
 LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
 REST = 512, 1_000, 100_000  # balls at rest: how many, bounces of a short run, of a long one
 FEW_AT_REST = 64, 4_000, 40_000  # where a bounce takes ten times as long
+
+WANDERING = "999999/1000000"
+KERNEL = "llvm, lam = 0.999999"
+IN_TURN, SCALAR_BALLS = 50, 512  # bounces of a run that takes turns with others, and particles of it in numba
+BARS: dict[str, tuple[str, float | None]] = {  # what a bounce on a table is compared with, and the largest ratio
+    "egg": ("egg", None),
+    "square": ("egg", 0.6),
+    "triangle": ("egg", 0.6),
+    "stadium": ("egg", 1.0),
+    "sinai": ("egg", 1.0),
+    "regular100": ("square", 6.0),
+    "limacon": ("egg", 6.0),
+    "star": ("egg", 12.0),
+    "peanut": ("egg", 8.0),
+    "conic": ("egg", 8.0),
+    "egg_polynomial": ("egg", 1.15),
+    "egg_sine": ("egg", 1.5),
+    "spline30": ("egg", 12.0),
+    "dented30": ("egg", 12.0),
+    "discs36": ("square", None),
+    "discs100": ("square", None),
+    "spikes40": ("square", None),
+    "spikes100": ("square", None),
+}
 
 
 class Call(NamedTuple):
@@ -159,3 +187,50 @@ def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: Pinba
     return Call(
         name, made, seconds / long / count, f"{short:,} bounces, lam = 9/10", reference / 10 / short / count, 1.1
     )
+
+
+def compared(name: str, lam: Any = WANDERING) -> PinballMap:
+    """The map of a row of the table of ratios.
+
+    >>> compared("sinai").ir.table, compared("egg_sine").law
+    ('sinai', 'formula')
+    """
+    laws = dict(zip(("egg_polynomial", "egg_sine"), FORMULAS, strict=True))
+    if name in laws:
+        return PinballMap("egg", lam=lam, law=laws[name], **SCENES["egg"])
+    own = {
+        "square": tables.square,
+        "triangle": tables.triangle,
+        "stadium": tables.stadium,
+        "sinai": tables.sinai,
+        "regular100": partial(tables.regular, 100),
+        "spline30": partial(outline, 30, 0.03, name),
+        "dented30": partial(outline, 30, 0.2, name),
+        "discs36": partial(discs, 6),
+        "discs100": partial(discs, 10),
+        "spikes40": partial(spikes, 40),
+        "spikes100": partial(spikes, 100),
+    }
+    return PinballMap(own[name](), lam=lam) if name in own else scene(name, lam)
+
+
+def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[Row]:
+    """A bounce on every table of `BARS`, by a kernel and in scalar numba: all measured in turn, at one contraction.
+
+    It is close to 1: at a smaller one particles settle between parallel walls, and never meet what is between.
+    Without numba only the kernels have rows.
+    """
+    scalar, ways = module("scalar_numba") if baselines else None, dict[tuple[str, str], Callable[[], object]]()
+    for name in names:
+        map, lam = compared(name), np.full(BALLS, float(Fraction(WANDERING)))
+        own = attracted(map, BALLS, 10)
+        ways[name, KERNEL] = partial(map.engine.run, KernelSpec(map.law), own, lam, map.shape, IN_TURN, (), 1)
+        if scalar is not None:
+            component, theta, phi, *_ = phase_starts(map, SCALAR_BALLS, seed=1)
+            ways[name, SCALAR] = partial(scalar_way(scalar, name, map), component, theta, phi, IN_TURN)
+    times: dict[tuple[str, str], list[float]] = {way: [] for way in ways}
+    for _ in range(runs + 1):  # the first compiles
+        for way, once in ways.items():
+            times[way].append(best(once, 1) / IN_TURN / (BALLS if way[1] == KERNEL else SCALAR_BALLS))
+    for (name, kernel), spent in times.items():
+        yield Row(name, "float64", kernel, None, min(spent[1:]), runs, WANDERING)

@@ -27,17 +27,13 @@ from numeric import PinballMap, phase_starts
 from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from verification.app.cli import main
+from verification.measure.extremes.by_hand import outline
 from verification.plots.sheet import STYLE
 
 PICTURE = Path(__file__).parent / "figures" / "tables.svg"
 GREY, BLUE = "#7d8590", "#2f81f7"
 PEBBLE = [("1.5", "0"), ("1.2", "0.61"), ("0.31", "0.98"), ("-0.73", "0.87"), ("-1.4", "0.33"),
           ("-1.41", "-0.3"), ("-0.7", "-0.9"), ("0.3", "-1"), ("1.23", "-0.58")]  # fmt: skip
-AROUND = 2 * np.pi * np.arange(30) / 30
-DENTED = [  # thirty points with three dents
-    (f"{1.5 * r * x:.6f}", f"{r * y:.6f}")
-    for r, x, y in zip(1 + np.cos(3 * AROUND) / 5, np.cos(AROUND), np.sin(AROUND), strict=True)
-]
 SCENES = [
     (tables.square(), "0.8"),
     (tables.triangle(), "0.3"),
@@ -140,7 +136,7 @@ def drawn() -> None:
 def timed(runs: int = 30) -> None:
     """Nanoseconds a bounce, without exponents: the best of many runs, by turns in one process on one core."""
     egg = PinballMap("egg", alpha="2/25", lam="0.95")
-    hundred, dented = tables.regular(100), tables.from_points(DENTED, "dented")
+    hundred, dented = tables.regular(100), outline(30, 0.2, "dented")
     given = [*(table for table, _ in SCENES), hundred, dented]
     maps = {"egg": egg} | {table.name: PinballMap(table, lam="0.95") for table in given}
     bounces, best, own = 200, dict.fromkeys(maps, np.inf), {}

@@ -198,7 +198,7 @@ def compared(name: str, lam: Any = WANDERING) -> PinballMap:
     laws = dict(zip(("egg_polynomial", "egg_sine"), FORMULAS, strict=True))
     if name in laws:
         return PinballMap("egg", lam=lam, law=laws[name], **SCENES["egg"])
-    own = {
+    own: dict[str, Callable[[], tables.Table]] = {
         "square": tables.square,
         "triangle": tables.triangle,
         "stadium": tables.stadium,

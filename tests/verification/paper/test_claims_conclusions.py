@@ -35,10 +35,12 @@ def test_the_sudden_creation_is_proved_by_the_trapping_region(monkeypatch: pytes
     assert verdict(on_conclusions.sudden_creation, "map.sudden_creation") is Verdict.OPEN
 
 
-@pytest.mark.parametrize("other", [{}, {0: (arb(5), arb(10))}, {0: (arb(0), arb(0, 3))}])
-def test_kinks_follow_only_from_a_cycle_within_the_trapping_region(monkeypatch: pytest.MonkeyPatch, other):
+@pytest.mark.parametrize("other", [(arb("nan"), arb("nan")), (arb(9), arb(-1)), (arb(0), arb(0, 3)), (arb(0), arb(2))])
+def test_kinks_follow_only_from_a_cycle_on_the_arc_within_each_trapping_region(monkeypatch: pytest.MonkeyPatch, other):
     assert verdict(on_conclusions.kink_structure, "map.kink_structure") is Verdict.CONFIRMED
-    monkeypatch.setattr(on_conclusions, "saddles", lambda _: other)
+    found = on_conclusions.born()
+    steps = *found.steps[:-1], replace(found.steps[-1], cycle=other)
+    monkeypatch.setattr(on_conclusions, "born", lambda: replace(found, steps=steps))
 
     assert verdict(on_conclusions.kink_structure, "map.kink_structure") is Verdict.OPEN
 

@@ -87,7 +87,14 @@ def test_beyond_the_crisis_a_third_attractor_leaves_it_open(monkeypatch):
 
 def test_three_attractors_are_kept_apart_below_the_crisis_and_not_above(monkeypatch):
     claim = CLAIMS["egg.three_attractors"]
-    assert on_crises.three(claim).verdict is Verdict.CONFIRMED
+    assert on_crises.three(claim).verdict is Verdict.SUPPORTED  # three regions; not one attractor in each
+
+    monkeypatch.setattr(on_crises, "SEEN", {"0.45": 40})  # one attractor visits all vertices
+    assert on_crises.three(claim).verdict is Verdict.OPEN
+    monkeypatch.undo()
+    monkeypatch.setattr(on_crises, "apart", lambda: Finding(Outcome.UNKNOWN, ""))
+    assert on_crises.three(claim).verdict is Verdict.OPEN
+    monkeypatch.undo()
 
     at = Fraction(428, 1000), Fraction(429, 1000)
     monkeypatch.setattr(on_crises, "CELLS_APART", (192, 64, 1))  # boxes that meet those of another diameter

@@ -181,17 +181,23 @@ def test_the_triangle_of_the_vertices_is_not_said_to_attract():
         assert attracting(SHARPER, map, acb(arb("0.51", 0.1))) is None  # balls that hold no proof
 
 
-@pytest.mark.parametrize(("judge", "name"), [("windows", "windows_above"), ("near_tenth", "coexistence_near_tenth")])
-def test_windows_and_chaos_side_by_side_need_both_proved(judge, name, monkeypatch):
+@pytest.mark.parametrize(
+    ("judge", "name", "best"),
+    [
+        ("windows", "windows_above", Verdict.SUPPORTED),  # strange attractors next to a tangency may be tiny
+        ("near_tenth", "coexistence_near_tenth", Verdict.SUPPORTED),  # a set of positive measure is no range
+    ],
+)
+def test_windows_and_chaos_side_by_side_need_both_proved(judge, name, best, monkeypatch):
     yes, no = Finding(Outcome.PROVED, ""), Finding(Outcome.UNKNOWN, "")
     values = {"interior-crisis-1": "0.428", "window-merging-9": "0.505", "boundary": "0.662"}
-    place = {"0.095": "0.5175349092"}
+    place = {"0.1": "0.4717157975"}
     monkeypatch.setattr(
         on_attractors, "strange", lambda alpha, kind="boundary": (yes, arb(place.get(alpha, values[kind])))
     )
     monkeypatch.setattr(on_attractors, "proved_at", lambda *_, **__: yes)
     on_attractors.both_near_tenth.cache_clear()
-    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is Verdict.CONFIRMED
+    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is best
 
     monkeypatch.setattr(
         on_attractors, "strange", lambda alpha, kind="boundary": (no, arb(place.get(alpha, values[kind])))

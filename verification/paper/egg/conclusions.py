@@ -24,17 +24,14 @@ from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
 from verification.paper.judges.ellipse import LIMIT, lyapunov
-from verification.paper.judges.hyperbolicity import born, chaos, corner
-from verification.proofs.corner.border_collision import sides
-from verification.proofs.corner.corner import ARC
-from verification.proofs.corner.evidence import saddles
+from verification.paper.judges.hyperbolicity import PROVED_TO, born, chaos, corner
 from verification.proofs.manifolds.known import CONTACTS
 from verification.proofs.periodic.bifurcation import doubling_curve
 from verification.proofs.periodic.interval_newton import Status
 
 MIXED = ("0.1", "0.43", "0.5", "0.6", "0.7", "0.83")  # contractions of the egg at alpha = 0.08
 DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # where orbits of these periods attract
-WEAK, SOON = "0.99", 3e-6
+WEAK = "0.99"
 NEAR_ELASTIC = ("0.97", "0.99")
 EVEN, ODD = (4, 6), (5, 7)
 
@@ -81,19 +78,17 @@ def sudden_creation(claim: Claim) -> Judgement:
 
 def corners() -> Finding:
     """The attractor born at `lambda-star` holds curves with a corner at each join."""
-    first, slope = born().steps[0], Symbol("slope")
-    u, v = (saddles(min(SOON, first.e[1])) or {}).get(ARC, (arb("nan"), arb("nan")))
-    inside = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(first.region))
+    saddle, slope = all(step.saddle for step in born().steps), Symbol("slope")
     along, across = derivative_matrix() * Matrix([1, slope])
     arc, wall = (curvature(component) for component in tables.cuspless.components)
     return by(
-        f"for lambda* < lam <= lambda* + {SOON} an unstable cycle lies in the region that is thrown into itself, so "
+        f"for lambda* < lam <= {PROVED_TO} an unstable cycle lies in the region that is thrown into itself, so "
         "the attractor holds its unstable manifold. A smooth arc of that grows, along the boundary, by a factor above "
         "1 at each half return until it crosses a join, since the region is bounded, and not tangent to it; there the "
         "slope dphi/ds jumps by lam times the jump of the curvature. The cycle is its own mirror image: both joins are "
         "met",
         chaos(),
-        answer(inside, "the cycle of period 4 on the arc lies in the region"),
+        answer(saddle, "a cycle of period 4 that meets the arc next to the joins lies in the region"),
         zero("", simplify((across / along).diff(K1) - lam)),
         zero("the curvature jumps by 3/2 at a join", arc.subs(theta, 2 * pi / 3) + Rational(3, 2), wall),
     )
@@ -104,8 +99,8 @@ def kink_structure(claim: Claim) -> Judgement:
     """Curves of the attractor cross the joins, where the slope jumps by `lam` times the jump of the curvature."""
     return Judgement(
         corners(),
-        "curves with corners at s = +-sqrt(3)/4, where dphi/ds jumps by 3*lam/2: proved of the attractor that is born "
-        f"at lambda*, up to lambda* + {SOON}",
+        "curves with corners at s = +-sqrt(3)/4, where dphi/ds jumps by 3*lam/2: proved of the attractor "
+        f"born at lambda*, all that stays in the region for ever, for lambda* < lam <= {PROVED_TO}",
     )
 
 

@@ -24,7 +24,16 @@ from verification.arithmetic.balls import FLOAT64, balls, working
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, judges, sampled, shown
-from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, strange, unsettled
+from verification.paper.judges.attractors import (
+    SHAPE,
+    chaotic,
+    cycles,
+    egg,
+    proved_at,
+    strange,
+    unsettled,
+    vertices,
+)
 from verification.proofs.global_dynamics.crisis import kept_apart
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.manifolds.enclosed import complex_balls, enclosed_cycle
@@ -127,6 +136,7 @@ LEFT = "0.7"
 
 APART = Fraction(42, 100), Fraction(43, 100)
 CELLS_APART = (3072, 1024, 2)
+SEEN = {"0.43": STARTS, "0.443": 40}  # contractions, and how many random starts
 NEAR = 0.8  # radians from the ends of a diameter, at most
 
 
@@ -158,12 +168,16 @@ def apart(lam: tuple[Fraction, Fraction] = APART) -> Finding:
 
 @judges("egg.three_attractors")
 def three(claim: Claim) -> Judgement:
-    """Apart for every contraction of a range, each chaotic for a set of positive measure in it."""
-    return Judgement(
-        apart(),
+    """Apart for every contraction of a part of the range; how many attractors there are in each region is sampled."""
+    proof, seen = apart(), {x: chaotic(egg(x, starts)) for x, starts in SEEN.items()}
+    good = all([len(vertices(a)) for a in some] == [1, 1, 1] for some in seen.values())
+    return sampled(
         "three trapping regions, one about each diameter, for every lam from 0.42 to 0.43, and a strange attractor in "
-        "each for a set of lam of positive measure, next to 0.42842; in windows cycles attract there, in some two to a "
-        "region",
+        "each for a set of lam of positive measure, next to 0.42842: proved; that there is one in each, and up to "
+        "the crisis, is sampled; in windows cycles attract there, in some two to a region",
+        f"proved: {proof.reason}; sampled: random starts at lam = {', '.join(SEEN)} find three chaotic attractors, each "
+        "at one vertex",
+        bool(proof) and good,
     )
 
 

@@ -239,8 +239,9 @@ def chaotic_interval(claim: Claim) -> Judgement:
         f"from next to {lower.str(5, radius=False)}, if not earlier, up to next to {upper.str(5, radius=False)}, in "
         f"the sense of sets of contractions of positive measure; {said}",
         by("strange attractors at both ends", early, late),
-        "Chaotic attractors are found from below 0.398 on, about [0.39, 0.66]: next to lambda = 0.39769 eight bands "
-        "become four at a homoclinic tangency, with strange attractors beside it.",
+        "Chaotic attractors are found from below 0.398 on, about [0.39, 0.66]: next to lambda = 0.39769, where "
+        "manifolds of a cycle of period 4 touch, there are strange attractors for a set of lambda of positive "
+        "measure.",
     )
 
 

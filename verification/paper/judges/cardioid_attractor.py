@@ -327,7 +327,8 @@ def nontrivial_larger(claim: Claim) -> Judgement:
     """Nothing but the period-2 orbit near 0; from `lambda_star` on a region in which no cycle attracts."""
     return Judgement(
         by("none near 0, and one above", settles_near_zero(), chaos()),
-        f"only the period-2 orbit for 0 < lam <= {NEAR_ZERO}; a chaotic attractor from lambda_star = 0.07122 on",
+        f"no attractor but the period-2 orbit for 0 < lam <= {NEAR_ZERO}; a chaotic one for lambda_star < lam <= 0.1, "
+        "lambda_star = 0.07122",
     )
 
 

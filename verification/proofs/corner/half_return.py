@@ -42,7 +42,9 @@ from verification.proofs.corner.border_collision import (
     Row,
     clipped,
     expansion,
+    fixed_point,
     grown,
+    sides,
     trapped,
 )
 from verification.proofs.corner.corner import (
@@ -148,11 +150,23 @@ TRIES = 4
 
 @dataclass(frozen=True)
 class Step:
-    """What is proved for `e[0] < lam - lambda-star <= e[1]`."""
+    """What is proved for `e[0] < lam - lambda-star <= e[1]`.
+
+    `cycle` holds all fixed points `(u, v)` of half the return in the region that lie on the arc or at the corner; there
+    is one where all of `cycle` lies in the interior of the region and has `v < 0` (Brouwer).
+    """
 
     e: tuple[float, float]
     region: Polygon
     expansion: Expansion
+    cycle: Row
+
+    @property
+    def saddle(self) -> bool | None:
+        """Is it proved that half the return has a fixed point on the arc? The cone makes it unstable."""
+        u, v = self.cycle
+        inside = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(self.region))
+        return True if inside and v < 0 else None
 
 
 @dataclass(frozen=True)
@@ -213,6 +227,6 @@ def step(near: Pieces, e: tuple[float, float]) -> tuple[Pieces, Step] | None:
         if cone is None or not cone.least > 1:
             return None
         if trapped(family, region):
-            return family, Step(e, region, cone)
+            return family, Step(e, region, cone, fixed_point(family[ARC]))
         region = grown(family, START, ROOM)
     return None

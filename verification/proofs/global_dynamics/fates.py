@@ -232,7 +232,7 @@ class Fate:
         if self.parts is None:
             return checks
         sinks, others = ([part for part in self.parts if part.sink is wanted] for wanted in (True, False))
-        found = [holding(sinks, cycle) for cycle in self.cycles]
+        found = [holding(self.parts, cycle) for cycle in self.cycles]
         each = len(sinks) == len(found) == len({id(part) for part in found}) and None not in found
         few = all(part.factor is not None and part.factor < 1 for part in others)
         return {"returning": True, "sinks": True if each else None, "saddles": True if few else None}
@@ -252,18 +252,27 @@ def invertible(map: PinballImages) -> bool:
 
 
 def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None:
-    """The sink of whose clusters each holds exactly one of the points, `(component, theta, phi)`, in its interior."""
+    """The sink of whose clusters each holds exactly one of the points, `(component, theta, phi)`, in its interior.
+
+    No cluster of another part may hold a point, even on its border: rectangles may overlap, and the boxes of the cycle
+    be those of the other part.
+    """
     for part in parts:
-        held = np.array(
-            [
-                (part.boxes.chart == chart) & _between(part.boxes.x, theta) & _between(part.boxes.y, phi)
-                for chart, theta, phi in points
-            ]
-        )
-        if part.sink and held.shape[1] == len(points) and np.all(held.sum(0) == 1) and np.all(held.sum(1) == 1):
+        if not part.sink:
+            continue
+        inside = _held(part, points, np.less)
+        others = [_held(other, points, np.less_equal) for other in parts if other is not part]
+        one = inside.shape[1] == len(points) and np.all(inside.sum(0) == 1) and np.all(inside.sum(1) == 1)
+        if one and np.array_equal(inside, _held(part, points, np.less_equal)) and not any(map(np.any, others)):
             return part
     return None
 
 
-def _between(side: tuple[Array, Array], value: float) -> NDArray[np.bool_]:
-    return np.asarray((side[0] < value) & (value < side[1]))
+def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> NDArray[np.bool_]:
+    """Which cluster, in columns, holds which point, in rows."""
+    (left, right), (bottom, top) = part.boxes.x, part.boxes.y
+    rows = [
+        (part.boxes.chart == chart) & below(left, x) & below(x, right) & below(bottom, y) & below(y, top)
+        for chart, x, y in points
+    ]
+    return np.array(rows)

@@ -176,9 +176,11 @@ CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # as those of periods 8 a
 
 FLATTER = Orbit(TRIANGLE.name, (-0.053420925,), TRIANGLE.closure)
 SHARPER = Orbit(TRIANGLE.name, (-0.228435096,), TRIANGLE.closure)
-BOUNDARY = {  # the boundary tangency at three shapes, and its contraction there
+SHARPEST = Orbit(TRIANGLE.name, (-0.249454849,), TRIANGLE.closure)
+BOUNDARY = {  # the boundary tangency at four shapes, and its contraction there
     SHAPE: (CONTACTS["boundary"], "0.66214427335822441948"),
     Rational(19, 200): (Contact(SHARPER, SHARPER, 5, 1, 0.03705487, -0.01623858, 0.51753491), "0.51753490920795741937"),
+    Rational(1, 10): (Contact(SHARPEST, SHARPEST, 5, 1, 0.03883646, -0.01384408, 0.47171580), "0.47171579751413786140"),
     Rational(1, 20): (Contact(FLATTER, FLATTER, 5, 1, 0.04529252, -0.06772806, 0.91652073), "0.91652073292391123465"),
 }
 

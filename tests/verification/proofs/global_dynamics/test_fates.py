@@ -9,10 +9,11 @@ from scipy.sparse import csr_matrix
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray
-from verification.proofs.global_dynamics.fates import Fate, _contraction, _staying
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _staying, holding
 from verification.proofs.global_dynamics.images import Slopes
 
+ONE = np.ones(1)
 HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))
 LOW = Fate(Scene("cuspless"), (Fraction(0), Fraction(1, 100)), (1024, 16), 4, (HORIZONTAL,))
 MINOR = ((0, np.pi / 2, 0.0), (0, -np.pi / 2, 0.0))
@@ -90,3 +91,18 @@ def test_where_as_many_walks_go_on_as_stretching_thins_points_out_nothing_is_pro
 
     assert _staying(slopes((2, 0), (2, 0)), np.arange(2), full) >= 1  # x -> 2*x (mod 1): every point stays
     assert _staying(slopes((3, 0), (3, 0)), np.arange(2), full) < 1e-9  # the middle third leaves
+
+
+def test_a_sink_is_not_said_to_hold_a_point_that_another_part_may_hold():
+    def part(left: float, right: float, sink: bool) -> Cluster:
+        return Cluster(
+            Boxes(np.array([0]), (np.array([left]), np.array([right])), (left * ONE, right * ONE)), sink, 0.5
+        )
+
+    sink = part(-1, 1, True)
+
+    assert holding([part(0.5, 2, False), sink], [(0, 0.0, 0.0)]) is sink
+    assert holding([part(-0.5, 2, False), sink], [(0, 0.0, 0.0)]) is None  # its box may be the saddle's
+    assert holding([part(0, 2, False), sink], [(0, 0.0, 0.0)]) is None  # on the border
+    assert holding([sink], [(0, 1.0, 0.0)]) is None
+    assert holding([sink], [(1, 0.0, 0.0)]) is None

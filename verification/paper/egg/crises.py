@@ -168,7 +168,7 @@ def apart(lam: tuple[Fraction, Fraction] = APART) -> Finding:
 
 @judges("egg.three_attractors")
 def three(claim: Claim) -> Judgement:
-    """Apart for every contraction of a part of the range; how many attractors there are in each region is sampled."""
+    """Apart for every contraction of a part of the range; how many attractors each region holds is sampled."""
     proof, seen = apart(), {x: chaotic(egg(x, starts)) for x, starts in SEEN.items()}
     good = all([len(vertices(a)) for a in some] == [1, 1, 1] for some in seen.values())
     return sampled(

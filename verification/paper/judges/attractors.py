@@ -311,8 +311,8 @@ def near_tenth(claim: Claim) -> Judgement:
     both = all(chaotic(some) and cycles(some, 3) for some in each.values())
     said = (
         f"{proof.reason}. Such a contact lasts: the zero is regular and the rest are strict inequalities, so there is "
-        f"one at each shape close enough to 1/10. Sampled: at alpha = 1/10, lam = {lams}, some of {FEW} random starts stay on "
-        "a chaotic set and others go to cycles of period 3"
+        f"one at each shape close enough to 1/10. Sampled: at alpha = 1/10, lam = {lams}, some of {FEW} random starts "
+        "stay on a chaotic set and others go to cycles of period 3"
     )
     return sampled(
         "both, for every alpha close enough to 1/10, for a set of contractions of positive measure in every "

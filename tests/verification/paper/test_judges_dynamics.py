@@ -181,6 +181,13 @@ def test_the_triangle_of_the_vertices_is_not_said_to_attract():
         assert attracting(SHARPER, map, acb(arb("0.51", 0.1))) is None  # balls that hold no proof
 
 
+def test_at_the_end_of_the_convex_shapes_strange_attractors_lie_beside_a_triangle_that_attracts():
+    proof, value = on_attractors.both_near_tenth()
+
+    assert proof
+    assert 0.4717 < value < 0.4718
+
+
 @pytest.mark.parametrize(
     ("judge", "name", "best"),
     [

@@ -175,8 +175,8 @@ def three(claim: Claim) -> Judgement:
         "three trapping regions, one about each diameter, for every lam from 0.42 to 0.43, and a strange attractor in "
         "each for a set of lam of positive measure, next to 0.42842: proved; that there is one in each, and up to "
         "the crisis, is sampled; in windows cycles attract there, in some two to a region",
-        f"proved: {proof.reason}; sampled: random starts at lam = {', '.join(SEEN)} find three chaotic attractors, each "
-        "at one vertex",
+        f"proved: {proof.reason}; sampled: random starts at lam = {', '.join(SEEN)} find three chaotic attractors, "
+        "each at one vertex",
         bool(proof) and good,
     )
 

@@ -70,6 +70,7 @@ def test_another_table_brings_its_own_shape(table):
 
 def test_a_formula_that_is_none_is_answered_with_a_sentence(table):
     table.get_by_label("Table").select_option("polar formula")
+    command(table, "pinball orbit --polar")  # the field is on the page to stay
     field = table.get_by_label("Radius, a formula in theta")
     field.fill("1 + __import__('os')")
     field.press("Enter")

@@ -44,9 +44,8 @@ class PinballMap:
 
     `table` is a scene, which says everything, or an exact table, or the name of one of the paper's or of
     `tables.GALLERY`; then shape parameters and lengths are keywords, exact or decimal, and a decimal means the decimal
-    it shows. `lam` is one number or one
-    for each particle, and comes before a scene's own. `law` is another law than the paper's, with numbers for its
-    own parameters. With `kernels=False` the same steps run on NumPy arrays.
+    it shows. `lam` is one number or one for each particle, and comes before a scene's own. `law` is another law than
+    the paper's, with numbers for its own parameters. With `kernels=False` the same steps run on NumPy arrays.
 
     >>> ellipse = PinballMap("ellipse", lam=1, a=2)
     >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis

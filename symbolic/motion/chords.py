@@ -154,6 +154,20 @@ def law_kernel(law: Law, order: int = 1) -> Kernel:
 
 
 @cache
+def ends_kernel(table: Table) -> Kernel:
+    """Start and end of the parameter of every component, one after the other, as a generated function of `(*shape)`.
+
+    >>> from symbolic.tables import cuspless
+    >>> ends_kernel(cuspless).results
+    ('start0', 'end0', 'start1', 'end1')
+    """
+    found: dict[str, Expr] = {}
+    for index, component in enumerate(table.components):
+        found |= {f"start{index}": component.start, f"end{index}": component.end}
+    return kernel("ends", [p.symbol for p in table.shapes], found)
+
+
+@cache
 def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) -> Kernel:
     """`chord_angle` as a generated function of `(theta0, theta1, *shape)`."""
     staged = chord_angle(table, here, there, order)

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from symbolic.expressions.text import kernel, load
-from symbolic.motion.chords import chord_angle, chord_kernel, law_kernel
+from symbolic.expressions.text import load
+from symbolic.motion.chords import chord_angle, chord_kernel, ends_kernel, law_kernel
 from symbolic.tables.definition import table_boundary
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
@@ -254,10 +254,7 @@ class Chords:
 
 @cache
 def _ends(table: Table) -> Callable[..., Any]:
-    """Start and end of the parameter of every component, one after the other, from the free shapes."""
-    known = [end for component in table.components for end in (component.start, component.end)]
-    named = {f"end{i}": end for i, end in enumerate(known)}
-    return load(kernel("ends", [p.symbol for p in table.shapes], named), FLOAT64)
+    return load(ends_kernel(table), FLOAT64)
 
 
 @cache

@@ -23,6 +23,7 @@ from sympy import Expr, Interval, Matrix, S, Symbol, chebyshevt, pi, simplify
 
 from symbolic.expressions.signs import nonnegative
 from symbolic.expressions.text import kernel, load
+from symbolic.motion.chords import ends_kernel
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.geometry import coefficients, turning, velocity
 from symbolic.tables.table import Component, Table, theta
@@ -54,17 +55,17 @@ def _of_one_shape(table: Table) -> bool | None:
 def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
     if table.undefined:
         return None
-    parts = all(_bends_inwards(component, table, shape) for component in table.components)
+    parts = all(_bends_inwards(table, index, shape) for index in range(len(table.components)))
     return True if parts and _joined(table) else None
 
 
-def _bends_inwards(component: Component, table: Table, shape: tuple[arb, ...]) -> bool:
-    bend = turning(component)
+def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
+    bend = turning(table.components[index])
     if bend.is_nonnegative or _exactly_nonnegative(bend):
         return True
     function = load(kernel("turning", [theta, *(p.symbol for p in table.shapes)], {"bend": bend}), balls(BITS))
     with working(BITS):
-        start, end = _ends(component, table, BITS)(*shape)
+        start, end = _ends(table, shape, BITS)[index]
         queue, spent = [(Fraction(0), Fraction(1))], 0
         while queue:
             low, high = queue.pop()
@@ -113,11 +114,13 @@ def closes_smoothly(table: Table) -> bool:
 
 def inside(table: Table, components: tuple[int, ...], zero: list[arb], shape: tuple[arb, ...] = ()) -> bool | None:
     """True when every bounce is proved to lie in the interior of its component, or on a closed one."""
+    if len(table.components) == 1:
+        return True
+    ends = _ends(table, shape, BITS)
     for index, value in zip(components, zero, strict=False):
-        part = table.components[index]
-        if len(table.components) == 1 or _whole(part):
+        if _whole(table.components[index]):
             continue
-        start, end = _ends(part, table, BITS)(*shape)
+        start, end = ends[index]
         if not (value > start and value < end):
             return False if value < start or value > end else None
     return True
@@ -147,16 +150,10 @@ def _whole(component: Component) -> bool:
     return bool(component.end - component.start == 2 * pi) and all(map(is_periodic, component.point))
 
 
-def _ends(component: Component, table: Table, bits: int) -> Callable[..., tuple[arb, arb]]:
-    """Where a component's parameter starts and ends, in balls, from the free shape parameters."""
-    letters = [p.symbol for p in table.shapes]
-    program = load(kernel("ends", letters, {"start": component.start, "end": component.end}), balls(bits))
-
-    def ends(*shape: arb) -> tuple[arb, arb]:
-        start, end = program(*shape)
-        return start + arb(0), end + arb(0)
-
-    return ends
+def _ends(table: Table, shape: tuple[arb, ...], bits: int) -> list[tuple[arb, arb]]:
+    """Where the parameter of each component starts and ends, in balls, from the free shape parameters."""
+    found = [end + arb(0) for end in load(ends_kernel(table), balls(bits))(*shape)]
+    return list(zip(found[::2], found[1::2], strict=True))
 
 
 def _exact(x: Fraction) -> arb:
@@ -210,8 +207,7 @@ def _boundary(table: Table, shape: tuple[arb, ...]) -> Boundary:
         program = _places(table, index)
         return lambda at: program(at, *shape)
 
-    ends = [_ends(component, table, BITS_OF_HIT)(*shape) for component in table.components]
-    return Boundary([placed(i) for i in range(len(table.components))], ends)
+    return Boundary([placed(i) for i in range(len(table.components))], _ends(table, shape, BITS_OF_HIT))
 
 
 @cache

@@ -166,10 +166,7 @@ def whispering_gallery(claim: Claim) -> Judgement:
 
 
 NEAR_ZERO = Fraction(1, 20)
-HORIZONTAL = (
-    (0, 0.0, 0.0),
-    (1, 0.0, 0.0),
-)  # component, theta, phi: the flattest point of the arc, and the wall's middle
+HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))  # component, theta, phi: of the arc's rightmost point and the wall's middle
 
 
 @cache

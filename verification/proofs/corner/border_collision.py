@@ -173,11 +173,15 @@ def trapped(pieces: Pieces, polygon: Polygon) -> bool | None:
     polygon = exactly_convex(polygon)
     for component, piece in pieces.items():
         for corner in part(polygon, component):
-            u, v = piece.of((arb(corner[0]), arb(corner[1])))
-            for (a, b), (c, d) in sides(polygon):
-                if not (arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0:
-                    return None
+            if not holds(polygon, piece.of((arb(corner[0]), arb(corner[1])))):
+                return None
     return True
+
+
+def holds(polygon: Polygon, point: Row) -> bool:
+    """Is it proved that a convex polygon, counterclockwise, holds a point in its interior?"""
+    u, v = point
+    return all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(polygon))
 
 
 @dataclass(frozen=True)

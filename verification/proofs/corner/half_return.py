@@ -44,7 +44,7 @@ from verification.proofs.corner.border_collision import (
     expansion,
     fixed_point,
     grown,
-    sides,
+    holds,
     trapped,
 )
 from verification.proofs.corner.corner import (
@@ -164,9 +164,7 @@ class Step:
     @property
     def saddle(self) -> bool | None:
         """Is it proved that half the return has a fixed point on the arc? The cone makes it unstable."""
-        u, v = self.cycle
-        inside = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(self.region))
-        return True if inside and v < 0 else None
+        return True if holds(self.region, self.cycle) and self.cycle[1] < 0 else None
 
 
 @dataclass(frozen=True)

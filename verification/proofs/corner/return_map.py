@@ -22,10 +22,9 @@ from itertools import pairwise
 from typing import Any
 
 from flint import arb
-from sympy import pi, sqrt
 
-from symbolic.expressions.text import kernel, load
-from symbolic.motion.chords import chord_kernel
+from symbolic.expressions.text import load
+from symbolic.motion.chords import chord_kernel, ends_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
 from verification.arithmetic.progress import Tick, silent
@@ -68,8 +67,8 @@ def _loaded() -> tuple[Angles, Angles, dict[int, arb]]:
     enclosing = {pair: load(made, balls(BITS)) for pair, made in kernels.items()}
     guessing = {pair: load(made, FLOAT64) for pair, made in kernels.items()}
     with working(BITS):
-        arc, wall = load(kernel("ends", [], {"arc": 2 * pi / 3, "wall": sqrt(3) / 4}), balls(BITS))()
-    return enclosing, guessing, {ARC: arc, WALL: wall}
+        ends = load(ends_kernel(cuspless), balls(BITS))()
+    return enclosing, guessing, {component: ends[2 * component + 1] + arb(0) for component in (ARC, WALL)}
 
 
 class Flights:

@@ -40,6 +40,7 @@ from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
 from verification.proofs.global_dynamics.graph import Cells, Grid, Transitions, refined
 from verification.proofs.global_dynamics.images import PinballImages, Slopes
+from verification.proofs.global_dynamics.regions import carried
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -176,8 +177,7 @@ def _staying(s: Slopes, where: Indices, walks: csr_matrix) -> float | None:
     for _ in range(ROUNDS):
         slope = hull(cones[0][where], cones[1][where])
         with np.errstate(all="ignore"):
-            stretch = s.by_theta + s.by_phi * slope
-            image = s.drift - s.law * (s.bend_there - (s.bend_here - slope) / stretch)
+            stretch, image = carried(s, slope)
         sign = np.sign(stretch.m)
         one = sign == sign[np.searchsorted(where, where)]
         if not np.all(one & (np.abs(stretch.m) > stretch.r) & np.isfinite(stretch.r) & np.isfinite(image.r)):

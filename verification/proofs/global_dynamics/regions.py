@@ -41,7 +41,7 @@ from verification.proofs.global_dynamics.graph import (
     inside,
     mapped,
 )
-from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.global_dynamics.images import PinballImages, Slopes
 
 KIND, SCHEMA = "trapping region", 1
 Checked = tuple[str, dict[str, bool | None]]
@@ -230,12 +230,7 @@ class Derivatives(NamedTuple):
 
     source: Indices
     chart: Indices
-    by_theta: BallArray
-    by_phi: BallArray
-    bend_here: BallArray
-    bend_there: BallArray
-    law: BallArray
-    drift: BallArray
+    slopes: Slopes
 
 
 @dataclass(frozen=True)
@@ -261,7 +256,13 @@ def derivatives(map: PinballImages, grid: Grid, cells: Cells, parts: int) -> Der
             rows.append([start + source[piece.on], piece.chart, *(half for pair in spread for half in pair)])
     source, chart, *halves = (np.concatenate(column) for column in zip(*rows, strict=True))
     balls = [BallArray(halves[i], halves[i + 1]) for i in range(0, len(halves), 2)]
-    return Derivatives(source, chart, *balls)
+    return Derivatives(source, chart, Slopes(*balls))
+
+
+def carried(found: Slopes, slope: BallArray) -> tuple[BallArray, BallArray]:
+    """By what the first component of vectors of a slope is multiplied, and the slope of their images."""
+    stretch = found.by_theta + found.by_phi * slope
+    return stretch, found.drift - found.law * (found.bend_there - (found.bend_here - slope) / stretch)
 
 
 def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int = 100, parts: int = 2) -> Expansion:
@@ -299,8 +300,7 @@ def _arriving(
     count, charts = cells.chart.size, len(map.charts)
     slope = hull(*cones)[found.source]
     with np.errstate(all="ignore"):
-        stretch = found.by_theta + found.by_phi * slope
-        new = found.drift - found.law * (found.bend_there - (found.bend_here - slope) / stretch)
+        _, new = carried(found.slopes, slope)
         known = np.isfinite(new.r)
         ends = np.where(known, new.lower(), -np.inf), np.where(known, new.upper(), np.inf)
     low, high = np.full(count * charts, np.inf), np.full(count * charts, -np.inf)
@@ -317,7 +317,7 @@ def _arriving(
 def _factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> Array:
     """The logarithm of the least factor by which vectors of its cone grow, for each box."""
     with np.errstate(all="ignore"):
-        stretch = found.by_theta + found.by_phi * hull(*cones)[found.source]
+        stretch, _ = carried(found.slopes, hull(*cones)[found.source])
         size = (np.abs(stretch.m) - stretch.r) * (1 - 1e-14)
         size = np.where(np.isfinite(stretch.r) & (size > 0), size, 0.0)
         least = np.full(count, np.inf)

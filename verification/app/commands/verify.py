@@ -193,7 +193,6 @@ def command(
 
     The report does not depend on --jobs, but for the seconds in it.
     """
-    from numeric.sweeps.sweep import cores
     from verification.paper.claims.folder import OWN, paper
     from verification.paper.report.page import diagrams
 
@@ -207,7 +206,7 @@ def command(
     missing = [claim for claim in claims if claim.id not in found]
     if changed:
         output.console.print(f"{len(missing)} of {len(claims)} claims depend on code that has changed.")
-    jobs, costs = jobs or cores(), {claim.id: report.seconds([claim]) for claim in claims}
+    costs = {claim.id: report.seconds([claim]) for claim in claims}
     with (
         output.progress("Judging", report.seconds(missing)) as step,
         closing(report.judged(missing, digits, jobs)) as judged,
@@ -317,7 +316,7 @@ def prepared(folder: str) -> Path:
 
 
 def drawn(
-    wanted: "Sequence[Figure]", output: Output, jobs: int = 1, known: "Mapping[str, bytes] | None" = None
+    wanted: "Sequence[Figure]", output: Output, jobs: int | None = 1, known: "Mapping[str, bytes] | None" = None
 ) -> "list[Picture]":
     """The figures wanted, as drafts, in their order; those known already are not drawn again.
 
@@ -341,7 +340,7 @@ def drawn(
     ]
 
 
-def _images(wanted: "Sequence[Figure]", jobs: int) -> "Generator[tuple[Figure, bytes], None, None]":
+def _images(wanted: "Sequence[Figure]", jobs: int | None) -> "Generator[tuple[Figure, bytes], None, None]":
     from verification.paper.report.workers import Lost, in_processes
 
     if jobs == 1 or len(wanted) < 2:

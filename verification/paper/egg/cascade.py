@@ -18,7 +18,7 @@ from verification.cycles.cascade import attractor
 from verification.named.branches import cascade
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, shown
-from verification.paper.egg.egg import SHAPES
+from verification.paper.egg.period2 import SHAPES
 from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettled
 from verification.paper.judges.hyperbolicity import bounced, ends_of_period

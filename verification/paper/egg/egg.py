@@ -1,6 +1,6 @@
 """Claims on the egg's shape and its map, and on its figures. Paper: sections 6, 6.1 and 6.4 to 6.7.
 
-A caption is judged from the data behind its figure. The ranges that claims on the egg share stand here too.
+A caption is judged from the data behind its figure.
 """
 
 from functools import cache
@@ -46,6 +46,7 @@ from verification.named.crises import changed_axis, stay
 from verification.named.locate import certify
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, identity, judges, sampled, zero
+from verification.paper.egg.period2 import FULL, ROUND, SHAPES
 from verification.proofs.periodic.bifurcation import Proof
 
 BOUNDARY = egg(3).components[0]
@@ -200,16 +201,6 @@ def persistence(claim: Claim) -> Judgement:
         ),
         "persists while no multiplier is 1",
     )
-
-
-SHAPES = Interval(0, Rational(1, 10))
-ROUND = Interval.Lopen(0, Rational(1, 10))  # without the circle
-FULL = Interval(-1, 1)  # of cos(3*theta)
-
-
-def at(numeral: str) -> Rational:
-    """A shape or a contraction as the exact number that its decimal shows."""
-    return Rational(numeral)
 
 
 SHAPE = Rational(2, 25)

@@ -23,7 +23,7 @@ from symbolic.tables.table import alpha, lam, phi
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, greater, judges, sampled, shown, zero
-from verification.paper.egg.egg import ROUND, at
+from verification.paper.egg.period2 import ROUND, at
 from verification.proofs.periodic.bifurcation import Twist, twist
 
 END = Rational(1, 10)

@@ -1,6 +1,10 @@
-"""Claims on the egg's slap map and period-2 orbits. Paper: sections 6.1 to 6.3."""
+"""Claims on the egg's slap map and period-2 orbits. Paper: sections 6.1 to 6.3.
+
+The ranges that claims on the egg share stand here too.
+"""
 
 from functools import cache
+from typing import TYPE_CHECKING
 
 from sympy import (
     Expr,
@@ -38,8 +42,18 @@ from verification.paper.claims.judges import (
     shown,
     zero,
 )
-from verification.paper.egg.egg import ROUND, SHAPES, at
-from verification.proofs.slap_map.exponent import OneZero, one_zero
+
+if TYPE_CHECKING:
+    from verification.proofs.slap_map.exponent import OneZero
+
+SHAPES = Interval(0, Rational(1, 10))
+ROUND = Interval.Lopen(0, Rational(1, 10))  # without the circle
+FULL = Interval(-1, 1)  # of cos(3*theta)
+
+
+def at(numeral: str) -> Rational:
+    """A shape or a contraction as the exact number that its decimal shows."""
+    return Rational(numeral)
 
 
 @cache
@@ -83,8 +97,10 @@ def slap_slope(at_vertex: bool) -> Expr:
 
 
 @cache
-def crossings() -> OneZero:
+def crossings() -> "OneZero":
     """The certificate that `T0'` vanishes at most once between a flat point and a vertex."""
+    from verification.proofs.slap_map.exponent import one_zero  # few of these claims need a proof in balls
+
     return one_zero(tick=telling("shapes and cosines"))
 
 

@@ -34,7 +34,7 @@ from symbolic.motion.flight import flight, iterate
 from symbolic.tables.table import alpha, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, digits, greater, identity, implied, judges, shown, zero
-from verification.paper.egg.egg import FULL, ROUND, SHAPES, at
+from verification.paper.egg.period2 import FULL, ROUND, SHAPES, at
 
 PLACE_RETURNS, ANGLE_RETURNS = symbols("place_returns angle_returns")  # theta_3 = theta_0 and phi_3 = phi_0
 

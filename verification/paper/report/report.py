@@ -86,7 +86,7 @@ def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path 
                 yield found[order.popleft()]
 
 
-def judged(claims: Sequence[Claim], digits: int, jobs: int) -> Generator[Result, None, None]:
+def judged(claims: Sequence[Claim], digits: int, jobs: int | None) -> Generator[Result, None, None]:
     """The result of each claim as it comes; with more than one job from processes, the dearest begun first.
 
     The results do not depend on `jobs`, but for their seconds. A claim whose process died again and again is open.

@@ -46,10 +46,11 @@ class _Worker(Generic[Item]):
 
 
 def in_processes(
-    work: Callable[[Item], Answer], tasks: Iterable[Sequence[Item]], jobs: int, modules: Sequence[str] = ()
+    work: Callable[[Item], Answer], tasks: Iterable[Sequence[Item]], jobs: int | None, modules: Sequence[str] = ()
 ) -> Generator[tuple[Item, Answer | Lost], None, None]:
     """Each item with what `work` makes of it, as answers come; a task's items go to one process, in order.
 
+    There are `jobs` processes, or one for each core.
     `work`, items and answers must be picklable; `modules` are those that every worker needs, imported once where the
     system can fork. What `work` raises is raised here. However this ends, by Ctrl-C as well, the workers end with it.
     """
@@ -58,6 +59,10 @@ def in_processes(
     workers: list[_Worker[Item]] = []
     tried: dict[int, int] = {}  # by identity: an item need not be hashable
     try:
+        if jobs is None:
+            from numeric.sweeps.sweep import cores  # which brings the map; a single judge does without
+
+            jobs = cores()
         with _undisturbed():
             workers.extend(_started(context, work) for _ in range(min(jobs, len(queue))))
         while workers:

@@ -5,7 +5,7 @@ from .doubled import WORDS, Doubles
 from .functions import CLOSED, Series
 from .intervals import Interval, Intervals, Secant, Secants, whole_turn
 from .llvm import LLVMBackend, LLVMVector
-from .protocol import Backend, Fields, M, N, Pair, modulus
+from .protocol import Backend, Fields, Frame, M, N, Pair, modulus
 from .scalars import ArrayBackend, ScalarBackend
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Backend",
     "Doubles",
     "Fields",
+    "Frame",
     "Interval",
     "Intervals",
     "LLVMBackend",

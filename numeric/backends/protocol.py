@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypeVar, Union
+from typing import Generic, NamedTuple, Protocol, TypeVar, Union
 
 from symbolic.expressions.numbers import Mask, NumberSystem, Real
 
@@ -150,3 +150,21 @@ class Backend(NumberSystem[N], Protocol[N, M]):
     def when(self, mask: M, values: list[N], changed: Callable[[], list[N]], /) -> list[N]:
         """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
         ...
+
+
+class Frame(NamedTuple, Generic[N]):
+    """Points of the boundary with the unit tangent there; the normal to its left points into the table."""
+
+    x: N
+    y: N
+    tx: N
+    ty: N
+
+    def direction(self, ops: Backend[N, M], phi: N) -> Pair[N]:
+        """The unit direction of exit angle `phi`."""
+        c, s = ops.cos(phi), ops.sin(phi)
+        return s * self.tx - c * self.ty, s * self.ty + c * self.tx
+
+    def angle(self, ops: Backend[N, M], vx: N, vy: N) -> N:
+        """The angle of a direction from the inward normal, positive towards the tangent."""
+        return ops.atan2(vx * self.tx + vy * self.ty, vy * self.tx - vx * self.ty)

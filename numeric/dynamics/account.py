@@ -168,7 +168,7 @@ def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
     orbit = map.orbit(particles.theta, particles.phi, bounces, particles.component)
     exit, lam = orbit.phi[1:], np.broadcast_to(map.lam, particles.theta.shape)
     if map.law == FORMULA:
-        inner = np.sum(np.log(np.abs(map.slopes(orbit.eta[1:], orbit.theta[1:])[0])), axis=0)
+        inner = np.sum(np.log(np.abs(map.slopes(orbit.eta[1:], orbit.theta[1:], orbit.component[1:])[0])), axis=0)
     else:
         inner, exit = np.zeros(lam.shape), lam * orbit.eta[1:]
     inner = inner + np.sum(np.log(np.cos(exit) / np.cos(orbit.eta[1:])), axis=0)

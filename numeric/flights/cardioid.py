@@ -133,6 +133,9 @@ class Cardioid(Family):
     def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         return drift * ops.number(0.5)  # dtheta/ds = 1/(2*cos(theta/2)), and below = cos(theta/2)
 
+    def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
+        return drift * below  # arc length is the parameter of tangent vectors
+
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(1.0), ops.number(0.0)]
 

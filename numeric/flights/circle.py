@@ -63,6 +63,9 @@ class Circle(Family):
     def incidence(self, ops: Backend[N, M], landing: Landing[N]) -> N:
         return landing.across
 
+    def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
+        return drift
+
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(0.0)]
 

@@ -20,13 +20,14 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import ClassVar, Generic, NamedTuple
+from typing import ClassVar, Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
+from numeric.backends.protocol import Frame as Frame
 from numeric.backends.scalars import ArrayBackend
 from numeric.lowering.program import LawIR, TableIR
 
@@ -56,24 +57,6 @@ class Status(Enum):
 
 Array = NDArray[np.float64]
 FINE = 4096  # points on which a boundary is examined
-
-
-class Frame(NamedTuple, Generic[N]):
-    """Points of the boundary with the unit tangent there; the normal to its left points into the table."""
-
-    x: N
-    y: N
-    tx: N
-    ty: N
-
-    def direction(self, ops: Backend[N, M], phi: N) -> Pair[N]:
-        """The unit direction of exit angle `phi`."""
-        c, s = ops.cos(phi), ops.sin(phi)
-        return s * self.tx - c * self.ty, s * self.ty + c * self.tx
-
-    def angle(self, ops: Backend[N, M], vx: N, vy: N) -> N:
-        """The angle of a direction from the inward normal, positive towards the tangent."""
-        return ops.atan2(vx * self.tx + vy * self.ty, vy * self.tx - vx * self.ty)
 
 
 class Boundary:
@@ -266,26 +249,40 @@ class Family(ABC):
         incidence = self.incidence(ops, landing)
         if law != FORMULA:
             return lam * incidence
-        return self._known(law).exit(ops, -incidence, lam, self._landing_parameter(ops, landing))[0]
+        return self._known(law).exit(ops, -incidence, lam, *self._landing_place(ops, landing))[0]
 
-    def slopes(self, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> tuple[N, N | None]:
-        """Minus the derivative of the exit angle by the incidence angle; and by `theta`, for a law that has it."""
+    def slopes(self, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> tuple[N, list[N]]:
+        """Minus the derivative of the exit angle by the incidence angle; then those by `theta` and `s`, if any."""
         if law != FORMULA:
-            return lam, None
-        formula, place = self._known(law), self._landing_parameter(ops, landing)
-        slope, drift = formula.slopes(ops, -self.incidence(ops, landing), lam, place)
-        return slope, drift if formula.placed else None
+            return lam, []
+        formula, place = self._known(law), self._landing_place(ops, landing)
+        slope, *drift = formula.slopes(ops, -self.incidence(ops, landing), lam, *place)
+        return slope, drift if formula.placed else []
 
     def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         """`drift` for a tangent vector's own parameter in the place of `theta`, times `below` of `bend`."""
         return drift * below
 
+    def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
+        """The same in the place of arc length."""
+        d = landing.vectors["d"]
+        return drift * below * ops.sqrt(plane.dot(d, d))
+
+    def arc(self, ops: Backend[N, M], position: Fields[N], component: N, theta: N, law: LawIR) -> N:
+        """Arc length from the table's origin, for a law that speaks of it."""
+        how, numbers = law.series or (plane.CLOSED, ())
+        return self.along(ops, position, theta, how, [ops.number(x) for x in numbers])
+
     def _known(self, law: str) -> LawIR:
         assert self.formula is not None, law
         return self.formula
 
-    def _landing_parameter(self, ops: Backend[N, M], landing: Landing[N]) -> N:
-        return self.place(ops, landing.position)[1] if self._known(FORMULA).placed else ops.number(0.0)
+    def _landing_place(self, ops: Backend[N, M], landing: Landing[N]) -> list[N]:
+        law = self._known(FORMULA)
+        if not law.placed:
+            return [ops.number(0.0)]
+        component, theta = self.place(ops, landing.position)
+        return [theta, self.arc(ops, landing.position, component, theta, law)] if law.measured else [theta]
 
     @abstractmethod
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
@@ -355,8 +352,8 @@ class Family(ABC):
         fall = landing.along * below
         slope, drift = self.slopes(ops, law, lam, landing)
         turned = (ops.number(1.0) + slope) * above * moved + slope * omega * fall
-        if drift is not None:
-            turned = turned + self.drifting(ops, landing, below, drift) * moved
+        for taken, change in zip((self.drifting, self.drifting_by_length), drift, strict=False):
+            turned = turned + taken(ops, landing, below, change) * moved
         down = down * fall
         ops.settle(moved, turned, down, below)
         leaving = [] if law == SLAP else self.leave(ops, shape, law, lam, landing)

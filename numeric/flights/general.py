@@ -14,6 +14,7 @@ import numpy as np
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
+from numeric.lowering.program import LawIR
 
 UNSURE = 2.0**-49  # how far a line is moved sideways by rounding, as a share of the numbers it is made of
 GRID = 4096  # points on which a component's turning is examined
@@ -58,6 +59,12 @@ class General(Family):
 
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         return position[0], position[1]
+
+    def arc(self, ops: Backend[N, M], position: Fields[N], component: N, theta: N, law: LawIR) -> N:
+        found = law.length(ops, 0, theta)
+        for index in range(1, len(self.parts)):
+            found = ops.select(ops.number(index - 0.5) < component, law.length(ops, index, theta), found)
+        return found
 
     def curve(self, ops: Backend[N, M], shape: Fields[N], component: N, theta: N) -> list[N]:
         """Point, velocity and acceleration, chosen lane by lane among the components."""

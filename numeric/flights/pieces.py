@@ -54,6 +54,7 @@ from numeric.flights.corners import (
 )
 from numeric.flights.family import Boundary, Family, Landing, Status, grazing, reflected
 from numeric.flights.general import UNSURE, refuse_long
+from numeric.lowering.program import LawIR
 
 FAR = 2.0**100  # as far as nothing was met
 Row = Sequence[Any]
@@ -138,6 +139,10 @@ class Pieces(Family):
         middle = chosen(ops, component, [(low + high) * ops.number(0.5) for low, high in ends])
         M = self._pair(ops, component, [piece.middle for piece in pieces])
         return component, ops.select(line, p, middle + ops.atan2(plane.cross(M, (p, q)), plane.dot(M, (p, q))))
+
+    def arc(self, ops: Any, position: Row, component: Any, theta: Any, law: LawIR) -> Any:
+        slope, begin = self._pair(ops, component, [tuple(length(ops)) for length in law.lengths])
+        return slope * theta + begin
 
     # ---- a bounce
 

@@ -5,6 +5,7 @@ The only module of `numeric` that imports SymPy, when a table IR is not on disk,
 
 from collections.abc import Callable
 from functools import reduce
+from operator import mul
 from typing import Any
 
 from sympy import Abs, Add, Dummy, Expr, Float, I, Mul, Pow, S, Symbol, cos, expand, pi, sin, sqrt, tan
@@ -18,10 +19,10 @@ from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, waves
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
-from symbolic.tables.law import Law
+from symbolic.tables.law import Law, lengths
 from symbolic.tables.polynomial import cubic
 from symbolic.tables.scene import Scene
-from symbolic.tables.table import Component, Table, eta, lam, theta
+from symbolic.tables.table import Component, Table, eta, lam, s, theta
 from symbolic.tables.validity import closed_and_finite, parameter_box, root
 
 DEEP = 12  # operations within each other, beyond which derivatives are not written out
@@ -40,7 +41,6 @@ def lower(table: Table) -> TableIR:
     A table may have been written down without a check, so that it is closed is seen to here.
     """
     table = closed_and_finite(table)
-    names = tuple(shape.symbol.name for shape in table.shapes)
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols) for component in table.components)
     same = _same_as(table)
@@ -50,27 +50,31 @@ def lower(table: Table) -> TableIR:
     return TableIR(
         table.name,
         same,
-        tuple(
-            ShapeRange(name, _bound(shape.range.start), _bound(shape.range.end), shape.otherwise)
-            for name, shape in zip(names, table.shapes, strict=True)
-        ),
+        tuple(ShapeRange(p.symbol.name, _bound(p.range.start), _bound(p.range.end), p.otherwise) for p in table.shapes),
         parts,
         tuple(programs.items()),
         (index, _program(symbols, lambda nodes: [nodes(start)])),
     )
 
 
-def lower_law(law: Law) -> LawIR:
-    """The programs of a law whose parameters have numbers."""
+def lower_law(law: Law, table: Callable[[], Table]) -> LawIR:
+    """The programs of a law whose parameters have numbers, on a table that is made where arc length is asked for."""
     if law.parameters:
         raise ValueError(f"law = {law}: the parameter {law.parameters[0]} needs a value")
+    places = (theta, s) if law.measured else (theta,)
 
     def program(*values: Expr) -> Program:
-        builder = Builder("eta", "lam", "theta")
-        nodes = dict(zip((eta, lam, theta), builder.nodes, strict=True))
+        builder = Builder("eta", "lam", *map(str, places))
+        nodes = dict(zip((eta, lam, *places), builder.nodes, strict=True))
         return builder.program(*(converted(builder, value, nodes) for value in values))
 
-    return LawIR(str(law), program(law.phi), program(law.slope, law.phi.diff(theta)), law.placed)
+    def line(length: Expr) -> Program:
+        return _program([], lambda nodes: [nodes(length.diff(theta)), nodes(length.subs(theta, 0))])
+
+    known = (lengths(table()) if law.measured else None) or ()
+    parts = () if any(length.has(sin, cos) for length in known) else tuple(map(line, known))
+    by_place = [law.phi.diff(place) for place in places]
+    return LawIR(str(law), program(law.phi), program(law.slope, *by_place), law.placed, law.measured, parts)
 
 
 def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any]) -> Table:
@@ -100,10 +104,7 @@ def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> 
     if expression.is_Add:
         return sum(values[1:], start=values[0])
     if expression.is_Mul:
-        product = values[0]
-        for value in values[1:]:
-            product = product * value
-        return product
+        return reduce(mul, values)
     if isinstance(expression, Pow) and expression.exp.is_Rational and expression.exp.q <= ROOT:
         return _power(builder, converted(builder, expression.base, nodes), expression.exp)
     if isinstance(expression, cos | sin):

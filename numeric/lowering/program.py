@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from numeric.backends.functions import Series
 from numeric.lowering import cache
 from symbolic.expressions.numbers import NumberSystem, R
 from symbolic.tables.scene import GALLERY, Scene, exact_text
@@ -235,15 +236,24 @@ class Part(NamedTuple):
 
 
 class LawIR(NamedTuple):
-    """A reflection law as the kernels see it: programs in `eta`, `lam` and `theta`, its own parameters as numbers.
+    """A reflection law as the kernels see it: programs in `eta`, `lam` and the place, its own parameters as numbers.
 
-    `exit` gives the exit angle; `slopes` minus its derivative by `eta`, and the one by `theta`.
+    The place is `theta`, and the arc length `s` after it where the law is `measured`. `exit` gives the exit angle;
+    `slopes` minus its derivative by `eta`, and those by the place.
     """
 
     text: str
     exit: Program
     slopes: Program
-    placed: bool  # does the exit angle depend on `theta`?
+    placed: bool  # does the exit angle depend on the place?
+    measured: bool = False  # on its arc length?
+    lengths: tuple[Program, ...] = ()  # on each component its slope by `theta` and its value at 0, where that is all
+    series: tuple[Series, tuple[float, ...]] | None = None  # as a sum of waves, on other closed curves
+
+    def length(self, ops: NumberSystem[R], component: int, theta: R) -> R:
+        """Arc length from the table's origin, on a table of straight sides and circular arcs."""
+        slope, begin = self.lengths[component](ops)
+        return slope * theta + begin
 
 
 class TableIR(NamedTuple):

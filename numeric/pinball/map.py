@@ -16,7 +16,7 @@ from numeric.kernels.machine import MATRIX, TOLD, KernelSpec, starting
 from numeric.lowering.cache import key_of
 from numeric.lowering.program import Named, TableIR, by_name, table_ir
 from numeric.pinball.coordinates import States
-from numeric.pinball.orbits import PIECE, Course, Single, derivatives
+from numeric.pinball.orbits import PIECE, Course, Single, derivatives, lowered_law
 from numeric.pinball.sampling import Growth
 from numeric.pinball.states import (
     Contraction,
@@ -78,13 +78,10 @@ class PinballMap:
         self.family = family_of(Boundary(self.ir, self.shape))
         self.states = States(self.family)
         if not self.reflection.uniform:
-            from numeric.lowering.lower import lower_law
-
-            self.family.formula = lower_law(self.reflection)
             if not proved:
                 self._check_law()
-        formula = self.family.formula
-        own = [] if formula is None else [str(formula.exit), str(formula.slopes)]
+            self.family.formula = lowered_law(self)
+        own = [str(part) for part in self.family.formula or ()]
         self.engine = Engine(self.family, key_of(self.ir.as_text(), self.family.identity, *own), names, kernels)
 
     @cached_property
@@ -225,8 +222,8 @@ class PinballMap:
         turned = lam * bent
         if law == FORMULA:
             landed = self.step(theta, phi, where)
-            slope, drift = self.slopes(landed.eta.ravel(), landed.theta.ravel())
-            turned = slope * bent + drift / states.speed(landed.component.ravel(), landed.theta.ravel()) * moved
+            slope, drift = self.slopes(landed.eta.ravel(), landed.theta.ravel(), landed.component.ravel())
+            turned = slope * bent + drift * moved
         return np.moveaxis(np.array([moved, turned]), 2, 0).reshape(*theta.shape, 2, 2)
 
     def exponents(
@@ -294,21 +291,22 @@ class PinballMap:
         other.lam, other.reflection, other._singles = contraction(lam), Law(), {}
         return other
 
-    def slopes(self, eta: Array, theta: Array) -> tuple[Array, Array]:
-        """Minus the derivative of the exit angle by the incidence angle, and by the landing's `theta`."""
-        formula, ops = self.family.formula, self.states.ops
-        lam = np.broadcast_to(self.lam, eta.shape)
+    def slopes(self, eta: Array, theta: Array, component: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Minus the derivative of the exit angle by the incidence angle, and by the landing's arc length."""
+        formula, lam = self.family.formula, np.broadcast_to(self.lam, eta.shape)
         if formula is None or self.reflection.uniform:
             return np.asarray(lam, dtype=float), np.zeros(eta.shape)
-        slope, drift = formula.slopes(ops, eta, lam, theta)
-        return slope + np.zeros(eta.shape), drift + np.zeros(eta.shape)
+        place = (theta, self.arclength.s(theta, component)) if formula.measured else (theta,)
+        slope, by_theta, *by_length = formula.slopes(self.states.ops, eta, lam, *place)
+        drift = by_theta / self.states.speed(component, theta) if formula.placed else 0
+        return slope + np.zeros(eta.shape), sum(by_length, start=drift) + np.zeros(eta.shape)
 
     # ---- within
 
     def _check_law(self) -> None:
         """Refuses a law that leads out of the table for some of the contractions."""
-        places = self.reflection.places(self.table) if self.reflection.placed else None
-        self.reflection.check((Fraction(float(np.min(self.lam))), Fraction(float(np.max(self.lam)))), places)
+        places = self.reflection.places(self.table) if self.reflection.placed else ()
+        self.reflection.check((Fraction(float(np.min(self.lam))), Fraction(float(np.max(self.lam)))), *places)
 
     def _law(self, phi: Array) -> str:
         """The law of a run; the slap kernel can only start along the normal."""

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from numeric.backends.functions import CLOSED
-from numeric.flights.family import NEAR, SLAP
+from numeric.flights.family import NEAR, SLAP, Family
 from numeric.kernels.engine import ALONE
 from numeric.kernels.engine import Course as KernelCourse
 from numeric.kernels.machine import MATRIX, START, TOLD, KernelSpec
+from numeric.lowering.program import LawIR
 from numeric.pinball.states import Orbit, counted
 
 if TYPE_CHECKING:
@@ -313,3 +314,16 @@ class Single:
         arguments = ctypes.addressof(state), *kept, ctypes.addressof(table), ALONE, 0, ALONE, 1
         place = self.course.names.index("code") * ALONE if code else 0
         return arguments, state, record, table, (rows - len(START)) * ALONE, place
+
+
+def lowered_law(map: "PinballMap") -> LawIR:
+    """The programs of a map's law; of one that speaks of arc length, with how kernels find that."""
+    from numeric.lowering.lower import lower_law
+
+    law = lower_law(map.reflection, lambda: map.table)
+    if not law.measured or law.lengths:
+        return law
+    series = map.arclength.series
+    if series is None or type(map.family).along is Family.along:
+        raise ValueError(f"law = {law.text}: no kernel knows the arc length s of {map.ir.table}; write it in theta")
+    return law._replace(series=(series[0], tuple(series[1])))

@@ -21,7 +21,7 @@ GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of t
 )  # fmt: skip
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law
-LAW_NAMES = ("eta", "lam", "theta")  # what every law may speak of
+LAW_NAMES = ("eta", "lam", "theta", "s")  # what every law may speak of
 RESERVED = frozenset({  # names in a formula that are functions or constants; all others are parameters
     "Abs", "E", "abs", "atan", "cos", "cosh", "exp", "log", "pi", "sin", "sinh", "sqrt", "tan", "tanh"
 })  # fmt: skip

@@ -44,6 +44,7 @@ from symbolic.tables.curves import LONG, exactly, size, waves
 from symbolic.tables.table import Component, Table, theta
 
 HIGHEST = 24  # harmonic of what is written as a polynomial in the tangent of half the angle
+FEW = 8  # components whose arc lengths are simplified
 
 
 def velocity(component: Component) -> Matrix:
@@ -139,11 +140,11 @@ def arc_length(component: Component) -> Expr:
     elliptic_e(theta, 1 - a**2)
     """
     squared = expand(speed(component) ** 2)
-    c = coefficients(squared)
+    c = coefficients(squared) if squared.has(theta) else {0: squared}
     if c is not None and len(c) <= 3 and all(c[-k] == c[k] for k in c):
         p, n = c.get(0, S.Zero), max(c)
         q = 2 * c[n] if n else S.Zero
-        if simplify(squared - p - q * cos(n * theta)) == 0:
+        if not n or simplify(squared - p - q * cos(n * theta)) == 0:
             return _elliptic(p, q, max(n, 1))
     dummy = Dummy("theta", real=True)
     return Integral(speed(component).subs(theta, dummy), (dummy, 0, theta))
@@ -168,8 +169,9 @@ def positions(table: Table) -> tuple[Expr, ...]:
     >>> positions(cuspless)
     (4*sin(theta/2) + 9*sqrt(3)/4, theta)
     """
-    first, start = table.origin
-    count = len(table.components)
+    (first, start), count = table.origin, len(table.components)
+    if (table.components[first].start - start).is_positive:  # nothing else was said
+        start = table.components[first].start
     found: dict[int, Expr] = {}
     reached = -arc_length(table.components[first]).subs(theta, start)
     for step in range(count):
@@ -177,7 +179,8 @@ def positions(table: Table) -> tuple[Expr, ...]:
         component = table.components[index]
         length = arc_length(component)
         if step:
-            reached = simplify(reached - length.subs(theta, component.start))
+            reached -= length.subs(theta, component.start)
+            reached = simplify(reached) if count <= FEW else reached
         found[index] = length + reached
         reached = found[index].subs(theta, component.end)
     return tuple(found[index] for index in range(count))
@@ -190,11 +193,8 @@ def perimeter(table: Table) -> Expr:
     >>> perimeter(cardioid), perimeter(cuspless)
     (8, 9*sqrt(3)/2)
     """
-    total = S.Zero
-    for component in table.components:
-        length = arc_length(component)
-        total += length.subs(theta, component.end) - length.subs(theta, component.start)
-    return simplify(total)
+    lengths = [(arc_length(component), component) for component in table.components]
+    return simplify(sum(length.subs(theta, c.end) - length.subs(theta, c.start) for length, c in lengths))
 
 
 CIRCLE = 4  # of its infinitely many symmetries, those of the square are listed

@@ -1,10 +1,13 @@
 """Reflection laws: the exit angle as a formula in the angle of incidence, proved to point into the table.
 
 The paper allows `phi = -eta + f(eta)` with any `f` in C^2, and studies `phi = -lam*eta`. Here a law is any formula in
-`eta`, `lam`, the landing's boundary parameter `theta`, and parameters of the user's own. It is one only where it maps
-the open half circle into itself, `|phi| < pi/2` for `|eta| < pi/2`, and that is proved in integers over all angles
-and over the ranges of whatever else is in the formula: towards an end where `|phi|` tends to `pi/2` itself, by the
-first derivative that does not vanish there.
+`eta`, `lam`, the landing's boundary parameter `theta` or arc length `s`, and parameters of the user's own. It is one
+only where it maps the open half circle into itself, `|phi| < pi/2` for `|eta| < pi/2`, and that is proved in integers
+over all angles and over the ranges of whatever else is in the formula: towards an end where `|phi|` tends to `pi/2`
+itself, by the first derivative that does not vanish there.
+
+Arc length is that of the paper, counted from the table's origin. Where it is a closed formula in `theta` on every
+component, `Law.on` writes it in; on a closed curve without one it is what is integrated wherever a number is needed.
 """
 
 from collections.abc import Iterator, Mapping
@@ -30,7 +33,7 @@ BOUND = 1 << 20  # of the law and its two first derivatives
 
 @dataclass(frozen=True)
 class Law:
-    """A reflection law: the exit angle `phi` as a formula in `eta`, `lam`, `theta`, and parameters of its own.
+    """A reflection law: the exit angle `phi` as a formula in `eta`, `lam`, `theta`, `s`, and parameters of its own.
 
     `numbers` are those of its own parameters that have a value, as exact text; `at` gives one to the others.
 
@@ -45,6 +48,7 @@ class Law:
 
     formula: str = UNIFORM
     numbers: tuple[tuple[str, str], ...] = ()
+    along: "Expr | None" = None  # what `s` is in `theta`, on a component of a table that has several
 
     def __post_init__(self) -> None:
         if self.formula != UNIFORM:
@@ -58,7 +62,9 @@ class Law:
     @property
     def parameters(self) -> tuple[str, ...]:
         """Its own parameters that have no value yet, in order."""
-        return tuple(name for name in parameters_of_law(self.formula) if name not in dict(self.numbers))
+        names = [name for name in parameters_of_law(self.formula) if name not in dict(self.numbers)]
+        lengths = {symbol.name for symbol in self.along.free_symbols} - set(LAW_NAMES) if self.along else set()
+        return tuple(sorted({*names, *lengths}))
 
     def at(self, **numbers: Any) -> "Law":
         """The same law with exact numbers for parameters of its own."""
@@ -79,7 +85,7 @@ class Law:
     @property
     def phi(self) -> "Expr":
         """The exit angle, exactly. Paper: section 2."""
-        return _exit_angle(self.formula, self.numbers)
+        return _exit_angle(self.formula, self.numbers, self.along)
 
     @property
     def slope(self) -> "Expr":
@@ -90,10 +96,26 @@ class Law:
 
     @property
     def placed(self) -> bool:
-        """Does the exit angle depend on the place, that is on the landing's `theta`?"""
-        from symbolic.tables.table import theta
+        """Does the exit angle depend on the place, that is on the landing's `theta` or `s`?"""
+        from symbolic.tables.table import s, theta
 
-        return not self.uniform and self.phi.has(theta)
+        return not self.uniform and self.phi.has(theta, s)
+
+    @property
+    def measured(self) -> bool:
+        """Does the exit angle depend on the arc length `s` of the landing?"""
+        from symbolic.tables.table import s
+
+        return not self.uniform and self.phi.has(s)
+
+    def on(self, table: "Table", component: int = 0) -> "Law":
+        """The same law on one component of a table, with `s` written as a formula in `theta`; `ValueError` without one.
+
+        >>> from symbolic import tables
+        >>> Law("-lam*eta + sin(s)/9").on(tables.square(), 2).phi
+        -eta*lam + sin(theta + 2)/9
+        """
+        return _on(self, table, component) if self.measured else self
 
     @property
     def odd(self) -> bool:
@@ -103,35 +125,39 @@ class Law:
 
         return self.uniform or (not self.placed and vanishes(self.phi + self.phi.subs(eta, -eta)))
 
-    def proof(self, lam: Range = (0, 1), theta: Range | None = None, **own: Range) -> "Finding":
-        """Does it map the open half circle into itself, for all `lam`, `theta` and own parameters in these ranges?
+    def proof(self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range) -> "Finding":
+        """Does it map the open half circle into itself, for all `lam`, `theta`, `s` and own parameters in these ranges?
 
-        `theta` is by default that of a closed curve, from -pi to pi.
+        `theta` is by default that of a closed curve, from -pi to pi; arc length has a range on a table only.
 
         >>> Law("-lam*eta").proof().outcome.name, Law("-lam*eta - eta**3/5").proof().outcome.name
         ('PROVED', 'REFUTED')
         """
-        return _proof(self.phi, self._ranges(lam, theta, own))
+        if self.measured and s is None:
+            raise ValueError(f"law = {self}: s is arc length, which has a range on a table only")
+        return _proof(self.phi, self._ranges(lam, theta, s, own))
 
-    def _ranges(self, lam: Range, theta: Range | None, own: Mapping[str, Range]) -> Ranges:
+    def _ranges(self, lam: Range, theta: Range | None, s: Range | None, own: Mapping[str, Range]) -> Ranges:
         """The range of each symbol but `eta` that the exit angle may depend on."""
         from sympy import S, pi
 
         from symbolic.tables.table import lam as contraction
+        from symbolic.tables.table import s as length
         from symbolic.tables.table import theta as place
 
-        ranges = {contraction: lam, place: theta or (-pi, pi)}
+        ranges = {contraction: lam, place: theta or (-pi, pi)} | ({length: s} if s else {})
         ranges |= {symbol: own[symbol.name] for symbol in self.symbols}
         return tuple((symbol, S(low), S(high)) for symbol, (low, high) in ranges.items())
 
-    def places(self, table: "Table") -> Range | None:
-        """The range of `theta` over all components of a table, when the law depends on it."""
+    def places(self, table: "Table") -> tuple[Range | None, Range | None]:
+        """The ranges of `theta` and of `s` over all components of a table, each when the law depends on it."""
         if not self.placed:
-            return None
+            return None, None
         from sympy import Max, Min
 
         parts = table.components
-        return Min(*(part.start for part in parts)), Max(*(part.end for part in parts))
+        found = Min(*(part.start for part in parts)), Max(*(part.end for part in parts))
+        return found, _reach(self, table) if self.measured else None
 
     def contracting(self, lam: Range = (0, 1), **own: Range) -> "Finding":
         """Is `|phi| < |eta|` for every `eta` but 0? It makes `J` of an ellipse grow (`symbolic.motion.collision`).
@@ -146,16 +172,16 @@ class Law:
         if self.placed:
             return Finding(Outcome.UNKNOWN, "the exit angle depends on the place")
         found = []
-        for x, exit, others, _ in _cases(self.phi, self._ranges(lam, None, own)):
+        for x, exit, others, _ in _cases(self.phi, self._ranges(lam, None, None, own)):
             for side in (exit, exit.subs(x, -x)):
                 found += [_positive(x * pi / 2 - sign * side, x, others, begin=0) for sign in (1, -1)]
         return conjunction(*found)
 
-    def check(self, lam: Range = (0, 1), theta: Range | None = None, **own: Range) -> None:
+    def check(self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range) -> None:
         """`ValueError` with the angle at which it leads out of the table, or when no proof was found."""
         if self.uniform:
             return
-        finding = self.proof(lam, theta, **own)
+        finding = self.proof(lam, theta, s, **own)
         if not finding:
             raise ValueError(f"law = {self}: {finding.reason}")
 
@@ -171,9 +197,9 @@ def parameters_of_law(formula: str) -> tuple[str, ...]:
 def _symbols(formula: str) -> "dict[str, Symbol]":
     from sympy import Symbol
 
-    from symbolic.tables.table import eta, lam, theta
+    from symbolic.tables.table import eta, lam, s, theta
 
-    known = {"eta": eta, "lam": lam, "theta": theta}
+    known = {"eta": eta, "lam": lam, "theta": theta, "s": s}
     return known | {name: Symbol(name, real=True) for name in parameters_of_law(formula)}
 
 
@@ -184,8 +210,6 @@ def _canonical(formula: str) -> str:
     from symbolic.tables.formula import parse
     from symbolic.tables.table import eta, lam
 
-    if "s" in parameters_of_law(formula):
-        raise ValueError("law: s is arc length, which a law does not know; accepted: the landing's parameter theta")
     try:
         symbols = _symbols(formula)
         phi = parse(formula, symbols)
@@ -196,13 +220,76 @@ def _canonical(formula: str) -> str:
 
 
 @cache
-def _exit_angle(formula: str, numbers: tuple[tuple[str, str], ...]) -> "Expr":
+def _exit_angle(formula: str, numbers: tuple[tuple[str, str], ...], along: "Expr | None") -> "Expr":
     from sympy import S
 
     from symbolic.tables.formula import parse
 
     symbols = _symbols(formula)
-    return parse(formula, symbols).subs({symbols[name]: S(exact(name, text)) for name, text in numbers})
+    phi = parse(formula, symbols).subs({symbols[name]: S(exact(name, text)) for name, text in numbers})
+    return phi if along is None else phi.subs(symbols["s"], along)
+
+
+@cache
+def lengths(table: "Table") -> "tuple[Expr, ...] | None":
+    """Arc length on every component, from the table's origin, in the words of a law; None where one has no such form.
+
+    >>> from symbolic import tables
+    >>> lengths(tables.cardioid), lengths(tables.egg(3))
+    ((4*sin(theta/2),), None)
+    """
+    from sympy import Integral, elliptic_e
+
+    from symbolic.tables.geometry import arc_length, positions
+
+    if any(arc_length(component).has(Integral, elliptic_e) for component in table.components):
+        return None
+    return positions(table)
+
+
+@cache
+def _on(law: Law, table: "Table", component: int) -> Law:
+    from symbolic.tables.table import s
+
+    known = lengths(table)
+    if known is None:
+        raise _unknown(law, table)
+    if len(table.components) == 1:
+        return Law(str(law.phi.subs(s, known[component])))
+    return replace(law, along=known[component])
+
+
+def _unknown(law: Law, table: "Table") -> ValueError:
+    known = "orbits know it, and " if len(table.components) == 1 else ""
+    return ValueError(
+        f"law = {law}: the arc length s of {table.name} is no closed formula, as cycles, branches, boxes and "
+        f"certificates need it; {known}the landing's theta is accepted everywhere"
+    )
+
+
+@cache
+def _reach(law: Law, table: "Table") -> Range:
+    """The range of arc length: exact in closed form, else bounds of it on a closed curve."""
+    from symbolic.expressions.enclosures import UnboundedError, root_integral
+    from symbolic.tables.geometry import speed
+    from symbolic.tables.table import theta
+
+    known = lengths(table)
+    if known is not None:
+        ends = [
+            length.subs(theta, end)
+            for length, part in zip(known, table.components, strict=True)
+            for end in (part.start, part.end)
+        ]
+        return min(ends, key=lambda end: end.evalf()), max(ends, key=lambda end: end.evalf())
+    if len(table.components) > 1:
+        raise _unknown(law, table)
+    whole, (_, origin) = table.components[0], table.origin
+    square = speed(whole) ** 2
+    try:
+        return -root_integral(square, theta, whole.start, origin), root_integral(square, theta, origin, whole.end)
+    except UnboundedError as error:
+        raise ValueError(f"law = {law}: the arc length s of {table.name} is not bounded: {error}") from None
 
 
 def _cases(phi: "Expr", ranges: Ranges) -> Iterator[Case]:

@@ -106,7 +106,7 @@ class Scene:
             own, law = parameters_of_law(law.formula), self.law
             ranges = {parameter: ends for parameter, ends in self.ranges.items() if parameter in own}
             free = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] not in ranges))
-            free.check((self.lam, self.lam), free.places(self.table) if free.placed else None, **ranges)
+            free.check((self.lam, self.lam), *(free.places(self.table) if free.placed else ()), **ranges)
 
     # ---- what it says
 

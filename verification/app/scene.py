@@ -228,7 +228,7 @@ TABLE = (
     click.option("--data", metavar="FILE", help="A measured table: points in CSV; or a drawn one: SVG or DXF."),
     click.option("--smoothness", type=click.IntRange(0, 2), help="Of the spline through the points of --data; or 2."),
     click.option("--degree", type=click.IntRange(1, 64), help="Of a Fourier sum near the points of --data, instead."),
-    click.option("--law", metavar="FORMULA", help="The exit angle: a formula in eta, lam, theta; or else -lam*eta."),
+    click.option("--law", metavar="FORMULA", help="The exit angle: a formula in eta, lam, theta, s; or else -lam*eta."),
 )
 SHAPE = click.option(
     "--shape",

@@ -99,14 +99,27 @@ class Chords:
         ring, shape = around(self.closure, x), [at[name] for name in self.shapes]
         ahead = self._angles(1, ring[1:-1], ring[2:], shape, order)
         back = self._angles(-1, ring[1:-1], ring[:-2], shape, order)
-        return self._terms(ahead, back, at["lam"], order, self._reflected(ARRAYS, back[0], ring[1:-1], at, order))
+        return self._terms(ahead, back, at["lam"], order, self._all_reflected(back[0], ring[1:-1], at, order))
 
-    def _reflected(self, arithmetic: Arithmetic, eta: Any, here: Any, at: Mapping[str, Any], order: int) -> Slopes:
+    def _all_reflected(self, eta: Array, here: Array, at: Parameters, order: int) -> Slopes:
+        """The exit angles of a law at all bounces; one that speaks of arc length has a formula on each component."""
+        if not self.law.measured:
+            return self._reflected(ARRAYS, 0, eta, here, at, order)
+        found: dict[str, Array] = {}
+        for part in set(self.components):
+            on = np.array(self.components) == part
+            for name, value in self._reflected(ARRAYS, part, eta[on], here[on], at, order).items():
+                found.setdefault(name, np.zeros(len(here)))[on] = value
+        return found
+
+    def _reflected(
+        self, arithmetic: Arithmetic, part: int, eta: Any, here: Any, at: Mapping[str, Any], order: int
+    ) -> Slopes:
         """The exit angle of a law that is no uniform contraction, and its derivatives by name; empty for that."""
         if self.law.uniform:
             return {}
-        made = law_kernel(self.law, order)
-        own = [at[name] for name in self.law.parameters]
+        law = self.law.on(self.table, part)
+        made, own = law_kernel(law, order), [at[name] for name in law.parameters]
         return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], here, *own), strict=True))
 
     def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int, law: Slopes) -> Terms[X]:
@@ -172,7 +185,7 @@ class Chords:
             shape = [at[name] for name in self.shapes]
             f = angles(parts[i], parts[(i + 1) % len(parts)], order)(here, after, *shape)
             b = angles(parts[i], parts[i - 1], order)(here, before, *shape)
-            return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, b[0], here, at, order))
+            return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, parts[i], b[0], here, at, order))
 
         return rule
 

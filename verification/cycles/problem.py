@@ -53,6 +53,8 @@ class Problem:
     law: Law = PAPERS_LAW
 
     def __post_init__(self) -> None:
+        if len(self.table.components) == 1:
+            object.__setattr__(self, "law", self.law.on(self.table))  # without arc length, of which no file speaks
         shapes = {*(p.symbol.name for p in self.table.shapes), *self.law.parameters}
         if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
             raise ValueError(f"{self.table.name}: free parameters must be just {self.free or 'none'}; lam = {self.lam}")

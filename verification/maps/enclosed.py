@@ -10,7 +10,7 @@ the orbit ends with the status `unproved`. How an orbit ends (a join, a cusp, a 
 not proved. Orbits in mpmath are here as well, to a number of digits, for comparison.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from enum import Enum
 from fractions import Fraction
 from typing import Any
@@ -21,7 +21,7 @@ from numeric import PinballMap, Status
 from numeric.backends.scalars import ScalarBackend
 from verification.arithmetic.balls import as_ball, bits_of, enclose, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
-from verification.maps.exact import Ball, ExactMap
+from verification.maps.exact import Ball, ExactMap, closed_length
 from verification.maps.first_hit import BITS, Boundary, Frame, free
 
 GUESSED = 40  # digits of a guess by mpmath
@@ -146,10 +146,24 @@ class EnclosedMap:
         """Point, velocity and acceleration."""
         return self.parts[component](self.ops, theta, *self.shape)
 
-    def _exit(self, eta: arb, theta: arb) -> arb:
+    def _exit(self, eta: arb, component: int, theta: arb) -> arb:
         """The exit angle, enclosed."""
         formula = self.exact.formula
-        return -self.lam * eta if formula is None else formula.exit(self.ops, eta, self.lam, theta)[0]
+        if formula is None:
+            return -self.lam * eta
+        place: tuple[arb, ...] = (theta, self.length(component, theta)) if formula.measured else (theta,)
+        found: arb = formula.exit(self.ops, eta, self.lam, *place)[0]
+        return found
+
+    def length(self, component: int, theta: arb, digits: int = 0) -> Any:
+        """The paper's arc length, by rigorous integration of the speed where there is no closed form; of all digits."""
+        closed = closed_length(self.map, self.ops, self.shape, component, theta)
+        if closed is not None or len(self.parts) > 1:
+            return closed
+        (zero,), middle = self.map.ir.origin[1](self.ops, *self.shape), arb(theta.mid())
+        _, _, dx, dy, _, _ = self.curve(component, theta)
+        found = _integrated(self, component, zero, middle, digits or int(self.bits / 3.33))
+        return found + (dx * dx + dy * dy).sqrt() * (theta - middle)
 
     def _placed(self, component: int) -> Any:
         def place(theta: arb) -> Frame:
@@ -195,7 +209,7 @@ class EnclosedMap:
         if not vx * (x - ball.x) + vy * (y - ball.y) > 0:
             return None
         eta = -(arb.atan2(vx * dx + vy * dy, vx * dy - vy * dx))
-        following = self.ball(guess.component, newton, self._exit(eta, newton))
+        following = self.ball(guess.component, newton, self._exit(eta, guess.component, newton))
         return Ball(guess.component, newton, following.phi, following.v, x, y, eta)
 
 
@@ -233,7 +247,7 @@ def in_multiprecision(
                 break
             ball = following
             step(str(i))
-        numbers = (ball.theta, _length(exact, map, ball.component, ball.theta), ball.x, ball.y, ball.eta, ball.phi)
+        numbers = (ball.theta, exact.length(ball.component, ball.theta), ball.x, ball.y, ball.eta, ball.phi)
         texts = [None if x is None else mp.nstr(x, digits) for x in numbers]
         entries.append(_entry(names[ball.component], texts))
     return entries
@@ -271,7 +285,7 @@ def _attempt(
             ball = following
             step(str(i))
         with working(bits):
-            s = _enclosed_length(enclosed, ball.component, ball.theta, digits)
+            s = enclosed.length(ball.component, ball.theta, digits)
             numbers = (ball.theta, s, ball.x, ball.y, ball.eta, ball.phi)
             texts = [None if n is None else _text(n, digits) for n in numbers]
         if "" in texts:
@@ -299,14 +313,6 @@ def _text(number: arb, digits: int) -> str:
         return "0"
     known = digits if number.is_exact() else min(digits, int(0.301 * (number.rel_accuracy_bits() - 2)))
     return str(number.mid().str(known, radius=False)) if known > 0 else ""
-
-
-def _enclosed_length(enclosed: EnclosedMap, component: int, theta: arb, digits: int) -> Any:
-    """The paper's arc length, by rigorous integration of the speed where there is no closed form."""
-    closed = _closed_length(enclosed.map, enclosed.ops, enclosed.shape, component, theta)
-    if closed is not None:
-        return closed
-    return None if len(enclosed.parts) > 1 else _integrated(enclosed, component, arb(0), theta, digits)
 
 
 def perimeter(enclosed: EnclosedMap, digits: int) -> arb:
@@ -354,45 +360,6 @@ class _Complex(Balls):
     @property
     def pi(self) -> Any:
         return acb.pi()
-
-
-def _length(exact: ExactMap, map: PinballMap, component: int, theta: Any) -> Any:
-    """The paper's arc length to mpmath's precision."""
-    mp = exact.context
-    closed = _closed_length(map, exact.ops, exact.shape, component, theta)
-    if closed is not None:
-        return closed
-    if map.ir.table == "ellipse" and exact.shape:
-        return mp.ellipe(theta, 1 - exact.shape[0] ** 2)
-    if len(map.ir.parts) > 1:
-        return None
-    curve = map.ir.parts[component].curve
-
-    def speed(at: Any) -> Any:
-        _, _, dx, dy, _, _ = curve(exact.ops, at, *exact.shape)
-        return mp.hypot(dx, dy)
-
-    pieces = [theta * k / 8 for k in range(9)]
-    return mp.quad(speed, pieces)
-
-
-def _closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: int, theta: Any) -> Any:
-    """Arc length from the table's origin in elementary functions, component by component; None where there is none."""
-    parts, length = map.ir.parts, map.family.arclength
-    index, start = map.ir.origin
-    first = length(ops, index, start(ops, *shape)[0])
-    if first is None:
-        return None
-    reached = -first
-    for turn in range(len(parts)):
-        at = (index + turn) % len(parts)
-        low, high = parts[at].ends(ops, *shape)
-        if turn:
-            reached = reached - length(ops, at, low)
-        if at == component:
-            return reached + length(ops, at, theta)
-        reached = reached + length(ops, at, high)
-    raise ValueError(f"{map.ir.table} has no component {component}")
 
 
 def _entry(name: str, texts: list[str | None]) -> dict[str, Any]:

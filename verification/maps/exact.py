@@ -50,7 +50,7 @@ class ExactMap:
     """
 
     def __init__(self, map: PinballMap, digits: int = 50, lam: Any = None) -> None:
-        self.context = mpmath.MPContext()
+        self.map, self.context = map, mpmath.MPContext()
         self.context.dps = digits + GUARD
         self.digits = digits
         self.ops = ScalarBackend(self.context)
@@ -91,9 +91,33 @@ class ExactMap:
         tx, ty, x, y = self._frame(component, theta)
         vx, vy = ball.v
         eta = -mp.atan2(vx * tx + vy * ty, vx * ty - vy * tx)
-        phi = -self.lam * eta if self.formula is None else self.formula.exit(self.ops, eta, self.lam, theta)[0]
+        phi = -self.lam * eta if self.formula is None else self._exit(eta, component, theta)
         c, s = mp.cos(phi), mp.sin(phi)
         return Ball(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y, eta, code)
+
+    def _exit(self, eta: Any, component: int, theta: Any) -> Any:
+        """The exit angle of a law that is no uniform contraction."""
+        assert self.formula is not None
+        place = (theta, self.length(component, theta)) if self.formula.measured else (theta,)
+        return self.formula.exit(self.ops, eta, self.lam, *place)[0]
+
+    def length(self, component: int, theta: Any) -> Any:
+        """The paper's arc length to this map's precision; None on tables of several pieces without a closed form."""
+        mp, map = self.context, self.map
+        closed = closed_length(map, self.ops, self.shape, component, theta)
+        if closed is not None:
+            return closed
+        if map.ir.table == "ellipse" and self.shape:
+            return mp.ellipe(theta, 1 - self.shape[0] ** 2)
+        if len(map.ir.parts) > 1:
+            return None
+
+        def speed(at: Any) -> Any:
+            _, _, dx, dy, _, _ = map.ir.parts[0].curve(self.ops, at, *self.shape)
+            return mp.hypot(dx, dy)
+
+        (zero,) = map.ir.origin[1](self.ops, *self.shape)
+        return mp.quad(speed, [zero + (theta - zero) * k / 8 for k in range(9)])
 
     def _landing(self, ball: Ball) -> tuple[int, Any, int]:
         """Component and parameter of the first hit, and the code of its outcome."""
@@ -156,6 +180,27 @@ class ExactMap:
         if hasattr(value, "evalf"):
             return self.context.mpf(str(value.evalf(self.context.dps)))
         return self.context.mpf(float(value))
+
+
+def closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: int, theta: Any) -> Any:
+    """Arc length from the table's origin in elementary functions, component by component; None where there is none."""
+    parts, length, law = map.ir.parts, map.family.arclength, map.family.formula
+    if law is not None and law.lengths:
+        return law.length(ops, component, theta)
+    index, start = map.ir.origin
+    first = length(ops, index, start(ops, *shape)[0])
+    if first is None:
+        return None
+    reached = -first
+    for turn in range(len(parts)):
+        at = (index + turn) % len(parts)
+        low, high = parts[at].ends(ops, *shape)
+        if turn:
+            reached = reached - length(ops, at, low)
+        if at == component:
+            return reached + length(ops, at, theta)
+        reached = reached + length(ops, at, high)
+    raise ValueError(f"{map.ir.table} has no component {component}")
 
 
 EPS = 2.0**-52

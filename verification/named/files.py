@@ -119,6 +119,11 @@ def _problem_said(problem: Problem) -> dict[str, Any]:
 
 def _law_said(problem: Problem, scene: dict[str, Any]) -> dict[str, Any]:
     """The law's formula, and the numbers of its own parameters beside the table's."""
+    if problem.law.measured:
+        raise ValueError(
+            f"certificate: law = {problem.law} has another formula in theta on each component of {problem.table.name}, "
+            "which a certificate has no words for; write the law in theta"
+        )
     return {"shape": {**scene.get("shape", {}), **dict(problem.law.numbers)}, "law": problem.law.formula}
 
 

@@ -240,11 +240,23 @@ def law_over(scene: Scene, parameter: str, ends: Sequence[Any]) -> Law:
     low, high = ends
     interval = exact(parameter, low), exact(parameter, high)
     if law.uniform or parameter in scene.shape:
+        if law.measured:
+            _over_shape(scene, parameter, interval)
         return law
     free = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] != parameter))
     own = {parameter: interval} if free.parameters else {}
-    free.check(interval if parameter == "lam" else lam, free.places(scene.table), **own)
+    free.check(interval if parameter == "lam" else lam, *free.places(scene.table), **own)
     return free
+
+
+def _over_shape(scene: Scene, parameter: str, interval: tuple[Any, Any]) -> None:
+    """Proves a law that speaks of arc length, which changes with the shape, over an interval of a shape parameter."""
+    table = scene.over(parameter, *interval)
+    for index, part in enumerate(table.components):
+        if part.start.free_symbols | part.end.free_symbols:
+            raise ValueError(f"law = {scene.law}: where the {part.name} ends depends on {parameter}; write it in theta")
+        law = scene.law.on(table, index)
+        law.check((scene.lam, scene.lam), (part.start, part.end), None, **dict.fromkeys(law.parameters, interval))
 
 
 def _ends(parameter: str, given: Any) -> tuple[float, float]:

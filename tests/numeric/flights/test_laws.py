@@ -1,5 +1,7 @@
 """Other reflection laws in the kernels: their bits, their derivatives, their exponents, against the formulas."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,8 +11,8 @@ from numeric import PinballMap
 from symbolic import Law, Scene, tables
 from symbolic.expressions.text import load
 from symbolic.motion.chords import law_kernel
-from verification import ExactMap
-from verification.arithmetic.balls import ARRAYS
+from verification import EnclosedMap, ExactMap
+from verification.arithmetic.balls import ARRAYS, as_ball
 
 TABLES = {
     "circle": ("circle", {}),
@@ -22,11 +24,19 @@ TABLES = {
 }
 PLACED = "-lam*eta*(1 + cos(theta)/10) + eta**2/20"
 FORMULAS = ["-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/10", PLACED]
+MEASURED = "-lam*eta*(1 + cos(2*s)/10) + sin(s)/9 + eta**2*cos(theta)/40"  # of the arc length and of the place
+CURVES = TABLES | {
+    "square": (tables.square(), {}),
+    "sinai": (tables.sinai(), {}),
+    "exponential": (tables.polar("exp(cos(2*theta)/4)"), {}),
+    "limacon": (tables.polar("1 + 3*cos(theta)/5"), {}),
+    "conic": (tables.polar("1/(2 + cos(theta)/2)"), {}),
+}
 EPS = 2.0**-52
 
 
 def made(name, law, lam="1/2", **more):
-    table, shape = TABLES[name]
+    table, shape = CURVES[name]
     return PinballMap(table, lam=lam, law=law, **shape, **more)
 
 
@@ -138,3 +148,74 @@ def test_the_slap_map_is_the_tables_own():
     bent, plain = (made("egg", law, kernels=False) for law in (FORMULAS[0], "-lam*eta"))
 
     assert np.array_equal(bent.slap([0.3, 0.7], 3).theta, plain.slap([0.3, 0.7], 3).theta)
+
+
+# ---- laws of the arc length
+
+
+def sides(name, count, seed):
+    rng = np.random.default_rng(seed)
+    low, high = (0.05, 0.95) if name in ("square", "sinai") else (-0.9, 0.9)
+    return rng.uniform(low, high, count), rng.uniform(-1.2, 1.2, count)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_a_law_of_arc_length_reads_the_arc_length_of_its_landing(name):
+    theta, phi = sides(name, 50, 6)
+    map = made(name, MEASURED, kernels=False)
+    step = map.step(theta, phi)
+    s, eta = map.arclength.s(step.theta, step.component), step.eta
+    expected = -eta / 2 * (1 + np.cos(2 * s) / 10) + np.sin(s) / 9 + eta**2 * np.cos(step.theta) / 40
+
+    assert np.max(np.abs(step.phi - expected)[step.code == 0]) < 16 * EPS
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_the_derivative_under_a_law_of_arc_length_is_that_of_difference_quotients(name):
+    theta, phi = sides(name, 12, 7)
+    map, h = made(name, MEASURED, kernels=False), 1e-6
+
+    def at(t, p):
+        step = map.step(t, p)
+        return np.array([map.arclength.s(step.theta, step.component), step.phi])
+
+    aside = h / map.states.speed(np.zeros(theta.size, dtype=int), theta)
+    by_place, by_angle = at(theta + aside, phi) - at(theta - aside, phi), at(theta, phi + h) - at(theta, phi - h)
+    difference = np.moveaxis(np.stack([by_place, by_angle], axis=-1) / (2 * h), 1, 0)
+    matrix = map.derivative(theta, phi)
+    gap = np.max(np.abs(matrix - difference), axis=(1, 2)) / np.maximum(1, np.max(np.abs(matrix), axis=(1, 2))) ** 3
+
+    assert np.sum(gap < 1e-7) >= 10  # a quotient may straddle a corner
+
+
+@pytest.mark.parametrize("name", ["circle", "cuspless", "conic", "sinai"])
+def test_the_sum_rule_holds_for_a_law_of_arc_length(name):
+    theta, phi = sides(name, 5, 8)
+    map = made(name, MEASURED, kernels=False)
+    found, orbit = map.exponents(theta, phi, 9), map.orbit(theta, phi, 9)
+    good = orbit.code[-1] == 0
+    rows = [map.derivative(orbit.theta[i], orbit.phi[i], orbit.component[i]) for i in range(9)]
+    total = np.mean([np.log(np.abs(np.linalg.det(row))) for row in rows], axis=0)
+
+    assert np.max(np.abs(found.nu_plus + found.nu_minus - total)[good]) < 1e-12
+
+
+@pytest.mark.parametrize("name", ["circle", "cardioid", "cuspless", "stadium", "sinai", "egg"])
+def test_the_exact_map_and_the_map_in_balls_know_the_same_arc_length(name):
+    theta, phi = sides(name, 1, 9)
+    map = made(name, MEASURED, kernels=name == "sinai")
+    exact, enclosed, step = ExactMap(map, 30), EnclosedMap(map, Fraction(1, 2), 100), map.step(theta, phi)
+    for i in range(theta.size):
+        truth = exact.bounce(exact.ball(0, theta[i], phi[i]))
+        ball = enclosed.bounce(enclosed.ball(0, float(theta[i]), float(phi[i])))
+
+        assert abs(float(truth.phi) - step.phi[i]) < 16 * EPS
+        assert ball.phi.rad() < 1e-24
+        assert abs(float(ball.phi.mid() - as_ball(truth.phi))) < 1e-24
+
+
+def test_on_the_circle_arc_length_is_the_angle():
+    theta, phi = phase(20, 10)
+    one, other = (made("circle", law, kernels=False) for law in (MEASURED, MEASURED.replace("(s)", "(theta)")))
+
+    assert np.array_equal(one.step(theta, phi).phi, other.step(theta, phi).phi)

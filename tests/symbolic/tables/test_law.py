@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 from sympy import Rational, cos, diff, pi, simplify, sin, symbols
 
-from symbolic import Law, Scene
+from symbolic import Law, Scene, tables
 from symbolic.expressions.text import load
 from symbolic.motion.chords import collision_kernel, law_kernel
 from symbolic.motion.collision import (
@@ -20,7 +20,7 @@ from symbolic.motion.collision import (
     slap_derivative,
     telescoped,
 )
-from symbolic.tables import ellipse
+from symbolic.tables import cardioid, circle, egg, ellipse
 from symbolic.tables.table import cos_phi0, eta, lam, theta
 
 HALF = (Rational(1, 2), Rational(1, 2))
@@ -88,6 +88,33 @@ def test_a_law_that_leads_out_is_refused_with_an_angle_at_which_it_does(formula,
 def test_what_is_no_smooth_formula_is_no_law(formula):
     with pytest.raises(ValueError, match="law"):
         Law(formula).check()
+
+
+def test_arc_length_is_written_in_theta_component_by_component_where_it_is_a_formula():
+    law = Law("-lam*eta + sin(s)/9")
+
+    assert law.measured
+    assert law.placed
+    assert law.on(cardioid).phi == -eta * lam + sin(4 * sin(theta / 2)) / 9
+    assert [law.on(tables.square(), i).phi for i in (0, 3)] == [-eta * lam + sin(theta + i) / 9 for i in (0, 3)]
+    assert not law.on(circle).measured
+    with pytest.raises(ValueError, match="no closed formula"):
+        law.on(egg(3).at(alpha="2/25"))
+
+
+def test_a_law_of_arc_length_is_proved_over_the_whole_boundary():
+    wave = Law("-lam*eta + s/10")
+    low, high = wave.places(egg(3).at(alpha="2/25"))[1]
+
+    assert wave.places(tables.square())[1] == (0, 4)
+    assert wave.places(cardioid)[1] == (-4, 4)
+    assert abs(low + high) < Rational(1, 10**20)
+    assert 3.187 < high < 3.2  # half of 6.3728, from above
+    Scene("cardioid", lam="1/2", law="-lam*eta + s/10")
+    with pytest.raises(ValueError, match="s = -4"):
+        Scene("cardioid", lam="1/2", law="-lam*eta + s/4")
+    with pytest.raises(ValueError, match="which has a range on a table only"):
+        wave.check()
 
 
 def test_a_parameter_without_a_number_is_asked_for():

@@ -11,7 +11,7 @@ from sympy import S
 from numeric import PinballMap
 from symbolic import Law, Scene
 from symbolic.motion.collision import derivative_matrix
-from symbolic.tables import egg, ellipse
+from symbolic.tables import cardioid, circle, cuspless, egg, ellipse, square, stadium
 from verification import EnclosedMap, certify, find_cycles, follow
 from verification.app.cli import main
 from verification.cycles.chords import Chords
@@ -47,13 +47,26 @@ def test_a_fold_is_followed_in_a_parameter_of_the_law_and_proved():
         follow(triangle, c=("0", "1/10"))
 
 
-@pytest.mark.parametrize("formula", [BENT, "-lam*eta*(1 + cos(theta)/10) - b*eta**3", "-lam*eta + b*cos(theta)"])
-def test_the_chord_rule_of_a_law_has_its_own_derivatives(formula):
-    ring = Chords(ellipse, (0, 0, 0), law=Law(formula))
-    x, at = np.array([0.1, 2.2, 4.0]), {"lam": 0.6, "b": 0.07, "a": 1.3}
+ON = "-lam*eta*(1 + cos(2*s)/10) + b*sin(s) - eta*cos(theta)/30"
+
+
+@pytest.mark.parametrize(
+    ("table", "formula", "x"),
+    [
+        (ellipse, BENT, [0.1, 2.2, 4.0]),
+        (ellipse, "-lam*eta*(1 + cos(theta)/10) - b*eta**3", [0.1, 2.2, 4.0]),
+        (ellipse, "-lam*eta + b*cos(theta)", [0.1, 2.2, 4.0]),
+        (cardioid, ON, [0.1, 2.2, -1.4]),
+        (cuspless, ON, [0.1, 0.2, 0.05]),
+        (stadium(), ON, [0.1, 0.2, 0.05]),
+    ],
+)
+def test_the_chord_rule_of_a_law_has_its_own_derivatives(table, formula, x):
+    ring = Chords(table, (0, 0, min(1, len(table.components) - 1)), law=Law(formula))
+    x, at = np.array(x), {"lam": 0.6, "b": 0.07, "a": 1.3}
     terms, h = ring.terms(x, at, 2), 1e-5
 
-    for name in ("lam", "b", "a"):
+    for name in ring.parameters:
         up, down = (ring.terms(x, at | {name: at[name] + step}, 1) for step in (h, -h))
         assert np.max(np.abs((up.value - down.value) / (2 * h) - terms.by[name])) < 1e-8
         for own, over, under in zip(terms.slope_by[name], up.slope, down.slope, strict=True):
@@ -86,6 +99,27 @@ def test_a_certificate_says_its_law_and_reads_it_back():
 
     assert said["scene"]["law"] == Law(BENT).formula
     assert _problem(said, problem.lam, arb(0)) == problem
+
+
+def test_a_certificate_writes_arc_length_in_theta_where_one_formula_does():
+    law = Law("-lam*eta + b*sin(2*s)").at(b="1/20")
+    said = _problem_said(Problem(circle, (0, 0), lam=S(1) / 2, law=law))
+
+    assert said["scene"]["law"] == "-eta*lam + sin(2*theta)/20"
+    with pytest.raises(ValueError, match="no words for"):
+        _problem_said(Problem(stadium(), (0, 2), lam=S(1) / 2, law=law))
+
+
+def test_a_cycle_under_a_law_of_arc_length_is_one_of_the_map_and_followed():
+    scene = Scene(square(), lam="1/2", law="-lam*eta + b*sin(2*pi*s)", b="1/20")
+    found = find_cycles(scene, period=2)
+    map, orbit = PinballMap(scene, kernels=False), found[0]
+    step = map.step(orbit.theta[0], orbit.phi[0], orbit.components[0])
+    branch = follow(orbit, b=("0", "1/10"))
+
+    assert abs(float(step.theta) - orbit.theta[1]) < 1e-12
+    assert abs(float(step.phi) - orbit.phi[1]) < 1e-12
+    assert branch.parameter == "b"
 
 
 def test_a_mirror_asks_for_an_odd_law():

@@ -101,17 +101,17 @@ class PinballImages:
         if self.closed and not closes_smoothly(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
-        self.law, self.placed = None if scene.law.uniform else lower_law(scene.law), scene.law.placed
-        if self.placed and self.closed and not is_periodic(scene.law.phi):
-            raise ValueError(
-                f"law = {scene.law}: a whole turn of theta is not seen to change nothing, as boxes need it"
-            )
+        if (law := scene.law.on(self.map.table)).along is not None:
+            raise ValueError(f"law = {law}: boxes know theta, and s on one closed curve alone")
+        self.law, self.placed = None if law.uniform else lower_law(law, lambda: self.map.table), law.placed
+        if self.placed and self.closed and not is_periodic(law.phi):
+            raise ValueError(f"law = {law}: a whole turn of theta is not seen to change nothing, as boxes need it")
         self.top = float((self.lam * self.ops.pi / 2).upper()) if self.law is None else self._steepest()
 
     def _steepest(self) -> float:
         """A bound below a quarter turn for the exit angles of the law, over all incidence angles and contractions."""
         law = self.scene.law
-        law.check(self.range, law.places(self.map.table))
+        law.check(self.range, *law.places(self.map.table))
         size = max(float(np.max(self.exit(*some).magnitude())) for some in self.incidences())
         if size < QUARTER:
             return size

@@ -40,8 +40,8 @@ from .newton import (
 from .problem import Linearised, NormalForm, Problem, mirrored
 from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
-from .switching import Curve, Degenerate, curve, switched
-from .systems import Cycles, rotations, symmetries
+from .switching import Box, Curve, Degenerate, Tick, curve, switched
+from .systems import SHAPE, Cycles, rotations, symmetries
 
 __all__ = [
     "ATTEMPTS",
@@ -52,8 +52,10 @@ __all__ = [
     "MIRROR",
     "ROUNDINGS",
     "ROUNDS",
+    "SHAPE",
     "Array",
     "BifurcationKind",
+    "Box",
     "Branch",
     "Catalogue",
     "Chain",
@@ -79,6 +81,7 @@ __all__ = [
     "Step",
     "Steps",
     "System",
+    "Tick",
     "UnsettledError",
     "all_cycles",
     "at_contraction",

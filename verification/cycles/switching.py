@@ -34,7 +34,7 @@ from verification.cycles.branch import Branch, Event, Interval, through
 from verification.cycles.cells import null_vectors, ring_matrix
 from verification.cycles.chords import Chords
 from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
-from verification.cycles.systems import Critical, Cycles, whole
+from verification.cycles.systems import SHAPE, Critical, Cycles, whole
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
@@ -246,8 +246,11 @@ def curve(
     fixed: Parameters | None = None,
     steps: Steps | None = None,
     tick: Callable[[Point], None] | None = None,
+    unit: float = SHAPE,
 ) -> Curve:
     """The curve of `kind` through the critical cycle near `x`, at parameters near `near`, both ways inside `box`.
+
+    `unit` is how far a shape varies, and gives the steps their length.
 
     >>> from verification.cycles.recurrence import henon
     >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))
@@ -256,7 +259,7 @@ def curve(
     True
     """
     z = np.append(np.asarray(x, dtype=float), near)
-    system = Critical.near(ring, kind, two, z, fixed)
+    system = Critical.near(ring, kind, two, z, fixed, unit)
     row = np.zeros(len(z))
     row[-2] = 1.0
     try:

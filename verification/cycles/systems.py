@@ -137,6 +137,7 @@ def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:
 
 
 PARAMETER = 4.0  # a parameter counts as much as an angle of this many radians moved by every bounce
+SHAPE = 0.1  # how far the egg's shape varies
 
 
 @dataclass(frozen=True)
@@ -192,13 +193,17 @@ class Cycles:
 
 @dataclass(frozen=True)
 class Critical:
-    """Cycles at a fold or a flip, in two parameters; unknowns are the bounces, then the parameters."""
+    """Cycles at a fold or a flip, in two parameters; unknowns are the bounces, then the parameters.
+
+    `unit` is how far a shape varies: a curve is stepped along in parts of it.
+    """
 
     recurrence: Recurrence
     kind: BifurcationKind
     two: tuple[str, str]
     borders: tuple[Array, Array] = field(repr=False)
     fixed: Parameters = field(default_factory=dict)
+    unit: float = SHAPE
 
     @classmethod
     def near(
@@ -208,10 +213,11 @@ class Critical:
         two: tuple[str, str],
         z: Array,
         fixed: Parameters | None = None,
+        unit: float = SHAPE,
     ) -> "Critical":
         """The system whose borders fit a critical cycle near `z`."""
         none = np.zeros(recurrence.period)
-        return cls(recurrence, kind, two, (none, none), fixed or {}).bordered_at(z, None)
+        return cls(recurrence, kind, two, (none, none), fixed or {}, unit).bordered_at(z, None)
 
     def bordered_at(self, z: Array, before: tuple[Array, Array] | None) -> "Critical":
         """Borders from the singular vectors at `z`, on the side of those `before`."""
@@ -228,9 +234,9 @@ class Critical:
 
     @cached_property
     def weights(self) -> Array:
-        """The mean square of the bounces, and the parameters: a shape counts tenfold."""
+        """The mean square of the bounces, and the parameters: a `unit` of a shape counts as much as all of `lam`."""
         n = self.recurrence.period
-        parameters = [PARAMETER**2 * (1 if name == "lam" else 100) for name in self.two]
+        parameters = [(PARAMETER / (1 if name == "lam" else self.unit)) ** 2 for name in self.two]
         return np.append(np.full(n, 1.0 / n), parameters)
 
     def at(self, z: Array) -> dict[str, float]:

@@ -14,7 +14,7 @@ from .curves import (
     fold,
     largest_shape,
 )
-from .events import curve_of, proof_of
+from .events import EventCurve, Plane, curve_of, curves_along, proof_of
 from .files import SCHEMA, check, checked, document, read
 from .locate import GMPY2, WORDS, Located, certify, closed_form, lambda_star
 from .questions import (
@@ -40,11 +40,13 @@ __all__ = [
     "BranchEvent",
     "Cascade",
     "Certificate",
+    "EventCurve",
     "FollowedOrbit",
     "Located",
     "Member",
     "PeriodicOrbit",
     "PeriodicOrbits",
+    "Plane",
     "Tick",
     "accumulation",
     "accumulation_curve",
@@ -60,6 +62,7 @@ __all__ = [
     "closed_form",
     "crises",
     "curve_of",
+    "curves_along",
     "document",
     "double_one",
     "expanding_cycle",

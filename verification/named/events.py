@@ -9,23 +9,29 @@ on the way as a curve in `(alpha, lam)`, with its points of codimension two. Cyc
 count once.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import pi
+from typing import Any
 
 import numpy as np
 from sympy import Expr, S
 
 from symbolic.tables import egg
+from symbolic.tables.definition import exact
+from symbolic.tables.law import PAPERS_LAW, Law
+from symbolic.tables.scene import Scene
+from symbolic.tables.table import Table
 from verification.cycles.arc import Steps
-from verification.cycles.branch import Event, branch
+from verification.cycles.branch import Branch, Event, branch
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
 from verification.cycles.search import all_cycles
-from verification.cycles.switching import Curve, curve
-from verification.cycles.systems import rotations
+from verification.cycles.switching import Box, Curve, curve, switched
+from verification.cycles.switching import Tick as PointTick
+from verification.cycles.systems import SHAPE, rotations, symmetries
 from verification.named.curves import TWO, largest_shape
 from verification.named.locate import certify
 from verification.proofs.periodic.bifurcation import Proof
@@ -70,6 +76,10 @@ def _centred(ring: Chords, x: Array) -> Array | None:
 
 
 Tick = Callable[[str], None]
+SWITCHES = 3  # crossings at which a branch is left for the one that is born there
+BORN = 60  # points of it
+SAME = 2e-3  # of the plane's size, and of the determinant, for a point to lie on a curve
+ALIKE = 1e-6  # between the ends of curves that are one
 
 
 @dataclass(frozen=True)
@@ -107,18 +117,147 @@ def survey(
             own = cycle.period, event.kind, round(event.value, 7)
             if event.kind.solved and own not in seen:
                 seen.add(own)
-                yield Surveyed(cycle.period, event, curve_of(event, at["alpha"], K, steps))
+                found = curve_of(event, Plane.of_egg(K), (at["alpha"], event.value), steps)
+                yield Surveyed(cycle.period, event, found)
 
 
-def curve_of(event: Event, alpha: float, K: int = 3, steps: Steps | None = None) -> Curve | None:
-    """The curve in `(alpha, lam)` through an event of the egg at shape `alpha`; None when it has none or is lost."""
-    if event.kind.solved is None or not isinstance(event.ring, Chords):
+@dataclass(frozen=True)
+class Plane:
+    """Two parameters of a table, the contraction the second: the table and the law with both free, and the ends.
+
+    >>> from symbolic import Scene
+    >>> plane = Plane.of(Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}}), "b", ("0", "1/30"))
+    >>> plane.two, plane.box[1]
+    (('b', 'lam'), (0.0, 1.0))
+    """
+
+    table: Table
+    law: Law
+    two: tuple[str, str]
+    box: Box
+
+    @classmethod
+    def of_egg(cls, K: int = 3) -> "Plane":
+        """The egg with `K` points, at all shapes but the roundest."""
+        top = largest_shape(K)
+        return cls(egg(K), PAPERS_LAW, TWO, ((top / 100, top), (0.0, 1.0)))
+
+    @classmethod
+    def of(cls, scene: Scene, parameter: str, ends: tuple[Any, Any], lams: tuple[Any, Any] = ("0", "1")) -> "Plane":
+        """A parameter of a scene, of its table or of its law, and the contraction; `ValueError` where one has no range.
+
+        The ends are exact, or text; a law is proved to be one over all of the plane.
+        """
+        shapes, contractions = ([exact(name, end) for end in pair] for name, pair in ((parameter, ends), ("lam", lams)))
+        table, law = scene.table, scene.law
+        if parameter in scene.shape:
+            table = scene.over(parameter, *ends)
+        elif parameter not in dict(law.numbers):
+            accepted = ", ".join([*scene.shape, *dict(law.numbers)]) or "none"
+            raise ValueError(f"{scene.name}: {parameter} is no parameter of its shape or law; accepted: {accepted}")
+        if not law.uniform:
+            own = {} if parameter in scene.shape else {parameter: (shapes[0], shapes[1])}
+            law = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] not in own))
+            law.check((contractions[0], contractions[1]), law.places(table), **own)
+        low, high, least, most = (float(end) for end in (*shapes, *contractions))
+        return cls(table, law, (parameter, "lam"), ((low, high), (least, most)))
+
+
+@dataclass(frozen=True, eq=False)
+class EventCurve:
+    """What happens to a cycle of `period` bounces along a curve, and the point of the plane where it was met.
+
+    Each point has the two parameters and `det M - 1`; those of codimension two stand in `special` by name. `depth` says
+    how many doublings and pitchforks lie between the branch that was followed and the cycle of the curve.
+    """
+
+    kind: str
+    period: int
+    near: tuple[float, float]
+    points: Sequence[Sequence[float]] = field(repr=False)
+    special: Sequence[tuple[str, float, float]]
+    ends: Sequence[str]
+    depth: int = 0
+    command: str = ""
+
+    def document(self) -> dict[str, Any]:
+        """The curve as JSON has it."""
+        return dict(self.__dict__)
+
+    def passes(self, at: tuple[float, float, float], box: Box) -> bool:
+        """Does it pass a point of the plane, with the same determinant? To a part of the plane's size.
+
+        At a pitchfork the curve knows the part of the cycle that flips, and its determinant is not compared.
+        """
+        third = np.inf if self.kind == BifurcationKind.PITCHFORK.value else 1.0
+        points = (np.array(self.points) - np.array(at)) / np.array([*(high - low for low, high in box), third])
+        before, step = points[:-1], np.diff(points, axis=0)
+        length = np.maximum(np.sum(step[:, :2] ** 2, axis=1), np.finfo(float).tiny)
+        share = np.clip(-np.sum(before[:, :2] * step[:, :2], axis=1) / length, 0.0, 1.0)
+        return bool(np.any(np.max(np.abs(before + share[:, None] * step), axis=1) < SAME))
+
+    def runs_as(self, other: "EventCurve") -> bool:
+        """Has it the ends of another one? Those that an image of the same cycle draws do, in either order."""
+        ends = np.array([self.points[0], self.points[-1]])
+        return any(np.allclose(ends, other.points[::way][:: len(other.points) - 1], atol=ALIKE) for way in (1, -1))
+
+
+def curves_along(
+    branch: Branch,
+    plane: Plane,
+    other: float,
+    known: Sequence[EventCurve] = (),
+    steps: Steps | None = None,
+    tick: PointTick | None = None,
+) -> Iterator[EventCurve]:
+    """The curves in a plane that the events of a branch lie on, and the events of what is born on it, `SWITCHES` deep.
+
+    `other` is the parameter of the plane that the branch keeps. Curves that are `known` do not come again.
+    """
+    first = branch.system.parameter == plane.two[0]
+    seen, interval = list(known), plane.box[0 if first else 1]
+    for depth in range(SWITCHES + 1):
+        period = branch.system.recurrence.period
+        for event in branch.events:
+            kind, near = event.kind.value, (event.value, other) if first else (other, event.value)
+            alike = [each for each in seen if (each.kind, each.period) == (kind, period)]
+            if any(each.passes((*near, event.point.tests["volume"]), plane.box) for each in alike):
+                continue
+            found = curve_of(event, plane, near, steps, tick)
+            if found is None or len(found.points) < 2:
+                continue
+            points = [[float(x) for x in (*p.z[-2:], p.tests["volume"])] for p in found.points]
+            special, ends = [(d.kind.value, *d.parameters) for d in found.special], [why for _, why in found.ends]
+            curve = EventCurve(kind, period, near, points, special, ends, depth)
+            if not any(curve.runs_as(each) for each in alike):
+                seen.append(curve)
+                yield curve
+        crossing = next((e for e in branch.events if e.kind.solved is BifurcationKind.FLIP), None)
+        if crossing is None or depth == SWITCHES:
+            return
+        try:
+            branch = switched(branch, crossing, interval, Steps(most=BORN))[0]
+        except (ValueError, IndexError):
+            return
+
+
+def curve_of(
+    event: Event, plane: Plane, near: tuple[float, float], steps: Steps | None = None, tick: PointTick | None = None
+) -> Curve | None:
+    """The curve through an event in a plane of two parameters, met at `near`; None when it has none or is lost.
+
+    A pitchfork needs the symmetry that it breaks: where the table has it at one value of the parameter alone, there is
+    no curve. `tick` hears of each point.
+    """
+    ring = event.ring
+    if event.kind.solved is None or not isinstance(ring, Chords):
         return None
-    top = largest_shape(K)
-    box = ((top / 100, top), (0.0, 1.0))
+    if ring.closure != IDENTITY and ring.closure not in symmetries(plane.table, plane.law):
+        return None
+    ring, (low, high) = replace(ring, table=plane.table, law=plane.law), plane.box[0]
     steps = steps or Steps(largest=0.3, most=150)
-    ring = replace(event.ring, table=egg(K))
+    unit = SHAPE if plane.two == TWO else high - low
     try:
-        return curve(ring, event.kind.solved, event.x, TWO, (alpha, event.value), box, steps=steps)
+        return curve(ring, event.kind.solved, event.x, plane.two, near, plane.box, None, steps, tick, unit)
     except ValueError:
         return None

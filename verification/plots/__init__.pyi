@@ -28,6 +28,8 @@ from .sheet import (
     ink,
     legend,
     scaled,
+    shaded,
+    sides,
     styled,
 )
 
@@ -61,5 +63,7 @@ __all__ = [
     "outline",
     "plotted",
     "scaled",
+    "shaded",
+    "sides",
     "styled",
 ]

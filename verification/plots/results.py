@@ -13,7 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from verification.plots.sheet import AXES, FAINT, INK, OUTLINE, PALETTE, Array, figure, image, ink, styled
+from verification.plots.sheet import (
+    AXES,
+    FAINT,
+    INK,
+    OUTLINE,
+    PALETTE,
+    Array,
+    figure,
+    image,
+    ink,
+    shaded,
+    sides,
+    styled,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -215,8 +228,8 @@ def basins(found: "xr.Dataset") -> "Figure":
     made = figure(7.0, 4.0)
     fine(made, label.shape[1])
     axes = made.add_subplot()
-    sides = [_sides(np.asarray(found[name].values)) for name in ("s", "sin_phi")]
-    axes.imshow(paint[label], extent=(*sides[0], *sides[1]), **CELLS)
+    edges = [sides(np.asarray(found[name].values)) for name in ("s", "sin_phi")]
+    axes.imshow(paint[label], extent=(*edges[0], *edges[1]), **CELLS)
     axes.set_xlabel(AXES["s"])
     axes.set_ylabel(AXES["sin_phi"])
     axes.set_title(found.attrs.get("title", ""), loc="left")
@@ -225,12 +238,6 @@ def basins(found: "xr.Dataset") -> "Figure":
     handles = [Patch(color=PALETTE[i], label=f"{name}, {np.mean(label == i):.1%}") for i, name in shown]
     made.legend(handles=handles, loc="outside lower center", ncols=min(4, max(1, len(handles))))
     return made
-
-
-def _sides(centres: Array) -> tuple[float, float]:
-    """The two sides of a row of cells, from their centres."""
-    half = (centres[-1] - centres[0]) / (2 * max(1, centres.size - 1)) or 0.5
-    return float(centres[0] - half), float(centres[-1] + half)
 
 
 def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
@@ -250,8 +257,8 @@ def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
     ranges = (ends, (-0.5, values.size - 0.5))
     rows = max(ROWS, values.size * 5 // 8)
     counts, _, _ = np.histogram2d(place[kept], columns[kept], bins=(rows, values.size), range=ranges)
-    sides = _sides(values)
-    top.imshow(ink(counts), extent=(*sides, *ends), **CELLS)
+    edges = sides(values)
+    top.imshow(ink(counts), extent=(*edges, *ends), **CELLS)
     top.set_ylabel(AXES["theta" if one else "s"])
     if one:
         top.set_yticks([-np.pi, 0, np.pi], [r"$-\pi$", "$0$", r"$\pi$"])
@@ -266,8 +273,8 @@ def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
     bottom.set_xlabel(AXES.get(parameter, parameter))
     bottom.set_ylabel(r"$\nu_+$")
     bottom.legend(loc="lower right")
-    labelled(top, bottom, sorted(mark for mark in marks if sides[0] <= mark.value <= sides[1]), sides)
-    top.set_xlim(*sides)
+    labelled(top, bottom, sorted(mark for mark in marks if edges[0] <= mark.value <= edges[1]), edges)
+    top.set_xlim(*edges)
     return made
 
 
@@ -355,27 +362,11 @@ def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":
 
 def parameter_space(found: "xr.Dataset") -> "Figure":
     """The largest exponent over a shape and the contraction, red where positive; a line where some are chaotic."""
-    from matplotlib.colors import TwoSlopeNorm
-
     shape = str(found.chaotic.dims[0])
-    nu, chaotic = np.asarray(found.nu_max.values, dtype=float), np.asarray(found.chaotic.values > 0, dtype=float)
-    lams, shapes = np.asarray(found.lam.values), np.asarray(found[shape].values)
     made = figure(7.0, 4.4)
-    fine(made, lams.size)
-    axes = made.add_subplot()
-    most = max(1e-3, float(np.nanmax(nu)))
-    shown = axes.imshow(
-        nu,
-        extent=(*_sides(lams), *_sides(shapes)),
-        **CELLS,
-        cmap="RdBu_r",
-        norm=TwoSlopeNorm(0.0, max(-4 * most, min(-1e-3, float(np.nanmin(nu)))), most),
-    )
-    if min(nu.shape) > 1 and 0 < chaotic.mean() < 1:
-        axes.contour(lams, shapes, chaotic, [0.5], colors="black", linewidths=0.4)
-    axes.set_xlabel(AXES["lam"])
-    axes.set_ylabel(AXES.get(shape, shape))
-    made.colorbar(shown, label=r"largest $\nu_+$ of the orbits", pad=0.01)
+    fine(made, found.lam.size)
+    nu, chaotic = np.asarray(found.nu_max.values, dtype=float), np.asarray(found.chaotic.values > 0, dtype=float)
+    shaded(made, np.asarray(found.lam.values), np.asarray(found[shape].values), nu, chaotic, shape)
     return made
 
 

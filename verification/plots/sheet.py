@@ -174,6 +174,39 @@ def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array
     return np.concatenate([np.broadcast_to(colour, (*counts.shape, 3)), alpha[..., None]], axis=-1)
 
 
+def shaded(made: "Figure", lams: Array, shapes: Array, nu: Array, chaotic: Array, name: str) -> "Axes":
+    """Axes with the largest exponent over contractions and shapes, red where positive; a line where chaos begins."""
+    from matplotlib.colors import TwoSlopeNorm
+
+    axes = made.add_subplot()
+    most = max(1e-3, float(np.nanmax(nu)))
+    shown = axes.imshow(
+        nu,
+        extent=(*sides(lams), *sides(shapes)),
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        cmap="RdBu_r",
+        norm=TwoSlopeNorm(0.0, max(-4 * most, min(-1e-3, float(np.nanmin(nu)))), most),
+    )
+    if min(nu.shape) > 1 and 0 < chaotic.mean() < 1:
+        axes.contour(lams, shapes, chaotic, [0.5], colors="black", linewidths=0.4)
+    axes.set_xlabel(AXES["lam"])
+    axes.set_ylabel(AXES.get(name, name))
+    made.colorbar(shown, label=r"largest $\nu_+$ of the orbits", pad=0.01)
+    return axes
+
+
+def sides(centres: Array) -> tuple[float, float]:
+    """The outer sides of cells with these centres.
+
+    >>> sides(np.array([0.5, 1.5]))
+    (0.0, 2.0)
+    """
+    half = (float(centres[-1]) - float(centres[0])) / (2 * max(1, len(centres) - 1)) or 0.5
+    return float(centres[0]) - half, float(centres[-1]) + half
+
+
 def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tuple[Figure, list[Axes]]":
     """A figure with one pair of axes for each panel, named and labelled; `height` in inches, of a row."""
     from matplotlib.figure import Figure

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from numeric.lowering.cache import sources
 from numeric.sweeps.sweep import versions
-from symbolic.tables.definition import exact
+from symbolic.tables.definition import exact, value_text
 from symbolic.tables.scene import Scene
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -31,7 +31,8 @@ class Asked:
     """The question: a scene, the interval of the parameter that varies, and what is looked at on the way.
 
     `low` and `high` are exact numbers as text, `at` the contractions of portraits and censuses, `period` the longest
-    cycle that is searched for, `digits` those of a certificate.
+    cycle that is searched for, `digits` those of a certificate. `second` is a parameter of the table or of the law that
+    varies beside the contraction, with its ends; the rest of the report is then at the scene's own value of it.
     """
 
     scene: Scene
@@ -42,6 +43,7 @@ class Asked:
     period: int = 3
     digits: int = 20
     seed: int = 1
+    second: tuple[str, str, str] | None = None
 
     def __post_init__(self) -> None:
         low, high = (exact(self.parameter, end) for end in (self.low, self.high))
@@ -73,6 +75,18 @@ class Asked:
         """The table in a few words: its name, or the radius."""
         said = self.scene.document
         return f"r = {said['polar']}" if "polar" in said and "name" not in said else self.scene.name
+
+    @property
+    def both(self) -> str:
+        """The options of a report in two parameters that name the second one."""
+        return "" if self.second is None else "--vary {}={}:{}".format(*self.second)
+
+    @property
+    def own(self) -> float:
+        """The scene's own value of the second parameter."""
+        assert self.second is not None
+        name = self.second[0]
+        return float(exact(name, value_text(self.scene.document["shape"][name])))
 
     @property
     def varied(self) -> str:

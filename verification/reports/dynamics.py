@@ -1,5 +1,6 @@
 """What particles do: the slap map, phase portraits, the bifurcation diagram with exponents, and the attractors."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from sympy import S
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
-from numeric.sweeps.fields import basins, bifurcation
+from numeric.sweeps.fields import basins, bifurcation, parameter_space
 from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
 from symbolic.tables.definition import exact
@@ -125,8 +126,51 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     command = asked.command("bifurcation", over, options, "--json FILE")
     size = f"{columns} values of {asked.parameter}, {orbits} particles, {bounces} bounces"
     effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.nanmedian(arrays['error'])):.1g} (median of nu_plus)")
-    said = {"level": level, "command": command, "size": size, "rows": exponent_rows(arrays)}
+    rows_of = exponent_rows(arrays)
+    said = {"level": level, "command": command, "size": size, "rows": rows_of}
+    keys = asked.parameter, "chaotic_share", "nu_plus", "nu_plus_stderr"
+    said["exponents"] = [dict(zip(keys, row, strict=True)) for row in rows_of]
     return [], [effort], said
+
+
+def plane(asked: Asked, parts: Parts, level: int) -> Found:
+    """The largest exponent of random particles at pairs of the second parameter and the contraction; kept as arrays."""
+    assert asked.second is not None
+    name, low, high = asked.second
+    rows, columns, starts = 16 << level, 32 << level, 6 + 2 * level
+    bounces = transient = 512 << level
+    first, last = (float(exact(name, end)) for end in (low, high))
+    values, lams = np.linspace(first, last, rows), np.linspace(*asked.ends, columns)
+    sweep = parameter_space(
+        values, lams, starts, bounces, transient, seed=asked.seed, scene=text_of(asked.scene), parameter=name
+    )
+    found = run(sweep)
+    arrays = {"values": values, "lams": lams, "nu": found.nu_max.values, "chaotic": found.chaotic.values}
+    parts.keep(f"plane-{level}", arrays)
+    over = f"--shape {name}={low}:{high}:{rows} --lams {asked.low}:{asked.high}:{columns}"
+    options = f"--starts {starts} --transient {transient} --bounces {bounces} --seed {asked.seed}"
+    command = asked.command("sweep parameter-space", over, options, "--plot FILE.png")
+    error = float(np.nanmedian(found.nu_max_error.values))
+    size = f"{rows} values of {name} by {columns} contractions, {starts} particles, {bounces} bounces"
+    said = {"level": level, "command": command, "size": size, "chaotic": float(np.mean(found.chaotic.values > 0))}
+    return [], [Effort("parameter space", size, 0.0, f"{error:.1g} (median of nu_plus)")], said
+
+
+def plane_blocks(asked: Asked, parts: Parts, said: dict[str, Any], curves: Sequence[dict[str, Any]]) -> list[Block]:
+    """The plane with the curves known so far over it, drawn unless it is there."""
+    assert asked.second is not None
+    letter = asked.second[0]
+    name = f"plane-{said['level']}-{len(curves)}"
+    if not parts.picture(name).exists():
+        pictures.plane(parts, name, parts.arrays(f"plane-{said['level']}"), letter, curves, asked.own)
+    caption = (
+        f"Parameter space: {said['size']} after a transient as long. The largest exponent per bounce, red where it is "
+        f"positive; at {said['chaotic']:.0%} of the pairs some particle's is positive beyond its error. Sampled. The "
+        f"lines are curves of events, numbered as below, in float64; the grey line is the {letter} of other sections."
+    )
+    alt = f"Largest exponent over {letter} and lambda, with curves of events"
+    drawn = [{key: curve[key] for key in ("kind", "period", "points")} for curve in curves]
+    return [Picture(name, caption, alt, said["command"], {"curves": drawn})]
 
 
 def exponent_rows(arrays: dict[str, NDArray[Any]]) -> list[list[Any]]:
@@ -183,7 +227,22 @@ def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
     wide = max((m.share.high - m.share.low for m in row.members), default=0.0) / 2
     effort = Effort(f"census at lambda = {text}", f"{starts} starts", 0.0, f"{wide:.2g} (half the widest interval)")
     cycles = [_cycle(scene, m.first) for m in row.members if m.kind is Kind.CYCLE and m.period <= LONGEST]
-    return blocks, [effort], {"cycles": cycles}
+    return blocks, [effort], {"cycles": cycles, "attractors": [_attractor(text, member) for member in row.members]}
+
+
+def _attractor(text: str, member: Member) -> dict[str, Any]:
+    """An attractor for JSON: what it is, how many images it has, and the share of starts with a 95 % interval."""
+    first, share = member.first, member.share
+    numbers = {"nu_plus": first.nu_plus, "nu_minus": first.nu_minus}
+    return {
+        "lam": text,
+        "kind": member.kind.name.lower(),
+        "period": member.period if member.kind is Kind.CYCLE else None,
+        "symmetry": member.symmetry,
+        "copies": member.copies,
+        "share": [share.low, share.high],
+        **{name: float(nu) if np.isfinite(nu) else None for name, nu in numbers.items()},
+    }
 
 
 def _cycle(scene: Scene, attractor: Attractor) -> dict[str, Any]:

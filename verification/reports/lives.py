@@ -1,7 +1,7 @@
 """Every cycle that a search finds, followed from birth to death: its events, certified, and the doublings beyond."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -16,7 +16,7 @@ from verification.cycles.branch import Branch, Event, spectrum_of
 from verification.cycles.cascade import FEIGENBAUM
 from verification.cycles.recurrence import BifurcationKind
 from verification.cycles.switching import switched
-from verification.named.events import proof_of
+from verification.named.events import EventCurve, Plane, curves_along, proof_of
 from verification.named.files import document
 from verification.named.questions import PeriodicOrbit, Tick, find_cycles, follow
 from verification.plots.dynamics import plotted
@@ -30,6 +30,7 @@ Document = dict[str, Any]
 Made = tuple[list[Block], list[Effort], Document]
 MOST = 250  # points of a branch, each way
 DOUBLED = 60  # of the branch of a doubled cycle
+STEPS = Steps(largest=0.2, most=150)  # of a curve
 MARK = 5  # decimals of trace and determinant by which cycles are told apart
 LAWS = {True: "vanish", False: "do not vanish", None: "no such law here"}
 
@@ -131,6 +132,7 @@ def life(asked: Asked, parts: Parts, text: str, said: Document, number: int) -> 
     data = {
         "passes": _passing(asked, branch, text, said["mark"]),
         "events": [[event.value, event.label] for event in events],
+        "located": [event.document(asked.parameter, orbit.period) for event in events],
         "flips": [i for i, event in enumerate(branch.events) if event.kind is BifurcationKind.FLIP],
         "cycle": said,
         "at": text,
@@ -181,6 +183,17 @@ class Located:
         side = {True: "supercritical", False: "subcritical", None: ""}[form.supercritical if form else None]
         return self.event.kind.value, self.number, side, self.checks
 
+    def document(self, parameter: str, period: int) -> Document:
+        """The event for JSON; its value and radius are decimals as text."""
+        return {
+            "kind": self.event.kind.name.lower(),
+            "period": period,
+            "parameter": parameter,
+            "value": self.number.value,
+            "radius": self.number.error or None,
+            "certified": self.certificate is not None,
+        }
+
 
 def located(asked: Asked, event: Event, period: int, name: str) -> Located:
     """An event, certified to the asked digits where its kind has certificates."""
@@ -198,6 +211,86 @@ def _proved(asked: Asked, plain: Located, proof: Proof, name: str) -> Located:
     checks = f"open: {', '.join(open_)}" if open_ else f"all {len(proof.checks)} items hold"
     number = Number(value, radius, Known.FLOAT if open_ else Known.PROVED)
     return Located(plain.event, plain.label, number, checks, None if open_ else Certificate(name, document(proof)))
+
+
+def plane_of(asked: Asked) -> Plane:
+    """The plane of a report in two parameters."""
+    assert asked.second is not None
+    name, low, high = asked.second
+    return Plane.of(asked.scene, name, (low, high), (asked.low, asked.high))
+
+
+def curves(
+    asked: Asked, said: Document, number: int, known: Sequence[Document], heard: Tick = lambda said: None
+) -> Made:
+    """The events of a life as curves in both parameters, and those that the cycle meets along the other parameter.
+
+    Left out are those that lie on a curve that is `known`.
+    """
+    plane, found = plane_of(asked), list[Document]()
+    for branch, other, options in _lines(asked, said):
+        heard(options)
+        seen = [EventCurve(**each) for each in (*known, *found)]
+        for curve in curves_along(branch, plane, other, seen, STEPS, lambda point: heard("curve")):
+            options += f" --switch {curve.depth}" if curve.depth else ""
+            found.append(curve.document() | {"command": asked.command("follow", options)})
+    return [], [Effort(f"curves of cycle {number}", f"{len(found)} curves", 0.0)], {"curves": found}
+
+
+def _lines(asked: Asked, said: Document) -> Iterator[tuple[Branch, float, str]]:
+    """The life in the contraction, and at each contraction that is looked at the same cycle in the other parameter.
+
+    With each comes the number of the parameter that is fixed, and the options that follow it again.
+    """
+    assert asked.second is not None
+    letter, low, high = asked.second
+    here = orbit_of(asked.scene.at(lam=said["at"]), said["cycle"])
+    branch = followed(asked, here)
+    over = f"--lam {asked.low}:{asked.high} --at {said['at']} --curves {letter}={low}:{high}"
+    yield branch, asked.own, f"{over} {start_of(asked, here)}"
+    for text in asked.at:
+        lam = float(exact("--at", text))
+        try:
+            places = branch.at(lam)
+        except LostError:
+            continue
+        for z in places:
+            orbit = replace(here, scene=asked.scene.at(lam=text), theta=tuple(z[:-1].tolist()))
+            over = f"--lam {text} --shape {letter}={low}:{high} --curves lam={asked.low}:{asked.high}"
+            interval: dict[str, Any] = {letter: (low, high)}
+            try:
+                other = follow(orbit, points=MOST, **interval).branch
+            except ValueError:  # a cycle of a family, or at a bifurcation
+                continue
+            yield other, lam, f"{over} {start_of(asked, orbit)}"
+
+
+def curve_blocks(asked: Asked, found: Sequence[Document]) -> list[Block]:
+    """What each curve is, where it runs, and the command that follows it."""
+    assert asked.second is not None
+    letter = asked.second[0]
+    blocks: list[Block] = []
+    for number, curve in enumerate(found, 1):
+        place, ends = "({:.6g}, {:.6g})", (curve["points"][0], curve["points"][-1])
+        rows: list[tuple[Cell, ...]] = [
+            (
+                f"end: {why.removesuffix(' was reached')}",
+                Number(place.format(*np.round(point[:2], 9) + 0.0), known=Known.FLOAT),
+            )
+            for why, point in zip(curve["ends"], ends, strict=True)
+        ]
+        rows += [
+            (what, Number(place.format(*np.round(point, 9) + 0.0), known=Known.FLOAT))
+            for what, *point in curve["special"]
+        ]
+        caption = (
+            f"Curve {number}: {curve['kind']} of period {curve['period']}, through ({letter}, lambda) = "
+            f"{place.format(*curve['near'])}; {len(curve['points'])} points, each solved for in float64."
+        )
+        blocks.append(Listing(caption, ("what", f"({letter}, lambda)"), tuple(rows), curve["command"]))
+    if not found:
+        blocks.append(Words("No curve: the cycles that were followed met no fold, doubling or pitchfork on their way."))
+    return blocks
 
 
 COLUMNS = "what happens", "at", "branch that is born", "checklist"
@@ -223,12 +316,17 @@ def _listing(asked: Asked, branch: Branch, orbit: PeriodicOrbit, events: list[Lo
 
 def command(asked: Asked, orbit: PeriodicOrbit, text: str) -> str:
     """The command that follows a cycle."""
+    over = [asked.varied, f"--at {text}"] if asked.parameter == "lam" else [asked.varied]
+    return asked.command("follow", *over, start_of(asked, orbit), f"--digits {asked.digits}")
+
+
+def start_of(asked: Asked, orbit: PeriodicOrbit) -> str:
+    """The options that name the bounces of a cycle."""
     names = [part.name for part in asked.scene.table.components]
     start = f"--start={','.join(f'{x:.9f}' for x in orbit.theta)}"
-    if len(names) > 1:
-        start += f" --components {','.join(names[i] for i in orbit.components)}"
-    over = [asked.varied, f"--at {text}"] if asked.parameter == "lam" else [asked.varied]
-    return asked.command("follow", *over, start, f"--digits {asked.digits}")
+    if len(names) == 1:
+        return start
+    return f"{start} --components {','.join(names[i] for i in orbit.components)}"
 
 
 def cascade(asked: Asked, said: Document, number: int, longest: int) -> Made:
@@ -255,7 +353,11 @@ def cascade(asked: Asked, said: Document, number: int, longest: int) -> Made:
     words = command(asked, orbit, said["at"])
     listing = Listing(_doublings(orbit, period, flips), ("period", *COLUMNS), rows, f"{words} --switch 1")
     blocks: list[Block] = [listing, *(each.certificate for _, each in found if each.certificate)]
-    data = {"events": [[each.value, each.label] for _, each in found], "doublings": flips}
+    data = {
+        "events": [[each.value, each.label] for _, each in found],
+        "located": [each.document(asked.parameter, n) for n, each in found],
+        "doublings": flips,
+    }
     return blocks, [Effort(f"cascade of cycle {number}", f"up to period {period}", 0.0)], data
 
 

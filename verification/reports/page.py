@@ -58,7 +58,8 @@ def again(report: Report) -> list[str]:
     asked = report.asked
     at = [f"--at {','.join(asked.at)}"] if asked.parameter == "lam" else []
     looked = [*at, f"--period {asked.period}", f"--digits {asked.digits}"]
-    return [asked.varied, *looked, f"--seed {asked.seed}", "--out FILE.html"]
+    both = [asked.both] if asked.second else []
+    return [asked.varied, *both, *looked, f"--seed {asked.seed}", "--out FILE.html"]
 
 
 def address(kind: str, content: bytes) -> str:

@@ -3,7 +3,7 @@
 Densities are small images of one ink, whose opacity is the logarithm of a count.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.plots.results import outline
-from verification.plots.sheet import AXES, FAINT, INK, OUTLINE, PALETTE, figure, ink, styled
+from verification.plots.sheet import AXES, FAINT, INK, OUTLINE, PALETTE, figure, ink, shaded, sides, styled
 from verification.reports.asked import Arrays, Parts
 
 if TYPE_CHECKING:
@@ -128,6 +128,41 @@ def _events(top: "Axes", bottom: "Axes", events: Sequence[tuple[float, str]], en
                 color="#b3261e",
                 annotation_clip=False,
             )
+
+
+SHORT = {"period doubling": "doubling"}
+DASHES = {"fold": "-", "period doubling": (0, (5, 1.5)), "pitchfork": (0, (1.2, 1.2))}
+
+
+def plane(parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[Mapping[str, Any]], own: float) -> None:
+    """The largest exponent over a parameter and the contraction, and the curves of events with their words."""
+    lams, values = found["lams"], found["values"]
+    taken, size = list[Array](), np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
+    with styled():
+        drawn = figure(7.0, 4.6)
+        axes = shaded(drawn, lams, values, found["nu"], np.asarray(found["chaotic"] > 0, dtype=float), letter)
+        axes.axhline(own, color="0.45", lw=0.8)
+        for number, curve in enumerate(curves):
+            points = np.array(curve["points"])[:, 1::-1]
+            axes.plot(*points.T, color="black", lw=1.1, ls=DASHES.get(curve["kind"], "-"))
+            words = f"{number + 1} {SHORT.get(curve['kind'], curve['kind'])} {curve['period']}"
+            ground = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8}
+            if number < LABELS:
+                taken.append(_apart(points / size, taken))
+                axes.annotate(words, tuple(taken[-1] * size), ha="center", va="center", fontsize=6.5, bbox=ground)
+        axes.set_xlim(*sides(lams))
+        axes.set_ylim(*sides(values))
+        saved(parts, name, drawn)
+
+
+def _apart(points: Array, taken: Sequence[Array]) -> Array:
+    """The place on a curve, away from its ends, that is farthest from those that have words; its middle at first."""
+    length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    places = np.stack([np.interp(np.linspace(0.12, 0.88, 39) * length[-1], length, x) for x in points.T], axis=1)
+    if not taken:
+        return np.asarray(places[19])
+    gaps = np.min([np.hypot(*(places - other).T) for other in taken], axis=0)
+    return np.asarray(places[int(np.argmax(gaps))])
 
 
 def basins(parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int], half: float, title: str) -> None:

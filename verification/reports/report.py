@@ -4,8 +4,9 @@ Each step leaves one file among the parts. The page is written anew after each, 
 report, and one that is asked again goes on.
 """
 
+import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
+from verification.reports import lives
 from verification.reports import scene as exactly
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Section
@@ -26,13 +28,24 @@ TITLES = {
     "slap": "The slap map",
     "portrait": "Phase portraits",
     "diagram": "Bifurcation diagram and exponents",
+    "plane": "Parameter space and curves of events",
     "census": "Attractors and their basins",
     "cycles": "Cycles from birth to death",
     "cost": "Error against run time",
 }
-FIRST = {"census": 3.0, "derivation": 3.0, "search": 4.0, "life": 1.5, "cascade": 4.0}  # seconds, not measured yet
+FIRST = {  # seconds, not measured yet
+    "plane": 5.0,
+    "census": 3.0,
+    "derivation": 3.0,
+    "search": 4.0,
+    "life": 1.5,
+    "curves": 5.0,
+    "cascade": 4.0,
+}
 GROWTH = 3.5  # of the seconds of a question from one level to the next
 LEVELS = 4
+LEVELLED = "portrait", "diagram", "plane", "census", "cascade"  # questions that are asked again, more finely
+SCHEMA = 1  # of the JSON
 DEEPEST = 2  # further doublings of a cascade at each level
 
 
@@ -48,18 +61,22 @@ class Step:
 
 @dataclass(frozen=True)
 class Report:
-    """The sections of a report, the files that were written, and what more time would do."""
+    """The sections of a report, its findings in a few numbers each, and what more time would do."""
 
     asked: Asked
     sections: tuple[Section, ...]
     versions: dict[str, str]
     seconds: float
     left: tuple[str, ...]
+    events: tuple[dict[str, Any], ...] = ()
+    attractors: tuple[dict[str, Any], ...] = ()
+    exponents: tuple[dict[str, Any], ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The report as JSON has it: what the page shows, without its pictures."""
         asked = self.asked
         return {
+            "schema": SCHEMA,
             "scene": asked.scene.document,
             "asked": {
                 "vary": asked.parameter,
@@ -69,11 +86,17 @@ class Report:
                 "period": asked.period,
                 "digits": asked.digits,
                 "seed": asked.seed,
+                "second": None
+                if asked.second is None
+                else dict(zip(("vary", "from", "to"), asked.second, strict=True)),
             },
             "digest": asked.digest,
             "versions": self.versions,
             "seconds": round(self.seconds, 2),
             "left_for_more_time": list(self.left),
+            "events": list(self.events),
+            "attractors": list(self.attractors),
+            "exponents": list(self.exponents),
             "sections": [section.document() for section in self.sections],
         }
 
@@ -83,7 +106,7 @@ def report(
     out: str | Path,
     *,
     minutes: float = 2.0,
-    lam: tuple[Any, Any] = ("0", "1"),
+    lam: tuple[Any, Any] | Any = ("0", "1"),
     vary: tuple[str, Any, Any] | None = None,
     at: tuple[str, ...] = ("1/10", "1/2", "9/10"),
     period: int = 3,
@@ -95,16 +118,25 @@ def report(
 ) -> Report:
     """What becomes of a scene as the contraction varies, as one page of HTML; parts are kept in `out` with `.parts`.
 
-    With `vary=("b", low, high)` it is a parameter of the table or of the law that varies, at the one contraction in
-    `at`; there cycles are searched for, at the middle of the interval.
+    With `vary=("b", low, high)` a parameter of the table or of the law varies too, and the page has the plane of both
+    with the curves of events in it; its other sections are at the scene's own `b`, or in the middle where that lies at
+    an end. With one contraction for `lam` it is that parameter alone which varies.
 
     The page is useful after its first steps and refined until the `minutes` are over. Asked again, it goes on.
     """
-    parameter, low, high = ("lam", *lam) if vary is None else vary
-    if parameter != "lam":
-        scene = _midway(scene, parameter, low, high)
+    second = None if vary is None else (vary[0], str(vary[1]), str(vary[2]))
+    if vary is not None:
+        scene = _placed(scene, *vary)
+    if isinstance(lam, tuple):
+        parameter, low, high = "lam", *lam
+    elif vary is None:
+        raise ValueError(f"report: lam = {lam} is no interval; give two contractions, as in lam=(0, 1)")
+    else:
+        (parameter, low, high), second, at = vary, None, (str(lam),)
     here = scene.at(lam=at[len(at) // 2])
-    asked = Asked(here, parameter, str(low), str(high), tuple(at), period, digits, seed)
+    asked = Asked(here, parameter, str(low), str(high), tuple(at), period, digits, seed, second)
+    if asked.second:
+        lives.plane_of(asked)  # a law that is none somewhere in the plane is refused before any work
     if not minutes > 0:
         raise ValueError(f"report: minutes = {minutes} is no time; give a positive number such as 2")
     page = Path(out)
@@ -113,18 +145,22 @@ def report(
     return worked(asked, parts, page, clock() + 60 * minutes, clock, tick, latex)
 
 
-def _midway(scene: Scene, parameter: str, low: Any, high: Any) -> Scene:
-    """The scene at the middle of an interval of one of its parameters, proved to be a table over all of it."""
+def _placed(scene: Scene, parameter: str, low: Any, high: Any) -> Scene:
+    """The scene with an interval for one of its parameters, over which it is proved to be a table.
+
+    Its own number for the parameter is kept inside of the interval; at an end, or beyond, the middle takes its place.
+    """
     ends = [exact(parameter, end) for end in (low, high)]
     if parameter not in (*scene.shape, *dict(scene.law.numbers)):
         accepted = ", ".join(["lam", *scene.shape, *dict(scene.law.numbers)])
         raise ValueError(f"report: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
     if not ends[0] < ends[1]:
         raise ValueError(f"report: {parameter} from {low} to {high} is no interval; the first must be the smaller")
-    middle = (ends[0] + ends[1]) / 2
+    own = {**scene.shape, **{name: exact(name, text) for name, text in scene.law.numbers}}[parameter]
+    value = own if ends[0] < own < ends[1] else (ends[0] + ends[1]) / 2
     ranged = "table" not in scene.document or parameter not in scene.shape  # a table of the paper has its own
-    value: dict[str, Any] = {parameter: f"{middle}:{ends[0]}..{ends[1]}" if ranged else middle}
-    return scene.at(**value)
+    number: dict[str, Any] = {parameter: f"{value}:{ends[0]}..{ends[1]}" if ranged else value}
+    return scene.at(**number)
 
 
 def worked(
@@ -185,7 +221,7 @@ def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterato
 
     `heard` is called from within a long search, and may end it with a `TimeoutError`.
     """
-    from verification.reports import dynamics, lives
+    from verification.reports import dynamics
 
     def seconds(name: str, kind: str) -> float:
         """What a step of this kind is expected to take, from the one of the level before."""
@@ -196,15 +232,20 @@ def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterato
     yield Step("slap", "slap", 0.0, partial(dynamics.slap, asked, parts))
     yield Step("portrait-0", "portrait", 0.0, partial(dynamics.portrait, asked, parts, 0))
     yield Step("diagram-0", "diagram", 0.0, partial(dynamics.diagram, asked, parts, 0))
+    if asked.second:
+        yield Step("plane-0", "plane", FIRST["plane"], partial(dynamics.plane, asked, parts, 0))
     for i in range(len(asked.at)):
         yield Step(f"census-{i}-0", "census", FIRST["census"], partial(dynamics.census, asked, parts, i, 0))
     yield Step("derivation", "derivation", FIRST["derivation"], lambda: (exactly.derivation(asked), [], {}))
     for i, text in enumerate(asked.at):
         yield Step(f"search-{i}", "cycles", FIRST["search"], partial(lives.search, asked, text, heard))
     yield from _lives(asked, parts)
+    if asked.second:
+        yield from _curves(asked, parts, heard)
     yield from _cascades(asked, parts, 0)
     for level in range(1, LEVELS):
         finer: list[tuple[str, Callable[..., Made], tuple[int, ...]]] = [("diagram", dynamics.diagram, ())]
+        finer += [("plane", dynamics.plane, ())] if asked.second else []
         finer += [("census", dynamics.census, (i,)) for i in range(len(asked.at))]
         finer += [("portrait", dynamics.portrait, ())] if level == 1 else []
         for kind, work, which in finer:
@@ -229,8 +270,6 @@ def _scene(asked: Asked, parts: Parts) -> Made:
 
 def _lives(asked: Asked, parts: Parts) -> Iterator[Step]:
     """A step for each cycle that was found and lies on no branch known by then; those that attract come first."""
-    from verification.reports import lives
-
     number, known = 0, list[dict[str, Any]]()
     for i, text in enumerate(asked.at):
         kept = [parts.read(f"search-{i}"), parts.read(f"census-{i}-0")]
@@ -244,10 +283,21 @@ def _lives(asked: Asked, parts: Parts) -> Iterator[Step]:
             number += 1
 
 
+def _curves(asked: Asked, parts: Parts, heard: Tick) -> Iterator[Step]:
+    """A step for each life that was followed: its events, as curves in both parameters that are not there yet."""
+    number, known = 0, list[dict[str, Any]]()
+    while (found := parts.read(f"life-{number}")) is not None:
+        name = f"curves-{number}"
+        if "cycle" in found["data"]:
+            work = partial(lives.curves, asked, found["data"], number, tuple(known), heard)
+            yield Step(name, "plane", FIRST["curves"], work)
+        made = parts.read(name)
+        known += made["data"]["curves"] if made else []
+        number += 1
+
+
 def _cascades(asked: Asked, parts: Parts, level: int) -> Iterator[Step]:
     """A step for each life with a flip: its doublings, two more at each level."""
-    from verification.reports import lives
-
     number = 0
     while (found := parts.read(f"life-{number}")) is not None:
         said = found["data"]
@@ -264,7 +314,7 @@ def _cascades(asked: Asked, parts: Parts, level: int) -> Iterator[Step]:
 def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
     """The report from the parts that are there, the finest of each question."""
     from numeric.sweeps.sweep import versions
-    from verification.reports import dynamics, lives
+    from verification.reports import dynamics
 
     made = {name: found for name in _names(parts) if (found := parts.read(name)) is not None}
     best = _finest(made)
@@ -273,22 +323,37 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
     searches = [found["data"] for name, found in best.items() if name.startswith("search")]
     blocks: dict[str, list[Block]] = {name: [] for name in TITLES}
     blocks["cycles"] += lives.searched_blocks(asked, searches) if searches else []
+    curves = [curve for found in best.values() for curve in found["data"].get("curves", [])]
     for found in best.values():
         if found["name"] == "diagram":
             blocks["diagram"] += dynamics.diagram_blocks(asked, parts, found["data"], events)
+        elif found["name"] == "plane" and "level" in found["data"]:
+            blocks["plane"] += dynamics.plane_blocks(asked, parts, found["data"], curves)
         else:
             blocks[found["name"]] += Section.read(found).blocks
+    if asked.second and any(name.startswith("curves") for name in best):
+        blocks["plane"] += lives.curve_blocks(asked, curves)
     efforts = tuple(effort for found in made.values() for effort in Section.read(found).efforts)
     sections = [Section(name, TITLES[name], tuple(blocks[name])) for name in TITLES if blocks[name]]
     if efforts:
         sections.append(Section("cost", TITLES["cost"], (_costs(efforts),), efforts))
     seconds = sum(float(found["seconds"]) for found in made.values())
-    return Report(asked, tuple(sections), versions(), seconds, left)
+    findings = (
+        _once(row for found in best.values() for row in found["data"].get(name, []))
+        for name in ("located", "attractors", "exponents")
+    )
+    return Report(asked, tuple(sections), versions(), seconds, left, *findings)
+
+
+def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
+    """Each row once, in order: what images of one cycle do under the symmetries is one event."""
+    return tuple({json.dumps(row): row for row in rows}.values())
 
 
 def _names(parts: Parts) -> list[str]:
     """The steps whose files are there, in the order in which they are told."""
-    order = ["scene", "derivation", "slap", "portrait", "diagram", "census", "search", "life", "cascade"]
+    order = ["scene", "derivation", "slap", "portrait", "diagram", "plane", "census", "search", "life", "cascade"]
+    order.append("curves")
     found = [path.stem for path in parts.folder.glob("*.json")]
 
     def place(name: str) -> tuple[int, list[int]]:
@@ -303,7 +368,7 @@ def _finest(made: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
     best: dict[str, dict[str, Any]] = {}
     for name, found in made.items():
         kind = name.split("-")[0]
-        question = name.rpartition("-")[0] if kind in ("portrait", "diagram", "census", "cascade") else name
+        question = name.rpartition("-")[0] if kind in LEVELLED else name
         best[question] = found
     return best
 

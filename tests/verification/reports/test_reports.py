@@ -3,20 +3,24 @@
 import json
 import re
 from fractions import Fraction
+from itertools import pairwise
 from math import pi
 
+import numpy as np
 import pytest
 
 from symbolic import Scene
 from symbolic.cycles.thresholds import flip_contraction, stability_number
 from symbolic.tables.gallery import GALLERY
 from verification.app.cli import main
+from verification.named import events
 from verification.named.files import checked
 from verification.named.questions import PeriodicOrbit
 from verification.paper.report.mathml import remark
 from verification.reports import lives
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Certificate, Known, Listing, Number, Picture, Section
+from verification.reports.page import again
 from verification.reports.report import FIRST, composed, report
 from verification.reports.scene import double_normals, inflections
 
@@ -159,6 +163,7 @@ def test_the_commands_of_a_report_name_the_scene():
         (["--minutes", "0"], "minutes = 0.0 is no time"),
         (["--vary", "b=0:1", "--lam", "1/2"], "--b = 0 is no shape parameter"),
         (["--vary", "a=2:1", "--lam", "1/2"], "a from 2 to 1 is no interval"),
+        (["--vary", "b=0:1"], "--b = 0 is no shape parameter"),
         (["--lam", "1:0"], "lam from 1 to 0 is no interval"),
         (["--lam", "1"], "accepted: LOW:HIGH"),
         (["--at", "2"], "lam = 2 is no contraction"),
@@ -175,17 +180,89 @@ def test_bad_input_is_one_sentence(arguments, said, tmp_path, capsys):
 
 
 def test_a_first_guess_of_the_seconds_exists_for_each_kind_of_later_step():
-    assert {"census", "search", "life", "cascade"} <= set(FIRST)
+    assert {"census", "search", "life", "cascade", "plane", "curves"} <= set(FIRST)
 
 
-def test_another_parameter_varies_at_one_contraction_and_in_the_middle_cycles_are_searched_for(tmp_path):
+def test_another_parameter_varies_at_one_contraction_from_the_scenes_own_number_or_the_middle(tmp_path):
     flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/100"}})
-    done = report(flower, tmp_path / "b.html", vary=("b", "0", "1/30"), at=("1/10",), minutes=1e-9)
-    asked = done.asked
+    vary = ("b", "0", "1/30")
+    inside = report(flower, tmp_path / "b.html", vary=vary, lam="1/10", minutes=1e-9)
+    at_an_end = report(flower.at(b=0), tmp_path / "b.html", vary=vary, lam="1/10", minutes=1e-9)
 
-    assert asked.scene.shape["b"] == Fraction(1, 60)
-    assert asked.scene.ranges["b"] == (0, Fraction(1, 30))
-    assert asked.varied == "--lam 1/10 --shape b=0:1/30"
-    assert done.document()["asked"]["vary"] == "b"
-    with pytest.raises(ValueError, match="varies at one contraction, and --at has 2"):
-        report(flower, tmp_path / "b.html", vary=("b", "0", "1/30"), at=("1/10", "1/2"))
+    assert inside.asked.scene.shape["b"] == Fraction(1, 100)
+    assert at_an_end.asked.scene.shape["b"] == Fraction(1, 60)
+    assert inside.asked.scene.ranges["b"] == (0, Fraction(1, 30))
+    assert inside.asked.varied == "--lam 1/10 --shape b=0:1/30"
+    assert inside.document()["asked"]["vary"] == "b"
+    with pytest.raises(ValueError, match="give two contractions"):
+        report(flower, tmp_path / "b.html", lam="1/10")
+
+
+@pytest.fixture(scope="module")
+def plane(tmp_path_factory):
+    """The plane of the flower's parameter and the contraction, as far as one cycle leads, over a small grid."""
+    out = tmp_path_factory.mktemp("plane") / "flower.html"
+    flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/60:0..1/30"}, "lam": "1/10"})
+    asked = Asked(flower, at=("1/10",), period=2, digits=10, second=("b", "0", "1/30"))
+    parts = Parts(out.with_suffix(".parts"), asked.digest)
+    parts.made(asked)
+    axis = lives.said_of(PeriodicOrbit(flower, (0, 0), (0.0, pi), (0.0, 0.0), (0.5, 0.02)))
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(events, "SWITCHES", 1)
+        _, _, data = lives.curves(asked, {"cycle": axis, "at": "1/10"}, 0, ())
+    grid = {"values": np.linspace(0, 1 / 30, 3), "lams": np.linspace(0, 1, 4), "nu": np.linspace(-1, 1, 12)}
+    parts.keep("plane-0", grid | {"nu": grid["nu"].reshape(3, 4), "chaotic": np.eye(3, 4)})
+    said = {"level": 0, "command": "pinball sweep", "size": "few", "chaotic": 0.25}
+    for name, found in (("plane-0", said), ("curves-0", data)):
+        parts.write(name, {"seconds": 1.0, "data": found, **Section("plane", "Plane", (), ()).document()})
+    return asked, parts, composed(asked, parts, ()), data["curves"]
+
+
+def test_the_curve_of_a_doubling_in_two_parameters_runs_along_its_closed_form(plane):
+    """The axes of the flower double where their stability number says; the curve was followed from one such point."""
+    *_, curves = plane
+    first = curves[0]
+    (chord,) = double_normals(Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}}).table)
+
+    assert (first["kind"], first["period"]) == ("period doubling", 2)
+    where = [b for b, lam, _ in first["points"] if lam in (0.0, 1.0)]
+    assert min(where) < 1 / 40 < max(where)
+    table = [(b, lam) for b, lam, _ in first["points"]]
+    closed = float(flip_contraction(stability_number(chord)))
+    (a, b) = next((one, two) for one, two in pairwise(table) if (one[0] - 1 / 40) * (two[0] - 1 / 40) <= 0)
+    assert min(a[1], b[1]) <= closed <= max(a[1], b[1])
+
+
+def test_a_curve_is_drawn_once_over_the_shaded_plane_and_named_with_the_command_that_follows_it(plane):
+    _, parts, done, curves = plane
+    (section,) = (section for section in done.sections if section.name == "plane")
+    listings = [block for block in section.blocks if isinstance(block, Listing)]
+    (picture,) = (block for block in section.blocks if isinstance(block, Picture))
+
+    assert len({json.dumps(curve["points"]) for curve in curves}) == len(curves)
+    assert len(listings) == len(curves) >= 1
+    assert all(f"Curve {i}:" in block.caption for i, block in enumerate(listings, 1))
+    assert "--curves lam=0:1" in listings[0].command
+    assert "--vary b=0:1/30" in " ".join(again(done))
+    assert picture.values["curves"][0]["period"] == 2
+    assert parts.picture(picture.name).exists()
+    assert done.document()["asked"]["second"] == {"vary": "b", "from": "0", "to": "1/30"}
+
+
+def test_the_json_lists_events_attractors_and_exponents_and_an_event_of_image_cycles_once(made):
+    _, done, *_ = made
+    document = json.loads(json.dumps(done.document()))
+
+    assert document["schema"] == 1
+    assert {"lam", "nu_plus", "nu_plus_stderr"} <= set(document["exponents"][0])
+    assert {row["kind"] for row in document["attractors"]} <= {"cycle", "chaotic", "neutral", "stopped"}
+    for event in document["events"]:
+        assert set(event) == {"kind", "period", "parameter", "value", "radius", "certified"}
+    assert len(document["events"]) == len({json.dumps(event) for event in document["events"]})
+
+
+def test_a_folder_takes_page_json_and_article(tmp_path):
+    out = tmp_path / "ellipse"
+
+    assert main(["report", "ellipse", "--a", "3/2", "--minutes", "1e-9", "--out", str(out)]) == 0
+    assert {path.name for path in out.iterdir()} == {"report.html", "report.json", "report.tex", "report.parts"}

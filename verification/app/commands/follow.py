@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
     from symbolic.tables.table import Table
     from verification.cycles.branch import Branch
+    from verification.named.events import Plane
 
+ALONE = "alone"  # what --curves says without a parameter
 ROWS = 12  # points of a branch shown to people, and all its events
 
 
@@ -31,7 +33,13 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @click.option("--at", metavar="NUMBER", help="The contraction of the start; LOW, or the named cycle's own.")
 @click.option("--points", type=click.IntRange(2, 100_000), default=400, show_default=True, help="At most, each way.")
 @click.option("--switch", type=click.IntRange(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
-@click.option("--curves", is_flag=True, help="Follow the egg's events on, as curves in (alpha, lam).")
+@click.option(
+    "--curves",
+    is_flag=False,
+    flag_value=ALONE,
+    metavar="[NAME=LOW:HIGH]",
+    help="Follow the events on in a second parameter, with lam or the shape; the egg's is alpha if none is named.",
+)
 @click.option("--digits", type=click.IntRange(1, 1000), help="Certify the events to so many digits.")
 @plot_option("dynamics.plotted", "the branches")
 @json_option
@@ -45,7 +53,7 @@ def command(
     at: str | None,
     points: int,
     switch: int,
-    curves: bool,
+    curves: str | None,
     digits: int | None,
     output: Output,
 ) -> int:
@@ -60,9 +68,6 @@ def command(
     from verification.named.questions import law_over
 
     shape = axis or (ranged(scene) if ":" not in interval else None)
-    if curves and (scene.name != "egg" or shape):
-        given = "--shape" if shape else scene.name
-        raise ValueError(f"--curves: {given} gives no curve in (alpha, lam); accepted: the egg, with --lam LOW:HIGH")
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
     parameter, ends = varied(scene, shape) if shape else ("lam", interval)
@@ -70,6 +75,7 @@ def command(
     lam = contraction(interval) if shape else None
     if lam is not None and not scene.law.uniform:
         scene = scene.at(lam=lam)
+    plane = plane_of(scene, curves, parameter, ends) if curves else None
     law = law_over(scene, parameter, ends.split(":"))
     table = scene.table
     if cycle is not None:
@@ -104,7 +110,7 @@ def command(
         document = record(one)
         document["events"] = [noted(event, parameter, certificates.get(id(event))) for event in one.events]
         documents.append(document)
-    drawn_on = curves_of(found, scene, output) if curves else []
+    drawn_on = curves_of(found, plane, scene, lam, output) if plane else []
     output.write({"table": scene.name, "branches": documents, "curves": drawn_on}, found)
     for document in documents:
         show(output.console, document)
@@ -225,35 +231,62 @@ def noted(event: Any, parameter: str, proof: dict[str, Any] | None) -> dict[str,
     }
 
 
-def curves_of(branches: list["Branch"], scene: Scene, output: Output) -> list[dict[str, Any]]:
-    """The curves that the events of the egg draw, each with its points of codimension two."""
+def plane_of(scene: Scene, curves: str, parameter: str, ends: str) -> "Plane":
+    """The plane of the branch's parameter and of the one that --curves names; the contraction is one of the two."""
+    from verification.named.events import Plane
+
+    known = [*scene.shape, *dict(scene.law.numbers)]
+    name, equals, second = (part.strip() for part in curves.partition("="))
+    if curves == ALONE:
+        if parameter == "lam" and scene.name == "egg":
+            return Plane.of_egg(scene.K)
+        if parameter == "lam":
+            one = f"{known[0]}=LOW:HIGH" if known else "a table with a shape"
+            raise ValueError(f"--curves: a second parameter is needed with {scene.name}; accepted: {one}")
+        name, equals, second = "lam", "=", "0:1"
+    others = known if parameter == "lam" else ["lam"]
+    if not equals or name not in others:
+        accepted = f"NAME=LOW:HIGH with one of {', '.join(others)}" if others else "a table with a shape"
+        raise ValueError(f"--curves {curves}: {name} is no second parameter here; accepted: {accepted}")
+    interval_of("--lam" if name == "lam" else "--curves", second)
+    shape, lams = (ends, second) if name == "lam" else (second, ends)
+    low, high = shape.split(":")
+    least, most = lams.split(":")
+    return Plane.of(scene, parameter if name == "lam" else name, (low, high), (least, most))
+
+
+def curves_of(branches: list["Branch"], plane: "Plane", scene: Scene, lam: Any, output: Output) -> list[dict[str, Any]]:
+    """The curves that the events draw in a plane, each with its points of codimension two."""
     from verification.named.events import curve_of
 
     events = [(one.system.recurrence.period, event) for one in branches for event in one.events]
-    alpha, rows = float(scene.shape["alpha"]), []
+    name, rows = plane.two[0], []
+    own = float({**scene.shape, **own_numbers(scene)}[name])
     with output.progress("Drawing", len(events)) as tick:
         for period, event in events:
-            found = curve_of(event, alpha, scene.K)
+            found = curve_of(event, plane, (own, event.value) if lam is None else (event.value, float(lam)))
             tick(event.kind.value)
             if found is not None:
                 special = [
-                    {"what": point.kind.value, "alpha": point.parameters[0], "lam": point.parameters[1]}
+                    {"what": point.kind.value, name: point.parameters[0], "lam": point.parameters[1]}
                     for point in found.special
                 ]
-                plane = [[float(x) for x in row] for row in found.plane]
-                rows.append({"event": event.kind.value, "period": period, "alpha_lam": plane, "special": special})
+                points = [[float(x) for x in row] for row in found.plane]
+                rows.append({"event": event.kind.value, "period": period, f"{name}_lam": points, "special": special})
     return rows
 
 
 def show_curve(console: "Console", row: dict[str, Any]) -> None:
     """Where a curve runs from and to, and its special points."""
-    first, last = row["alpha_lam"][0], row["alpha_lam"][-1]
+    key = next(key for key in row if key.endswith("_lam"))
+    name, points = key.removesuffix("_lam"), row[key]
+    first, last = points[0], points[-1]
     console.print(
-        f"curve of the {row['event']} of period {row['period']}: (alpha, lam) from ({first[0]:.6f}, {first[1]:.6f}) "
+        f"curve of the {row['event']} of period {row['period']}: ({name}, lam) from ({first[0]:.6f}, {first[1]:.6f}) "
         f"to ({last[0]:.6f}, {last[1]:.6f})"
     )
     for point in row["special"]:
-        console.print(f"  {point['what']} at ({point['alpha']:.9f}, {point['lam']:.9f})")
+        console.print(f"  {point['what']} at ({point[name]:.9f}, {point['lam']:.9f})")
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:

@@ -1,5 +1,6 @@
 """`pinball report`: what becomes of this table? One page, useful first and refined in the time given."""
 
+import json
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -37,13 +38,23 @@ def varied(text: str) -> tuple[str, str, str]:
 
 
 @click.command(epilog="Example: pinball report --polar '1 + cos(5*theta)/40' --minutes 2 --out flower.html")
-@click.option("--vary", metavar="NAME=LOW:HIGH", help="Vary a parameter of the table or of the law, at one --lam.")
+@click.option(
+    "--vary",
+    metavar="NAME=LOW:HIGH",
+    help="Vary a parameter of the table or law, with the contractions of --lam or at one contraction.",
+)
 @as_shape
 @varied_options
-@click.option("--out", required=True, metavar="FILE", help="The page; what is kept lies beside it, in FILE.parts.")
+@click.option(
+    "--out",
+    default="report",
+    show_default=True,
+    metavar="PATH",
+    help="The page, FILE.html; or a folder for report.html, report.json, report.tex. Parts are kept beside the page.",
+)
 @click.option("--minutes", type=float, default=2.0, show_default=True, help="Time for all; asked again, it goes on.")
 @click.option(
-    "--lam", "interval", default="0:1", show_default=True, metavar="LOW:HIGH", help="Contractions; one with --vary."
+    "--lam", "interval", default="0:1", show_default=True, metavar="LOW:HIGH", help="Contractions; or one, with --vary."
 )
 @click.option(
     "--at", default="1/10,1/2,9/10", show_default=True, metavar="LAM,...", help="Where portraits and censuses are made."
@@ -69,22 +80,30 @@ def command(
     """What becomes of this table as the contraction varies? One page of HTML that needs no network.
 
     The table and what is proved of it, slap map, portraits, bifurcation diagram, attractors with basins, cycles from
-    birth to death with certificates. A report that was stopped goes on when the same command is given again.
+    birth to death with certificates. With --vary NAME=LOW:HIGH also the plane of that parameter and the contraction,
+    shaded by exponent, with curves of events. A report that was stopped goes on when the same command is given again.
     """
     from verification.reports.report import report
 
-    page = Path(out)
+    page, folder = Path(out), Path(out).suffix != ".html"
     for path in (page, Path(latex) if latex else page):
-        if path.is_dir() or not path.parent.is_dir():
+        if not path.parent.is_dir() or (path.is_dir() and not (folder and path == page)):
             raise ValueError(f"{path} cannot be written; accepted: a file in a directory that is there")
-    name, low, high = varied(axis or f"lam={interval}")
-    places = tuple(text.strip() for text in (at if axis is None else interval).split(","))
+    if folder:
+        if page.is_file():
+            raise ValueError(f"--out {page} is a file; accepted: a folder, or a page whose name ends in .html")
+        page.mkdir(exist_ok=True)
+        page, latex = page / "report.html", latex or str(page / "report.tex")
+    single = axis is not None and ":" not in interval
+    lams = interval.strip() if single else varied(f"lam={interval}")[1:]
+    places = tuple(text.strip() for text in at.split(","))
     with output.progress("Reporting", STEPS) as step:
         made = report(
             scene,
             page,
             minutes=minutes,
-            vary=(name, low, high),
+            lam=lams,
+            vary=None if axis is None else varied(axis),
             at=places,
             period=period,
             digits=digits,
@@ -93,6 +112,8 @@ def command(
             tick=step,
         )
     output.write(made.document())
+    if folder:
+        page.with_suffix(".json").write_text(json.dumps(made.document(), indent=1), encoding="utf-8")
     output.console.print(f"{page}: {len(made.sections)} sections, {made.seconds:.0f} s of work")
     if made.left:
         output.console.print(f"left for more time: {', '.join(made.left)}; the same command goes on from here")

@@ -158,7 +158,7 @@ class Plane:
         if not law.uniform:
             own = {} if parameter in scene.shape else {parameter: (shapes[0], shapes[1])}
             law = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] not in own))
-            law.check((contractions[0], contractions[1]), law.places(table), **own)
+            law.check((contractions[0], contractions[1]), *law.places(table), **own)
         low, high, least, most = (float(end) for end in (*shapes, *contractions))
         return cls(table, law, (parameter, "lam"), ((low, high), (least, most)))
 

@@ -394,3 +394,11 @@ def test_a_symmetry_that_a_table_has_at_one_value_alone_gives_a_pitchfork_no_cur
     lopsided = Scene.of({"polar": "1 + b*sin(theta)", "shape": {"b": "0"}})
 
     assert curve_of(event, Plane.of(lopsided, "b", ("0", "1/10")), (0.0, 0.2)) is None
+
+
+def test_a_parameter_of_a_law_that_depends_on_the_place_spans_a_plane_and_one_that_is_no_law_there_is_refused():
+    scene = Scene("circle", law="-lam*eta - b*cos(theta)*sin(2*eta)", b="1/10")
+
+    assert Plane.of(scene, "b", ("0", "1/4")).two == ("b", "lam")
+    with pytest.raises(ValueError, match="law = "):
+        Plane.of(scene, "b", ("0", "2"))

@@ -6,6 +6,7 @@
     python benchmarks/mutation.py run --only 'symbolic/*.py' --near         a quick sieve: the module's own tests alone
     python benchmarks/mutation.py run --only symbolic/expressions/signs.py --again survived --budget 100  what passed it
     python benchmarks/mutation.py list --only symbolic/expressions/signs.py              survivors as they stand
+    python benchmarks/mutation.py core --count 300          a sample of what proves; resumes; --only, --again as above
     python benchmarks/mutation.py page                      benchmarks/records/mutation.json and docs/mutation.md
 
 `run` asks the tests that execute the mutated statement, quickest first, until their own seconds (as `cover` measured
@@ -29,6 +30,7 @@ from functools import cache
 from importlib.metadata import version
 from os import waitpid
 
+import mutation_core
 from mutation_mutants import ROOT, STATE, STOREYS, Mutant, mutants
 from mutation_page import given, write_page
 from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, reached, warm
@@ -166,7 +168,8 @@ def running(args: argparse.Namespace) -> None:
 def asked(args: argparse.Namespace) -> dict[str, tuple[int, list[tuple[Mutant, str]]]]:
     """For each module that was run: how many mutants there are, and those that were asked with their verdicts."""
     known = results()
-    every = {path: mutants(path) for path in modules(args.only)}
+    run = {key.partition(": ")[0] for key in known}
+    every = {path: mutants(path) for path in modules(args.only) if path in run}
     pairs = {path: [(m, known[m.key]["status"]) for m in found if m.key in known] for path, found in every.items()}
     return {path: (len(every[path]), found) for path, found in pairs.items() if found}
 
@@ -203,11 +206,12 @@ def listing(args: argparse.Namespace) -> None:
 def main() -> None:
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("verb", choices=["cover", "run", "list", "page"])
+    parser.add_argument("verb", choices=["cover", "run", "list", "core", "page"])
     parser.add_argument("paths", nargs="*", help="for cover: what pytest is given")
     parser.add_argument("--only", default="*", metavar="GLOB", help="modules, as symbolic/*.py")
     parser.add_argument("--sample", type=float, default=1.0, metavar="SHARE", help="a random share of the mutants")
     parser.add_argument("--seed", default="1", help="of the sample")
+    parser.add_argument("--count", type=int, default=300, help="for core and page: how many of what proves")
     parser.add_argument("--workers", type=int, default=1, help="modules at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
     parser.add_argument("--near", action="store_true", help="a first sieve: the module's own tests alone")
@@ -219,8 +223,11 @@ def main() -> None:
         running(args)
     elif args.verb == "list":
         listing(args)
+        mutation_core.listing(args.count, args.seed)
+    elif args.verb == "core":
+        mutation_core.run(args.count, args.seed, args.budget, args.only, args.again)
     else:
-        write_page(figures(args), f"cosmic-ray {version('cosmic-ray')}")
+        write_page(figures(args) | mutation_core.figures(args.count, args.seed), f"cosmic-ray {version('cosmic-ray')}")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 Used: each arithmetic operator is replaced by its nearest neighbour (ARITHMETIC), each comparison by its negation and by
 the one with the other border (COMPARISONS), each number by the next and the one before; `and` and `or`, `True` and
 `False`, `break` and `continue` change places; a sign or a `not` is taken away, a `not` is added to a condition; a loop
-runs zero times; what an `except` names is not caught; a decorator is dropped.
+runs zero times; what an `except` names is not caught; a decorator is dropped. What proves has mutants of its own:
+mutation_core.py.
 
 Left out, and why: see LEFT_OUT of mutation_page.py, which the page prints.
 """

@@ -104,8 +104,8 @@ def cover(paths: list[str]) -> dict:
 
 
 def name_of(path: str) -> str:
-    """The module that a file holds."""
-    return path.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
+    """The module that a file holds; a script of `certificates` belongs to no package."""
+    return path.removeprefix("certificates/").removesuffix(".py").replace("/", ".").removesuffix(".__init__")
 
 
 @cache
@@ -187,15 +187,16 @@ class Chosen:
         return (yield)
 
 
-def judge(path: str, text: str, seconds: dict[str, float], folder: Path) -> None:
-    """In the fork: the tests on the mutant; exits with pytest's status."""
+def judge(path: str, text: str, seconds: dict[str, float], folder: Path, keep: bool) -> None:
+    """In the fork: the tests on the mutant; exits with pytest's status. `keep` leaves the cache where it is."""
     os.setsid()
     null = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(null, stream)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     tempfile.tempdir = os.environ["TMPDIR"] = str(folder)
-    os.environ["PINBALL_CACHE"] = str(folder / "cache")
+    if not keep:
+        os.environ["PINBALL_CACHE"] = str(folder / "cache")
     signal.setitimer(signal.ITIMER_REAL, 60)  # for imports and collection
     status = 1
     try:
@@ -215,12 +216,15 @@ def judge(path: str, text: str, seconds: dict[str, float], folder: Path) -> None
         os._exit(status)
 
 
-def ask(path: str, text: str, seconds: dict[str, float]) -> tuple[str, str, float]:
-    """What the tests say of a mutant (survived, killed, timeout), the test that said it, and the seconds it took."""
+def ask(path: str, text: str, seconds: dict[str, float], keep: bool = False) -> tuple[str, str, float]:
+    """What the tests say of a mutant (survived, killed, timeout), the test that said it, and the seconds it took.
+
+    `keep` is for mutants of what writes nothing into the cache of kernels: they may share it.
+    """
     folder, start = Path(tempfile.mkdtemp(prefix="mutant-")), time.perf_counter()
     child = os.fork()
     if not child:
-        judge(path, text, seconds, folder)
+        judge(path, text, seconds, folder, keep)
     _, how = os.waitpid(child, 0)
     with suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)  # what its tests may have started

@@ -169,6 +169,12 @@ def conditions(node: ast.BoolOp, text: Text) -> Iterator[tuple[str, str]]:
         yield "Condition", text.replaced(node, f"({ast.unparse(ast.BoolOp(node.op, rest) if rest[1:] else rest[0])})")
 
 
+@cache
+def source_of(path: str) -> str:
+    """A module's text, read once: a run outlives changes of the tree."""
+    return (ROOT / path).read_text()
+
+
 class Change(NamedTuple):
     """A mutant that is not yet made: the `count`th of its kind in a function."""
 
@@ -186,7 +192,7 @@ class Change(NamedTuple):
 
     def made(self) -> Mutant:
         """The mutant, with the lines that differ and the statement that they belong to."""
-        source = (ROOT / self.path).read_text()
+        source = source_of(self.path)
         old, new = changed(source, self.text)
         around = [span for span in statements(ast.parse(source)) if span[0] <= self.line <= span[1]]
         span = min(around, key=lambda span: span[1] - span[0])
@@ -196,7 +202,7 @@ class Change(NamedTuple):
 @cache
 def population(path: str) -> list[Change]:
     """All mutants of a module that proves, in the order of its lines."""
-    source = (ROOT / path).read_text()
+    source = source_of(path)
     tree, counts, places = ast.parse(source), Counter(), {}
     found = []
     for kind, line, text in sorted(changes(source), key=lambda change: change[1]):

@@ -4,14 +4,15 @@ import math
 
 import pytest
 from flint import arb
-from sympy import Rational, cos
+from sympy import Rational, cos, sin
 
 from symbolic.tables import cardioid, cuspless, egg, polar, sinai
+from symbolic.tables.law import Law
 from symbolic.tables.table import theta
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
-from verification.maps.first_hit import first_hits, inside, minimal
+from verification.maps.first_hit import convex, first_hits, inside, minimal
 from verification.proofs.periodic.bifurcation import Claim, proved
 
 WAISTED = polar(1 + cos(2 * theta) / 2)  # the waist at theta = +-pi/2 has radius 1/2
@@ -59,3 +60,34 @@ def test_a_bounce_at_the_seam_of_a_round_hole_is_one_like_any_other():
         assert first_hits(table, (side, 4), [middle, other]) is True
         assert first_hits(table, (side, 1), [middle, middle]) is None  # the disc is between
         assert minimal(table, (side, 4, side, 4), [middle, seam, middle, other]) is None  # the same point twice
+
+
+def test_a_curve_of_one_formula_that_dents_where_it_closes_is_not_convex():
+    """Both bend inwards everywhere else; at theta = pi the radius is least in the one and largest in the other."""
+    assert convex(polar(1 + cos(theta / 2) / 4)) is None
+    assert convex(polar(1 - cos(theta / 2) / 4)) is True
+
+
+def test_what_a_formula_draws_beyond_the_ends_of_its_parameter_is_no_boundary():
+    """A chord system has a zero there, on the curve that the formula goes on to draw; at theta - 2*pi it is elsewhere."""
+    table = polar(1 + cos(theta / 2) / 4 + sin(theta) / 8)
+    problem = Problem(table, (0, 0), lam=Rational(1, 2))
+    solution = refined(problem, [4.85837, 8.15732], 20)
+    with working(150):
+        proof = proved(Claim(problem, tuple(exact_balls(solution.z)), arb("1e-22").mid(), 150, 20))
+
+    assert proof.checks["exists"] is True
+    assert proof.checks["admissible"] is None
+
+
+@pytest.mark.parametrize(
+    ("law", "admissible"), [("-lam*eta*(1 + cos(theta)/9)", True), ("-lam*eta*(1 + theta/99)", None)]
+)
+def test_a_law_that_a_whole_turn_changes_is_asked_between_the_ends_alone(law, admissible):
+    problem = Problem(egg(3).at(alpha=Rational(2, 25)), (0, 0), lam=Rational(1, 2), law=Law(law))
+    solution = refined(problem, [math.pi, 2 * math.pi], 20)
+    with working(150):
+        proof = proved(Claim(problem, tuple(exact_balls(solution.z)), arb("1e-22").mid(), 150, 20))
+
+    assert proof.checks["exists"] is True
+    assert proof.checks["admissible"] is admissible

@@ -311,9 +311,9 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
     """Fixed points of `T**n` on cells against those of the catalogue."""
     from numeric import PinballMap
     from verification.cycles.cells import fixed_points
-    from verification.maps.first_hit import convex
+    from verification.maps.first_hit import closes_smoothly, convex
 
-    if len(catalogue.table.components) > 1 or convex(catalogue.table) is not True:
+    if not closes_smoothly(catalogue.table) or convex(catalogue.table) is not True:
         raise ValueError(
             f"--count needs a map that is continuous, and {catalogue.table.name} is not proved to be one smooth convex "
             "curve; leave --count out"
@@ -341,14 +341,14 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
 
 def provable(scene: Scene) -> None:
     """Refuses --prove, in a sentence that says why, where its theorem asks for more than the scene has."""
-    from verification.maps.first_hit import convex
+    from verification.maps.first_hit import closes_smoothly, convex
 
     if not scene.law.uniform:
         raise ValueError(
             "--prove excludes chords steeper than lam*pi/2, by a rule that is linear in both angles: true of the "
             f"paper's law and not for {scene.law}; leave --prove out"
         )
-    if len(scene.table.components) > 1 or convex(scene.table) is not True:
+    if not closes_smoothly(scene.table) or convex(scene.table) is not True:
         raise ValueError(
             f"--prove covers all closed chains of chords of one smooth convex curve, and {scene.name} is not proved to "
             "be one: chains that a wall cuts could not be told from cycles; leave --prove out"

@@ -41,6 +41,7 @@ from symbolic.cycles.normal_forms import QUARTIC, Map, bounce, chord, composed
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.expressions.text import kernel, load
 from symbolic.tables import egg
+from symbolic.tables.curves import is_periodic
 from symbolic.tables.table import Table, theta
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, real_ball, working
@@ -135,7 +136,8 @@ def proved(claim: Claim) -> Proof:
 
 def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shape: tuple[arb, ...]) -> bool | None:
     """In a convex table the bounces lie inside their parts; in any other each chord is examined too."""
-    placed = inside(problem.table, parts, whole, shape)
+    law = problem.law
+    placed = inside(problem.table, parts, whole, shape, not law.placed or is_periodic(law.phi))
     if placed is not True or convex(problem.table, shape) is True:
         return placed
     return first_hits(problem.table, parts, whole, shape)

@@ -38,7 +38,7 @@ from verification.cycles.newton import System
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.search import Catalogue
 from verification.cycles.systems import rotations
-from verification.maps.first_hit import convex
+from verification.maps.first_hit import closes_smoothly, convex
 
 
 class Status(Enum):
@@ -194,7 +194,7 @@ def no_others(
     True
     """
     table, known = catalogue.table, catalogue.count(n)
-    if len(table.components) > 1 or convex(table) is not True or not catalogue.law.uniform:
+    if not closes_smoothly(table) or convex(table) is not True or not catalogue.law.uniform:
         return Completeness(n, None, 0, known)
     with working(BITS):
         angle = load(chord_kernel(table, 0, 0, 1), balls(BITS))

@@ -69,7 +69,7 @@ def test_a_curve_of_one_formula_that_dents_where_it_closes_is_not_convex():
 
 
 def test_what_a_formula_draws_beyond_the_ends_of_its_parameter_is_no_boundary():
-    """A chord system has a zero there, on the curve that the formula goes on to draw; at theta - 2*pi it is elsewhere."""
+    """A chord system has a zero there, on the curve that the formula goes on to draw; a turn less is elsewhere."""
     table = polar(1 + cos(theta / 2) / 4 + sin(theta) / 8)
     problem = Problem(table, (0, 0), lam=Rational(1, 2))
     solution = refined(problem, [4.85837, 8.15732], 20)

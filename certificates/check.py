@@ -281,8 +281,8 @@ class Table:
     def __init__(self, parts, letters, law, p):
         self.parts, self.letters, self.p = [[parse(text) for text in part] for part in parts], letters, p
         self.law, waves = law and parse(law), re.compile(r"\b(sin|cos)\(((\d+|K)\*)?theta\)")
-        self.marks = []  # components and parameters where the map is undefined
-        self.closed = len(parts) == 1 and not any("theta" in waves.sub("", text.replace(" ", "")) for text in parts[0])
+        self.marks, texts = [], (*parts[0], law or "")  # where the map is undefined; what a whole turn may change
+        self.closed = len(parts) == 1 and not any("theta" in waves.sub("", text.replace(" ", "")) for text in texts)
 
     def at(self, part, theta, names, p):
         """Point and velocity at a parameter."""

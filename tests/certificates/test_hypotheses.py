@@ -52,3 +52,16 @@ def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, z
     else:
         with pytest.raises(check.Unproved, match="exists, unique"):
             check.newton(line, box, 60)
+
+
+@pytest.mark.parametrize(
+    ("radius", "law", "closed"),
+    [
+        ("1 + cos(3*theta)/9", None, True),
+        ("1 + cos(theta/2)/9", None, False),
+        ("1 + cos(3*theta)/9", "-lam*eta*(1 + cos(theta)/9)", True),
+        ("1 + cos(3*theta)/9", "-lam*eta*(1 + theta/99)", False),
+    ],
+)
+def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve_nor_law(check, radius, law, closed):
+    assert check.Table([(radius, "-pi", "pi")], {}, law, 60).closed is closed

@@ -115,7 +115,7 @@ def proved(claim: Claim) -> Proof:
         zero = enclosure.zero
         bound = arb(10) ** -claim.digits
         checks["precise"] = bool(zero[-1].rad() < bound) if found else None
-        shape = (zero[-1],) if problem.free not in ("", "lam") else ()
+        shape = (zero[-1],) if problem.table.shapes else ()  # else what varies is lam, or a letter of the law
         whole = zero[: problem.period]
         if problem.mirror:
             whole = whole + [-x for x in whole]

@@ -1,7 +1,7 @@
 """Is it true, how well, at what cost? Questions on a scene, proofs in balls, the judged paper.
 
     from verification import certify, check, find_cycles, follow, locate, report, verify
-    from verification import EnclosedMap, ExactMap, strategies
+    from verification import EnclosedMap, ExactMap, laws, strategies
 
 Nothing is loaded before it is asked for: neither mpmath nor python-flint, neither SymPy nor NumPy.
 """

@@ -1,4 +1,4 @@
-from .maps import strategies
+from .maps import laws, strategies
 from .maps.enclosed import EnclosedMap
 from .maps.exact import ExactMap
 from .named.files import check
@@ -29,6 +29,7 @@ __all__ = [
     "check",
     "find_cycles",
     "follow",
+    "laws",
     "locate",
     "report",
     "strategies",

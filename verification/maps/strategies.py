@@ -1,4 +1,4 @@
-"""Hypothesis strategies for tables, shapes, contractions and phase points, for your own tables too::
+"""Hypothesis strategies for tables, shapes, laws, contractions and phase points, for your own tables too::
 
     from hypothesis import given
     from verification.maps import strategies
@@ -11,6 +11,7 @@ Every strategy gives exact shapes and doubles in the interior of phase space, an
 circle, the middle of a component and the normal exit.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -19,6 +20,8 @@ from typing import Any
 from hypothesis import strategies as st
 
 from numeric import PinballMap
+from symbolic.tables.definition import UNIFORM
+from symbolic.tables.scene import Scene
 
 STEEPEST = 1.57  # radians; |phi| stays below
 SMOOTH = ("circle", "ellipse", "egg")
@@ -39,9 +42,13 @@ class Particle:
             f"{entry.name}={value}" for entry, value in zip(self.map.ir.shape, self.map.exact_shape, strict=True)
         )
         table = f"{self.map.ir.table}({shape})"
-        return (
-            f"Particle({table}, lam={self.lam!r}, component={self.component}, theta={self.theta!r}, phi={self.phi!r})"
-        )
+        law = "" if self.map.reflection.uniform else f", law='{self.map.reflection}'"
+        at = f"component={self.component}, theta={self.theta!r}, phi={self.phi!r}"
+        return f"Particle({table}{law}, lam={self.lam!r}, {at})"
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """As Hypothesis shows an example: the table, its shape and its law by name."""
+        printer.text(repr(self))
 
 
 def contractions(least: float = 0.0, most: float = 1.0) -> st.SearchStrategy[float]:
@@ -59,16 +66,64 @@ def shapes(draw: st.DrawFn, name: str, K: int = 3) -> dict[str, Fraction]:
     return {}
 
 
+# a law that is one for every contraction, and the largest `a` in either direction: all are proved when a map is made
+BENT = {
+    "-lam*eta + {a}*sin(2*eta)": (-2, 2),
+    "-lam*eta - {a}*eta*(pi**2/4 - eta**2)": (-1, 1),
+    "-lam*eta*(1 - {a}*cos(eta)**2)": (0, 5),
+    "-lam*sin(eta)": (0, 0),
+    "-lam*eta + {a}*cos(eta)**4": (-1, 1),  # not odd: a mirror of the table is no symmetry of its map
+}
+PLACED = {"-lam*eta + {a}*cos(theta)*sin(2*eta)": (-2, 2), "-lam*eta*(3/4 - {a}*sin(theta))": (-1, 1)}
+FIFTHS = {2: Fraction(2, 5), 1: Fraction(1, 7), 5: Fraction(1)}
+
+
 @st.composite
-def maps(draw: st.DrawFn, tables: Any = None, lams: st.SearchStrategy[float] | None = None) -> PinballMap:
-    """Maps of the paper's tables with any shape, or of the table or tables given (names or exact tables)."""
+def reflections(draw: st.DrawFn, placed: bool = True) -> str:
+    """Formulas of reflection laws, the paper's first: others bend it by polynomials and sines of any size that fits.
+
+    `placed`: some that depend on where on the boundary the particle lands.
+    """
+    formula: str = draw(st.sampled_from([UNIFORM, *BENT, *(PLACED if placed else ())]))
+    if formula == UNIFORM:
+        return formula
+    low, high = {**BENT, **PLACED}[formula]
+    a = draw(st.fractions(-FIFTHS.get(-low, Fraction(0)), FIFTHS.get(high, Fraction(0)), max_denominator=20))
+    return formula.format(a=f"({a})")
+
+
+@st.composite
+def scenes(draw: st.DrawFn, scene: Scene) -> Scene:
+    """A scene with its parameters anywhere in their ranges, where they have one."""
+    numbers: dict[str, Any] = {
+        name: low + (high - low) * draw(st.fractions(0, 1, max_denominator=100))
+        for name, (low, high) in scene.ranges.items()
+    }
+    return scene.at(**numbers) if numbers else scene
+
+
+@st.composite
+def maps(
+    draw: st.DrawFn,
+    tables: Any = None,
+    lams: st.SearchStrategy[float] | None = None,
+    laws: st.SearchStrategy[str] | None = None,
+) -> PinballMap:
+    """Maps of the paper's tables with any shape, or of the table or tables given: names, exact tables or scenes.
+
+    With `laws` the reflection law is drawn too, unless a scene has one of its own; else it is the paper's.
+    """
     chosen = list(tables) if isinstance(tables, list | tuple) else [tables] if tables is not None else None
     table = draw(st.sampled_from(chosen or ["circle", "ellipse", "egg", "cardioid", "cuspless"]))
     lam = draw(contractions() if lams is None else lams)
+    law = UNIFORM if laws is None else draw(laws)
+    if isinstance(table, Scene):
+        scene = draw(scenes(table))
+        return _of_scene(scene if scene.law.uniform is False else scene.at(law=law), lam)
     if not isinstance(table, str):
-        return _cached(table, lam)
+        return _cached(table, lam) if law == UNIFORM else PinballMap(table, lam=lam, law=law, kernels=False)
     shape: dict[str, Any] = draw(shapes(table))
-    return PinballMap(table, lam=lam, **shape)
+    return PinballMap(table, lam=lam, law=law, kernels=law == UNIFORM, **shape)
 
 
 @st.composite
@@ -77,14 +132,22 @@ def particles(
     tables: Any = None,
     lams: st.SearchStrategy[float] | None = None,
     steepest: float = STEEPEST,
+    laws: st.SearchStrategy[str] | None = None,
 ) -> Particle:
     """Phase points in the interior of phase space, at any place but the ends of components."""
-    map = draw(maps(tables, lams))
+    map = draw(maps(tables, lams, laws))
     component = draw(st.integers(0, len(map.states.ends) - 1))
     low, high = map.states.ends[component]
     share = draw(st.floats(0.001, 0.999))
     theta = low + (high - low) * share
     return Particle(map, float(map.lam), component, theta, draw(st.floats(-steepest, steepest)))
+
+
+def _of_scene(scene: Scene, lam: float) -> PinballMap:
+    """The map of a scene at a contraction, or at its own where its law is none at that one."""
+    with suppress(ValueError):
+        scene = scene.at(lam=Fraction(lam))
+    return PinballMap(scene, kernels=False)
 
 
 @lru_cache(maxsize=64)

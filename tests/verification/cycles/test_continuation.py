@@ -20,14 +20,14 @@ from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.app.commands.follow import varied
 from verification.cycles import cells
-from verification.cycles.arc import End, Point, Steps
-from verification.cycles.branch import Event, branch, dataset, named
+from verification.cycles.arc import End, Steps
+from verification.cycles.branch import branch, dataset, named
 from verification.cycles.cascade import cascade as followed_in_lam
 from verification.cycles.cells import spectrum
 from verification.cycles.chords import Chords
-from verification.cycles.recurrence import MIRROR, BifurcationKind, Closure, cubic, delayed, henon, logistic
+from verification.cycles.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
 from verification.cycles.switching import switched
-from verification.named.events import Plane, curve_of, proof_of
+from verification.named.events import proof_of
 from verification.named.locate import locate
 from verification.plots.dynamics import runs
 
@@ -355,50 +355,3 @@ def test_curves_of_the_events_come_with_their_special_points(tmp_path):
     assert result.return_value == 0
     assert "1:2 resonance at (0.055385138, 1.000000000)" in result.output  # 1/(9 + sqrt(82))
     assert [point["what"] for point in curve["special"]] == ["1:2 resonance"]
-
-
-def test_an_event_is_followed_in_any_second_parameter_and_from_either_of_the_two(tmp_path):
-    """Met at b = 1/40 as the contraction varies, or at lam = 1/10 as b does: one curve."""
-    start, ends = ("--start", "0,3.14159265"), []
-    one = ("--shape", "b=1/40", "--lam", "0:1", "--at", "1/10", "--curves", "b=0:1/30")
-    other = ("--shape", "b=1/40:0..1/30", "--shape", "b=1/60:1/30", "--lam", "1/10", "--curves")
-    for number, words in enumerate((one, other)):
-        file = tmp_path / f"{number}.json"
-        assert run("--polar", "1 + b*cos(5*theta)", *start, *words, "--json", str(file)).return_value == 0
-        (curve,) = json.loads(file.read_text())["curves"]
-        ends += [sorted([curve["b_lam"][0], curve["b_lam"][-1]])]
-
-    assert np.allclose(ends[0], ends[1], atol=1e-9)
-    assert [lam for _, lam in ends[0]] == [1.0, 0.0]
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("circle", "--curves"), "a second parameter is needed with circle"),
-        (("egg", "--alpha", "0.07", "--curves", "b=0:1"), "b is no second parameter here; accepted: NAME=LOW:HIGH"),
-        (("egg", "--alpha", "0.07", "--curves", "alpha=1/20"), "is no interval"),
-    ],
-)
-def test_a_second_parameter_that_is_none_is_refused_by_name(words, said):
-    result = run(*words, "--start", "0,3.14159265", "--lam", "0:1", "--at", "0.1")
-
-    assert said in str(result.exception)
-
-
-def test_a_symmetry_that_a_table_has_at_one_value_alone_gives_a_pitchfork_no_curve():
-    """The half cycle closes by a mirror; where that is no symmetry of the tables beside, its equations mean nothing."""
-    half = Chords(egg(3).at(alpha="2/25"), (0, 0), MIRROR)
-    x = np.array([0.3, 2.9])
-    event = Event(BifurcationKind.PITCHFORK, Point(np.append(x, 0.2), np.zeros(3), 0.0, {}), half, x)
-    lopsided = Scene.of({"polar": "1 + b*sin(theta)", "shape": {"b": "0"}})
-
-    assert curve_of(event, Plane.of(lopsided, "b", ("0", "1/10")), (0.0, 0.2)) is None
-
-
-def test_a_parameter_of_a_law_that_depends_on_the_place_spans_a_plane_and_one_that_is_no_law_there_is_refused():
-    scene = Scene("circle", law="-lam*eta - b*cos(theta)*sin(2*eta)", b="1/10")
-
-    assert Plane.of(scene, "b", ("0", "1/4")).two == ("b", "lam")
-    with pytest.raises(ValueError, match="law = "):
-        Plane.of(scene, "b", ("0", "2"))

@@ -1,22 +1,26 @@
 """Curves in two parameters: against closed forms, against branches, and universal constants at their ends."""
 
+import json
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from sympy import Rational, lambdify
 
+from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg
 from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
+from verification.app.commands.follow import command as follow
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.arc import Steps
-from verification.cycles.branch import branch
+from verification.cycles.arc import Point, Steps
+from verification.cycles.branch import Event, branch
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Linearised, Problem
-from verification.cycles.recurrence import BifurcationKind, Closure, henon
+from verification.cycles.recurrence import MIRROR, BifurcationKind, Closure, henon
 from verification.cycles.switching import CodimensionTwo, curve
 from verification.cycles.systems import Critical, coefficients
 from verification.named.curves import (
@@ -28,6 +32,7 @@ from verification.named.curves import (
     fold,
     largest_shape,
 )
+from verification.named.events import Plane, curve_of
 
 CERTIFIED_END = 0.3935204685  # at alpha = 0.08, from certified doublings: `named.curves.accumulation_curve`
 AREA_PRESERVING = 8.721097200  # Feigenbaum's ratio for area-preserving maps [GreeneMacKayVivaldiFeigenbaum1981]
@@ -137,3 +142,54 @@ def test_the_matrix_of_a_critical_cycle_is_that_of_the_difference_quotients(kind
 def test_an_even_egg_has_no_cascade_of_diameters():
     with pytest.raises(ValueError, match="K = 4 is even"):
         next(cascade(4))
+
+
+def run(*words):
+    return CliRunner().invoke(follow, words, standalone_mode=False, catch_exceptions=True)
+
+
+def test_an_event_is_followed_in_any_second_parameter_and_from_either_of_the_two(tmp_path):
+    """Met at b = 1/40 as the contraction varies, or at lam = 1/10 as b does: one curve."""
+    start, ends = ("--start", "0,3.14159265"), []
+    one = ("--shape", "b=1/40", "--lam", "0:1", "--at", "1/10", "--curves", "b=0:1/30")
+    other = ("--shape", "b=1/40:0..1/30", "--shape", "b=1/60:1/30", "--lam", "1/10", "--curves")
+    for number, words in enumerate((one, other)):
+        file = tmp_path / f"{number}.json"
+        assert run("--polar", "1 + b*cos(5*theta)", *start, *words, "--json", str(file)).return_value == 0
+        (curve,) = json.loads(file.read_text())["curves"]
+        ends += [sorted([curve["b_lam"][0], curve["b_lam"][-1]])]
+
+    assert np.allclose(ends[0], ends[1], atol=1e-9)
+    assert [lam for _, lam in ends[0]] == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("circle", "--curves"), "a second parameter is needed with circle"),
+        (("egg", "--alpha", "0.07", "--curves", "b=0:1"), "b is no second parameter here; accepted: NAME=LOW:HIGH"),
+        (("egg", "--alpha", "0.07", "--curves", "alpha=1/20"), "is no interval"),
+    ],
+)
+def test_a_second_parameter_that_is_none_is_refused_by_name(words, said):
+    result = run(*words, "--start", "0,3.14159265", "--lam", "0:1", "--at", "0.1")
+
+    assert said in str(result.exception)
+
+
+def test_a_symmetry_that_a_table_has_at_one_value_alone_gives_a_pitchfork_no_curve():
+    """The half cycle closes by a mirror; where that is no symmetry of the tables beside, its equations mean nothing."""
+    half = Chords(egg(3).at(alpha="2/25"), (0, 0), MIRROR)
+    x = np.array([0.3, 2.9])
+    event = Event(BifurcationKind.PITCHFORK, Point(np.append(x, 0.2), np.zeros(3), 0.0, {}), half, x)
+    lopsided = Scene.of({"polar": "1 + b*sin(theta)", "shape": {"b": "0"}})
+
+    assert curve_of(event, Plane.of(lopsided, "b", ("0", "1/10")), (0.0, 0.2)) is None
+
+
+def test_a_parameter_of_a_law_that_depends_on_the_place_spans_a_plane_and_one_that_is_no_law_there_is_refused():
+    scene = Scene("circle", law="-lam*eta - b*cos(theta)*sin(2*eta)", b="1/10")
+
+    assert Plane.of(scene, "b", ("0", "1/4")).two == ("b", "lam")
+    with pytest.raises(ValueError, match="law = "):
+        Plane.of(scene, "b", ("0", "2"))

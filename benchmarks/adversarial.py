@@ -31,7 +31,7 @@ from numeric import PinballMap
 from numeric.backends.scalars import ArrayBackend
 from symbolic import tables
 from verification.maps.exact import ExactMap, errors
-from verification.measure.extremes.by_hand import WIDE, cubic_hits, discs, hard, judged, spikes
+from verification.measure.extremes.by_hand import WIDE, comet, cubic_hits, discs, hard, judged, spikes
 from verification.measure.extremes.kernels import Wide, made_unit
 from verification.measure.extremes.orbits import (
     DIGITS,
@@ -168,6 +168,7 @@ OWN = {
     "mushroom": tables.mushroom,
     "sinai": tables.sinai,
     "diamond": tables.diamond,
+    "comet": comet,
     "notched": lambda: tables.polygon(*NOTCHED, name="notched"),
     "100 spikes": lambda: spikes(100),
     "36 discs": lambda: discs(6),

@@ -215,6 +215,12 @@ def unit(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
     return ops.fma(z[0], half, z[0]), ops.fma(z[1], half, z[1])
 
 
+def half(ops: Backend[N, M], c: N, s: N) -> Pair[N]:
+    """Cosine and sine of half an angle from its own, up to a common factor, with no small difference."""
+    behind, one = c < ops.number(0.0), ops.number(1.0)
+    return ops.select(behind, s, one + c), ops.select(behind, one - c, s)
+
+
 def normalised(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
     """`z` divided by its length, whatever that is."""
     scale = ops.number(1.0) / ops.sqrt(dot(z, z))

@@ -1,16 +1,20 @@
-"""Sides and arcs in a row: their numbers, which follows which, the closed curves, and what a flight may pass there."""
+"""Sides and arcs in a row: their numbers and coordinates, which follows which, and what a flight may pass there."""
 
-from collections.abc import Callable, Sequence
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, M, N, modulus
-from numeric.flights.family import Boundary
+from numeric.flights.family import Array, Boundary, Family, Landing
 from numeric.flights.general import UNSURE
+from numeric.lowering.program import Program
 
 LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
+FOCAL = "focal"  # an arc of an ellipse by its radius about a focus
 MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
 TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
 Pair = tuple[Any, Any]
@@ -26,7 +30,7 @@ class Piece(NamedTuple):
     B: Pair
     start: Pair  # its first corner
     D: Any  # A x B: positive where the arc focuses
-    radius: Any
+    radius: Any  # of a focal arc, one minus the eccentricity
     middle: Pair  # (p, q) in the middle of an arc; the ends of the parameter of a side
     half: Pair  # sine and cosine of half the angle of an arc
 
@@ -40,7 +44,15 @@ def piece_of(kind: str, x: Sequence[Any]) -> Piece:
 def span(piece: Piece) -> Pair:
     """Bounds of the sum of moduli that a point of a piece is added up from: at `p = 0`, and more for a unit of `p`."""
     x, y, ax, ay, bx, by = (modulus(z) for pair in (piece.origin, piece.A, piece.B) for z in pair)
+    if piece.kind == FOCAL:
+        return ax + ay + ax + ay + bx + by, x - x
     return (x + y, ax + ay) if piece.kind == LINE else (x + y + ax + ay + bx + by, x - x)
+
+
+def from_focus(ops: Any, gap: Any, u: Pair) -> Any:
+    """`p - e` to its last bits, `e` being the eccentricity and `gap` one minus it."""
+    one, (p, q) = ops.number(1.0), u
+    return gap - ops.select(ops.number(0.0) < p, q * q / (one + p), one - p)
 
 
 def column(pieces: list[Piece], i: int) -> list[Any]:
@@ -116,7 +128,7 @@ def convex(boundary: Boundary, pieces: list[Piece], loop: list[int], after: list
             return False
         turning += float(np.arctan2(sine, plane.dot(arriving, leaving)))
         low, high = boundary.ends[j]
-        turning += high - low if pieces[j].kind == CIRCLE else _turned(boundary, j)
+        turning += high - low if pieces[j].kind == CIRCLE else _turned(boundary, j, pieces[j])
     return abs(turning - 2 * np.pi) < 1e-6
 
 
@@ -143,12 +155,106 @@ def _direction(boundary: Boundary, j: int, end: int) -> Pair:
     return dx / size, dy / size
 
 
-def _turned(boundary: Boundary, j: int) -> float:
+def _turned(boundary: Boundary, j: int, piece: Piece) -> float:
     """The angle by which the tangent of a piece turns."""
     low, high = boundary.ends[j]
     theta = np.linspace(low, high, 257)
-    _, _, dx, dy, _, _ = boundary.curve(np.full(theta.shape, j), theta)
+    if piece.kind == FOCAL:  # its tangent may turn all at once
+        half = np.arctan2(piece.half[0], piece.half[1]) % (2 * np.pi)
+        E = np.arctan2(piece.middle[1], piece.middle[0]) + np.linspace(-half, half, 257)
+        dx, dy = (np.cos(E) * b - np.sin(E) * a for a, b in zip(piece.A, piece.B, strict=True))
+    else:
+        _, _, dx, dy, _, _ = boundary.curve(np.full(theta.shape, j), theta)
     return float(np.ptp(np.unwrap(np.arctan2(dy, dx))))
+
+
+class Coordinates(Family):
+    """Between people's coordinates and the fields of tables of sides and arcs.
+
+    On an arc about a focus `theta` is the polar angle, and the field the eccentric parameter.
+    """
+
+    kinds: list[str]
+    programs: list[Program]
+
+    @abstractmethod
+    def pieces(self, ops: Any, shape: Sequence[Any]) -> list[Piece]:
+        """All pieces in the arithmetic of `ops`."""
+
+    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+        line = chosen_mask(ops, component, [kind == LINE for kind in self.kinds])
+        minus = ops.number(-1.0) + ops.number(0.0) * theta
+        u = ops.cos(theta), ops.sin(theta)
+        for j, ahead, ratio in self._foci(ops):
+            x, y = plane.half(ops, plane.dot(ahead, u), plane.exact_cross(ops, ahead, u))
+            E = plane.unit(ops, plane.squared(plane.normalised(ops, (ratio * x, y))))
+            u = self._there(ops, component, j, E, u)
+        return [component, ops.select(line, theta, u[0]), ops.select(line, minus, u[1])]
+
+    def _foci(self, ops: Any) -> Iterator[tuple[int, Pair, Any]]:
+        """Of every arc about a focus the direction of `A`, and the ratio of the tangents of half the angles."""
+        for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
+            if kind == FOCAL:
+                *_, x, y, ratio = program(ops, *(ops.number(float(a)) for a in self.boundary.shape))
+                yield j, (x, y), ratio
+
+    def _there(self, ops: Any, component: Any, j: int, new: Pair, old: Pair) -> Pair:
+        """`new` on piece `j`, and `old` elsewhere."""
+        here = modulus(component - ops.number(float(j))) < ops.number(0.25)
+        return ops.select(here, new[0], old[0]), ops.select(here, new[1], old[1])
+
+    def place(self, ops: Any, position: Sequence[Any]) -> tuple[Any, Any]:
+        component, p, q = position
+        shape = [ops.number(float(x)) for x in self.boundary.shape]
+        pieces = self.pieces(ops, shape)
+        ends = [part.ends(ops, *shape) for part in self.boundary.ir.parts]
+        line = ops.number(0.5) < chosen(ops, component, [ops.number(float(kind == LINE)) for kind in self.kinds])
+        middle = chosen(ops, component, [(low + high) * ops.number(0.5) for low, high in ends])
+        M = self._pair(ops, component, [piece.middle for piece in pieces])
+        u = p, q
+        for j, ahead, ratio in self._foci(ops):
+            x, y = plane.half(ops, p, q)
+            at = plane.times(ahead, plane.squared(plane.normalised(ops, (x, ratio * y))))
+            M = self._there(ops, component, j, (ops.cos(middle), ops.sin(middle)), M)
+            u = self._there(ops, component, j, at, u)
+        return component, ops.select(line, p, middle + ops.atan2(plane.cross(M, u), plane.dot(M, u)))
+
+    def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        rate, curvature = super().bending(component, theta)
+        focal = np.array([kind == FOCAL for kind in self.kinds])[component]
+        if not np.any(focal):
+            return rate, curvature
+        ops, shape = self.boundary.ops, self.boundary.numbers
+        at = self.enter(ops, component.astype(float), theta)
+        speed = np.hypot(*self.tangent(ops, shape, at))
+        D = self._turning(ops, self.pieces(ops, shape), at[0])
+        return np.where(focal, speed, rate), np.where(focal, -D / speed**3, curvature)
+
+    def drifting(self, ops: Any, landing: Landing[Any], below: Any, drift: Any) -> Any:
+        component, p, _ = landing.position
+        one, rate = ops.number(1.0), ops.number(1.0)
+        for j, _, ratio in self._foci(ops):  # dtheta/dE
+            square = ratio * ratio
+            new = (ratio + ratio) / ((square + one) - (square - one) * p)
+            rate, _ = self._there(ops, component, j, (new, new), (rate, rate))
+        return drift * below * rate if FOCAL in self.kinds else drift * below
+
+    def _pair(self, ops: Any, component: Any, pairs: list[Pair]) -> Pair:
+        return chosen(ops, component, [x for x, _ in pairs]), chosen(ops, component, [y for _, y in pairs])
+
+    def _axes(self, ops: Any, pieces: list[Piece], component: Any) -> list[Pair]:
+        """`A` and `B` of the particle's piece."""
+        return [self._pair(ops, component, column(pieces, i)) for i in (2, 3)]
+
+    def _turning(self, ops: Any, pieces: list[Piece], component: Any) -> Any:
+        """`A x B` of the particle's piece."""
+        return chosen(ops, component, column(pieces, 5))
+
+    def tangent(self, ops: Any, shape: Sequence[Any], position: Sequence[Any]) -> Pair:
+        """The velocity `d` at a boundary point."""
+        component, p, q = position
+        A, B = self._axes(ops, self.pieces(ops, shape), component)
+        return p * B[0] - q * A[0], p * B[1] - q * A[1]
 
 
 class Flight(NamedTuple):
@@ -160,6 +266,7 @@ class Flight(NamedTuple):
     v: Pair
     rate: Any
     p: Any  # of the point
+    q: Any
 
 
 def passing(flight: Flight, corner: Pair, side: Any, start: Any, t: Any) -> Masks:

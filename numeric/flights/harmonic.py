@@ -219,12 +219,12 @@ class Conic(Ellipse):
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         focus = self.focus(ops)
         n = ops.cos(theta), ops.sin(theta)
-        x, y = half(ops, plane.dot(focus.ahead, n), plane.exact_cross(ops, focus.ahead, n))
+        x, y = plane.half(ops, plane.dot(focus.ahead, n), plane.exact_cross(ops, focus.ahead, n))
         return list(plane.unit(ops, plane.squared(plane.normalised(ops, (focus.ratio * x, y)))))
 
     def unit_of_theta(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         focus = self.focus(ops)
-        x, y = half(ops, position[0], position[1])
+        x, y = plane.half(ops, position[0], position[1])
         return plane.times(focus.ahead, plane.squared(plane.normalised(ops, (x, focus.ratio * y))))
 
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
@@ -264,12 +264,6 @@ class Conic(Ellipse):
         one = ops.number(1.0)
         rate: N = (one + e) / (focus.ratio * (one - e * landing.position[0]))
         return drift * below * rate
-
-
-def half(ops: Backend[N, M], c: N, s: N) -> Pair[N]:
-    """Cosine and sine of half an angle from its own, up to a common factor, with no small difference."""
-    behind, one = c < ops.number(0.0), ops.number(1.0)
-    return ops.select(behind, s, one + c), ops.select(behind, one - c, s)
 
 
 class Fourier(Harmonic):

@@ -17,6 +17,7 @@ from numeric.backends.protocol import modulus
 from numeric.flights.corners import (
     CIRCLE,
     ELLIPSE,
+    FOCAL,
     LINE,
     MANY,
     Flight,
@@ -65,6 +66,7 @@ class Many(Pieces):
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
         many = len(boundary.ir.programs) >= SOME and not boundary.shape
+        many = many and not any(name.startswith(FOCAL) for name, _ in boundary.ir.programs)
         return many and super().matches(boundary) and Pieces(boundary).halving is None
 
     @property
@@ -77,7 +79,7 @@ class Many(Pieces):
         component, p, q = position
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0, d0 = self.point(ops, pieces, position), self.tangent(ops, shape, position)
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p)
+        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q)
         far = ops.number(FAR) + nought * component
         best = [far, component]
         if self.outer:

@@ -34,8 +34,10 @@ from numeric.backends.protocol import modulus
 from numeric.flights.corners import (
     CIRCLE,
     ELLIPSE,
+    FOCAL,
     LINE,
     MANY,
+    Coordinates,
     Flight,
     Masks,
     Pair,
@@ -45,6 +47,7 @@ from numeric.flights.corners import (
     column,
     convex,
     following,
+    from_focus,
     halved,
     loops,
     passable,
@@ -52,7 +55,7 @@ from numeric.flights.corners import (
     piece_of,
     span,
 )
-from numeric.flights.family import Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.family import Boundary, Landing, Status, grazing, reflected
 from numeric.flights.general import UNSURE, refuse_long
 from numeric.lowering.program import LawIR
 
@@ -60,7 +63,7 @@ FAR = 2.0**100  # as far as nothing was met
 Row = Sequence[Any]
 
 
-class Pieces(Family):
+class Pieces(Coordinates):
     """Several curves, each of several pieces: a table of corners, of smooth joins, with holes."""
 
     name, path = "pieces", "closed form on every side and arc, first hit"
@@ -95,7 +98,7 @@ class Pieces(Family):
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
         names = [name.split() for name, _ in boundary.ir.programs]
-        return bool(names) and all(name[0] in (LINE, CIRCLE, ELLIPSE) for name in names)
+        return bool(names) and all(name[0] in (LINE, CIRCLE, ELLIPSE, FOCAL) for name in names)
 
     @property
     def identity(self) -> str:
@@ -122,59 +125,31 @@ class Pieces(Family):
         """The pieces that are no straight sides."""
         return [i for i, kind in enumerate(self.kinds) if kind != LINE]
 
-    # ---- between people's coordinates and fields
-
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
-        straight = chosen(ops, component, [ops.number(float(kind == LINE)) for kind in self.kinds])
-        line = ops.number(0.5) < straight
-        minus = ops.number(-1.0) + ops.number(0.0) * theta
-        return [component, ops.select(line, theta, ops.cos(theta)), ops.select(line, minus, ops.sin(theta))]
-
-    def place(self, ops: Any, position: Row) -> tuple[Any, Any]:
-        component, p, q = position
-        shape = [ops.number(float(x)) for x in self.boundary.shape]
-        pieces = self.pieces(ops, shape)
-        ends = [part.ends(ops, *shape) for part in self.boundary.ir.parts]
-        line = ops.number(0.5) < chosen(ops, component, [ops.number(float(kind == LINE)) for kind in self.kinds])
-        middle = chosen(ops, component, [(low + high) * ops.number(0.5) for low, high in ends])
-        M = self._pair(ops, component, [piece.middle for piece in pieces])
-        return component, ops.select(line, p, middle + ops.atan2(plane.cross(M, (p, q)), plane.dot(M, (p, q))))
-
     def arc(self, ops: Any, position: Row, component: Any, theta: Any, law: LawIR) -> Any:
         slope, begin = self._pair(ops, component, [tuple(length(ops)) for length in law.lengths])
         return slope * theta + begin
 
     # ---- a bounce
 
-    def _pair(self, ops: Any, component: Any, pairs: list[Pair]) -> Pair:
-        return chosen(ops, component, [x for x, _ in pairs]), chosen(ops, component, [y for _, y in pairs])
-
-    def _axes(self, ops: Any, pieces: list[Piece], component: Any) -> list[Pair]:
-        """`A` and `B` of the particle's piece."""
-        return [self._pair(ops, component, column(pieces, i)) for i in (2, 3)]
-
-    def _turning(self, ops: Any, pieces: list[Piece], component: Any) -> Any:
-        """`A x B` of the particle's piece."""
-        return chosen(ops, component, column(pieces, 5))
-
-    def tangent(self, ops: Any, shape: Row, position: Row) -> Pair:
-        """The velocity `d` at a boundary point."""
-        component, p, q = position
-        A, B = self._axes(ops, self.pieces(ops, shape), component)
-        return p * B[0] - q * A[0], p * B[1] - q * A[1]
-
     def point(self, ops: Any, pieces: list[Piece], position: Row) -> Pair:
         """The Cartesian point."""
         component, p, q = position
         origin, A, B = (self._pair(ops, component, column(pieces, i)) for i in (1, 2, 3))
+        if FOCAL in self.kinds:
+            arc = chosen_mask(ops, component, [kind == FOCAL for kind in self.kinds])
+            p = ops.select(arc, from_focus(ops, self._gap_of(ops, component, pieces), (p, q)), p)
         return p * A[0] + q * B[0] + origin[0], p * A[1] + q * B[1] + origin[1]
+
+    def _gap_of(self, ops: Any, component: Any, pieces: list[Piece]) -> Any:
+        """One minus the eccentricity, of arcs about a focus; one of others, which start from their centre."""
+        return chosen(ops, component, [x.radius if x.kind == FOCAL else ops.number(1.0) for x in pieces])
 
     def fly(self, ops: Any, shape: Row, law: str, position: Row, exit: Row) -> Landing[Any]:
         component, p, q = position
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0 = self.point(ops, pieces, position)
         d0 = self.tangent(ops, shape, position)
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p)
+        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q)
         corners = [piece.start for piece in pieces]
         best: list[Any] | None = None
         if self.halving:
@@ -253,11 +228,12 @@ class Pieces(Family):
         return ops.number(2 * UNSURE) * radius * size
 
     def _gathered(self, ops: Any, where: Any, pieces: list[Piece]) -> Piece:
-        """The piece of every particle; its kind is `line`, `circle`, `ellipse`, or empty where there are several."""
+        """The piece of every particle; its kind is that of the outer ones, or empty where there are several."""
         several = len({self.kinds[j] for j in self.outer}) > 1
         origin, A, B = (self._pair(ops, where, column(pieces, i)) for i in (1, 2, 3))
         D, radius = (chosen(ops, where, column(pieces, i)) for i in (5, 6))
         kind = "" if several else self.kinds[self.outer[0]]
+        radius = self._gap_of(ops, where, pieces) if FOCAL in self.kinds else radius
         return Piece(kind, origin, A, B, origin, D, radius, origin, origin)
 
     def _met(self, flight: Flight, piece: Piece, where: Any) -> tuple[Any, Any, Any, Any, Masks]:
@@ -270,14 +246,18 @@ class Pieces(Family):
             inverse = one / a
             return plane.cross(piece.A, w) * inverse, m * inverse, ops.number(-1.0), a, None
         kinds = {kind for kind in self.kinds if kind != LINE} if not piece.kind else {piece.kind}
+        nought, own = ops.number(0.0), abs(flight.component - where) < ops.number(0.25)
         if kinds == {CIRCLE}:
             square = piece.radius * piece.radius
             left = (piece.radius - m) * (piece.radius + m)
+        elif FOCAL in kinds:  # from the focus: `m` is larger by `e*a`
+            square, gap = a * a + b * b, piece.radius
+            e = one - gap
+            left = a * a * (gap * (one + e)) + b * b - m * (m + (e + e) * a)
+            m = ops.select(own, flight.p * a + flight.q * b, m + e * a)
         else:
             square = a * a + b * b
             left = plane.dot((a, b), (a, b)) - m * m
-        nought = ops.number(0.0)
-        own = abs(flight.component - where) < ops.number(0.25)
         s = ops.select(own, flight.rate, ops.sqrt(ops.maximum(left, nought)))
         line = None
         if not piece.kind:
@@ -285,11 +265,12 @@ class Pieces(Family):
             square = ops.select(line, one, square)
         inverse = one / square
         p, q = plane.unit(ops, ((m * a + s * b) * inverse, (m * b - s * a) * inverse))
-        along = s
+        along, far = s, from_focus(ops, piece.radius, (p, q)) if FOCAL in kinds else p
         if line is not None:
+            far = ops.select(line, m / a, far)
             p, q = ops.select(line, m / a, p), ops.select(line, ops.number(-1.0), q)
             along = ops.select(line, a, s)
-        x, y = p * piece.A[0] + q * piece.B[0] - w[0], p * piece.A[1] + q * piece.B[1] - w[1]
+        x, y = far * piece.A[0] + q * piece.B[0] - w[0], far * piece.A[1] + q * piece.B[1] - w[1]
         chord = (s + s) * piece.D * inverse
         t = ops.select(own, chord, v[0] * x + v[1] * y)
         return t, p, q, along, left

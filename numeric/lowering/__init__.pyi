@@ -3,11 +3,12 @@
 from . import cache
 from .cache import key_of, sources
 from .lower import exact_table, lower_law, symmetries
-from .program import LawIR, Named, TableIR, by_name, table_ir
+from .program import LawIR, Named, Program, TableIR, by_name, table_ir
 
 __all__ = [
     "LawIR",
     "Named",
+    "Program",
     "TableIR",
     "by_name",
     "cache",

@@ -42,7 +42,7 @@ def lower(table: Table) -> TableIR:
     """
     table = closed_and_finite(table)
     symbols = [shape.symbol for shape in table.shapes]
-    parts = tuple(_part(component, symbols) for component in table.components)
+    parts = tuple(_part(component, symbols, parameter_box(table)) for component in table.components)
     same = _same_as(table)
     own = {} if same else _conic(table, symbols) or _fourier(table, symbols) or _pieces(table, symbols)
     programs = {} if same else own | _radius(table, symbols)
@@ -160,16 +160,16 @@ def _program(symbols: list[Symbol], formula: Callable[[Any], list[Any]], *first:
     return builder.program(*formula(convert))
 
 
-def _part(component: Component, symbols: list[Symbol]) -> Part:
+def _part(component: Component, symbols: list[Symbol], ranges: Box) -> Part:
     ends = _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)])
     known = cubic(component)
     if known is not None and any(row[3] for row in known):
         return Part(component.name, ends, _program(symbols, lambda nodes: _polynomial_curve(nodes, known), "theta"))
     if sum(map(size, component.point)) > LONG or max(map(levels, component.point)) > DEEP:
         return Part(component.name, ends, _long_curve(component, symbols))
+    component = flight.about_far_focus(component, ranges)
     first = velocity(component)
-    second = first.diff(theta)
-    curve = [*component.point, *first, *second]
+    curve = [*component.point, *first, *first.diff(theta)]
     return Part(component.name, ends, _program(symbols, lambda nodes: [nodes(expr) for expr in curve], "theta"))
 
 
@@ -314,11 +314,8 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     None where `theta` has a place outside sines and cosines of its whole multiples.
     """
     whole = table.components[0]
-    x = whole.point[0]
-    if len(table.components) > 1 or whole.end - whole.start != 2 * pi or size(x) > LONG or levels(x) > DEEP:
-        return {}
-    rho = whole.radius
-    if rho is None:
+    x, rho = whole.point[0], whole.radius
+    if rho is None or table.components[1:] or whole.end - whole.start != 2 * pi or size(x) > LONG or levels(x) > DEEP:
         return {}
     values = [rho.diff(theta, n) if n else rho for n in range(4)]
     wanted = set().union(*(value.atoms(cos, sin) for value in values))
@@ -340,9 +337,9 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     """One program for each component, when all are straight sides or arcs of ellipses, or all cubic; none otherwise.
 
-    Its outputs for a cubic are the coefficients of `x` and `y`. For the others they are the point, which is
-    `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or the parameter and -1; the first corner;
-    `A x B`; the radius; what tells the ends apart, as `numeric.flights.pieces` has it.
+    Its outputs for a cubic are the coefficients of `x` and `y`, for an arc about a focus those of `flight.focal_arc`.
+    For the others they are the point, which is `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or
+    the parameter and -1; the first corner; `A x B`; the radius; what tells the ends apart.
     """
 
     def program(numbers: list[Expr]) -> Program:
@@ -367,7 +364,7 @@ def _polynomial_curve(nodes: Any, known: list[list[Expr]]) -> list[Any]:
 
 
 def _piece(component: Component, ranges: Box) -> tuple[str, list[Expr]] | None:
-    """A component's kind and its fourteen numbers, in the order in which the flight reads them.
+    """A component's kind and its numbers, in the order in which the flight reads them.
 
     A circle of which the ranges of the parameters leave the radius' sign open is an ellipse.
     """
@@ -383,7 +380,8 @@ def _piece(component: Component, ranges: Box) -> tuple[str, list[Expr]] | None:
         return None
     centre = [expand(coordinate + coordinate.diff(theta, 2)) for coordinate in (x, y)]
     if any(c.has(theta) for c in centre):
-        return None
+        focal = flight.focal_arc(component, ranges) if max(map(levels, component.point)) <= DEEP else None
+        return ("focal", focal) if focal else None
     A = [expand(start - c) for start, c in zip(component.at(S.Zero), centre, strict=True)]
     B = [d.subs(theta, 0) for d in slope]
     square, other = (expand(v[0] ** 2 + v[1] ** 2) for v in (A, B))

@@ -18,13 +18,16 @@ The pinball map of the unit circle, explicit. Paper: section 3.1.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from sympy import Dummy, Expr, I, Pow, S, cos, exp, expand, im, pi, re, simplify, sin, sqrt, symbols
 
+from symbolic.expressions.signs import Box
 from symbolic.tables.geometry import boundary_coefficients
 from symbolic.tables.table import Component, lam, phi, s, theta
+from symbolic.tables.validity import is_positive
 
 Complex = tuple[Any, Any]
 Harmonics = Mapping[int, tuple[Complex, Complex]]  # C_k and S_k by k
@@ -152,6 +155,70 @@ def about_focus(rho: Expr) -> Focal | None:
     a, b = p / left, 1 / sqrt(left)
     centre = -x * size / left, -y * size / left
     return Focal({0: (centre, (S.Zero, S.Zero)), 1: ((a * x, a * y), (-b * y, b * x))}, (x, y), p, size, left)
+
+
+def about_far_focus(component: Component, box: Box) -> Component:
+    """The same component without the loss of digits at a far tip, where it is an arc of a conic about the origin.
+
+    There `1/rho = p + size*cos(theta - w)` is a small difference. With `c` the cosine of half of `theta - w` it is
+    `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse; all is written in cosine and sine of
+    `theta/2`. Left as it is where `size` has no proved sign on the box, or is no half of `p`.
+
+    >>> rho = 1 / (5 + 4 * cos(theta))
+    >>> about_far_focus(Component("arc", (rho * cos(theta), rho * sin(theta)), S.Zero, pi), {}).point[1]
+    2*sin(theta/2)*cos(theta/2)/(8*cos(theta/2)**2 + 1)
+    """
+    rho = component.radius
+    known = None if rho is None else about_focus(rho)
+    if known is None:
+        return component
+    size, (x, y) = known.size, known.ahead
+    if not is_positive(size, box):
+        size, x, y = -size, -x, -y
+    if not is_positive(size, box) or not is_positive(2 * size - known.p, box):
+        return component
+    u, half = (cos(theta / 2), sin(theta / 2)), half_of((x, y))
+    c = u[0] * half[0] + u[1] * half[1]
+    inverse = (known.p - size) + 2 * size * c**2
+    return replace(component, point=((2 * u[0] ** 2 - 1) / inverse, 2 * u[0] * u[1] / inverse))
+
+
+def focal_arc(component: Component, box: Box) -> list[Expr] | None:
+    """The numbers of an arc of an ellipse that is given by its radius about a focus in the origin; None of any other.
+
+    The point is `(p - e)*A + q*B`, with `(p, q)` the cosine and sine of the eccentric parameter: the focus; `A`; `B`;
+    the first corner; `A x B`; `1 - e`; of the arc's middle the cosine and sine, and of half its angle the sine and
+    cosine; the direction of `A`; and `sqrt((1 + e)/(1 - e))`, by which the tangents of half of both angles differ.
+
+    >>> rho = 1 / (5 + 3 * cos(theta))
+    >>> focal_arc(Component("arc", (rho * cos(theta), rho * sin(theta)), -pi / 2, pi / 2), {})[2:6]
+    [5/16, 0, 0, 1/4]
+    """
+    rho = component.radius
+    known = None if rho is None else about_focus(rho)
+    if known is None or not is_positive(known.p, box) or not is_positive(known.left, box):
+        return None
+    A, B = known.harmonics[1]
+    ratio = (known.p + known.size) / sqrt(known.left)
+    x, y = half_of(known.ahead)
+    ends = []
+    for end in (component.start, component.end):
+        c, s = cos(end / 2), sin(end / 2)
+        h = ratio * (c * x + s * y), s * x - c * y
+        size = sqrt(h[0] ** 2 + h[1] ** 2)
+        ends.append((h[0] / size, h[1] / size))
+    first, last = ends
+    half = first[0] * last[1] - first[1] * last[0], first[0] * last[0] + first[1] * last[1]
+    gap, D = (known.p - known.size) / known.p, known.p / known.left / sqrt(known.left)
+    corner = component.at(component.start)
+    return [S.Zero, S.Zero, *A, *B, *corner, D, gap, *times(first, last), *half, *known.ahead, ratio]
+
+
+def half_of(direction: tuple[Expr, Expr]) -> tuple[Expr, Expr]:
+    """Cosine and sine of half an angle between minus and plus half a turn, from its own."""
+    x, y = direction
+    sine = sqrt((1 - x) / 2)
+    return sqrt((1 + x) / 2), -sine if y.is_negative else sine
 
 
 def chord_polynomial(h: Harmonics, E: Complex, B: Complex) -> list[Any]:

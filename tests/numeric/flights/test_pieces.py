@@ -8,12 +8,15 @@ from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap, phase_starts
 from numeric.flights import pieces
+from numeric.flights.general import General
 from numeric.flights.pieces import CIRCLE, Pieces
 from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from symbolic.tables.gallery import GALLERY
+from symbolic.tables.law import Law
 from symbolic.tables.table import theta
 from verification.maps.exact import ExactMap, errors
+from verification.measure.extremes.by_hand import comet
 
 EPS = 2.0**-52
 CORNER = tables.polygon((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), name="corner")  # not convex
@@ -68,6 +71,43 @@ def test_a_particle_that_leaves_along_the_boundary_is_as_exact_as_its_flight_all
 
     assert np.any(going)
     assert np.max(position * straight) <= 8
+
+
+def test_an_arc_about_a_focus_is_as_exact_as_its_condition_allows_at_its_far_end_too():
+    """The far end is 2000 times as far from the focus as the near one: a difference of the radius loses digits."""
+    map = PinballMap(comet(), lam=0.9, kernels=False)
+    far = 10.0 ** np.array([-6.0, -3.2, -3, -2.7, -2, -1])
+    where, at = np.repeat([0, 1], 6), np.concatenate([np.pi + far * [1, -1, 1, -1, 1, -1], np.linspace(-0.9, 0.9, 6)])
+    phi = np.tile([0.5, 0.96, -1, -0.4, 0.1, 1.4], 2)
+    matrix = np.abs(map.derivative(at, phi, where))
+    going, position, direction, _ = error_of_a_bounce(map, where, at, phi)
+
+    assert isinstance(map.family, Pieces)
+    assert np.all(going)
+    assert np.all(position <= 8 * (1 + matrix[:, 0].sum(axis=-1)))
+    assert np.all(direction <= 8 * (1 + matrix[:, 1].sum(axis=-1)))
+    assert np.max(position) <= 4
+
+
+def test_the_parameter_of_an_arc_about_a_focus_is_its_polar_angle_and_derivatives_are_by_it():
+    """Of one that is turned, with a law that depends on the place: the general flight knows no other parameter."""
+    rho = 2 / (1 - Rational(3, 5) * cos(theta - pi / 3))
+    arc = tables.arc("arc", rho * cos(theta), rho * sin(theta), -pi / 6, 5 * pi / 6)
+    ends = [[x.subs(theta, end) for x in arc.point] for end in (5 * pi / 6, -pi / 6)]
+    side = tables.arc("side", *(p + theta * (q - p) for p, q in zip(*ends, strict=True)), 0, 1)
+    table, where, at = tables.piecewise(arc, side, name="turned"), np.array([0, 0, 1]), np.array([1.0, 2.2, 0.3])
+    for law in (Law(), Law("-eta/2 + sin(theta)*cos(eta)/8")):
+        one, other = (PinballMap(table, lam="0.9", law=law, kernels=False) for _ in range(2))
+        general = General(other.states.boundary)
+        general.formula, other.family, other.states.family = other.family.formula, general, general
+        other.engine = type(other.engine)(general, "", other.engine.names, False)
+        phi = np.array([0.2, -0.7, 0.5])
+        a, b = (map.exponents(at, phi, 4, component=where) for map in (one, other))
+
+        assert np.allclose(one.step(at, phi, where).theta, other.step(at, phi, where).theta, rtol=0, atol=1e-13)
+        assert np.allclose(one.derivative(at, phi, where), other.derivative(at, phi, where), rtol=1e-9, atol=1e-12)
+        assert np.allclose(a.nu_plus, b.nu_plus, rtol=0, atol=1e-9)
+        assert np.allclose(a.nu_minus, b.nu_minus, rtol=0, atol=1e-9)
 
 
 def tried_by_hand(map, where, at, phi):

@@ -10,10 +10,10 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from sympy import Rational
+from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap
-from numeric.flights.corners import CIRCLE, LINE, Piece, piece_of
+from numeric.flights.corners import CIRCLE, ELLIPSE, FOCAL, LINE, Piece, piece_of
 from numeric.flights.pieces import Pieces
 from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import phase_starts
@@ -36,6 +36,13 @@ def spikes(count: int) -> Table:
     ring = enumerate(pairwise([*corners, corners[0]]))
     sides = [tables.arc(f"side{i}", x + theta * (X - x), y + theta * (Y - y), 0, 1) for i, ((x, y), (X, Y)) in ring]
     return tables.Table(f"spikes{count}", tuple(sides))  # a star about the origin, so that nothing need be proved of it
+
+
+def comet() -> Table:
+    """An arc of an ellipse of eccentricity 0.999 with the far tip, by its radius about the focus, and a chord."""
+    rho = 1 / (1 + Rational(999, 1000) * cos(theta))
+    arc = tables.arc("arc", rho * cos(theta), rho * sin(theta), pi / 2, 3 * pi / 2)
+    return tables.piecewise(arc, tables.arc("chord", 0, theta, -1, 1), name="comet")
 
 
 def discs(count: int) -> Table:
@@ -74,9 +81,17 @@ def pieces(family: Pieces, shape: Any) -> list[Piece]:
     ops: Any = Wide()
     wide = [WIDE(float(x)) for x in shape]
     return [
-        piece_of(kind, [WIDE(x) for x in program(ops, *wide)])
+        centred(piece_of(kind, [WIDE(x) for x in program(ops, *wide)]))
         for kind, program in zip(family.kinds, family.programs, strict=True)
     ]
+
+
+def centred(piece: Piece) -> Piece:
+    """The same piece from the centre of its ellipse, where it is an arc about a focus."""
+    if piece.kind != FOCAL:
+        return piece
+    e = WIDE(1) - piece.radius
+    return piece._replace(kind=ELLIPSE, origin=(-e * piece.A[0], -e * piece.A[1]))
 
 
 def placed(known: list[Piece], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:

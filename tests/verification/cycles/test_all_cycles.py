@@ -6,17 +6,29 @@ from math import pi
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from flint import arb
 from sympy import Rational
 
 from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
-from symbolic import tables
+from symbolic import Law, Scene, tables
 from symbolic.tables import circle, cuspless, egg, ellipse
 from verification.app.commands.orbit import cycles_command as cycles
+from verification.app.commands.orbit import provable
+from verification.arithmetic.balls import working
 from verification.cycles.cells import Corrector, fixed_points
+from verification.cycles.problem import Problem
 from verification.cycles.search import Catalogue, all_cycles
 from verification.named.attractors import certificate
-from verification.proofs.periodic.interval_newton import no_others
+from verification.proofs.periodic.interval_newton import (
+    BITS,
+    Status,
+    krawczyk,
+    no_others,
+    reflection,
+    stays_below,
+    steepest,
+)
 from verification.proofs.slap_map.exponent import periodic_points
 
 TABLE = egg(3).at(alpha="2/25")
@@ -100,6 +112,62 @@ def test_a_catalogue_that_lacks_a_cycle_is_not_proved_complete():
 
     assert no_others(catalogue, Rational(1, 2), 2, budget=1500).complete is None
     assert any(catalogue.index_sums(2).values())
+
+
+BENT = ["-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/20", "-lam*eta + cos(theta)/20", "-eta*lam**2 + eta/9"]
+
+
+def near_the_axes(formula):
+    """The two cycles of period 2 of an ellipse next to its axes, without a search."""
+    law, table = Law(formula), ellipse.at(a="3/2")
+    catalogue, corrector = Catalogue(table, 0.5, law=law), Corrector(table, 0.5, law)
+    rows = corrector.closed((0, 0), np.array([[1.5, -1.6], [0.1, 3.1]]))
+    for x, phi in zip(rows, corrector.exits((0, 0), rows), strict=True):
+        catalogue.add((0, 0), x, phi)
+    return catalogue
+
+
+@pytest.mark.parametrize("formula", BENT)
+def test_completeness_is_proved_for_other_laws_and_not_of_a_catalogue_that_lacks_a_cycle(formula):
+    catalogue = near_the_axes(formula)
+    assert catalogue.count(2) == 2
+    assert no_others(catalogue, Rational(1, 2), 2).complete is True
+    catalogue.cycles.pop()
+
+    assert no_others(catalogue, Rational(1, 2), 2, budget=300).complete is None
+
+
+def test_all_exit_angles_are_below_the_bound_that_leaves_chords_out():
+    law, grid = Law("-lam*eta + cos(theta)/20 - sin(2*eta)/9"), np.linspace(-pi / 2, pi / 2, 101)
+    with working(BITS):
+        bound = float(steepest(law, reflection(law, arb(0.5))))
+    largest = max(np.max(np.abs(-grid / 2 + c / 20 - np.sin(2 * grid) / 9)) for c in (-1, 1))
+
+    assert largest <= bound < largest + 0.05
+    assert not stays_below(Law("-eta"), 1)
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [("-lam*eta + theta/20", "a whole turn of theta"), ("-eta", "below pi/2"), ("-lam*eta + sin(s)/9", "no closed")],
+)
+def test_prove_refuses_a_law_that_its_theorem_does_not_know(law, said):
+    with pytest.raises(ValueError, match=said):
+        provable(Scene("ellipse", a="3/2", lam="1/2", law=law))
+
+
+def test_krawczyks_operator_moves_with_a_contraction_in_which_the_law_is_not_linear():
+    """At normal incidence the rule has no `lam`: a bounce off it drifts, and the box must hold all that happens."""
+    catalogue = near_the_axes("-eta*lam**2 + cos(theta)/20")
+    law, table, found = catalogue.law, catalogue.table, catalogue.cycles[0]
+    with working(BITS):
+        wide = Problem(table, (0, 0), lam=arb("0.5", "0.02"), law=law)
+        image = krawczyk(wide, [arb(x) for x in found.theta], [0.05, 0.05], BITS)
+    for lam in (0.48, 0.52):
+        near = Corrector(table, lam, law).closed((0, 0), np.array([found.theta]))[0]
+
+        assert image.status is Status.UNIQUE
+        assert all(x.contains(arb(y)) for x, y in zip(image.zero, near, strict=True))
 
 
 def test_the_command_writes_every_cycle(tmp_path):

@@ -151,7 +151,7 @@ EGG = ["egg", "--alpha", "0.08", "--lam", "0.5"]
         (["orbit", *EGG, "--start", "0.4,0.3", "--bounces", "2", "--law", "-2*eta"], "at eta = -0.785398"),
         (["orbit", *EGG, "--start", "0.4,0.3", "--bounces", "2", "--law", "-eta +"], "--law: the end at column 7"),
         (["slap", "egg", "--alpha", "0.08", "--law", "-eta/3"], "-eta/3 does not exit along the normal at lam = 0"),
-        (["cycles", *EGG, "--period", "2", "--prove", "2", "--law", "-eta/3"], "not for -eta/3; leave --prove"),
+        (["cycles", *EGG, "--period", "2", "--prove", "2", "--law", "-lam*eta + theta/20"], "a whole turn of theta"),
         (["cycles", "stadium", "--lam", "0.5", "--period", "2", "--prove", "2"], "stadium is not proved to be one"),
     ],
 )

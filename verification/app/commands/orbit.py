@@ -341,18 +341,23 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
 
 def provable(scene: Scene) -> None:
     """Refuses --prove, in a sentence that says why, where its theorem asks for more than the scene has."""
+    from symbolic.tables.curves import is_periodic
     from verification.maps.first_hit import closes_smoothly, convex
+    from verification.proofs.periodic.interval_newton import stays_below
 
-    if not scene.law.uniform:
-        raise ValueError(
-            "--prove excludes chords steeper than lam*pi/2, by a rule that is linear in both angles: true of the "
-            f"paper's law and not for {scene.law}; leave --prove out"
-        )
     if not closes_smoothly(scene.table) or convex(scene.table) is not True:
         raise ValueError(
             f"--prove covers all closed chains of chords of one smooth convex curve, and {scene.name} is not proved to "
             "be one: chains that a wall cuts could not be told from cycles; leave --prove out"
         )
+    if not scene.law.uniform:
+        stated = scene.law.on(scene.table)
+        if stated.placed and not is_periodic(stated.phi):
+            raise ValueError(
+                f"--prove: a whole turn of theta is not seen to leave {stated} the same; leave --prove out"
+            )
+        if not stays_below(stated, scene.lam):
+            raise ValueError(f"--prove: |phi| = |{stated}| is not proved to stay below pi/2 by a margin; leave it out")
 
 
 def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, output: Output) -> list[dict[str, Any]]:

@@ -9,13 +9,15 @@ Krawczyk's operator [Krawczyk1969] is
 `K = m - Y F(m) + (1 - Y F'(X)) (X - m)` with `Y` near the inverse of the middle of `F'(X)`. The
 preconditioner is a full matrix, so the cost is cubic in the period; in return the balls of `F'(X)`
 may be wide, which elimination along the chain does not forgive. For a ball of contractions the
-motion of the cycle with `lam` is kept in one piece, `Y dF/dlam (lam - middle)`.
+motion of the cycle with `lam` is kept in one piece, `Y dF/dlam (lam - middle)`, the derivative over all of the ball.
 
 Are there other cycles of a short period? Around each known cycle Krawczyk's operator proves a neighbourhood that
 holds no second one. Everything else is covered by boxes in the first bounce and the gaps between bounces; a box goes
 when one collision rule, by enclosure or by the mean value theorem, or Krawczyk's operator cannot hold in it, and is
 halved otherwise. On a convex table the chord's angle falls as its end moves on, so bounces that lie closer than the
-gap at which it exceeds `lam*pi/2` need not be looked at.
+gap at which it exceeds every exit angle of the law need not be looked at: `lam*pi/2` for the paper's, for others a
+bound of `|phi|` over all incidence angles and places. A law of the place must be the same after a whole turn of
+`theta`, and its cycles have no copies turned with the table.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -26,12 +28,12 @@ from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat
-from sympy import Expr
+from sympy import Expr, S
 
-from symbolic.expressions.text import kernel, load
-from symbolic.motion.chords import chord_kernel
+from symbolic.expressions.text import constant, load
+from symbolic.motion.chords import chord_kernel, law_kernel
+from symbolic.tables.curves import is_periodic
 from symbolic.tables.law import Law
-from symbolic.tables.table import lam as contraction_symbol
 from verification.arithmetic.balls import balls, working
 from verification.cycles.chain import Chain
 from verification.cycles.newton import System
@@ -129,29 +131,23 @@ def krawczyk(problem: Problem, centre: list[arb], radii: list[float], bits: int)
     >>> krawczyk(axis, [arb("1.57"), arb("-1.57")], [0.01, 0.01], 64).status.name
     'UNIQUE'
     """
-    affine_in_lam(problem.law)
     with working(bits):
         box = [arb(x, r) for x, r in zip(centre, radii, strict=True)]
         try:
             lam = problem.at(balls(bits), centre)["lam"]
             at = Linearised(replace(problem, lam=lam.mid()), balls(bits), centre).terms
+            by_lam = Linearised(problem, balls(bits), centre).terms.by["lam"]
             slope = dense(Linearised(problem, balls(bits), box).plain)
             near = arb_mat([[x.mid() for x in row] for row in slope.tolist()]).inv()
         except ZeroDivisionError:
             return Enclosure(Status.UNKNOWN, box)
         inverse = arb_mat([[x.mid() for x in row] for row in near.tolist()])
         step = inverse * arb_mat([[x] for x in at.value])
-        drift = inverse * arb_mat([[x] for x in at.by["lam"]])  # the rules are linear in lam
+        drift = inverse * arb_mat([[x] for x in by_lam])
         one = arb_mat([[int(i == j) for j in range(len(centre))] for i in range(len(centre))])
         spread = (one - inverse * slope) * arb_mat([[x - m] for x, m in zip(box, centre, strict=True)])
         image = [m - step[i, 0] - drift[i, 0] * (lam - lam.mid()) + spread[i, 0] for i, m in enumerate(centre)]
         return Enclosure(compared(image, box), image)
-
-
-def affine_in_lam(law: Law) -> None:
-    """Refuses a law for which the drift of a cycle with `lam`, taken at one `lam`, would be no enclosure."""
-    if law.phi.diff(contraction_symbol, 2) != 0:
-        raise ValueError(f"law = {law} is not linear in lam, which this proof over an interval of lam assumes")
 
 
 def dense(chain: Chain) -> arb_mat:
@@ -168,7 +164,9 @@ def dense(chain: Chain) -> arb_mat:
 BITS = 64
 SMALLEST = 2.0**-30
 Box = tuple[tuple[float, float], ...]  # midpoint and half width of the first bounce and of the gaps
+ANGLES = 512  # pieces of the incidence angles
 Tick = Callable[[str], None]
+Reflection = Callable[[arb, arb], tuple[arb, arb, arb]]
 
 
 @dataclass(frozen=True)
@@ -194,20 +192,24 @@ def no_others(
     True
     """
     table, known = catalogue.table, catalogue.count(n)
-    if not closes_smoothly(table) or convex(table) is not True or not catalogue.law.uniform:
+    if not closes_smoothly(table) or convex(table) is not True:
+        return Completeness(n, None, 0, known)
+    law = catalogue.law.on(table)
+    if law.placed and not is_periodic(law.phi):
         return Completeness(n, None, 0, known)
     with working(BITS):
         angle = load(chord_kernel(table, 0, 0, 1), balls(BITS))
-        contraction = load(kernel("lam", [], {"lam": lam}), balls(BITS))()[0] + arb(0)
-        gap = least_gap(angle, contraction)
+        contraction = load(constant(lam), balls(BITS))()[0] + arb(0)
+        reflected = reflection(law, contraction)
+        gap = least_gap(angle, contraction * arb.pi() / 2 if law.uniform else steepest(law, reflected))
         if gap == 0:
             return Completeness(n, None, 0, known)
-        problem = Problem(table, (0,) * n, lam=contraction)
+        problem = Problem(table, (0,) * n, lam=contraction, law=law)
         holds = neighbourhoods(catalogue, problem)
-        cover = Cover(problem, angle, contraction, gap, holds)
-        boxes = 0
+        cover = Cover(problem, angle, reflected, gap, holds)
+        boxes, turned = 0, 1 if law.placed else rotations(table)
         for turns in range(1, n):
-            queue = [start(rotations(table), n, gap)]
+            queue = [start(turned, n, gap)]
             while queue:
                 box = queue.pop()
                 boxes += 1
@@ -233,9 +235,40 @@ def start(turn: int, n: int, gap: float) -> Box:
     return ((0.0, float(reach)), *(((middle, float(half)),) * (n - 1)))
 
 
-def least_gap(angle: Any, contraction: arb) -> float:
-    """A gap at and below which a chord leaves more steeply than `lam*pi/2`, whichever way it goes; 0 if none."""
-    largest, pieces, gap = contraction * arb.pi() / 2, 256, 1.5
+def reflection(law: Law, contraction: arb) -> Reflection:
+    """The exit angle at an incidence angle and a place, `-d phi/d eta` and `d phi/d theta`, in balls."""
+    if law.uniform:
+        return lambda eta, theta: (-contraction * eta, contraction, arb(0))
+    made = law_kernel(law)
+    places = [made.results.index(name) for name in ("phi", "phi_eta", "phi_theta")]
+    phi = load(made, balls(BITS))
+
+    def reflected(eta: arb, theta: arb) -> tuple[arb, arb, arb]:
+        value, slope, drift = (phi(eta, contraction, theta)[i] + arb(0) for i in places)
+        return value, -slope, drift
+
+    return reflected
+
+
+def steepest(law: Law, reflected: Reflection) -> arb:
+    """A bound of `|phi|` over all incidence angles, and all places of a closed curve, each in pieces."""
+    quarter, turns = arb.pi() / 2, 64 if law.placed else 1
+    angles = [arb(2 * k + 1 - ANGLES, 1) / ANGLES * quarter for k in range(ANGLES)]
+    places = [arb(2 * k + 1 - turns, 1) / turns * arb.pi() for k in range(turns)]
+    sizes = [abs(reflected(eta, theta)[0]).upper() for theta in places for eta in angles]
+    return max(sizes) if all(size.is_finite() for size in sizes) else quarter
+
+
+def stays_below(law: Law, lam: Any) -> bool:
+    """Is `|phi|` proved to stay below `pi/2` by a margin?"""
+    with working(BITS):
+        contraction = load(constant(S(lam)), balls(BITS))()[0] + arb(0)
+        return bool(steepest(law, reflection(law, contraction)) < arb.pi() / 2)
+
+
+def least_gap(angle: Any, largest: arb) -> float:
+    """A gap at and below which a chord leaves more steeply than `largest`, whichever way it goes; 0 if none."""
+    pieces, gap = 256, 1.5
     starts = [arb(2 * k + 1, 1) * arb.pi() / pieces for k in range(pieces)]
     while gap > 0:
         if all(angle(x, x + arb(gap))[0] > largest and angle(x, x - arb(gap))[0] < -largest for x in starts):
@@ -267,7 +300,7 @@ class Cover:
 
     problem: Problem
     angle: Any
-    lam: arb
+    reflected: Reflection
     gap: float
     holds: list[tuple[list[float], float]]
 
@@ -299,14 +332,16 @@ class Cover:
         for i in range(n):
             here, before, after = theta[i], theta[i - 1], theta[(i + 1) % n]
             out, into = self.angle(here, after), self.angle(here, before)
-            value = out[0] + self.lam * into[0]
+            exit, sigma, drift = self.reflected(into[0], here)
+            value = out[0] - exit
             if not value.is_finite():
                 return False
             if not value.contains(0):
                 return True
-            at = self.angle(exact[i], exact[(i + 1) % n])[0] + self.lam * self.angle(exact[i], exact[i - 1])[0]
-            slope = {i: out[1] + self.lam * into[1]}
-            for j, s in ((i - 1) % n, self.lam * into[2]), ((i + 1) % n, out[2]):
+            back = self.angle(exact[i], exact[i - 1])[0]
+            at = self.angle(exact[i], exact[(i + 1) % n])[0] - self.reflected(back, exact[i])[0]
+            slope = {i: out[1] + sigma * into[1] - drift}
+            for j, s in ((i - 1) % n, sigma * into[2]), ((i + 1) % n, out[2]):
                 slope[j] = slope.get(j, arb(0)) + s
             by_box = _by_gaps(slope, n)
             if not (at + sum((s * arb(0, box[k][1]) for k, s in enumerate(by_box)), arb(0))).contains(0):

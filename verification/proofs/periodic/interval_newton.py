@@ -23,6 +23,7 @@ bound of `|phi|` over all incidence angles and places. A law of the place must b
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import accumulate
 from math import pi
 from typing import Any
 
@@ -229,9 +230,13 @@ def no_others(
 
 
 def start(turn: int, n: int, gap: float) -> Box:
-    """All chains: the first bounce up to a rotation of the table, every gap from the least to the largest."""
-    reach = np.ceil(2**20 * pi / turn) / 2**20
-    middle, half = 3.141592653589793, np.ceil(2**20 * (pi - gap)) / 2**20
+    """All chains: the first bounce up to a rotation of the table, every gap from the least to the largest.
+
+    Middles and widths have so few binary digits that halving them rounds nothing: boxes that were a rounding apart
+    would leave out a cycle between them, as one along a symmetry axis whose gap is pi.
+    """
+    reach, middle = np.ceil(2**10 * pi / turn) / 2**10, 3.125
+    half = np.ceil(2**10 * (2 * pi - gap - middle)) / 2**10
     return ((0.0, float(reach)), *(((middle, float(half)),) * (n - 1)))
 
 
@@ -310,13 +315,13 @@ class Cover:
         last = 2 * turns * arb.pi() - sum(wide[1:], arb(0))
         if last < self.gap or last > 2 * arb.pi() - self.gap or any(d > wide[1] for d in [*wide[2:], last]):
             return True  # the first gap may be taken for the largest
-        middle, theta = [box[0][0]], [wide[0]]
-        for (m, _), d in zip(box[1:], wide[1:], strict=True):
-            middle.append(middle[-1] + m)
-            theta.append(theta[-1] + d)
-        if self._known(middle, [float(t.rad()) for t in theta]):
+        theta = list(accumulate(wide))
+        exact = list(accumulate(arb(m) for m, _ in box))
+        if not all(x.is_exact() for x in exact):
+            return False
+        if self._known([float(x) for x in exact], [float(t.rad()) for t in theta]):
             return True
-        return self._impossible(box, middle, theta)
+        return self._impossible(box, exact, theta)
 
     def _known(self, middle: list[float], radii: list[float]) -> bool:
         for centre, radius in self.holds:
@@ -327,8 +332,8 @@ class Cover:
                 return True
         return False
 
-    def _impossible(self, box: Box, middle: list[float], theta: list[arb]) -> bool:
-        n, exact = len(box), [arb(m) for m in middle]
+    def _impossible(self, box: Box, exact: list[arb], theta: list[arb]) -> bool:
+        n = len(box)
         for i in range(n):
             here, before, after = theta[i], theta[i - 1], theta[(i + 1) % n]
             out, into = self.angle(here, after), self.angle(here, before)

@@ -160,8 +160,8 @@ class Mutated(SourceFileLoader, importlib.abc.MetaPathFinder):
 class Chosen:
     """Pytest plugin: only the chosen tests, quickest first, each with its time; the one that runs is written down."""
 
-    def __init__(self, seconds: dict[str, float], report: Path):
-        self.seconds, self.report = seconds, report
+    def __init__(self, seconds: dict[str, float], report: Path, patience: int):
+        self.seconds, self.report, self.patience = seconds, report, patience
         self.functions = {function_of(node): value for node, value in seconds.items()}
 
     def pytest_sessionstart(self):
@@ -182,7 +182,7 @@ class Chosen:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
-        signal.setitimer(signal.ITIMER_REAL, 3 * self.own(item.nodeid) + 5)
+        signal.setitimer(signal.ITIMER_REAL, self.patience * (3 * self.own(item.nodeid) + 5))
         self.report.write_text(item.nodeid)
         return (yield)
 
@@ -208,7 +208,7 @@ def judge(path: str, text: str, seconds: dict[str, float], folder: Path, keep: b
             if stage:
                 signal.setitimer(signal.ITIMER_REAL, 60)  # and not what the last test of the stage before has left
                 files = sorted({file_of(node) for node in stage})
-                chosen = Chosen({node: seconds[node] for node in stage}, folder / "test")
+                chosen = Chosen({node: seconds[node] for node in stage}, folder / "test", 6 if keep else 1)
                 status = int(pytest.main([*QUIET, *files], plugins=[chosen]))
                 if status:
                     break
@@ -219,7 +219,8 @@ def judge(path: str, text: str, seconds: dict[str, float], folder: Path, keep: b
 def ask(path: str, text: str, seconds: dict[str, float], keep: bool = False) -> tuple[str, str, float]:
     """What the tests say of a mutant (survived, killed, timeout), the test that said it, and the seconds it took.
 
-    `keep` is for mutants of what writes nothing into the cache of kernels: they may share it.
+    `keep` is for mutants of what writes nothing into the cache of kernels: they may share it. Their tests' seconds are
+    of processor, and six times as many by the clock pass before a test counts as stopped.
     """
     folder, start = Path(tempfile.mkdtemp(prefix="mutant-")), time.perf_counter()
     child = os.fork()

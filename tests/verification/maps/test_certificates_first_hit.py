@@ -1,6 +1,7 @@
 """Chords that meet nothing on their way, in tables that are not convex."""
 
 import math
+import random
 
 import pytest
 from flint import arb
@@ -12,6 +13,7 @@ from symbolic.tables.table import theta
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
+from verification.maps import first_hit
 from verification.maps.first_hit import convex, first_hits, inside, minimal
 from verification.proofs.periodic.bifurcation import Claim, proved
 
@@ -91,3 +93,32 @@ def test_a_law_that_a_whole_turn_changes_is_asked_between_the_ends_alone(law, ad
 
     assert proof.checks["exists"] is True
     assert proof.checks["admissible"] is admissible
+
+
+def test_a_piece_that_crosses_a_chord_never_passes_and_a_small_one_beside_it_does():
+    """Straight pieces in all directions through points of the chord from (0, 0) to (2, 1), and beside it."""
+    chance = random.Random(1)
+    p, d = (arb(0), arb(0)), (arb(2), arb(1))
+    for _ in range(100):
+        share, angle, half = chance.uniform(0.1, 0.9), chance.uniform(-3, 3), 2.0 ** chance.uniform(-20, -1)
+        vx, vy = arb(math.cos(angle)), arb(math.sin(angle))
+        seen = abs(2 * math.sin(angle) - math.cos(angle)) > 0.1  # else it runs along the chord
+        crossing = lambda t, share=share, vx=vx, vy=vy: (2 * share + vx * t, share + vy * t, vx, vy)  # noqa: E731
+        beside = lambda t, share=share, vx=vx, vy=vy: (2 * share - 0.2 + vx * t, share + 0.4 + vy * t, vx, vy)  # noqa: E731
+
+        piece = arb(half * chance.uniform(-0.9, 0.9), half)
+        assert not first_hit._passes(crossing, piece, [], p, d)
+        assert first_hit._passes(beside, piece, [], p, d) or half > 0.1
+        assert first_hit._passes(crossing, arb(0, half), [[arb(0, half)]], p, d) or not seen  # next to a bounce
+
+
+def test_only_a_component_that_ends_where_it_begins_is_closed():
+    """The wall of the cuspless table ends above its beginning; the disc of Sinai's cell is a circle."""
+    assert first_hit._boundary(cuspless, ()).closed == (False, False)
+    assert first_hit._boundary(sinai(), ()).closed == (False, False, False, False, True)
+
+
+def test_convexity_is_proved_piece_by_piece_where_no_formula_decides_it():
+    assert convex(egg(3), (arb("0.099"),)) is True
+    assert convex(egg(3), (arb("0.101"),)) is None
+    assert convex(sinai()) is None  # the disc bends outwards by a constant

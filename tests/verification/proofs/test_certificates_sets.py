@@ -1,28 +1,36 @@
 """Proofs over sets: exclusion, periodic points of a slap map, the projection argument, the end of the cascade."""
 
 import math
+import random
 from dataclasses import replace
+from itertools import pairwise
 
 import mpmath
 import numpy as np
 import pytest
-from flint import arb
+from flint import arb, arb_mat
 from sympy import Rational, acos
 
 from numeric import PinballMap
 from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Outcome
+from symbolic.expressions.text import load
+from symbolic.motion.chords import chord_kernel
+from symbolic.tables import egg
 from symbolic.tables.table import alpha as letter
-from verification.arithmetic.balls import exact_balls, working
+from verification.arithmetic.balls import balls, cuts, exact_balls, working
+from verification.cycles.chain import Chain
 from verification.cycles.critical import polygon_fold
 from verification.cycles.newton import refined
+from verification.cycles.problem import Problem
 from verification.named.curves import DELTA, aitken, limit, ratio, wynn
 from verification.named.locate import closed_form
 from verification.paper.egg.basins import points_of_period_4, without_triangles
 from verification.proofs.corner.half_return import trapping_region
 from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
-from verification.proofs.periodic.bifurcation import doubling_curve
-from verification.proofs.periodic.interval_newton import Status, interval_newton
+from verification.proofs.periodic import bifurcation, triangles
+from verification.proofs.periodic.bifurcation import Stability, doubling_curve, over_interval
+from verification.proofs.periodic.interval_newton import Cover, Status, dense, interval_newton, least_gap
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
 from verification.proofs.slap_map import exponent as slap
 from verification.proofs.slap_map.exponent import periodic_points
@@ -213,3 +221,78 @@ def test_the_fold_of_every_polygon_is_where_the_closed_form_says(K, p, q):
 @pytest.mark.parametrize("process", [wynn, aitken])
 def test_a_geometric_sequence_is_summed_exactly(process):
     assert process([2 - mpmath.mpf(2) ** -n for n in range(5)]) == 2
+
+
+def around(values, size, chance):
+    """A box, exact in binary, that holds the values: the first bounce and the gaps."""
+    half = 2.0**-size
+    return tuple((round((x + chance.uniform(-0.9, 0.9) * half) * 2**40) / 2**40, half) for x in values)
+
+
+def triangle(lam):
+    """A cycle of period 3 of the egg of alpha = 2/25, begun so that its first gap is the largest."""
+    found = refined(Problem(egg(3).at(alpha=ALPHA), (0, 0, 0), lam=lam), [1.05, 3.14, 5.24], 20)
+    z = [float(x) for x in found.z]
+    gaps = [(b - a) % (2 * math.pi) for a, b in pairwise([*z, z[0]])]
+    first = max(range(3), key=gaps.__getitem__)
+    return (z[first] + math.pi) % (2 * math.pi) - math.pi, gaps[first], gaps[(first + 1) % 3]
+
+
+def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():
+    """Of the egg's triangle, in boxes of all sizes, by both proofs that there are no others."""
+    lam, chance = Rational(1, 2), random.Random(1)
+    held, table = triangle(lam), egg(3).at(alpha=ALPHA)
+    beside = held[0], held[1] + 0.05, held[2] - 0.05
+    with working(64):
+        angle, half = load(chord_kernel(table, 0, 0, 1), balls(64)), arb("0.5")
+        gap = least_gap(angle, half)
+        cover = Cover(Problem(table, (0, 0, 0), lam=half), angle, half, gap, [])
+        largest = half * arb.pi() / (1 + half)
+        for size in range(4, 28):
+            box = around(held, size, chance)
+            assert not cover.settled(box, 1)
+            assert not triangles._impossible(angle, largest, half, gap, box)
+        for size in range(9, 20):
+            box = around(beside, size, chance)
+            assert cover.settled(box, 1)
+            assert triangles._impossible(angle, largest, half, gap, box)
+
+
+@pytest.mark.parametrize("n", [2, 3, 5])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_matrix_of_a_chain_is_the_chain(n, sign):
+    chain = Chain(
+        [arb(2 + 7 * i) for i in range(n)], [arb(3 + i * i) for i in range(n)], [arb(5 - i) for i in range(n)], sign
+    )
+    x = [arb(k + 1) ** 2 for k in range(n)]
+    product = dense(chain) * arb_mat([[each] for each in x])
+
+    assert [product[i, 0] for i in range(n)] == chain.times(x)
+
+
+def test_the_pieces_of_a_stretch_touch_and_cover_it_and_are_short():
+    for low, high, longest in ((0.0, 1.0, 0.3), (-2.0, -1.9, 0.01), (3.0, 3.5, 7.0)):
+        pieces = cuts(low, high, longest)
+        assert pieces[0].contains(arb(low))
+        assert pieces[-1].contains(arb(high))
+        assert all(a.overlaps(b) for a, b in pairwise(pieces))
+        assert all(2 * piece.rad() < longest * 1.001 for piece in pieces)
+        assert all(arb(low - 1e-9) < piece < arb(high + 1e-9) for piece in pieces)
+
+
+def test_the_contractions_asked_along_a_curve_cover_all_of_them(monkeypatch):
+    asked = []
+    monkeypatch.setattr(bifurcation, "_supercritical", lambda K, lam, alpha: lam.rad() < 0.1 and not asked.append(lam))
+
+    assert doubling_curve().supercritical is True
+    for k in range(101):
+        assert any(lam.contains(arb(k) / 100) or lam.overlaps(arb(k) / 100) for lam in asked)
+
+
+def test_a_cycle_run_through_twice_is_none_of_twice_the_period():
+    """The axis, twice: the box holds it alone, and over all of these contractions nothing is proved of period 4."""
+    table = egg(3).at(alpha=ALPHA)
+    axis = {n: over_interval(table, (0,) * n, [0, math.pi] * (n // 2), (0.2, 0.201), Stability.SADDLE) for n in (2, 4)}
+
+    assert axis[2].proved
+    assert not axis[4].proved

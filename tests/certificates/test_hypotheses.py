@@ -1,9 +1,13 @@
 """Each hypothesis of the theorems that the second reader quotes: where it fails, nothing is proved."""
 
+import json
 from fractions import Fraction
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+
+FOLDER = Path(__file__).parents[2] / "certificates"
 
 
 @pytest.mark.parametrize(
@@ -65,3 +69,55 @@ def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, z
 )
 def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve_nor_law(check, radius, law, closed):
     assert check.Table([(radius, "-pi", "pi")], {}, law, 60).closed is closed
+
+
+@pytest.mark.parametrize(("cubic", "degenerate"), [("-1/9", True), ("1/9", False), ("0", False)])
+def test_the_cubic_coefficient_of_a_doubling_counts_what_the_quadratic_terms_add(check, cubic, degenerate):
+    """Of a round `(x, y) -> (-x + x**2/3 + cubic*x**3, y/2)`: its coefficient is `1/9 + cubic`."""
+    number = lambda text: check.I.of(Fraction(text), 100).wide(check.I.of(Fraction(1, 2**80), 100))  # noqa: E731
+    around = lambda x, y: (x * x * x * number(cubic) + x * x * number("1/3") - x, y * number("1/2"))  # noqa: E731
+    image = [check.I.of(0, 100)] * 3
+    cycle = check.Cycle.__new__(check.Cycle)
+    cycle.p, cycle.sign, cycle.kind, cycle.way, cycle.names = 100, 1, "flip", [], lambda letter: {}
+    cycle.run = lambda *_: [None, around(*(check.Jet.of(image[k], 1, k) for k in (0, 1)))]
+    launched = lambda launch, at, d: around(*launch(*(check.Jet.of(x, d, k) for k, x in enumerate(at)))[:2])  # noqa: E731
+    cycle.table = SimpleNamespace(orbit=lambda launch, at, way, d, states: [None, launched(launch, at, d)])
+
+    if degenerate:
+        with pytest.raises(check.Unproved, match="nondegenerate"):
+            cycle.generic(image)
+    else:
+        cycle.generic(image)
+
+
+def test_the_derivative_of_a_quotient_is_that_of_the_quotient_rule(check):
+    found = check.evaluate(check.parse("cos(theta)/(2 + sin(theta))"), {"theta": check.I.of(Fraction(1, 3), 100)}, 100)[
+        1
+    ]
+    s, c = check.I.of(Fraction(1, 3), 100).sin_cos()
+
+    assert 0 in found * (s + 2) * (s + 2) + s * 2 + 1
+    assert 0 not in found * (s + 2) * (s + 2) + s * 2 + Fraction(1001, 1000)
+    assert 0 in s * s + c * c - 1
+
+
+@pytest.mark.parametrize("bits", [60, 200, 1000, 3000])
+def test_an_angle_is_enclosed_as_tightly_as_its_tangent(check, bits):
+    x = check.I.of(Fraction(5, 7), bits)
+    angle = x.atan()
+    s, c = angle.sin_cos()
+
+    assert 0 in s - x * c
+    assert angle.hi - angle.lo < 2**12
+
+
+def test_a_fold_names_what_varies(check):
+    given = json.loads((FOLDER / "saddle-node.json").read_text())
+    with pytest.raises(check.Wrong, match="free or radius is out of range"):
+        check.checked(given | {"free": ""})
+
+
+def test_the_status_of_the_second_reader_is_1_where_anything_is_not_proved(check, tmp_path, capsys):
+    assert check.main([]) == 1
+    assert check.main([str(tmp_path / "none.json")]) == 1
+    assert "refused" in capsys.readouterr().out

@@ -5,7 +5,7 @@ import random
 
 import pytest
 from flint import arb
-from sympy import Rational, cos, sin
+from sympy import Rational, cos, sin, sqrt
 
 from symbolic.tables import cardioid, cuspless, egg, polar, sinai
 from symbolic.tables.law import Law
@@ -119,6 +119,8 @@ def test_only_a_component_that_ends_where_it_begins_is_closed():
 
 
 def test_convexity_is_proved_piece_by_piece_where_no_formula_decides_it():
+    assert convex(polar(1 + cos(theta) / 3 + sqrt(2) * cos(2 * theta) / 40)) is True
+    assert convex(polar(1 + cos(theta) / 3 + sqrt(2) * cos(2 * theta) / 4)) is None
     assert convex(egg(3), (arb("0.099"),)) is True
     assert convex(egg(3), (arb("0.101"),)) is None
     assert convex(sinai()) is None  # the disc bends outwards by a constant

@@ -129,3 +129,15 @@ def test_the_functions_of_a_formula_are_enclosed(word, x, r, p):
 def test_of_a_logarithm_of_no_positive_number_and_of_a_vast_exponential_nothing_is_known():
     for word, x, r in (("log", -1.0, 0.0), ("log", 1.0, 1.0), ("exp", 700.0, 0.0), ("root3", -1.0, 0.0)):
         assert not np.isfinite(getattr(ArrayOps(), word)(BallArray(np.array(x), np.array(r))).r)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+@pytest.mark.parametrize(("low", "high"), [(0.9, 1.1), (0.5, 1.5), (0.2, 1.8), (0.02, 1.98), (-0.1, 1.0), (-0.3, 1.0)])
+def test_a_root_is_enclosed_and_one_of_what_may_be_negative_is_unbounded(n, low, high):
+    found = getattr(ArrayOps(), "sqrt" if n == 2 else f"root{n}")(hull(np.array([low]), np.array([high])))
+
+    if not np.isfinite(found.r).all():
+        assert low < 0.6  # of a wide ball nothing need be known
+        return
+    assert low > 0
+    assert all(found.lower()[0] <= x ** (1 / n) <= found.upper()[0] for x in np.linspace(max(low, 0.0), high, 50))

@@ -84,3 +84,23 @@ def test_a_turn_that_is_no_symmetry_of_the_table_is_refused(found, shift):
 def test_a_damaged_document_is_refused(found, change):
     with pytest.raises(ValueError, match=r"^(certificate|crisis): "):
         BoundaryCrisis.from_dict(found.to_dict() | change)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"side": 0},
+        {"lam": (Fraction(0), ABOVE)},
+        {"lam": (ABOVE, BELOW)},
+        {"lam": (BELOW, Fraction(1))},
+        {"start": 1.5},
+        {"saddle": replace(TRIANGLE, start=TRIANGLE.start * 2)},
+        {"saddle": replace(TRIANGLE, closure=Closure(-1, TRIANGLE.closure.shift))},
+        {"saddle": replace(TRIANGLE, closure=Closure(1, (1, 5)))},
+        {"sink": (float("nan"), 0.0)},
+    ],
+)
+def test_each_hypothesis_of_the_statement_is_asked_when_it_is_made(changed):
+    stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (0.0, 0.0))
+    with pytest.raises(ValueError, match="crisis: "):
+        replace(stated, **changed)

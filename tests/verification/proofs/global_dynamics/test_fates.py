@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
-from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _staying, holding
+from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _reach, _staying, holding
 from verification.proofs.global_dynamics.images import Slopes
 
 ONE = np.ones(1)
@@ -106,3 +106,24 @@ def test_a_sink_is_not_said_to_hold_a_point_that_another_part_may_hold():
     assert holding([part(0, 2, False), sink], [(0, 0.0, 0.0)]) is None  # on the border
     assert holding([sink], [(0, 1.0, 0.0)]) is None
     assert holding([sink], [(1, 0.0, 0.0)]) is None
+
+
+def test_a_cycle_that_no_sink_holds_counts_for_none():
+    """Two sinks, and two cycles of which one is in neither: of the other sink nothing is known."""
+
+    def sink(at: float) -> Cluster:
+        return Cluster(Boxes(np.array([0]), (at - ONE, at + ONE), (-ONE, ONE)), True, 0.5)
+
+    def checks(*at: float) -> dict[str, bool | None]:
+        fate = replace(LOW, cycles=tuple(((0, x, 0.0),) for x in at))
+        fate.__dict__["parts"] = [sink(0.0), sink(9.0)]
+        return fate.checks
+
+    assert checks(0.0, 9.0)["sinks"] is True
+    assert checks(0.0, 5.0)["sinks"] is None
+    assert checks(0.0, 0.0)["sinks"] is None
+    assert checks(0.0)["sinks"] is None
+
+
+def test_the_reach_of_a_cluster_is_that_of_its_furthest_box():
+    assert list(_reach(np.array([3.0, 1.0, 5.0]), np.array([0, 0, 1]), 3)) == [3, 5, -np.inf]

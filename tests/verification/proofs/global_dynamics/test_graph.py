@@ -13,7 +13,7 @@ from verification.app.cli import main
 from verification.proofs.global_dynamics.boxes import ArrayOps, BallArray, Chart, PlaneImages
 from verification.proofs.global_dynamics.graph import Cells, Grid, inside, mapped, morse_graph, refined, transitions
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.global_dynamics.regions import Region, checked, region, sampled_share, shares
+from verification.proofs.global_dynamics.regions import Region, _runs, _unrolled, checked, region, sampled_share, shares
 
 EGG = Scene("egg", alpha="0.08", lam="1/2")
 
@@ -198,3 +198,12 @@ def test_an_image_that_leaves_the_chart_leads_outside():
     graph = morse_graph(transitions(away, grid := Grid(away.charts, 8, 8), grid.whole()))
 
     assert all(graph.trapping(i)[-1] for i in range(len(graph.sets)))
+
+
+def test_blocks_written_as_runs_are_the_same_blocks():
+    cells = Cells(*(np.array(row) for row in ([0, 0, 0, 1, 1], [0, 0, 4, 2, 2], [0, 2, 4, 6, 7], [2, 2, 4, 1, 1])))
+    again = _unrolled(_runs(cells), 2, 8, 8)
+
+    assert {*zip(*(field.tolist() for field in again), strict=True)} == {
+        *zip(*(f.tolist() for f in cells), strict=True)
+    }

@@ -3,7 +3,7 @@
 import math
 import random
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import mpmath
 import numpy as np
@@ -296,3 +296,45 @@ def test_a_cycle_run_through_twice_is_none_of_twice_the_period():
 
     assert axis[2].proved
     assert not axis[4].proved
+
+
+@pytest.mark.parametrize("box", [((0.0, 1.0), (0.0625, 0.0625)), ((0.25, 0.5), (0.03125, 0.25))])
+def test_the_halves_of_a_box_cover_it(box):
+    (c, wide), (shape, high) = box
+    for x, y in product(np.linspace(c - wide, c + wide, 21), np.linspace(shape - high, shape + high, 21)):
+        assert any(abs(x - m) <= r and abs(y - n) <= q for (m, r), (n, q) in slap.halves(box))
+
+
+class Fixed:
+    """In the place of flights, a map of arc and wall that three times stretches the distance from one point."""
+
+    def __init__(self, at):
+        self.ends, self.odd, self.at = {ARC: arb(1), WALL: arb(1)}, True, at
+
+    def iterated(self, pieces, n):
+        return [replace(piece, theta=3 * (piece.theta - self.at) + self.at, slope=arb(3)) for piece in pieces]
+
+
+@pytest.mark.parametrize("at", [0.01, 0.3, 0.98])
+def test_a_fixed_point_is_found_wherever_it_is_on_the_half_that_is_asked(monkeypatch, at):
+    monkeypatch.setattr(slap, "Flights", lambda: Fixed(at))
+
+    for part in (ARC, WALL):
+        assert any(c == part and low <= at <= high for c, low, high in periodic_points(1).stretches)
+
+
+def test_a_fourth_power_of_the_multiplier_that_may_be_1_leaves_the_islands_open():
+    held = {trace: bifurcation.Twist(arb(trace, 0.01), arb(1), arb(0)).islands for trace in (-2.0, -1.0, 0.0, 0.5, 2.0)}
+
+    assert held == {-2.0: None, -1.0: None, 0.0: None, 0.5: True, 2.0: None}
+
+
+@pytest.mark.parametrize(
+    ("gaps", "asked"), [((2.5, 1.5), True), ((2.5, 2.25), True), ((1.5, 2.5), False), ((2.0, 1.75), False)]
+)
+def test_a_triangle_is_asked_from_its_largest_gap_on(gaps, asked):
+    """Where every chord leaves along the normal, nothing but the order of the three gaps, of 2*pi, excludes a box."""
+    normal = lambda here, there: (arb(0), arb(0), arb(0))  # noqa: E731
+    box = ((0.0, 2.0**-8), *((gap, 2.0**-8) for gap in gaps))
+
+    assert triangles._impossible(normal, arb(1), arb("0.5"), 0.25, box) is not asked

@@ -15,7 +15,7 @@ from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, between
 from verification.cycles.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
-from verification.maps.first_hit import convex
+from verification.maps.first_hit import closes_smoothly, convex
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
 CLOSE = 1e-13
@@ -201,7 +201,7 @@ class Chords:
 
     def obstacle(self, x: Array, at: Parameters) -> str:
         """A bounce beyond its component, or next to its neighbour."""
-        if len(self.table.components) > 1:
+        if not closes_smoothly(self.table):  # beyond its ends another formula runs on along no boundary
             ends = self.ends(at)
             for i, (part, value) in enumerate(zip(self.components, x, strict=True)):
                 if not ends[part][0] <= value <= ends[part][1]:

@@ -103,6 +103,7 @@ def _joined(table: Table) -> bool:
     return True
 
 
+@cache
 def closes_smoothly(table: Table) -> bool:
     """Is the curve of a table of one component the same formula after a whole turn? False for more components.
 

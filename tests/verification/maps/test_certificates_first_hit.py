@@ -3,6 +3,7 @@
 import math
 import random
 
+import numpy as np
 import pytest
 from flint import arb
 from sympy import Rational, cos, sin, sqrt
@@ -80,6 +81,7 @@ def test_what_a_formula_draws_beyond_the_ends_of_its_parameter_is_no_boundary():
 
     assert proof.checks["exists"] is True
     assert proof.checks["admissible"] is None
+    assert "bounce 0 left" in problem.ring.obstacle(np.array([4.85837, 8.15732]), {"lam": 0.5})
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from pathlib import Path
 
 Wrong, Unproved = (type(name, (Exception,), {}) for name in ("Wrong", "Unproved"))  # no certificate; an item fails
 value = lambda x: x.c[0] if isinstance(x, Jet) else x
+sys.set_int_max_str_digits(0)  # a certificate may have thousands of digits; `exact` refuses longer text
 PAPER = {  # the shape's letter, and the components: x and y, or one formula for the radius, and the ends of theta
     "circle": ("", [("1", "-pi", "pi")]),
     "ellipse": ("a", [("a*cos(theta)", "sin(theta)", "-pi", "pi")]),
@@ -88,9 +89,9 @@ class I(Number):
     def __mul__(self, o):
         if isinstance(o, Jet):
             return NotImplemented
-        if isinstance(o, int):
-            return I(*sorted((self.lo * o, self.hi * o)), self.p)
-        o = o if isinstance(o, I) else I.of(o, self.p)
+        if not isinstance(o, I):  # an exact number, which may be smaller than the last place
+            low, high = sorted((self.lo * o.numerator, self.hi * o.numerator))
+            return I(low // o.denominator, -(-high // o.denominator), self.p)
         ends = self.lo * o.lo, self.lo * o.hi, self.hi * o.lo, self.hi * o.hi
         return I(min(ends) >> self.p, -(-max(ends) >> self.p), self.p)
 
@@ -280,9 +281,8 @@ class Table:
 
     def __init__(self, parts, letters, law, p):
         self.parts, self.letters, self.p = [[parse(text) for text in part] for part in parts], letters, p
-        self.law, waves = law and parse(law), re.compile(r"\b(sin|cos)\(((\d+|K)\*)?theta\)")
-        self.marks, texts = [], (*parts[0], law or "")  # where the map is undefined; what a whole turn may change
-        self.closed = len(parts) == 1 and not any("theta" in waves.sub("", text.replace(" ", "")) for text in texts)
+        self.law, self.marks = law and parse(law), []  # components and parameters where the map is undefined
+        self.closed = [len(parts) == 1] * len(parts)  # is it a curve with the period 2*pi? Of the paper's tables
 
     def at(self, part, theta, names, p):
         """Point and velocity at a parameter."""
@@ -371,7 +371,7 @@ class Table:
                 return True
             if 0 not in crossing(part, piece.mid())[0] + speed * (piece - piece.mid()):
                 return True
-            turns = lambda at: pi(p) * (2 * round((piece - at).real() / 6.283185307179586) if self.closed else 0)
+            turns = lambda at: pi(p) * 2 * (self.closed[part] and round((piece - at).real() / 6.283185307179586))
             speeds = (crossing(part, piece.hull(at + turns(at)))[1] for other, at in start + end if other == part)
             return any(speed > 0 or speed < 0 for speed in speeds)
 
@@ -435,20 +435,20 @@ class Cycle:
 
     def admissible(self, bounces, letter):
         """Bounces on their components, free chords, and no shorter cycle."""
-        table, placed = self.table, []
-        apart = lambda x, y: 0 not in (((x - y) / 2).sin_cos()[0] if table.closed else x - y)
+        table, p, placed = self.table, self.p, []
+        apart = lambda part, x, y: 0 not in (((x - y) / 2).sin_cos()[0] if table.closed[part] else x - y)
         for part, x in zip(self.parts * 2, bounces + [-x for x in bounces] * (self.sign < 0)):
-            low, high = table.ends(part, self.p)
-            if table.closed:
+            low, high = table.ends(part, p)
+            if table.closed[part]:
                 x = x - (high - low) * round(((x * 2 - low - high) / (high - low)).real() / 2)
-            need(table.closed or x.inside(I(low.hi, high.lo, self.p)), "admissible: a bounce may be off its component")
+            need(table.closed[part] or x.inside(I(low.hi, high.lo, p)), "admissible: a bounce may be off its component")
             placed.append((part, x))
         for here, there in zip(placed, placed[1:] + placed[:1]):
             table.free([here], [there], self.names(letter))
-        fit = all(part != other or apart(x, at) for part, x in placed for other, at in table.marks)
+        fit = all(part != other or apart(part, x, at) for part, x in placed for other, at in table.marks)
         need(fit, "admissible: the map may be undefined at a bounce")
         for m in (m for m in range(1, len(placed)) if len(placed) % m == 0):
-            other = any(c != d or apart(x, y) for (c, x), (d, y) in zip(placed, placed[m:] + placed[:m]))
+            other = any(c != d or apart(c, x, y) for (c, x), (d, y) in zip(placed, placed[m:] + placed[:m]))
             need(other, "minimal_period: the cycle may be a shorter one, run through several times")
 
     def generic(self, image):
@@ -474,13 +474,14 @@ class Cycle:
 
 
 def exact(pair):
-    mantissa, exponent = (int(text) for text in pair if isinstance(text, str))
-    need(abs(exponent) <= 40_000, "an exponent is out of range", Wrong)
+    mantissa, exponent = (int(text) for text in pair if isinstance(text, str) and len(text) <= 130_000)
+    need(abs(exponent) <= 500_000, "an exponent is out of range", Wrong)
     return Fraction(mantissa) * Fraction(2) ** exponent
 
 
-def within(name, x):
-    low, high = {"a": (1, 1000), "alpha": (0, Fraction(1, 2)), "lam": (0, 1)}.get(name, (-(10**6), 10**6))
+def within(name, x, table=None):
+    spans = {("ellipse", "a"): (1, 10**6), ("egg", "alpha"): (0, Fraction(1, 2)), (table, "lam"): (0, 1)}
+    low, high = spans.get((table, name), (-(10**6), 10**6))
     need(x.lo >= I.of(low, x.p).hi and x.hi <= I.of(high, x.p).lo, f"{name} is out of range", Wrong)
     return x
 
@@ -491,24 +492,24 @@ def read_scene(scene, free, p):
     way = [key for key in WAYS if known and key in scene]
     need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
-    need(type(K) is int and 2 <= K <= 50 and ("K" not in scene or title == "egg"), "scene: K is out of range", Wrong)
-    fit = isinstance(shape, dict) and not {"theta", "eta", "lam", "pi", "E", "K"} & {*shape}
-    need(fit and "K" not in scene.get("law", "") and title in (None, *PAPER), "scene: no such table or letter", Wrong)
-    letter, parts = PAPER.get(title) or ("", beside("formulas").pieces(way[0], scene[way[0]]))
-    ranges = {name: text.split("..") for name, text in shape.items() if title is None and ".." in text}
-    given = {*shape, free} - {"", "lam"}
-    fit = letter in ("", *given) and (title is None or "law" in scene or not given - {letter})
-    fit = fit and free in ("", "lam", letter, *ranges) and {*ranges} == {free} & {*shape}
-    need(fit, "scene: the table has other letters, or one with a range that is not free", Wrong)
-    number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p))
-    letters = {name: number(name, text) for name, text in shape.items() if name not in ranges}
-    letters |= {name: number(name, low).hull(number(name, high)) for name, (low, high) in ranges.items()}
-    table = Table(parts, letters | ({"K": I.of(K, p)} if title == "egg" else {}), scene.get("law"), p)
-    if title is None:
-        table.marks = beside("formulas").marks(table, way[0], scene)
+    fit = isinstance(shape, dict) and not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
+    fit = fit and type(K) is int and 2 <= K <= 1000 and ("K" not in scene or title == "egg")
+    letter, parts = PAPER.get(title) or ("", beside("boundaries").pieces(way[0], scene[way[0]]))
+    ends = {name: text.partition("..") for name, text in shape.items()}
+    ranges = {name for name in ends if ends[name][1]}
+    given, own = {*shape, free} - {"", "lam"}, {*re.findall(r"\w+", scene.get("law", ""))} - {"theta", "eta", "pi", "E"}
+    fit = fit and letter in ("", *given) and (title is None or not given - {letter} - own)
+    fit = fit and free in ("", "lam", letter, *ranges, *own) and ranges == {free} & {*shape} and not (title and ranges)
+    need(fit, "scene: the table has other letters, or one with a range that is not free, or no such name", Wrong)
+    number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p), title)
+    letters = {name: number(name, at[0]).hull(number(name, at[2] or at[0])) for name, at in ends.items()}
+    parts = [[text.replace("K", str(K)) for text in part] for part in parts] if title else parts
+    table = Table(parts, letters, scene.get("law"), p)
+    if title is None or table.law:
+        beside("boundaries").own(table, way[0], scene)
     need((free == "lam") == (lam is None), "scene: lam is told where it is not the free letter, and only there", Wrong)
     said = [("phi", scene.get("law")), *shape.items(), ("lam", lam)]
-    title = (title or f"{way[0]} {scene[way[0]]}") + f" of {K} points" * (K != 3)
+    title = (title or beside("boundaries").called_by(way[0], scene[way[0]])) + f" of {K} points" * (K != 3)
     return table, lam and number("lam", lam), title + "".join(f", {k} = {v}" for k, v in said if v and k not in ranges)
 
 
@@ -536,23 +537,22 @@ def checked(given):
     own = "unstable stable orbit meets contact" if given["kind"] == "tangency" else "components mirror"
     need(set(given) == {*keys, *own.split()}, f"the entries must be {', '.join(keys)}, {own}", Wrong)
     schema, name, words, kind, scene, free, bits, digits, centre, radius, items = map(given.get, keys)
-    need(schema == 3, "this checker reads schema 3", Wrong)
+    need(schema == 4, "this checker reads schema 4", Wrong)
     need(items == dict.fromkeys(KINDS[kind], True), f"checks must list as true: {', '.join(KINDS[kind])}", Wrong)
     centre, radius, parts = [exact(pair) for pair in centre], exact(radius), given.get("components", [0, 0])
     letters = {"cycle": [""], "corner": ["lam", "phi"], "focus": ["alpha"], "tangency": ["lam"]}.get(kind)
-    fit = type(bits) is type(digits) is int and 16 <= bits <= 12_000 and 1 <= digits <= 3_000 and radius > 0
+    fit = type(bits) is type(digits) is int and 16 <= bits <= 200_000 and 1 <= digits <= 60_000 and radius > 0
     fit = fit and isinstance(parts, list) and 2 <= len(parts) <= 1024 and type(given.get("mirror", False)) is bool
     fit = fit and (free in letters if letters else type(free) is str and free != "")
     need(fit, "bits, digits, free or radius is out of range", Wrong)
     p = 16 * len(parts) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
-    sign, wanted = -1 if given.get("mirror") else 1, 3 if kind == "tangency" else len(parts) + (free != "")
+    sign, wanted = -1 if given.get("mirror") else 1, {"corner": 2, "tangency": 3}.get(kind, len(parts) + (free != ""))
     fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts)
-    plain = "table" in scene and table.law is None
-    fit = fit and (sign > 0 or plain or beside("formulas").symmetric(table, parts))
-    if kind == "corner":
-        wanted, fit = 2, fit and scene == {"table": "cuspless"} and parts == [0, 0] and sign < 0
-    fit = fit and (kind != "tangency" or (table.closed and table.law is None))
+    plain = sign > 0 or ("table" in scene and not table.law)
+    fit = fit and (plain or beside("boundaries").symmetric(table, parts))
+    fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and sign < 0))
+    fit = fit and (kind != "tangency" or (table.closed == [True] and table.law is None))
     need(fit and len(centre) == wanted, "scene, components, centre or mirror do not fit", Wrong)
     n = f"its {len(parts)} bounces" if sign > 0 else f"{len(parts)} bounces, and then their mirror images,"
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))
@@ -575,7 +575,7 @@ def checked(given):
         beside("corner").cornered(cycle, image, bounces[1]) if kind == "corner" else cycle.admissible(bounces, image[2])
         cycle.generic(image) if kind in ("fold", "flip") else None
         true = named(kind, sign, parts, bounces, boxes, scene, free, title, p)
-    within(free, image[2]) if free else None
+    within(free, image[2], scene.get("table")) if free else None
     need(found.width() * 10**digits <= 1 << p, "precise: the enclosure is wider than the digits say")
     need(name == true, f"the name must be {true!a}", Wrong)
     decimal = Decimal(f"{round(Fraction(found.lo + found.hi, 2 << p) * 10**digits)}e-{digits}")

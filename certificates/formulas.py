@@ -1,18 +1,16 @@
-"""Tables and laws that are no table of the paper, for `check.py`; the headline results rest on that file alone.
+"""Words of formulas that no table of the paper needs, for `check.py`; the headline results rest on that file alone.
 
-Words: `exp`, `log`, `tan`, `atan`, `sinh`, `cosh`, `tanh`, `abs`, `E`, and powers with fractions for exponents, as
-intervals with integer ends and as jets. Boundaries by formulas: their pieces, marks and symmetry.
+`exp`, `log`, `tan`, `atan`, `sinh`, `cosh`, `tanh`, `abs`, `E`, and powers with fractions for exponents, as intervals
+with integer ends and as jets.
 """
 
-import ast
 from fractions import Fraction
 from functools import cache
 from math import prod
 
-from check import I, Jet, Unproved, Wrong, evaluate, function, need, parse, pi, taylor, value
+from check import I, Jet, function, need, pi, taylor, value
 
 HALF, LARGEST = Fraction(1, 2), 2**16  # of an exponent of e
-ODD, EVEN = ("sin", "tan", "sinh", "tanh", "atan"), ("cos", "cosh", "abs", "Abs")  # as functions
 
 
 def hull(each, x):
@@ -158,60 +156,3 @@ def meaning(kind, mark, parts, p):
         fit = abs(exponent) <= 64 and exponent.denominator <= 12 and exponent
         return power(*parts[0], exponent, p) if fit else None
     return called(mark, *parts[0], p) if kind == "Call" and len(parts) == 1 else None
-
-
-def parity(node):
-    """1 of a formula that theta -> -theta, eta -> -eta leaves as it is, -1 of one whose sign it turns, 0 of others."""
-    if isinstance(node, ast.Constant):
-        return 1
-    if isinstance(node, ast.Name):
-        return -1 if node.id in ("theta", "eta") else 1
-    if isinstance(node, ast.UnaryOp):
-        return parity(node.operand)
-    if isinstance(node, ast.Call):
-        name, inner = getattr(node.func, "id", ""), parity(node.args[0])
-        return inner if name in ODD else abs(inner) if name in EVEN else max(inner, 0)
-    x, y = parity(node.left), parity(node.right)
-    if isinstance(node.op, ast.Add | ast.Sub):
-        return x if x == y else 0
-    if isinstance(node.op, ast.Mult | ast.Div):
-        return x * y
-    whole = isinstance(node.right, ast.Constant) and node.right.value.denominator == 1
-    return x ** int(node.right.value) if whole else max(x, 0) * max(y, 0)
-
-
-def symmetric(table, parts):
-    """Is each of these components its own image under theta -> -theta, and the law its own under both signs?"""
-    wanted = {1: [1], 2: [1, -1]}  # of the radius; of x and y
-    even = all([parity(node) for node in table.parts[k][:-2]] == wanted[len(table.parts[k]) - 2] for k in parts)
-    return even and (table.law is None or parity(table.law) == -1)
-
-
-def pieces(way, said):
-    """The components of a boundary: formulas of each, and the ends of theta."""
-    if way == "component":
-        return [[entry[key] for key in ("x", "y", "from", "to")] for entry in said]
-    return [[said, "-pi", "pi"]] if way == "polar" else [[*said, "-pi", "pi"]]
-
-
-def marks(table, way, scene):
-    """Where the map is undefined, of a boundary that is closed and whose radius is positive."""
-    need(table.closed or way == "component", "scene: theta may stand only in sin(n*theta), cos(n*theta)", Wrong)
-    queue, spent = [(Fraction(-1), Fraction(1))] if way == "polar" else [], 0
-    while queue:
-        (a, b), spent = queue.pop(), spent + 1
-        need(spent < 500, "scene: the radius may not be positive", Wrong)
-        names = table.letters | {"theta": pi(64) * I.of(a, 64).hull(I.of(b, 64))}
-        try:
-            radius = I.of(evaluate(table.parts[0][0], names, 64)[0], 64)
-            need(radius.hi > 0, "scene: the radius may not be positive", Wrong)
-            queue += [] if radius > 0 else [(a, (a + b) / 2), ((a + b) / 2, b)]
-        except Unproved:  # a formula may have no value on a wide piece
-            queue += [(a, (a + b) / 2), ((a + b) / 2, b)]
-    found = []
-    for mark in scene.get("undefined", []):
-        fit = set(mark) == {"name", "component", "theta"} and type(mark["component"]) is int
-        need(fit and 0 <= mark["component"] < len(table.parts), "scene: an undefined point is not understood", Wrong)
-        at = I.of(evaluate(parse(mark["theta"]), table.letters, table.p)[0], table.p)
-        found.append((mark["component"], at))
-    return found

@@ -31,6 +31,18 @@ LAW = (
     "-lam*tanh(eta) + exp(eta)/90 + log(eta**2 + 1)/20 - tan(eta/2)/9 - atan(eta)/9 + sinh(eta)*cosh(eta)/99"
     " + sqrt(eta + 2)/90 - (eta + 2)**(1/3)/80 + (eta + 3)**(-2)/9"
 )
+PEBBLE = (
+    "1.5 0",
+    "1.2 0.61",
+    "0.31 0.98",
+    "-0.73 0.87",
+    "-1.4 0.33",
+    "-1.41 -0.3",
+    "-0.7 -0.9",
+    "0.3 -1",
+    "1.23 -0.58",
+)
+BENT = "-b*eta - eta**3/50"
 RADIUS = "1 + exp(cos(2*theta))/40 + tanh(cos(2*theta))/50 + (2 + cos(2*theta))**(2/3)/60 + E/99"
 EGG, THIRD, HALF = Rational(2, 25), Rational(1, 3), Rational(1, 2)
 
@@ -40,15 +52,17 @@ def value(name: str, digits: int = DIGITS, **shape: Expr) -> Proof:
     return lambda: locate(name, digits, **shape).proof
 
 
-def cycle(table: Table, start: list[float], lam: Expr, law: str = "-lam*eta") -> Proof:
-    """A cycle by itself, of a table of one component."""
-    return lambda: certify(Problem(table, (0,) * len(start), lam=lam, law=Law(law)), start, DIGITS)
+def cycle(table: Table, start: list[float], lam: Expr, law: str = "-lam*eta", parts: tuple[int, ...] = ()) -> Proof:
+    """A cycle by itself, of a table of one component or on these."""
+    return lambda: certify(Problem(table, parts or (0,) * len(start), lam=lam, law=Law(law)), start, DIGITS)
 
 
-def flip(table: Table, start: list[float], free: str, lam: Expr | None = None, mirror: bool = False) -> Proof:
-    """A period doubling of a table of one's own; the last start is that of the free parameter."""
+def flip(
+    table: Table, start: list[float], free: str, lam: Expr | None = None, mirror: bool = False, law: str = "-lam*eta"
+) -> Proof:
+    """A period doubling of a table or law of one's own; the last start is that of the free parameter."""
     closure = Closure(-1 if mirror else 1)
-    problem = Problem(table, (0,) * (len(start) - 1), BifurcationKind.FLIP, free, lam, closure)
+    problem = Problem(table, (0,) * (len(start) - 1), BifurcationKind.FLIP, free, lam, closure, Law(law))
     return lambda: certify(problem, start, DIGITS)
 
 
@@ -111,6 +125,10 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         "law-in-all-words": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF, LAW),
         "radius-in-words": cycle(tables.polar(RADIUS), [pi / 2, -pi / 2], THIRD),
         "free-parameter": flip(family("1 + b*cos(3*theta)", "b", "0:0..1/10"), [0.0, pi, 0.06], "b", THIRD),
+        "spline": cycle(tables.from_points([p.split() for p in PEBBLE]), [0.0024, 0.5175], THIRD, parts=(0, 4)),
+        "scatterer": cycle(tables.sinai(), [0.5, -pi], THIRD, parts=(3, 4)),
+        "moved-waves": cycle(tables.polar("1 + cos(3*theta + 1/2)/20"), [-0.16667, 2.97493], THIRD),
+        "law-parameter": flip(tables.egg(3).at(alpha="3/50"), [0.0, pi, 0.41], "b", THIRD, law=BENT),
         "own-mirror": flip(tables.polar("1 + 2*cos(3*theta)/25"), [0.0845, -2.7749, 0.2878], "lam", mirror=True),
     }
 )

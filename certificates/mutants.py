@@ -16,7 +16,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +24,11 @@ import check
 
 HERE = Path(__file__).parent
 KEPT = HERE.parent / "report" / "mutants.json"
-# short cycles: a thousand mutants of each are a matter of minutes
+# short cycles: a thousand mutants of each are a matter of minutes; first one of each kind
 SAMPLES = (
-    *("minor-axis", "five-waves", "saddle-node", "lambda-c", "alpha-tilde", "alpha-hat", "lambda-star", "phi-star"),
-    *("law-in-all-words", "free-parameter", "own-mirror", "marked-point"),  # tables and laws of one's own
+    *("minor-axis", "saddle-node", "lambda-c", "alpha-hat", "lambda-star", "spline"),
+    *("marked-point", "law-in-all-words", "own-mirror", "law-parameter", "free-parameter"),  # of one's own
+    *("phi-star", "alpha-tilde", "five-waves"),
 )
 TOUCH = "boundary-crisis"  # of the kind of its own; the damage to manifolds and orbit stands for that to bounces
 Document = dict[str, Any]
@@ -119,16 +120,23 @@ def scene(given: Document, dice: random.Random) -> None:
 def formula(given: Document, dice: random.Random) -> None:
     """A digit, a sign or a word of one of the scene's own formulas; or a marked point."""
     said = given["scene"]
-    key = dice.choice([key for key in ("law", "polar", "undefined", "shape") if key in said] or ["law"])
+    key = dice.choice([key for key in ("law", "polar", "component", "undefined", "shape") if key in said] or ["law"])
+    if key == "component":
+        piece, entry = dice.choice(said[key]), dice.choice(("x", "y", "from", "to"))
+        piece[entry] = reworded(piece[entry], dice)
+        return
     if key == "undefined":
         said[key][0][dice.choice(("component", "theta"))] = dice.choice((0, 1, "0", "pi", "-pi", "3*pi", "x", "1/2"))
         return
-    text = said["shape"].get("b", "0..1") if key == "shape" else said.get(key, "-lam*eta")
-    places = list(re.finditer(r"[a-z]{3,}(?=\()|\d|[-+*/]|\.\.", text))
-    place = dice.choice(places)
-    kind = next(kind for kind in (FUNCTIONS, "0123456789", "+-*/", ("..",)) if place[0] in kind)
-    text = text[: place.start()] + dice.choice(kind) + text[place.end() :]
+    text = reworded(said["shape"].get("b", "0..1") if key == "shape" else said.get(key, "-lam*eta"), dice)
     said[key] = {"b": text} if key == "shape" else text
+
+
+def reworded(text: str, dice: random.Random) -> str:
+    """A formula with one digit, sign or word replaced."""
+    place = dice.choice(list(re.finditer(r"[a-z]{3,}(?=\()|\d|[-+*/]|\.\.", text)))
+    kind = next(kind for kind in (FUNCTIONS, "0123456789", "+-*/", ("..",)) if place[0] in kind)
+    return text[: place.start()] + dice.choice(kind) + text[place.end() :]
 
 
 def about(given: Document, dice: random.Random) -> None:
@@ -209,7 +217,7 @@ TOUCHING = (digit, exponent, bound, moved, manifold, manifold, manifold, swapped
 def mutant(name: str, given: Document, k: int) -> Document:
     """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
     dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
-    own = {"law", "polar"} & {*given["scene"]}
+    own = {"law", "polar", "component"} & {*given["scene"]}
     damage = dice.choice(TOUCHING if given["kind"] == "tangency" else OWN if own and name != "five-waves" else DAMAGE)
     damage(found, dice)
     return repaired(found) if damage in (scene, formula, about) and dice.random() < 0.5 else found
@@ -220,21 +228,24 @@ def repaired(given: Document) -> Document:
     for key in ("checks", "statement", "name"):
         if key == "checks" and given["kind"] in check.KINDS:
             given["checks"] = dict.fromkeys(check.KINDS[given["kind"]], True)
-        try:
-            check.checked(given)
-        except (check.Wrong, check.Unproved) as why:
-            asked = re.fullmatch(r"the (statement|name) must be:? (.*)", str(why))
-            if asked:
-                given[asked[1]] = asked[2][1:-1].replace("\\'", "'")
-        except Exception:  # the reader's own net for entries of the wrong kind
-            return given
+        asked = re.fullmatch(r"the (statement|name) must be:? (.*)", verdict(given)[1])
+        if key != "checks" and asked is None:
+            break
+        if asked:
+            given[asked[1]] = asked[2][1:-1].replace("\\'", "'")
     return given
 
 
 def verdict(given: Document) -> tuple[str, str]:
     """What the second reader says of a document: proved, not proved, or refused; and the line."""
+    return verdict_of(json.dumps(given))
+
+
+@lru_cache(maxsize=4)
+def verdict_of(text: str) -> tuple[str, str]:
+    """Of a document as text: one that was repaired is asked for its name, and then for its verdict."""
     try:
-        return "proved", check.checked(given).splitlines()[0]
+        return "proved", check.checked(json.loads(text)).splitlines()[0]
     except check.Unproved as why:
         return "not proved", str(why)
     except check.Wrong as why:
@@ -262,7 +273,7 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
     (name, value, error), (known, true, small) = told(line), told(first)
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
-    keys = ("law", "polar", "undefined", *(("shape",) if "polar" in original["scene"] else ()))
+    keys = ("law", "polar", "component", "undefined", *(("shape",) if "polar" in original["scene"] else ()))
     if any(given["scene"].get(key) != original["scene"].get(key) for key in keys):
         return proved_by_the_package(given)
     same = all(given[key] == original.get(key) for key in ("kind", "scene", "free", *({"mirror"} & set(given))))

@@ -94,7 +94,7 @@ def kept_reports() -> Iterator[tuple[str, list[dict[str, Any]], list[str]]]:
     """Each report of docs/reports: its name, the certificates inside it, and the numbers it calls proved."""
     for path in sorted((ROOT / "docs" / "reports").glob("*.json")):
         blocks = [b for part in json.loads(path.read_text())["sections"] for b in part["blocks"]]
-        inside = [block["document"] | {"schema": 3} for block in blocks if block["kind"] == "certificate"]
+        inside = [block["document"] | {"schema": 4} for block in blocks if block["kind"] == "certificate"]
         cells = [(row[0], cell) for block in blocks for row in block.get("rows", ()) for cell in row]
         told = [cell["value"] for name, cell in cells if isinstance(cell, dict) and is_certified(name, cell)]
         yield path.stem, inside, told

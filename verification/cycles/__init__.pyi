@@ -37,7 +37,7 @@ from .newton import (
     refined,
     settled,
 )
-from .problem import Linearised, NormalForm, Problem, mirrored
+from .problem import Linearised, NormalForm, Problem, mirrored, seen_mirrored
 from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
 from .switching import Box, Curve, Degenerate, Tick, curve, switched
@@ -113,6 +113,7 @@ __all__ = [
     "record",
     "refined",
     "rotations",
+    "seen_mirrored",
     "settled",
     "solved",
     "spectrum_of",

@@ -18,14 +18,14 @@ vanishes. `turn` is the bordering function's derivative by the multiplier: not 0
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import remainder, tau
+from math import prod, remainder, tau
 from typing import Any
 
-from sympy import Expr, simplify
+from sympy import Abs, Expr, atan, cos, cosh, simplify, sin, sinh, tan, tanh
 
 from symbolic.expressions.text import constant, load
 from symbolic.tables.law import PAPERS_LAW, Law
-from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.table import Component, Table, eta, theta
 from verification.arithmetic.balls import Arithmetic
 from verification.arithmetic.iteration import Vector
 from verification.arithmetic.series import Jet, jets
@@ -140,6 +140,35 @@ def mirrored(component: Component) -> bool:
     x, y = component.point
     image = x.subs(theta, -theta) - x, y.subs(theta, -theta) + y, component.start + component.end
     return all(simplify(part) == 0 for part in image)
+
+
+def seen_mirrored(problem: Problem, boundary: bool) -> bool:
+    """Is `theta -> -theta` a symmetry by the signs of each part of the formulas, as a reader without algebra sees it?
+
+    Of the law, and of the boundary where that is no table of the paper.
+    """
+    parts = {problem.table.components[i] for i in problem.components} if boundary else set()
+    wanted = [(part.radius, 1) for part in parts if part.radius is not None]
+    wanted += [(f, sign) for part in parts if part.radius is None for f, sign in zip(part.point, (1, -1), strict=True)]
+    wanted += [] if problem.law.uniform else [(problem.law.phi, -1)]
+    return all(_sign(f) == sign for f, sign in wanted)
+
+
+def _sign(f: Expr) -> int:
+    """What `theta -> -theta, eta -> -eta` multiplies a formula by, from its parts; 0 where they do not say."""
+    if not f.has(theta, eta):
+        return 1
+    if f in (theta, eta):
+        return -1
+    signs = [_sign(part) for part in f.args]
+    if f.is_Add:
+        return signs[0] if len(set(signs)) == 1 else 0
+    if f.is_Mul:
+        return int(prod(signs))
+    if f.is_Pow and f.exp.is_Integer:
+        return signs[0] ** abs(int(f.exp))
+    odd, even = isinstance(f, (sin, tan, sinh, tanh, atan)), isinstance(f, (cos, cosh, Abs))
+    return signs[0] if odd else abs(signs[0]) if even else int(all(sign == 1 for sign in signs))
 
 
 class Linearised:

@@ -3,12 +3,13 @@
 A ball is `[mantissa, exponent]` of its exact midpoint, in decimal text; the radius is one such pair.
 Reading builds the problem from the scene, so that a file can claim anything and prove nothing: `checked` works the
 whole checklist through again. `docs/certificate_format.md` says what each entry means, so that others can read them;
-files of the first version, which had the scene in several entries and no statement in words, and of the second, in
-which a tangency had no orbit, are read as well.
+files of earlier versions are read as well: the first had the scene in several entries and no statement in words, in
+the second a tangency had no orbit, and to the third a fitted table was its points, and pieces were told as Python's.
 """
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,10 @@ from symbolic import tables
 from symbolic.cycles import polygons, thresholds
 from symbolic.tables.definition import (
     BOUNDARY,
+    KEYS,
     KINDS,
+    PAPER,
+    PIECE,
     POINTS,
     UNIFORM,
     boundary_of,
@@ -29,14 +33,14 @@ from symbolic.tables.definition import (
     table_boundary,
     text_entry,
 )
-from symbolic.tables.formula import number
+from symbolic.tables.formula import LENGTH, number
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import bits_of, real_ball, working
-from verification.cycles.problem import Problem
+from verification.cycles.problem import Problem, seen_mirrored
 from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.locate import closed_form
 from verification.proofs.corner.corner import NEAR
@@ -46,8 +50,9 @@ from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 if TYPE_CHECKING:
     from verification.proofs.manifolds.proof import TangencyClaim, TangencyProof
 
-SCHEMA, SECOND, FIRST = 3, 2, 1
-LARGEST_BITS, LARGEST_PERIOD = 200_000, 2**20
+SCHEMA, THIRD, SECOND, FIRST = 4, 3, 2, 1
+LARGEST_BITS, LARGEST_DIGITS, LARGEST_PERIOD, LARGEST_K = 200_000, 60_000, 2**20, 1000
+LONGEST = 1024  # bounces of a certificate that is written
 CHAIN = ("bits", "centre", "radius", "unstable", "stable", "orbit", "meets")  # of a tangency, bounce by bounce
 WORDS = {  # the statement of each kind, which docs/certificate_format.md spells out
     "cycle": "{scene}: exactly one cycle has {n} in the box.",
@@ -62,18 +67,23 @@ WORDS = {  # the statement of each kind, which docs/certificate_format.md spells
 }
 
 
-def document(proof: "Proof | CornerProof | TangencyProof") -> dict[str, Any]:
-    """A proof as a JSON document; its name and its statement are what its equations say, and nothing else."""
+def document(proof: "Proof | CornerProof | TangencyProof", schema: int = SCHEMA) -> dict[str, Any]:
+    """A proof as a JSON document; its name and its statement are what its equations say, and nothing else.
+
+    `ValueError` where the format does not hold what was proved, or another reader would not see it.
+    """
     claim = proof.claim
-    first = {"schema": SCHEMA, "name": name_of(claim)}
+    first = {"schema": schema, "name": name_of(claim, schema)}
     if not isinstance(claim, Claim | CornerClaim):
         words = WORDS["tangency"].format(scene=f"egg, alpha = {claim.alpha}")
         chain = claim.chain() if proof.certified else {}
         return first | {"statement": words} | _contact_said(claim) | chain | {"checks": dict(proof.checks)}
-    what = _special(claim) if isinstance(claim, CornerClaim) else _problem_said(claim.problem)
+    what = _special(claim) if isinstance(claim, CornerClaim) else _problem_said(claim.problem, schema)
+    if schema == SCHEMA:
+        _holds(claim, what)
     return (
         first
-        | {"statement": _words(what)}
+        | {"statement": _words(what, schema)}
         | what
         | {"bits": claim.bits, "digits": claim.digits, "centre": [_pair(x) for x in claim.centre]}
         | {"radius": _pair(claim.radius), "checks": proof.checks}
@@ -103,9 +113,27 @@ def _special(claim: CornerClaim) -> dict[str, Any]:
     return said | {"components": [0, 0], "mirror": corner}
 
 
-def _problem_said(problem: Problem) -> dict[str, Any]:
-    """What a problem is about: kind, scene, free parameter, bounces."""
-    boundary, held = table_boundary(problem.table)
+def _holds(claim: Claim | CornerClaim, said: Mapping[str, Any]) -> None:
+    """`ValueError` where another reader would refuse a document of this version, however right it is."""
+    scene, count = said["scene"], len(said["components"])
+    entries = [claim.bits <= LARGEST_BITS, claim.digits <= LARGEST_DIGITS, count <= LONGEST]
+    if not all([*entries, scene.get("K", 2) <= LARGEST_K]):
+        given = f"{claim.digits} digits, {claim.bits} bits, {count} bounces or K = {scene.get('K', POINTS)}"
+        most = f"{LARGEST_DIGITS} digits, {LARGEST_BITS} bits, {LONGEST} bounces and K = {LARGEST_K}"
+        raise ValueError(f"certificate: {given} is too much; accepted: up to {most}")
+    formulas = [scene.get("polar", ""), *scene.get("parametric", ()), scene.get("law", "")]
+    formulas += [part[key] for part in scene.get("component", ()) for key in PIECE[1:]]
+    if longest := max((text for text in formulas if len(text) > LENGTH), key=len, default=""):
+        raise ValueError(f"certificate: a formula of {len(longest)} characters is too long; accepted: {LENGTH}")
+    if isinstance(claim, Claim) and said["mirror"] and not seen_mirrored(claim.problem, "table" not in scene):
+        raise ValueError(
+            "certificate: that theta -> -theta is a symmetry is proved, but not seen in the formulas node by node"
+        )
+
+
+def _problem_said(problem: Problem, schema: int = SCHEMA) -> dict[str, Any]:
+    """What a problem is about: kind, scene, free parameter, bounces. A fitted table is its fit."""
+    boundary, held = table_boundary(replace(problem.table, fit=None) if schema == SCHEMA else problem.table)
     scene = {key: value for key, value in boundary.items() if key != "name"}
     scene |= {"shape": {parameter: str(value) for parameter, value in held.items()}} if held else {}
     if "table" not in boundary and problem.table.shapes:  # the free parameter of a table of one's own, by its range
@@ -124,21 +152,27 @@ def _law_said(problem: Problem, scene: dict[str, Any]) -> dict[str, Any]:
             f"certificate: law = {problem.law} has another formula in theta on each component of {problem.table.name}, "
             "which a certificate has no words for; write the law in theta"
         )
-    return {"shape": {**scene.get("shape", {}), **dict(problem.law.numbers)}, "law": problem.law.formula}
+    shape, own = scene.get("shape", {}), dict(problem.law.numbers)
+    twice = [name for name in own if shape.get(name, own[name]) != own[name]]
+    if twice:
+        raise ValueError(f"certificate: {twice[0]} is a number of the table, and another one of the law; rename one")
+    return {"shape": {**shape, **own}, "law": problem.law.formula}
 
 
-def _words(said: Mapping[str, Any]) -> str:
+def _words(said: Mapping[str, Any], schema: int) -> str:
     """The statement of a document in words."""
     count = len(said["components"])
     n = f"{count} bounces, and then their mirror images," if said["mirror"] else f"its {count} bounces"
-    return WORDS[said["kind"]].format(scene=_title(said["scene"]), n=n, free=said["free"])
+    return WORDS[said["kind"]].format(scene=_title(said["scene"], schema), n=n, free=said["free"])
 
 
-def _title(scene: Mapping[str, Any]) -> str:
+def _title(scene: Mapping[str, Any], schema: int) -> str:
     """A scene in words."""
-    formulas = "; ".join(str(scene[key]) for key in KINDS[1:] if key in scene)
     kind = next(key for key in KINDS if key in scene)
-    title = scene["table"] if kind == "table" else f"{kind} {formulas}"
+    title = scene[kind] if kind == "table" else f"{kind} {scene[kind]}"
+    if schema == SCHEMA and kind in ("parametric", "component"):
+        pieces = scene[kind]
+        title = f"boundary of {len(pieces)} pieces" if kind == "component" else f"parametric {'; '.join(pieces)}"
     points = f" of {scene['K']} points" if "K" in scene else ""
     law = [("phi", scene["law"])] if "law" in scene else []
     numbers = [(name, text) for name, text in scene.get("shape", {}).items() if ".." not in text]
@@ -150,7 +184,7 @@ def _lam(scene: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [("lam", scene["lam"])] if "lam" in scene else []
 
 
-def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
+def name_of(claim: "Claim | CornerClaim | TangencyClaim", schema: int = SCHEMA) -> str:
     """What a claim states; by its name where its box holds the one value that `locate` has a closed form for.
 
     A crisis has no name here, since a tangency is all that is proved of it; nor has a doubling, since other
@@ -180,11 +214,11 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim") -> str:
             claim, polygons.saddle_node().subs(alpha_symbol, alpha)
         ):
             return "saddle-node"
-    said = _problem_said(problem)
+    said = _problem_said(problem, schema)
     half = "half of a symmetric cycle," if problem.mirror else "a cycle"
     if problem.kind is None:
-        return f"{half} of period {problem.period}: {_title(said['scene'])}"
-    return f"{said['kind']} of {half} of period {problem.period} in {problem.free}: {_title(said['scene'])}"
+        return f"{half} of period {problem.period}: {_title(said['scene'], schema)}"
+    return f"{said['kind']} of {half} of period {problem.period} in {problem.free}: {_title(said['scene'], schema)}"
 
 
 def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
@@ -196,7 +230,7 @@ def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
 def claim_of(given: Mapping[str, Any]) -> Claim | CornerClaim:
     """The claim of a document; `ValueError` with the entry that is wrong."""
     try:
-        if given["schema"] not in (FIRST, SECOND, SCHEMA):
+        if given["schema"] not in range(FIRST, SCHEMA + 1):
             raise ValueError(
                 f"certificate: schema = {given['schema']} is unknown; this version reads {FIRST} to {SCHEMA}"
             )
@@ -250,7 +284,7 @@ def _problem(said: Mapping[str, Any], lam: Any, box: arb) -> Problem:
     if not 2 <= len(components) <= LARGEST_PERIOD:
         raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
     scene = said["scene"]
-    known_entries("certificate: scene", scene, (*KINDS, "K", "undefined", "origin", "shape", "law", "lam"))
+    known_entries("certificate: scene", scene, tuple(key for key in KEYS if key != "name"))
     law = Law(text_entry("law", scene.get("law", UNIFORM)))
     texts = scene.get("shape", {})
     ranges = {parameter: text for parameter, text in texts.items() if isinstance(text, str) and ".." in text}
@@ -259,8 +293,9 @@ def _problem(said: Mapping[str, Any], lam: Any, box: arb) -> Problem:
     numbers = {parameter: number(text, parameter) for parameter, text in texts.items() if parameter not in ranges}
     law = law.at(**{parameter: numbers[parameter] for parameter in law.parameters if parameter in numbers})
     if "table" in scene:
-        shape = {parameter: value for parameter, value in numbers.items() if parameter not in dict(law.numbers)}
-        table = tables.named(scene["table"], int(scene.get("K", POINTS))).at(**shape)
+        table = tables.named(scene["table"], int(scene.get("K", POINTS)))
+        own = set(numbers) - (set(dict(law.numbers)) - set(PAPER[table.name]))  # one number may be of both
+        table = table.at(**{parameter: numbers[parameter] for parameter in own})
     elif ranges:
         table = _over(scene, *next(iter(ranges.items())), box)
     else:
@@ -295,11 +330,11 @@ def checked(given: Mapping[str, Any]) -> "Proof | CornerProof | TangencyProof":
     Name and statement must be those that the equations have, and the list of checks must be whole.
     """
     proof: Proof | CornerProof | TangencyProof
-    if given.get("kind") == "tangency" and given.get("schema") in (FIRST, SECOND, SCHEMA):
+    if given.get("kind") == "tangency" and given.get("schema") in range(FIRST, SCHEMA + 1):
         from verification.proofs.manifolds import proof as tangency  # NumPy, which no other certificate needs
 
         try:
-            contact = tangency.claim_of(_contact_of(given) if given["schema"] == SCHEMA else given)
+            contact = tangency.claim_of(_contact_of(given) if given["schema"] >= THIRD else given)
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
         _rightly_named(given, contact)
@@ -308,8 +343,8 @@ def checked(given: Mapping[str, Any]) -> "Proof | CornerProof | TangencyProof":
         claim = claim_of(given)
         _rightly_named(given, claim)
         proof = corner_proved(claim) if isinstance(claim, CornerClaim) else proved(claim)
-    if given["schema"] == SCHEMA or (given["schema"] == SECOND and given["kind"] != "tangency"):
-        _rightly_said(given, json.loads(json.dumps(document(proof) | {"schema": given["schema"]})))
+    if given["schema"] >= THIRD or (given["schema"] == SECOND and given["kind"] != "tangency"):
+        _rightly_said(given, json.loads(json.dumps(document(proof, given["schema"]))))
     return proof
 
 
@@ -319,8 +354,8 @@ def check(path: Path | str) -> "Proof | CornerProof | TangencyProof":
 
 
 def _rightly_named(given: Mapping[str, Any], claim: "Claim | CornerClaim | TangencyClaim") -> None:
-    said, true = given.get("name"), name_of(claim)
-    if given["schema"] != SCHEMA and given["kind"] == "tangency":
+    said, true = given.get("name"), name_of(claim, given["schema"])
+    if given["schema"] < THIRD and given["kind"] == "tangency":
         true = _name_before(claim)
     if said != true:
         raise ValueError(f"certificate: name = {ascii(said)[:80]} is not what it states, which is {true!r}")

@@ -210,7 +210,11 @@ def _proved(asked: Asked, plain: Located, proof: Proof, name: str) -> Located:
     open_ = [item for item, holds in proof.checks.items() if holds is not True]
     checks = f"open: {', '.join(open_)}" if open_ else f"all {len(proof.checks)} items hold"
     number = Number(value, radius, Known.FLOAT if open_ else Known.PROVED)
-    return Located(plain.event, plain.label, number, checks, None if open_ else Certificate(name, document(proof)))
+    try:
+        certificate = None if open_ else Certificate(name, document(proof))
+    except ValueError as why:  # what the format does not hold
+        return Located(plain.event, plain.label, number, f"{checks}; no file: {why}", None)
+    return Located(plain.event, plain.label, number, checks, certificate)
 
 
 def plane_of(asked: Asked) -> Plane:

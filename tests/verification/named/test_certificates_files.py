@@ -2,12 +2,14 @@
 
 import copy
 import json
+from dataclasses import replace
 
 import pytest
 from sympy import Rational, sqrt
 
-from symbolic import tables
+from symbolic import Law, tables
 from verification.cycles.problem import Problem
+from verification.cycles.recurrence import Closure
 from verification.named.files import checked, claim_of, document, read
 from verification.named.locate import certify, locate
 
@@ -136,6 +138,77 @@ def test_a_cycle_of_a_table_given_by_a_formula_has_a_certificate():
     assert document(checked(made)) == made
 
 
+POINTS = [(2, 0), (1, "1.3"), (0, "1.5"), (-2, 0), ("-0.1", "-1.5")]
+
+
+@pytest.mark.parametrize("fit", [{}, {"smoothness": 1}, {"degree": 2, "by": "index"}], ids=str)
+def test_a_table_fitted_to_points_is_told_by_the_formulas_of_its_fit(fit):
+    """A reader need not fit again, and what is proved is so for the fit."""
+    table = tables.from_points(POINTS, "oval", **fit)
+    across = (0, 3) if len(table.components) > 1 else (0, 0)
+    start = [0.02, 0.0] if len(table.components) > 1 else [0.0, 3.1]
+    proof = certify(Problem(table, across, lam=Rational(1, 3)), start, 20)
+    made = json.loads(json.dumps(document(proof)))
+    kind, words = ("parametric", "parametric ") if "degree" in fit else ("component", "boundary of 5 pieces, lam = 1/3")
+
+    assert kind in made["scene"]
+    assert made["statement"].startswith(words)
+    assert document(checked(made)) == made
+
+
+def test_files_of_the_third_version_are_read():
+    """Where a fitted table was its points, and pieces were told as Python writes them."""
+    proof = certify(Problem(tables.from_points(POINTS, "oval"), (0, 3), lam=Rational(1, 3)), [0.02, 0.0], 20)
+    made = json.loads(json.dumps(document(proof, 3)))
+
+    assert "points" in made["scene"]
+    assert document(checked(made), 3) == made
+    with pytest.raises(ValueError, match=r"name = .* is not what it states"):
+        checked(made | {"schema": 4})
+
+
+def test_one_name_for_a_number_of_the_table_and_another_of_the_law_is_refused():
+    """The file would be about a table that nobody asked for: the egg with the law's number for its shape."""
+    egg, law = tables.egg(3).at(alpha="2/25"), Law("-lam*eta - alpha*eta**3")
+    other, same = (
+        certify(Problem(egg, (0, 0, 0), lam=Rational(1, 2), law=law.at(alpha=number)), [0.96, 3.05, 5.15], 20)
+        for number in ("1/100", "2/25")
+    )
+    with pytest.raises(ValueError, match="alpha is a number of the table, and another one of the law"):
+        document(other)
+
+    assert checked(json.loads(json.dumps(document(same)))).certified
+
+
+def test_a_law_that_is_another_a_round_further_on_proves_nothing_beyond_the_ends():
+    """Its exit angle at `theta = 5.15` is not that at the same point of the egg, `5.15 - 2*pi`."""
+    egg = tables.egg(3).at(alpha="2/25")
+    for formula, starts in (("theta/100", (5.15,)), ("cos(3*theta)/100", (5.15, -1.13))):
+        for last in starts:
+            problem = Problem(egg, (0, 0, 0), lam=Rational(1, 2), law=Law(f"-lam*eta*(1 + {formula})"))
+            proof = certify(problem, [0.96, 3.05, last], 20)
+            known = formula == "theta/100"
+
+            assert proof.checks["admissible"] is (None if known else True)
+
+
+def test_a_symmetry_that_only_algebra_sees_is_not_written():
+    proof = certify(Problem(tables.polar("1 + cos(5*theta)/40"), (0, 0), lam=Rational(1, 3)), [0.0, 3.14], 20)
+    table = tables.polar("1 + cos(theta - pi/7)*cos(theta + pi/7)/20")  # even, as its sum of waves would show
+    mirrored = Problem(table, (0, 0), lam=Rational(1, 3), closure=Closure(-1))
+
+    with pytest.raises(ValueError, match="not seen in the formulas"):
+        document(replace(proof, claim=replace(proof.claim, problem=mirrored)))
+
+
+def test_what_the_format_does_not_hold_is_refused_in_one_sentence():
+    proof = certify(Problem(tables.polar("1 + cos(5*theta)/40"), (0, 0), lam=Rational(1, 3)), [0.0, 3.14], 20)
+    long = replace(proof, claim=replace(proof.claim, digits=70_000))
+
+    with pytest.raises(ValueError, match=r"70000 digits, .* is too much; accepted: up to 60000 digits"):
+        document(long)
+
+
 def test_an_angle_is_not_told_under_the_name_of_a_contraction():
     made = document(locate("phi-star", 20).proof)
 
@@ -153,7 +226,7 @@ def test_a_contraction_beyond_one_is_refused():
 @pytest.mark.parametrize(
     ("entry", "value", "message"),
     [
-        ("schema", 4, "schema = 4 is unknown"),
+        ("schema", 5, "schema = 5 is unknown"),
         ("bits", 10**9, "out of range"),
         ("scene", EGG | {"table": "egg; import os"}, "no table is called"),
         ("scene", EGG | {"shape": {"alpha": "__import__('os').system('true')"}}, "."),

@@ -6,6 +6,7 @@
 import json
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -159,7 +160,7 @@ def marked(path: str, scene: Scene, parameter: str) -> "Marked":
     from verification.plots.results import Marked
 
     given = read(Path(path))
-    boundary, held = table_boundary(scene.table)
+    boundary, held = table_boundary(replace(scene.table, fit=None))
     shape = {name: str(value) for name, value in held.items()} | dict(scene.law.numbers)
     own = {key: value for key, value in boundary.items() if key != "name"}
     own |= ({} if scene.law.uniform else {"law": scene.law.formula}) | {"shape": shape}

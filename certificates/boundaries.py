@@ -1,0 +1,158 @@
+"""Boundaries and laws of one's own, for `check.py`: pieces, periods, symmetry and marks, from their formulas alone.
+
+A formula is a tree, as `check.parse` makes it. What is asked of one is seen in its nodes, or refused.
+"""
+
+import ast
+from fractions import Fraction
+
+from check import I, Unproved, Wrong, evaluate, need, parse, pi
+
+ODD, EVEN = ("sin", "tan", "sinh", "tanh", "atan"), ("cos", "cosh", "abs", "Abs")  # as functions
+
+
+def parity(node):
+    """1 of a formula that theta -> -theta, eta -> -eta leaves as it is, -1 of one whose sign it turns, 0 of others."""
+    if isinstance(node, ast.Constant):
+        return 1
+    if isinstance(node, ast.Name):
+        return -1 if node.id in ("theta", "eta") else 1
+    if isinstance(node, ast.UnaryOp):
+        return parity(node.operand)
+    if isinstance(node, ast.Call):
+        name, inner = getattr(node.func, "id", ""), parity(node.args[0])
+        return inner if name in ODD else abs(inner) if name in EVEN else max(inner, 0)
+    x, y = parity(node.left), parity(node.right)
+    if isinstance(node.op, ast.Add | ast.Sub):
+        return x if x == y else 0
+    if isinstance(node.op, ast.Mult | ast.Div):
+        return x * y
+    exponent = linear(node.right) or {}
+    whole = set(exponent) == {""} and exponent[""].denominator == 1
+    return x ** abs(int(exponent[""])) if whole else max(x, 0) * max(y, 0)
+
+
+def symmetric(table, parts):
+    """Is each of these components its own image under theta -> -theta, and the law its own under both signs?"""
+    wanted = {1: [1], 2: [1, -1]}  # of the radius; of x and y
+    even = all([parity(node) for node in table.parts[k][:-2]] == wanted[len(table.parts[k]) - 2] for k in parts)
+    return even and (table.law is None or parity(table.law) == -1)
+
+
+def linear(node):
+    """The coefficients of a sum of letters and `pi` times fractions, the constant under no name; None of another."""
+    if isinstance(node, ast.Constant | ast.Name):
+        return {"": node.value} if isinstance(node, ast.Constant) else {node.id: Fraction(1)}
+    if isinstance(node, ast.UnaryOp):
+        return times(linear(node.operand), {"": Fraction(-1 if isinstance(node.op, ast.USub) else 1)})
+    x, y = map(linear, (node.left, node.right)) if isinstance(node, ast.BinOp) else (None, None)
+    if x is None or y is None:
+        return None
+    if isinstance(node.op, ast.Div) and {*y} == {""}:
+        return times(x, {"": 1 / y[""]})
+    if isinstance(node.op, ast.Mult):
+        return times(x, y)
+    return plus(x, y, -1 if isinstance(node.op, ast.Sub) else 1) if isinstance(node.op, ast.Add | ast.Sub) else None
+
+
+def times(x, y):
+    """The product of two such sums where one of them is a fraction."""
+    if x is None or {*x} <= {""}:
+        x, y = y, x
+    return x and y and ({k: v * y[""] for k, v in x.items()} if {*y} == {""} else None)
+
+
+def plus(x, y, sign):
+    found = {key: x.get(key, 0) + sign * y.get(key, 0) for key in {*x, *y}}
+    return {key: v for key, v in found.items() if v}
+
+
+def has_theta(node):
+    return any(isinstance(part, ast.Name) and part.id == "theta" for part in ast.walk(node))
+
+
+def slope(node):
+    """The fraction that theta has in a formula that is else free of it; None of one that is not of this form."""
+    if not has_theta(node):
+        return Fraction(0)
+    parts = [node.left, node.right] if isinstance(node, ast.BinOp) else [getattr(node, "operand", None)]
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub) and None not in map(slope, parts):
+        return slope(parts[0]) + slope(parts[1]) * (1 if isinstance(node.op, ast.Add) else -1)
+    found = linear(node)
+    return found and found.get("theta")
+
+
+def periodic(node):
+    """Does theta stand only in sines, cosines and tangents of whole numbers times theta, and of what has none?"""
+    if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("sin", "cos", "tan"):
+        rate = slope(node.args[0])
+        if rate is not None and rate.denominator == 1:
+            return True
+    if isinstance(node, ast.Name):
+        return node.id != "theta"
+    return all(periodic(part) for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr))
+
+
+def closed(part):
+    """Is a component a curve that comes round after 2*pi, from its formulas and its ends?"""
+    start, end = map(linear, part[-2:])
+    round_once = ast.BinOp(part[-1], ast.Sub(), part[-2])
+    return start is not None and end is not None and linear(round_once) == {"pi": 2} and all(map(periodic, part[:-2]))
+
+
+def called_by(way, said):
+    """A boundary in words."""
+    return {
+        "polar": lambda: f"polar {said}",
+        "parametric": lambda: f"parametric {'; '.join(said)}",
+        "component": lambda: f"boundary of {len(said)} pieces",
+    }[way]()
+
+
+def pieces(way, said):
+    """The components of a boundary: formulas of each, and the ends of theta."""
+    if way == "component":
+        return [[entry[key] for key in ("x", "y", "from", "to")] for entry in said]
+    return [[said, "-pi", "pi"]] if way == "polar" else [[*said, "-pi", "pi"]]
+
+
+def own(table, way, scene):
+    """Which components are closed, and where the map is undefined; a radius is positive where nothing is marked.
+
+    Where a law has theta, and not its period, a bounce lies between the ends."""
+    if way != "table":
+        table.closed = list(map(closed, table.parts))
+        need(way == "component" or table.closed[0] or comes_round(table), "scene: the boundary is not closed", Wrong)
+        table.marks = [marked(table, mark) for mark in scene.get("undefined", [])]
+        if way == "polar" and not table.marks:
+            positive(table)
+    if table.law and not periodic(table.law):
+        table.closed = [False] * len(table.parts)
+
+
+def comes_round(table):
+    """Do the ends of the first component meet, as far as can be seen? Of one whose period is not seen."""
+    (x, y, *_), (u, v, *_) = (table.at(0, end, table.letters, table.p) for end in table.ends(0, table.p))
+    return 0 in I.of(x - u, table.p) and 0 in I.of(y - v, table.p)
+
+
+def positive(table):
+    """Refuses a radius that may not be, over the range of a free parameter."""
+    queue, spent = [(Fraction(-1), Fraction(1))], 0
+    while queue:
+        (a, b), spent = queue.pop(), spent + 1
+        need(spent < 500, "scene: the radius may not be positive", Wrong)
+        names = table.letters | {"theta": pi(64) * I.of(a, 64).hull(I.of(b, 64))}
+        try:
+            radius = I.of(evaluate(table.parts[0][0], names, 64)[0], 64)
+            need(radius.hi > 0, "scene: the radius may not be positive", Wrong)
+            queue += [] if radius > 0 else [(a, (a + b) / 2), ((a + b) / 2, b)]
+        except Unproved:  # a formula may have no value on a wide piece
+            queue += [(a, (a + b) / 2), ((a + b) / 2, b)]
+
+
+def marked(table, mark):
+    """Component and parameter of a point where the map is undefined."""
+    fit = set(mark) == {"name", "component", "theta"} and type(mark["component"]) is int
+    need(fit and 0 <= mark["component"] < len(table.parts), "scene: an undefined point is not understood", Wrong)
+    return mark["component"], I.of(evaluate(parse(mark["theta"]), table.letters, table.p)[0], table.p)

@@ -541,9 +541,9 @@ def checked(given):
     need(items == dict.fromkeys(KINDS[kind], True), f"checks must list as true: {', '.join(KINDS[kind])}", Wrong)
     centre, radius, parts = [exact(pair) for pair in centre], exact(radius), given.get("components", [0, 0])
     letters = {"cycle": [""], "corner": ["lam", "phi"], "focus": ["alpha"], "tangency": ["lam"]}.get(kind)
-    fit = type(bits) is type(digits) is int and 16 <= bits <= 200_000 and 1 <= digits <= 60_000 and radius > 0
+    fit = type(bits) is type(digits) is int and 16 <= bits <= 200_000 and 1 <= digits <= 60_000 and 0 < radius <= 1
     fit = fit and isinstance(parts, list) and 2 <= len(parts) <= 1024 and type(given.get("mirror", False)) is bool
-    fit = fit and (free in letters if letters else type(free) is str and free != "")
+    fit = fit and (free in letters if letters else type(free) is str and free != "") and max(map(abs, centre)) < 10**6
     need(fit, "bits, digits, free or radius is out of range", Wrong)
     p = 16 * len(parts) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)

@@ -166,7 +166,7 @@ def _sign(f: Expr) -> int:
     if f.is_Mul:
         return int(prod(signs))
     if f.is_Pow and f.exp.is_Integer:
-        return signs[0] ** abs(int(f.exp))
+        return signs[0] if f.exp % 2 else abs(signs[0])
     odd, even = isinstance(f, (sin, tan, sinh, tanh, atan)), isinstance(f, (cos, cosh, Abs))
     return signs[0] if odd else abs(signs[0]) if even else int(all(sign == 1 for sign in signs))
 

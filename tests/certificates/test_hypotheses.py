@@ -68,7 +68,9 @@ def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, z
     ],
 )
 def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve_nor_law(check, radius, law, closed):
-    assert check.Table([(radius, "-pi", "pi")], {}, law, 60).closed is closed
+    scene = {"polar": radius, "lam": "1/3"} | ({"law": law} if law else {})
+
+    assert check.read_scene(scene, "", 60)[0].closed == [closed]
 
 
 @pytest.mark.parametrize(("cubic", "degenerate"), [("-1/9", True), ("1/9", False), ("0", False)])

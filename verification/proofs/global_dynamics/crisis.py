@@ -80,7 +80,8 @@ class Branch(NamedTuple):
 class BoundaryCrisis:
     """The branch on one `side` of a saddle's unstable manifold is kept at `lam[0]` and leaves at `lam[1]`.
 
-    A round of the saddle is one bounce and a turn of the table, as that of a polygon is; the law is the paper's.
+    A round of the saddle is one bounce and a turn of the table, as that of a polygon is; the law is one of `eta` and
+    `lam`, the same everywhere, below `pi/2` by a margin.
     `start` is where, on a piece of the branch from a point to its image, from 0 to 1, the orbit that leaves begins;
     `sink` is a phase point `(theta, phi)` from which `taken` is grown. The boxes are those of a grid of `columns` by
     `rows`, each cut into `parts` by `parts`.
@@ -103,17 +104,20 @@ class BoundaryCrisis:
         turns = {Fraction(0)} | {Fraction(*g.shift) for g in symmetries(self.scene.table) if g.turn == 1}
         if len(self.saddle.start) != 1 or closure.turn != 1 or Fraction(*closure.shift) % 1 not in turns:
             raise ValueError(f"crisis: a round of the {self.saddle.name} is not one bounce and a turn of the table")
-        if not self.scene.law.uniform:
-            raise ValueError(f"crisis: law = {self.scene.law}; accepted: the paper's, phi = -lam*eta")
+        if self.scene.law.placed:
+            raise ValueError(f"crisis: law = {self.scene.law}; a round turns the table; accepted: laws of eta and lam")
         if not all(abs(x) < FAR for x in (*self.saddle.start, *self.sink)):
             raise ValueError(f"crisis: the saddle at {self.saddle.start} or the sink at {self.sink} is out of range")
         if self.side not in (1, -1) or not 0 < low < high < 1 or not 0 <= self.start <= 1:
             raise ValueError(f"crisis: side = {self.side}, lam = {low}:{high} or start = {self.start} is out of range")
+        if not self.scene.law.uniform:
+            PinballImages(self.scene, self.lam)  # refuses a law without the strip in which all particles are
 
     @property
     def name(self) -> str:
         """What is stated."""
         shape = "".join(f", {name} = {value}" for name, value in self.scene.shape.items())
+        shape += "" if self.scene.law.uniform else f", phi = {self.scene.law}"
         (low, high), (p, q), (at,) = self.lam, self.saddle.closure.shift, self.saddle.start
         saddle = f"saddle at theta = {at:.5f}, {p}/{q} of a turn a bounce, side {self.side:+d}"
         return f"boundary crisis of {self.scene.name}{shape}, {saddle}: lam between {low} and {high}"
@@ -154,7 +158,7 @@ class BoundaryCrisis:
     @property
     def map(self) -> Pinball:
         """The map, by its rule."""
-        return Pinball(self.scene.table, turn=self.saddle.closure.shift[1])
+        return Pinball(self.scene.table, turn=self.saddle.closure.shift[1], law=self.scene.law)
 
     def _continued(self) -> tuple[Saddle, Saddle]:
         """The saddle over the first and the last part of the contractions, of one curve of cycles over all of them.
@@ -264,7 +268,7 @@ def bracket(
     'boundary crisis of egg'
     """
     low, high = (float(x) for x in lam)
-    plane = Pinball(scene.table, turn=orbit.closure.shift[1]).over(ARRAYS)
+    plane = Pinball(scene.table, turn=orbit.closure.shift[1], law=scene.law).over(ARRAYS)
     orbit = replace(orbit, start=tuple(saddle(orbit, plane.over(FLOAT64), low).points))
     made = local(saddle(orbit, plane.over(FLOAT64), high), True, 28)
     unit, factor = scale(orbit, plane, high, True, OUTER).unit, float(made.factor)

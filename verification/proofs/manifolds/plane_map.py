@@ -15,6 +15,9 @@ from typing import Any, Protocol, Self
 import numpy as np
 from sympy import Expr
 
+from symbolic.expressions.text import load
+from symbolic.motion.chords import law_kernel
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, Arithmetic
 from verification.arithmetic.iteration import Stop, Vector, iterated, largest
@@ -134,8 +137,9 @@ class Henon(_Bound):
 class Pinball(_Bound):
     """The pinball map of a convex table of one component, with `lam` for its parameter, on angles that count turns.
 
-    Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal; backwards it came
-    from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`.
+    Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal, or what another law says;
+    backwards, under the paper's law alone, it came from where the chord makes `-phi/lam`, which is no angle of a
+    chord, and so `nan`, beyond `pi/2`.
 
     >>> from symbolic.tables import circle
     >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)
@@ -145,15 +149,21 @@ class Pinball(_Bound):
     table: Table
     label: str = "pinball"
     turn: int = 1
+    law: Law = PAPERS_LAW
 
     @property
     def ring(self) -> Recurrence:
-        return Chords(self.table, (0,))
+        return Chords(self.table, (0,), law=self.law)
 
     def following(self, previous: Any, here: Any, parameter: Any) -> Any:
-        return self._other_end(here, -parameter * self.angle(here, previous)[0], 0)
+        eta = self.angle(here, previous)[0]
+        if self.law.uniform:
+            return self._other_end(here, -parameter * eta, 0)
+        return self._other_end(here, load(law_kernel(self.law, 0), self.words)(eta, parameter, here)[0], 0)
 
     def previous(self, here: Any, following: Any, parameter: Any) -> Any:
+        if not self.law.uniform:
+            raise ValueError(f"{self.label}: law = {self.law} is not solved for the angle of incidence")
         return self._other_end(here, -self.angle(here, following)[0] / parameter, -1)
 
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:

@@ -7,11 +7,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app import cli
+from verification.arithmetic.balls import FLOAT64
 from verification.cycles.recurrence import Closure
 from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket
 from verification.proofs.manifolds.known import BOUNDARY, CONTACTS, SHAPE
+from verification.proofs.manifolds.saddle import saddle
 
 BELOW, ABOVE = Fraction(3, 5), Fraction(663, 1000)
 GRID = (1024, 512, 1)
@@ -52,6 +55,35 @@ def test_another_saddle_than_the_one_that_is_named_is_refused(found):
 def test_a_table_of_several_components_is_refused(found):
     with pytest.raises(ValueError, match="several components"):
         replace(found, scene=Scene("cuspless"))
+
+
+BENT = Scene("egg", alpha="0.08", law="-lam*eta*(1 - eta**2/40)")
+
+
+def test_the_branch_of_a_crisis_under_another_law_is_one_of_its_map(found):
+    """From -1/8 to 0 on a round: a point and its image a round later, turned back, by the kernels' own map."""
+    bent = replace(
+        found, scene=BENT, saddle=replace(found.saddle, start=(-0.19822,)), lam=(Fraction(31, 50), Fraction(17, 25))
+    )
+    plane = bent.map.over(FLOAT64)
+    bent = replace(bent, saddle=replace(bent.saddle, start=tuple(saddle(bent.saddle, plane, 0.62).points)))
+    branch = bent._branch(bent._continued()[0], bent.lam[0], 160)
+    ((theta, phi), (theta1, phi1)) = bent._launched(branch, np.array([-1.0, 0.0]), np.array([-1.0, 0.0]))
+    step = PinballMap(BENT, lam=0.62, kernels=False).step(float(theta.mid()), float(phi.mid()))
+
+    assert abs(np.sin((step.theta - float(theta1.mid()) - 2 * np.pi / 3) / 2)) < 1e-13
+    assert abs(step.phi - float(phi1.mid())) < 1e-13
+    assert "phi = -eta*lam*(1 - eta**2/40)" in bent.name
+    assert BoundaryCrisis.from_dict(bent.to_dict()) == bent
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [("-lam*eta + cos(3*theta)/20", "a round turns the table"), ("-lam*eta + s/50", "turns"), ("-eta", "by a margin")],
+)
+def test_a_law_without_the_crisis_hypotheses_is_refused(found, law, said):
+    with pytest.raises(ValueError, match=said):
+        replace(found, scene=Scene("egg", alpha="0.08", lam="1/2", law=law))
 
 
 def test_nothing_leaves_below_the_crisis(found):

@@ -197,7 +197,6 @@ def first_hit(tables: Any = None, **options: Any) -> Test:
         proved = balls.bounce(balls.ball(particle.component, particle.theta, particle.phi))
         if isinstance(proved, Refusal):
             assume(False)
-            return
         assert not proved.code, proved.code
         found = particle.map.derivative(particle.theta, particle.phi, particle.component)
         gap = np.hypot(float(proved.x.mid()) - step.x, float(proved.y.mid()) - step.y)

@@ -66,16 +66,18 @@ def shapes(draw: st.DrawFn, name: str, K: int = 3) -> dict[str, Fraction]:
     return {}
 
 
-# a law that is one for every contraction, and the largest `a` in either direction: all are proved when a map is made
+# forms of a law for every contraction, and the ends of `a`, which are proved to give one when a map is made
 BENT = {
-    "-lam*eta + {a}*sin(2*eta)": (-2, 2),
-    "-lam*eta - {a}*eta*(pi**2/4 - eta**2)": (-1, 1),
-    "-lam*eta*(1 - {a}*cos(eta)**2)": (0, 5),
-    "-lam*sin(eta)": (0, 0),
-    "-lam*eta + {a}*cos(eta)**4": (-1, 1),  # not odd: a mirror of the table is no symmetry of its map
+    "-lam*eta + {a}*sin(2*eta)": (Fraction(-2, 5), Fraction(2, 5)),
+    "-lam*eta - {a}*eta*(pi**2/4 - eta**2)": (Fraction(-1, 7), Fraction(1, 7)),
+    "-lam*eta*(1 - {a}*cos(eta)**2)": (Fraction(0), Fraction(1)),
+    "-lam*sin(eta)": (Fraction(0), Fraction(0)),
+    "-lam*eta + {a}*cos(eta)**4": (Fraction(-1, 7), Fraction(1, 7)),  # not odd: no mirror is a symmetry of the map
 }
-PLACED = {"-lam*eta + {a}*cos(theta)*sin(2*eta)": (-2, 2), "-lam*eta*(3/4 - {a}*sin(theta))": (-1, 1)}
-FIFTHS = {2: Fraction(2, 5), 1: Fraction(1, 7), 5: Fraction(1)}
+PLACED = {
+    "-lam*eta + {a}*cos(theta)*sin(2*eta)": (Fraction(-2, 5), Fraction(2, 5)),
+    "-lam*eta*(3/4 - {a}*sin(theta))": (Fraction(-1, 7), Fraction(1, 7)),
+}
 
 
 @st.composite
@@ -87,8 +89,7 @@ def reflections(draw: st.DrawFn, placed: bool = True) -> str:
     formula: str = draw(st.sampled_from([UNIFORM, *BENT, *(PLACED if placed else ())]))
     if formula == UNIFORM:
         return formula
-    low, high = {**BENT, **PLACED}[formula]
-    a = draw(st.fractions(-FIFTHS.get(-low, Fraction(0)), FIFTHS.get(high, Fraction(0)), max_denominator=20))
+    a = draw(st.fractions(*{**BENT, **PLACED}[formula], max_denominator=20))
     return formula.format(a=f"({a})")
 
 

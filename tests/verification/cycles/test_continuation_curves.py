@@ -151,16 +151,19 @@ def run(*words):
 def test_an_event_is_followed_in_any_second_parameter_and_from_either_of_the_two(tmp_path):
     """Met at b = 1/40 as the contraction varies, or at lam = 1/10 as b does: one curve."""
     start, ends = ("--start", "0,3.14159265"), []
-    one = ("--shape", "b=1/40", "--lam", "0:1", "--at", "1/10", "--curves", "b=0:1/30")
-    other = ("--shape", "b=1/40:0..1/30", "--shape", "b=1/60:1/30", "--lam", "1/10", "--curves")
+    one = ("--shape", "b=1/40", "--lam", "0:0.3", "--at", "1/10", "--curves", "b=0:1/30")
+    other = ("--shape", "b=1/40:0..1/30", "--shape", "b=1/60:1/30", "--lam", "1/10", "--curves", "lam=0:0.3")
     for number, words in enumerate((one, other)):
         file = tmp_path / f"{number}.json"
-        assert run("--polar", "1 + b*cos(5*theta)", *start, *words, "--json", str(file)).return_value == 0
+        assert (
+            run("--polar", "1 + b*cos(5*theta)", *start, *words, "--points", "60", "--json", str(file)).return_value
+            == 0
+        )
         (curve,) = json.loads(file.read_text())["curves"]
         ends += [sorted([curve["b_lam"][0], curve["b_lam"][-1]])]
 
     assert np.allclose(ends[0], ends[1], atol=1e-9)
-    assert [lam for _, lam in ends[0]] == [1.0, 0.0]
+    assert [lam for _, lam in ends[0]] == [0.3, 0.0]
 
 
 @pytest.mark.parametrize(

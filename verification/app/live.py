@@ -3,194 +3,66 @@
 import os
 import shlex
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
+from urllib.parse import parse_qsl, urlencode
 
 import numpy as np
 import panel as pn
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, PointDrawTool
+from bokeh.models import ColumnDataSource, PointDrawTool, Range1d, Span
 from bokeh.plotting import figure
 
-from numeric import Orbit, PinballMap
-from numeric.dynamics.phase_points import phase_points
-from numeric.dynamics.recognition import Cycle, polished, shortest
-from numeric.pinball.sampling import boundary, interior_starts
-from symbolic.tables.definition import PAPER
-from symbolic.tables.scene import Scene
+from numeric import PinballMap
+from verification.app.choice import (
+    DEFAULTS,
+    OWN,
+    TABLES,
+    Choice,
+    Particle,
+    basins_of,
+    cycle_near,
+    exponents_of,
+    filling,
+    particle_at,
+    particle_in_phase,
+    phase,
+    placed,
+    strip,
+    tip,
+)
 from verification.app.cli import refusal
-from verification.app.scene import scene
-from verification.paper.figures.phase import arc_length, outline
-from verification.plots.sheet import Curve
-
-OWN = "polar formula"
-TABLES = (*PAPER, OWN)
-DEFAULTS = {"a": "1.5", "alpha": "0.08"}
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A table by name or formula, its shape and contraction as text, and where the particle starts."""
-
-    table: str = "egg"
-    formula: str = "1 + cos(5*theta)/40"
-    shape: str = "0.08"
-    lam: str = "0.45"
-    component: int = 0
-    theta: float = 0.3
-    phi: float = 0.2
-
-    @property
-    def parameter(self) -> str | None:
-        """The name of the table's shape parameter, if it has one."""
-        return next(iter(PAPER.get(self.table, ())), None)
-
-    def scene(self) -> Scene:
-        """The scene; `ValueError` with one sentence when there is none."""
-        given = {name: self.shape if name == self.parameter else None for name in DEFAULTS}
-        if self.table == OWN:
-            return scene(None, self.formula, None, None, self.lam, **given)
-        return scene(self.table, None, None, None, self.lam, **given)
-
-    def map(self) -> PinballMap:
-        """The map of the scene."""
-        return PinballMap(self.scene())
-
-    def command(self, bounces: int = 100) -> str:
-        """The command line for this particle.
-
-        >>> Choice("ellipse", shape="1.5", lam="0.9", theta=0.5, phi=-0.25).command(10)
-        'pinball orbit ellipse --a 1.5 --lam 0.9 --start=0.5,-0.25 --bounces 10'
-        """
-        table = ["--polar", self.formula] if self.table == OWN else [self.table]
-        shape = [f"--{self.parameter}", self.shape] if self.parameter else []
-        part = ["--component", self.map().ir.parts[self.component].name] if self.component else []
-        start = [f"--start={self.theta!r},{self.phi!r}", "--bounces", str(bounces)]
-        return shlex.join(["pinball", "orbit", *table, *shape, "--lam", self.lam, *part, *start])
-
-    def python(self, bounces: int = 100) -> str:
-        """The same in Python.
-
-        >>> print(Choice("cardioid", lam="0.5", theta=0.5, phi=0.0).python(10))
-        from numeric import PinballMap
-        <BLANKLINE>
-        map = PinballMap("cardioid", lam="0.5")
-        orbit = map.orbit(0.5, 0.0, 10)
-        """
-        head = ["from numeric import PinballMap"]
-        table = f'"{self.table}"'
-        if self.table == OWN:
-            head.append("from symbolic import tables")
-            table = f"tables.polar({self.formula!r})"
-        shape = f', {self.parameter}="{self.shape}"' if self.parameter else ""
-        part = f", component={self.component}" if self.component else ""
-        body = [f'map = PinballMap({table}, lam="{self.lam}"{shape})']
-        body.append(f"orbit = map.orbit({self.theta!r}, {self.phi!r}, {bounces}{part})")
-        return "\n".join([*head, "", *body])
-
-
-LONGEST = 64  # period of a cycle that is looked for
-STEEPEST = 0.999 * np.pi / 2
-
-
-@dataclass(frozen=True)
-class Particle:
-    """A place on the boundary and an exit angle."""
-
-    component: int
-    theta: float
-    phi: float
-
-
-def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> Particle:
-    """The particle on the boundary point nearest to `(x, y)` that flies towards a point.
-
-    >>> particle = particle_at(PinballMap("circle", lam=1), 0.0, 2.0, (0.0, 0.0))
-    >>> round(particle.theta, 6), round(particle.phi, 6) + 0.0
-    (1.570796, 0.0)
-    """
-    s, span = 0.0, map.arclength.perimeter
-    for _ in range(4):  # each time on a grid a hundred times finer
-        near = s + span * np.linspace(-0.5, 0.5, 257)
-        bx, by = map.states.point(*boundary(map, near))
-        s, span = float(near[np.argmin(np.hypot(bx - x, by - y))]), span / 100
-    where, theta = boundary(map, np.array([s]))
-    px, py = (float(value[0]) for value in map.states.point(where, theta))
-    tx, ty = (float(value[0]) for value in map.states.tangent(where, theta))
-    vx, vy = towards[0] - px, towards[1] - py
-    phi = float(np.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
-    return Particle(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
-
-
-def tip(map: PinballMap, particle: Particle, length: float) -> tuple[float, float]:
-    """The point at `length` from the particle in its direction of flight."""
-    where, theta = np.array([particle.component]), np.array([particle.theta])
-    x, y = map.states.point(where, theta)
-    vx, vy = map.states.direction(where, theta, np.array([particle.phi]))
-    return float(x[0] + length * vx[0]), float(y[0] + length * vy[0])
-
-
-def phase(map: PinballMap, orbit: Orbit) -> Curve:
-    """`s` from `-L/2` to `L/2` and `sin(phi)` of every bounce that was made."""
-    made = orbit.code == 0
-    return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
-
-
-def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> Particle:
-    """The particle at a point of phase space."""
-    component, theta = boundary(map, np.array([s]))
-    phi = float(np.arcsin(np.clip(sin_phi, -0.999, 0.999)))
-    return Particle(int(component[0]), float(theta[0]), phi)
-
-
-def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
-    """Phase space in portions, for ever: random particles, each portion a few bounces further."""
-    starts = interior_starts(map, particles, seed)
-    component, theta, phi = starts.component, starts.theta, starts.phi
-    while True:
-        orbit = map.orbit(theta, phi, bounces, component)
-        yield phase(map, orbit)
-        component, theta, phi = orbit.component[-1], orbit.theta[-1], orbit.phi[-1]
-
-
-def cycle_near(map: PinballMap, particle: Particle) -> Cycle | None:
-    """The cycle that Newton's method finds from the nearest return of the particle; None when it finds none.
-
-    >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), Particle(0, 1.5, 0.01))
-    >>> axis.period
-    2
-    """
-    orbit = map.orbit(particle.theta, particle.phi, LONGEST, particle.component)
-    if orbit.code[-1]:
-        return None
-    away = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) + np.abs(orbit.phi[1:] - orbit.phi[0])
-    for period in np.argsort(away)[:8] + 1:
-        near = phase_points(orbit.component[:period], orbit.theta[:period], orbit.phi[:period])
-        found = polished(map, near)
-        if found is not None:
-            return shortest(map, found.points)
-    return None
-
+from verification.paper.figures.phase import outline
+from verification.plots.sheet import PALETTE
 
 INK, PARTICLE, CYCLE = "#30343a", "#c2410c", "#1d4ed8"
 PATIENCE = 20.0  # seconds for a formula
 PORTIONS = 25  # of phase space before it rests: what a browser draws without effort
 EVERY = 200  # milliseconds between two of them
+WIDE, HIGH = 520, 440  # pixels of a picture, at most
+STYLE = """
+body { margin: 0; }
+@media (prefers-color-scheme: dark) {
+  html { background: #14161a; }
+  body { background: #fff; filter: invert(0.92) hue-rotate(180deg); min-height: 100vh; }
+}
+"""
 
 
 class LiveTable:
     """One visitor's table: what was picked, and the page that shows it."""
 
-    def __init__(self) -> None:
+    def __init__(self, choice: Choice | None = None) -> None:
         self.choice = Choice()
         self.map: PinballMap = self.choice.map()
+        self.drawn = ""  # the scene of the strip
         self.portions: Iterator[Any] = iter(())
         self.left = 0
-        self.tried = ""  # the formula that another process has read
+        self.tried = ("", "")  # the formulas that another process has read
         self._widgets()
         self._figures()
-        self.rebuild()
+        self._restored(choice or Choice())
 
     # ---- the page
 
@@ -198,9 +70,11 @@ class LiveTable:
         self.table = pn.widgets.Select(name="Table", options=list(TABLES), value=self.choice.table)
         self.formula = pn.widgets.TextInput(name="Radius, a formula in theta", value=self.choice.formula, visible=False)
         self.shape = pn.widgets.TextInput(name="alpha, shape of the egg", value=self.choice.shape)
+        self.law = pn.widgets.TextInput(name="Exit angle, a formula in eta and lam", value=self.choice.law)
         self.lam = pn.widgets.FloatSlider(name="Contraction lambda", start=0, end=1, step=0.001, value=0.45)
         self.bounces = pn.widgets.IntSlider(name="Bounces drawn", start=1, end=500, value=60)
-        self.find = pn.widgets.Button(name="Find the cycle near the particle", button_type="primary")
+        self.find = pn.widgets.Button(name="Find the cycle", button_type="primary")
+        self.basins = pn.widgets.Button(name="Show the basins")
         self.said = pn.pane.Markdown("", min_height=90)
         self.command = pn.widgets.TextAreaInput(name="As a command", height=80, auto_grow=True)
         self.python = pn.widgets.TextAreaInput(name="As Python", height=110, auto_grow=True)
@@ -208,16 +82,19 @@ class LiveTable:
         self.copies = [pn.widgets.Button(name=f"Copy as {name}") for name in ("command", "Python")]
         for button, text in zip(self.copies, (self.command, self.python), strict=True):
             button.js_on_click(args={"source": text}, code=copy)
-        for widget in (self.table, self.formula, self.shape, self.lam):
+        for widget in (self.table, self.formula, self.law, self.shape, self.lam):
             widget.param.watch(lambda _: in_turn(self.rebuild), "value")
         self.bounces.param.watch(lambda _: in_turn(self.redraw), "value")
         self.find.on_click(lambda _: in_turn(self.find_cycle))
+        self.basins.on_click(lambda _: in_turn(self.show_basins))
 
     def _figures(self) -> None:
         self.wall, self.path, self.dots, self.cloud, self.here, self.ring, self.loop = (
             ColumnDataSource({"x": [], "y": []}) for _ in range(7)
         )
-        self.room = figure(title="The table: drag the particle or its arrow", match_aspect=True, height=440, width=520)
+        self.cells = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
+        self.diagram, self.growth = (ColumnDataSource({"x": [], "y": []}) for _ in range(2))
+        self.room = figure(title="The table: drag the particle or its arrow", match_aspect=True, height=HIGH)
         self.room.line("x", "y", source=self.wall, color=INK, line_width=2)
         self.room.line("x", "y", source=self.path, color=INK, alpha=0.35)
         self.room.line("x", "y", source=self.loop, color=CYCLE, line_width=2)
@@ -227,12 +104,24 @@ class LiveTable:
         self.room.add_tools(drag)
         self.room.toolbar.active_tap = drag
         self.dots.on_change("data", self._dragged)
-        self.space = figure(title="Phase space: click to start there", height=440, width=520)
+        self.space = figure(title="Phase space: click to start there", height=HIGH)
         self.space.xaxis.axis_label, self.space.yaxis.axis_label = "s", "sin(phi)"
+        self.space.image_rgba("image", "x", "y", "dw", "dh", source=self.cells)
         self.space.scatter("x", "y", source=self.cloud, size=1.5, color=INK, alpha=0.5)
         self.space.scatter("x", "y", source=self.here, size=11, color=PARTICLE)
         self.space.scatter("x", "y", source=self.ring, size=11, color=CYCLE, marker="x", line_width=2)
         self.space.on_event(Tap, self._tapped)
+        self.marks = [Span(location=0.45, dimension="height", line_color=PARTICLE, line_width=2) for _ in range(2)]
+        self.fan = figure(title="Where orbits end, against lambda: click to set it", height=260, x_range=Range1d(0, 1))
+        self.fan.yaxis.axis_label = "s"
+        self.fan.scatter("x", "y", source=self.diagram, size=1, color=INK, alpha=0.35)
+        self.nu = figure(title="Largest exponent per bounce", height=170, x_range=self.fan.x_range)
+        self.nu.xaxis.axis_label, self.nu.yaxis.axis_label = "lambda", "nu_plus"
+        self.nu.line("x", "y", source=self.growth, color=INK)
+        self.nu.add_layout(Span(location=0, dimension="width", line_color=INK, line_dash="dotted"))
+        for each, mark in zip((self.fan, self.nu), self.marks, strict=True):
+            each.add_layout(mark)
+            each.on_event(Tap, self._picked)
 
     def view(self) -> Any:
         """The page."""
@@ -241,19 +130,28 @@ class LiveTable:
             self.table,
             self.formula,
             self.shape,
+            self.law,
             self.lam,
             self.bounces,
-            self.find,
+            pn.FlexBox(self.find, self.basins),
             self.said,
             self.command,
             self.copies[0],
             self.python,
             self.copies[1],
-            width=340,
+            sizing_mode="stretch_width",
+            styles={"flex": "1 1 300px", "max-width": "360px"},
         )
-        pictures = pn.FlexBox(pn.pane.Bokeh(self.room), pn.pane.Bokeh(self.space))
+        pairs = ((self.room,), (self.space,), (self.fan, self.nu))
+        wide = {"flex": f"1 1 {WIDE - 180}px", "max-width": f"{WIDE}px", "min-width": "0"}
+        looks = (wide, wide, {"flex": "1 1 100%", "max-width": f"{2 * WIDE + 8}px", "min-width": "0"})
+        columns = [
+            pn.Column(*(_pane(each) for each in pair), sizing_mode="stretch_width", styles=look)
+            for pair, look in zip(pairs, looks, strict=True)
+        ]
         pn.state.add_periodic_callback(self.fill, EVERY)
-        return pn.Row(controls, pictures)
+        pictures = pn.FlexBox(*columns, styles={"flex": "1 1 0", "min-width": "min(340px, 94vw)", "gap": "8px"})
+        return pn.FlexBox(controls, pictures, flex_wrap="wrap", styles={"gap": "12px"}, sizing_mode="stretch_width")
 
     # ---- what changes
 
@@ -262,8 +160,10 @@ class LiveTable:
         if self.table.value != self.choice.table:
             self._other_table()
             return
-        wanted = replace(self.choice, formula=self.formula.value, shape=self.shape.value, lam=f"{self.lam.value:.6g}")
-        if wanted.table == OWN and wanted.formula != self.tried:
+        texts = {"formula": self.formula.value, "shape": self.shape.value, "law": self.law.value}
+        wanted = replace(self.choice, lam=f"{self.lam.value:.6g}", **texts)
+        typed = (wanted.formula if wanted.table == OWN else "", wanted.law)
+        if typed not in (("", Choice().law), self.tried):
             self.said.object = "The formula is being read."
             pn.state.execute(partial(self._try, wanted))
         else:
@@ -272,30 +172,58 @@ class LiveTable:
     async def _try(self, wanted: Choice) -> None:
         """Reads a new formula in another process, so that no other visitor waits for it."""
         why = await refusal(shlex.split(wanted.command(1))[1:], PATIENCE)
-        if self.formula.value == wanted.formula and self.table.value == OWN:  # the visitor has not typed on
+        same = self.formula.value == wanted.formula and self.law.value == wanted.law
+        if same and self.table.value == wanted.table:  # the visitor has not typed on
             in_turn(partial(self._tried, wanted, why))
 
     def _tried(self, wanted: Choice, why: str | None) -> None:
         self.said.object = why or ""
         if why is None:
-            self.tried = wanted.formula
+            self.tried = (wanted.formula if wanted.table == OWN else "", wanted.law)
             self.rebuild()
 
     def _take(self, wanted: Choice) -> None:
         try:
             self.map = wanted.map()
             parts = len(self.map.ir.parts)
-            self.choice = wanted if wanted.component < parts else replace(wanted, component=0)
+            self.choice = placed(self.map, wanted if wanted.component < parts else replace(wanted, component=0))
             self.redraw()
         except ValueError as error:
             self.said.object = str(error)
             return
         self.wall.data = dict(zip("xy", outline(self.map), strict=True))
         self.cloud.data = {"x": [], "y": []}
+        self.cells.data = {name: [] for name in self.cells.data}
+        self._strip()
         self.portions, self.left = filling(self.map), PORTIONS
 
+    def _strip(self) -> None:
+        """The bifurcation diagram, anew for another table or law; the line that says where the contraction is."""
+        for mark in self.marks:
+            mark.location = self.lam.value
+        family = str(self.choice.scene().at(lam=0))
+        if family == self.drawn:
+            return
+        self.drawn = family
+        try:
+            points, lams, nu = strip(self.choice)
+        except ValueError:  # the law is none for some contraction
+            self.diagram.data = self.growth.data = {"x": [], "y": []}
+            return
+        self.diagram.data, self.growth.data = dict(zip("xy", points, strict=True)), {"x": lams, "y": nu}
+
+    def _restored(self, choice: Choice) -> None:
+        """The page as an address says; formulas in it are read as if they had been typed."""
+        self.choice = replace(choice, law=self.choice.law)
+        self.table.value, self.formula.visible = choice.table, choice.table == OWN
+        self.formula.value, self.shape.value, self.law.value = choice.formula, choice.shape, choice.law
+        self.lam.value = float(choice.lam)
+        self.shape.visible = choice.parameter is not None
+        self.shape.name = f"{choice.parameter}, shape of the {choice.table}"
+        self.rebuild()
+
     def _other_table(self) -> None:
-        self.choice = Choice(table=self.table.value, formula=self.formula.value, lam=self.choice.lam, theta=0.3)
+        self.choice = Choice(table=self.table.value, formula=self.formula.value, lam=self.choice.lam)
         parameter = self.choice.parameter
         self.formula.visible = self.table.value == OWN
         self.shape.visible = parameter is not None
@@ -315,8 +243,14 @@ class LiveTable:
         s, sine = phase(self.map, orbit)
         self.here.data = {"x": s[:1], "y": sine[:1]}
         self.ring.data = self.loop.data = {"x": [], "y": []}
-        stopped = "" if np.all(made) else f"The particle stops: {orbit.status[-1].value}."
-        self.said.object = stopped
+        self.said.object = (
+            exponents_of(self.map, self._particle())
+            if np.all(made)
+            else f"The particle stops: {orbit.status[-1].value}."
+        )
+        if pn.state.location is not None:
+            said = self.choice.address()
+            pn.state.location.search = f"?{urlencode(said)}" if said else ""
         self.command.value = self.choice.command(self.bounces.value)
         self.python.value = self.choice.python(self.bounces.value)
 
@@ -341,7 +275,23 @@ class LiveTable:
         kind = "attracting" if abs(cycle.multipliers[0]) < 1 else "not attracting"
         self.said.object = f"A cycle of period {cycle.period}, {kind}: multipliers {numbers}."
 
+    def show_basins(self) -> None:
+        """The attractor that each cell of phase space reaches, a colour for each."""
+        label, half, words = basins_of(self.map)
+        colours = [int(colour[1:], 16) for colour in PALETTE]
+        image = np.zeros(label.shape, dtype=np.uint32)
+        for i in range(len(words)):
+            red, green, blue = (colours[i % len(colours)] >> shift & 255 for shift in (16, 8, 0))
+            image[label == i] = 0xB0 << 24 | blue << 16 | green << 8 | red
+        self.cells.data = {"image": [image], "x": [-half], "y": [-1], "dw": [2 * half], "dh": [2]}
+        shares = ", ".join(f"{word} ({np.mean(label == i):.0%})" for i, word in enumerate(words[:8]))
+        self.said.object = f"Attractors from 200 random starts, with their share of the cells: {shares or 'none'}."
+
     # ---- what the visitor does
+
+    def _picked(self, event: Any) -> None:
+        """A click on the diagram sets the contraction."""
+        self.lam.value = round(float(np.clip(event.x, 0, 1)), 3)
 
     def start(self, particle: Particle) -> None:
         """Starts the orbit anew from `particle`."""
@@ -375,9 +325,16 @@ def in_turn(change: Callable[[], None]) -> None:
     pn.state.execute(change, schedule=True)
 
 
+def _pane(picture: Any) -> Any:
+    picture.sizing_mode = "stretch_width"
+    return pn.pane.Bokeh(picture, sizing_mode="stretch_width")
+
+
 def page() -> Any:
-    """A visitor's own page."""
-    return LiveTable().view()
+    """A visitor's own page, as its address says."""
+    location = pn.state.location
+    said = dict(parse_qsl(location.search.lstrip("?"))) if location is not None and location.search else {}
+    return LiveTable(Choice.of_address(said)).view()
 
 
 FROM_OUTSIDE = ("BOKEH_ALLOW_WS_ORIGIN", "BOKEH_ADDRESS")  # would let pages of other addresses in
@@ -390,6 +347,7 @@ def serve(port: int, show: bool, **more: Any) -> Any:
     A page of another address that a browser shows cannot talk to it: its origin is not among those allowed, and what
     the environment says of origins and addresses is not heard.
     """
+    pn.config.raw_css = [STYLE]
     for name in FROM_OUTSIDE:
         os.environ.pop(name, None)
     return pn.serve(

@@ -7,10 +7,10 @@ import pytest
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes
 from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
-from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.global_dynamics.regions import expansion
+from verification.proofs.global_dynamics.images import PinballImages, Slopes
+from verification.proofs.global_dynamics.regions import Derivatives, _factors, expansion
 
 
 def regions(scene, columns=512, rows=128, lam=None):
@@ -105,3 +105,15 @@ def test_a_set_in_which_a_walk_ends_is_refused():
 
     with pytest.raises(ValueError, match="no edge within the set"):
         expansion(map, graph.transitions, alone)
+
+
+def test_a_box_that_may_shrink_vectors_to_nothing_bounds_no_exponent():
+    """Of four boxes that stretch `theta` by 1.5 to 2.5, by -0.1 to 0.3, by what is not known, and by 3."""
+    stretch = BallArray(np.array([2.0, 0.1, 1.0, 3.0]), np.array([0.5, 0.2, np.inf, 0.0]))
+    none = BallArray(np.zeros(4), np.zeros(4))
+    found = Derivatives(np.arange(4), np.zeros(4, dtype=np.int64), Slopes(stretch, none, none, none, none))
+
+    least = _factors(found, (np.zeros(4), np.zeros(4)), 4)
+
+    assert np.allclose(np.exp(least), [1.5, 0, 0, 3])
+    assert least[0] < np.log(1.5)

@@ -12,7 +12,9 @@ from symbolic.tables.scene import Scene
 from verification.app import cli
 from verification.arithmetic.balls import FLOAT64
 from verification.cycles.recurrence import Closure
-from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket
+from verification.proofs.global_dynamics.boxes import Chart
+from verification.proofs.global_dynamics.crisis import BoundaryCrisis, _marked, bracket
+from verification.proofs.global_dynamics.graph import Grid, Rectangles
 from verification.proofs.manifolds.known import BOUNDARY, CONTACTS, SHAPE
 from verification.proofs.manifolds.saddle import saddle
 
@@ -136,3 +138,15 @@ def test_each_hypothesis_of_the_statement_is_asked_when_it_is_made(changed):
     stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (0.0, 0.0))
     with pytest.raises(ValueError, match="crisis: "):
         replace(stated, **changed)
+
+
+def test_the_cells_of_rectangles_are_marked_and_no_others():
+    """Up to the last row, in two charts, and over the seam of the columns."""
+    grid = Grid(tuple(Chart(name, (0, 1), (0, 1)) for name in "ab"), 6, 4)
+    rows = [(0, 1, 2, 0, 1), (0, 4, 7, 2, 3), (1, 5, 5, 3, 3), (1, 0, 5, 0, 0)]  # chart, left, right, bottom, top
+    chart, *sides = (np.array(column) for column in zip(*rows, strict=True))
+    wanted = np.zeros((2, 6, 4), dtype=bool)
+    for number, left, right, bottom, top in rows:
+        wanted[number, [column % 6 for column in range(left, right + 1)], bottom : top + 1] = True
+
+    assert np.array_equal(_marked(grid, Rectangles(np.arange(4), chart, *sides, np.zeros(4, dtype=bool))), wanted)

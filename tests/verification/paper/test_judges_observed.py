@@ -8,6 +8,7 @@ from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.claims.claim import Verdict
 from verification.paper.judges import cardioid_attractor as on_observed
 from verification.paper.judges import cuspless as on_domains
+from verification.paper.judges import ellipse as on_ellipse
 from verification.paper.judges import ellipse_stability as on_ellipse_stability
 from verification.paper.judges.exponents import Spectrum
 from verification.paper.report.report import catalogue
@@ -86,3 +87,12 @@ def test_the_major_axis_is_the_minor_axis_of_the_inverted_ellipse(monkeypatch):
 
     monkeypatch.setattr(on_ellipse_stability, "minor_axis", on_ellipse_stability.major_axis)
     assert verdict(on_ellipse_stability.major_by_inversion, "ellipse.major_by_inversion") is not Verdict.CONFIRMED
+
+
+def test_an_axis_that_repels_is_no_stable_orbit_of_the_slap_map(monkeypatch):
+    """At a = 6/5 the slope is below 1 in size; were it not, the sentence that is put in place would not be proved."""
+    proved = verdict(on_ellipse.slap_stable, "ellipse.slap_stable_orbits")
+
+    monkeypatch.setattr(on_ellipse, "axis_slope", lambda *_: S(3) / 2)
+    assert proved is Verdict.CORRECTED
+    assert verdict(on_ellipse.slap_stable, "ellipse.slap_stable_orbits") is not proved

@@ -55,8 +55,9 @@ their mutants a sample is drawn, in proportion, and only of mistakes that could 
 parts left out, `any` for `all`, a lower end for an upper one, a sign lost, a number one larger, a truth turned, a loop
 that does nothing. Left out are budgets and precisions (constants of modules, whole numbers above 16), the texts of
 errors, annotations and `strict`. Asked are the files named in `benchmarks/records/mutation_core.toml`, without tests of
-more than half a second: what survives here may be noticed by a longer one. `python benchmarks/mutation.py core
---count 300` draws, asks and resumes.
+more than half a second, as far as six seconds of processor go (a second and a half, and eight by the clock, for the
+group of balls and interval Newton): what survived was read, and asked again of a longer test or of one that was written
+for it. `python benchmarks/mutation.py core --count 300` draws, asks and resumes.
 
 ## By module
 

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from sympy import Rational
 
-from numeric import PinballMap, phase_starts
+from numeric import PinballMap, Status, phase_starts
 from numeric.flights.general import UNSURE
+from numeric.kernels.machine import KernelSpec
 from symbolic import tables
 from symbolic.tables.gallery import GALLERY
 from symbolic.tables.table import theta
-from verification.measure.extremes.by_hand import bounced, hard, judged
+from verification.measure.extremes import by_hand
+from verification.measure.extremes.by_hand import bounced, comet, hard, judged
 
 EPS = 2.0**-52
 NOTCHED = tables.polygon((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), name="notched")
@@ -41,6 +43,85 @@ def test_no_flight_past_a_corner_or_a_tangent_lands_on_the_wrong_side_and_only_t
         assert not np.any(found.wrong)
         assert np.max(found.error) < 1  # a bound of eight is promised
         assert np.max(found.reason) < 5 * UNSURE / EPS
+
+
+def moved(name, size, shift):
+    """A table so many times larger, moved aside by a multiple of that."""
+    known = {"notched": lambda: NOTCHED, "100 sides": lambda: tables.regular(100), "comet": comet}
+    parts = (known.get(name) or GALLERY[name])().components
+    arcs = [
+        tables.arc(part.name, *(SIZES[size] * (x + by) for x, by in zip(part.point, shift, strict=True)),
+                   part.start, part.end) for part in parts
+    ]  # fmt: skip
+    return PinballMap(tables.Table(name, tuple(arcs)), lam=0.9, kernels=False)
+
+
+AIMED = ["square", "triangle", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "stadium", "notched", "comet"]
+PLACES = [("1e-6", (0, 0)), ("1", (3, -5)), ("1e6", (Rational(-1, 2), 7))]
+
+
+@pytest.mark.parametrize(("size", "shift"), PLACES)
+@pytest.mark.parametrize("name", AIMED)
+def test_every_flight_that_is_aimed_at_a_corner_exactly_ends_there_wherever_the_table_is(name, size, shift):
+    """From where the rounded particle lies, in 64 bits; none that misses by five bounds stops or is misled."""
+    shift = (0, 0) if name == "comet" else shift  # its focus is the origin
+    map, rng, count = moved(name, size, shift), np.random.default_rng(26), 200
+    known = by_hand.pieces(map.family, map.shape)
+    starts = phase_starts(map, count, seed=26)
+    own = [np.asarray(row) for row in map.states.enter(starts.component, starts.theta, starts.phi, map.law)]
+    z, _, size = by_hand.placed(known, map.family, own)
+    goals = np.array([piece.start for j, piece in enumerate(known) if not map.family.closed[j]])
+    way = goals[rng.integers(0, len(goals), count)].T - z
+    far = np.hypot(*way)
+    turn = 8 * UNSURE * (2 * size + far) / far  # the corner's numbers are no larger than its distance and the start's
+    for off in (0 * turn, turn, -turn):
+        aimed = [*own[:3], *((way + off * np.array([-way[1], way[0]])) / far / np.hypot(1, off)).astype(float)]
+        frame = map.states.frame(starts.component, starts.theta)
+        truth = by_hand.hits(map, aimed)
+        seen = np.abs(frame.angle(map.states.ops, *aimed[3:])) < 1.5
+        seen &= (truth.length >= far * (1 - 1e-6)) | (truth.aside < 16)
+        result = map.engine.run(KernelSpec(map.law, record=True), aimed, np.full(count, 0.9), map.shape, 1)
+        stopped = result.rows["code"][seen]
+
+        assert np.sum(seen) > 30
+        if not np.any(off):
+            assert set(stopped) == {Status.JOIN.code}
+        else:
+            going = seen & (truth.aside > 5 * UNSURE / EPS)
+            assert np.mean(going[seen]) > 0.5
+            assert not np.any(result.rows["code"][going])
+            assert np.array_equal(result.record[0][0][going], truth.piece[going])
+
+
+@pytest.mark.parametrize("factor", [SMALL, 1, 10**6])
+def test_every_flight_that_is_aimed_at_a_corner_of_a_spline_exactly_ends_there(factor):
+    """Four splines with straight ends; each of two hundred particles at the one of all corners that it sees."""
+    path = [[(0, 0), (4, 0)], [(4, 0), (5, 2), (4, 3), (3, 3)], [(3, 3), (1, 2), (0, 4)], [(0, 4), (-1, 1), (0, 0)]]
+    map = PinballMap(
+        tables.from_path([[[(factor * x, factor * y) for x, y in curve] for curve in path]]), lam=0.9, kernels=False
+    )
+    starts = phase_starts(map, 200, seed=27)
+    rows = np.array([[float(x) for x in program(map.states.ops)] for _, program in map.ir.programs]).astype(
+        np.longdouble
+    )
+    corners = rows[:, [0, 4]]
+    own = [np.asarray(row) for row in map.states.enter(starts.component, starts.theta, starts.phi, map.law)]
+    row, u = rows[starts.component].T, own[1].astype(np.longdouble)
+    z = [((part[3] * u + part[2]) * u + part[1]) * u + part[0] for part in (row[:4], row[4:])]
+    found = 0
+    for x, y in corners:
+        way = x - z[0], y - z[1]
+        far = np.hypot(*way)
+        aimed = [*own[:2], *((part / far).astype(float) for part in way)]
+        result = map.engine.run(KernelSpec(map.law, record=True), aimed, np.full(200, 0.9), map.shape, 1)
+        landed = map.states.point(result.record[0][0].astype(int), result.record[0][1])
+        frame = map.states.frame(starts.component, starts.theta)
+        at_it = np.hypot(landed[0] - x, landed[1] - y) < 1e-9 * far
+        ahead = np.abs(frame.angle(map.states.ops, *aimed[2:])) < 1.5
+        found += int(np.sum(ahead & (result.rows["code"] == Status.JOIN.code)))
+
+        assert not np.any(ahead & at_it & (result.rows["code"] == 0))
+    assert found > 100
 
 
 def test_flights_to_corners_and_tangents_are_stopped_as_often_as_not():

@@ -63,7 +63,7 @@ BENT = Scene("egg", alpha="0.08", law="-lam*eta*(1 - eta**2/40)")
 
 
 def test_the_branch_of_a_crisis_under_another_law_is_one_of_its_map(found):
-    """From -1/8 to 0 on a round: a point and its image a round later, turned back, by the kernels' own map."""
+    """A point and its image a round later, turned, by the map of the kernels."""
     bent = replace(
         found, scene=BENT, saddle=replace(found.saddle, start=(-0.19822,)), lam=(Fraction(31, 50), Fraction(17, 25))
     )

@@ -2,16 +2,18 @@
 
 from . import cache
 from .cache import key_of, sources
-from .lower import exact_table, lower_law, symmetries
-from .program import LawIR, Named, Program, TableIR, by_name, table_ir
+from .lower import converted, exact_table, lower_law, symmetries
+from .program import Builder, LawIR, Named, Program, TableIR, by_name, table_ir
 
 __all__ = [
+    "Builder",
     "LawIR",
     "Named",
     "Program",
     "TableIR",
     "by_name",
     "cache",
+    "converted",
     "exact_table",
     "key_of",
     "lower_law",

@@ -5,12 +5,15 @@ from .fields import attractors_of, basins, bifurcation, egg, parameter_space
 from .orbits import written
 from .run import UnfinishedError, on_threads
 from .store import Memory
-from .sweep import Array, Measured, Sweep, cores, floor_of, map_of, measured, text_of, versions
+from .sweep import Array, Axis, Field, Measured, Part, Sweep, cores, floor_of, map_of, measured, text_of, versions
 
 __all__ = [
     "Array",
+    "Axis",
+    "Field",
     "Measured",
     "Memory",
+    "Part",
     "Sweep",
     "UnfinishedError",
     "attractors_of",

@@ -10,7 +10,7 @@ between the ends, or next to an end, where `d x q'` keeps its sign so that the l
 itself.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
@@ -19,7 +19,7 @@ from math import gcd
 from typing import Any
 
 from flint import arb
-from sympy import Expr, Interval, Matrix, S, Symbol, chebyshevt, pi, simplify
+from sympy import QQ, ZZ, Expr, Interval, Matrix, Poly, S, Symbol, chebyshevt, expand, pi, simplify
 
 from symbolic.expressions.signs import nonnegative
 from symbolic.expressions.text import kernel, load
@@ -36,13 +36,13 @@ PIECES = 2**12  # boxes that a proof of convexity may use up
 def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
     """True when every part is proved to bend inwards, or to be straight, and the joins to bend in too.
 
-    `shape` encloses the free shape parameters. None: nothing proved.
+    `shape` encloses the free shape parameters; without it every value of their ranges is meant. None: nothing proved.
 
     >>> from symbolic.tables import cardioid, cuspless, egg
     >>> convex(cuspless), convex(egg(3).at(alpha="0.08")), convex(cardioid)
     (True, True, None)
-    >>> convex(egg(3).at(alpha="0.1"))
-    True
+    >>> convex(egg(3).at(alpha="0.1")), convex(egg(3))
+    (True, True)
     """
     return _of_one_shape(table) if not shape else _convex(table, shape)
 
@@ -61,8 +61,11 @@ def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
 
 def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
     bend = turning(table.components[index])
-    if bend.is_nonnegative or _exactly_nonnegative(bend):
+    ranges = {p.symbol: p.range for p in table.shapes}
+    if bend.is_nonnegative or _exactly_nonnegative(bend, ranges):
         return True
+    if ranges and not shape:
+        shape = tuple(_over(r) for r in ranges.values())
     function = load(kernel("turning", [theta, *(p.symbol for p in table.shapes)], {"bend": bend}), balls(BITS))
     with working(BITS):
         start, end = _ends(table, shape, BITS)[index]
@@ -79,15 +82,34 @@ def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
     return True
 
 
-def _exactly_nonnegative(bend: Expr) -> bool:
-    """True when a sum of cosines of multiples of `theta` is proved nonnegative, as a polynomial in one of them."""
+def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
+    """True when a sum of cosines of multiples of `theta` is proved nonnegative, as a polynomial in one of them.
+
+    Its coefficients may be polynomials in shape parameters, which have `ranges`.
+    """
     waves = coefficients(bend)
-    if waves is None or len(waves) < 2 or any(waves.get(-k) != c or not c.is_Rational for k, c in waves.items()):
+    if waves is None or len(waves) < 2 or any(expand(waves.get(-k, S.Zero) - w) != 0 for k, w in waves.items()):
+        return False
+    if not all(map(_rational, waves.values())) or not all(isinstance(r, Interval) for r in ranges.values()):
         return False
     step = gcd(*waves)
     c = Symbol("c", real=True)
     polynomial = sum((w * (2 if k else 1) * chebyshevt(k // step, c) for k, w in waves.items() if k >= 0), S.Zero)
-    return bool(nonnegative(polynomial, {c: Interval(-1, 1)}))
+    used = {p: r for p, r in ranges.items() if p in polynomial.free_symbols}
+    return bool(nonnegative(polynomial, {c: Interval(-1, 1)} | used))
+
+
+def _rational(w: Expr) -> bool:
+    """Is it a polynomial with rational coefficients?"""
+    symbols = sorted(w.free_symbols, key=str)
+    return bool(w.is_Rational or (symbols and w.is_polynomial(*symbols) and Poly(w, *symbols).domain in (ZZ, QQ)))
+
+
+def _over(range: Interval) -> arb:
+    """A ball over a range; without end where the range has none, or where its ends are no rationals."""
+    if not (range.start.is_Rational and range.end.is_Rational):
+        return arb(0, arb("inf"))
+    return _exact(Fraction(str(range.start))).union(_exact(Fraction(str(range.end))))
 
 
 @cache

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from verification.named.locate import Located
-    from verification.proofs.global_dynamics.graph import MorseGraph
 
 
 MARKS = {
@@ -363,35 +362,3 @@ def _curve(axes: Any, x: Any, y: Any, colour: str, width: float) -> None:
 def _modulo(theta: Any) -> Any:
     third = 2 * np.pi / 3
     return np.remainder(np.asarray(theta) + third / 2, third) - third / 2
-
-
-def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
-    """The Morse sets over phase space, and in pale colours the basins that are proved; a panel for each component."""
-    from matplotlib.colors import to_rgb
-
-    grid, leaf, count = graph.transitions.grid, graph.transitions.leaf, graph.transitions.count
-    colours = np.ones((count + 1, 3))
-    attracting = graph.attracting
-    for number, index in enumerate(attracting):
-        block = graph.trapping(index)
-        if not block[-1]:
-            colours[graph.basin(block)] = 0.75 + 0.25 * np.array(to_rgb(f"C{number % 10}"))
-    for index, members in enumerate(graph.sets):
-        paint = f"C{attracting.index(index) % 10}" if index in attracting else "black"
-        colours[members] = to_rgb(paint)
-    everything = np.append(leaf, False)
-    picture = grid.painted(graph.transitions.chosen(everything), np.flatnonzero(leaf), count)
-    made = figure(7.0, 3.2 * len(grid.charts))
-    panels = np.atleast_1d(made.subplots(len(grid.charts), 1))
-    for axes, chart, cells in zip(panels, grid.charts, picture, strict=True):
-        axes.imshow(
-            colours[cells].swapaxes(0, 1),
-            origin="lower",
-            extent=(*chart.x, *chart.y),
-            aspect="auto",
-            interpolation="nearest",
-        )
-        axes.set_xlabel(rf"$\theta$, {chart.name}")
-        axes.set_ylabel(r"$\varphi$")
-    panels[0].set_title(f"{label}: {len(graph.sets)} Morse sets, {len(attracting)} attracting")
-    return made

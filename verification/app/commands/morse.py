@@ -1,4 +1,7 @@
-"""`pinball morse`: which attractors and repellers are proved, and in what order?"""
+"""`pinball morse`: which attractors and repellers are proved, and in what order?
+
+`pinball sweep morse-graphs` asks so for every box of a grid of parameters, and which of the answers continue.
+"""
 
 import json
 import time
@@ -11,9 +14,12 @@ import click
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option, plot_option, write_whole
-from verification.app.scene import table_options
+from verification.app.commands.sweep import How, carried_out, lams_option, sweep_options
+from verification.app.scene import along, table_options, varied_options
+from verification.app.scene import span as numbers
 
 if TYPE_CHECKING:
+    import xarray as xr
     from rich.console import Console
 
     from verification.proofs.global_dynamics.graph import MorseGraph
@@ -21,6 +27,7 @@ if TYPE_CHECKING:
     from verification.proofs.global_dynamics.regions import Region
 
 SHOWN = 24  # Morse sets in the table for people
+WIDTH = 100  # letters of the picture of a database
 
 
 @click.command(epilog="Example: pinball morse egg --alpha 0.08 --lam 0.5 --columns 512 --rows 256 --plot morse.png")
@@ -32,7 +39,7 @@ SHOWN = 24  # Morse sets in the table for people
 @click.option("--parts", type=click.IntRange(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
 @click.option("--exponents", type=click.IntRange(1, 16), metavar="PARTS", help="Bound nu_plus; cuts of a box for it.")
 @click.option("--certificates", metavar="DIR", help="Write each trapping region, for `pinball check`.")
-@plot_option("dynamics.morse_sets", "the Morse sets over phase space")
+@plot_option("graphs.morse_sets", "the Morse sets over phase space")
 @json_option
 def command(
     scene: Scene,
@@ -160,3 +167,74 @@ def written(region: "Region", path: Path, console: "Console") -> None:
     """Writes a certificate, which `pinball check` proves anew."""
     write_whole(path, json.dumps(region.to_dict()) + "\n")
     console.print(f"{path}: {region.name}")
+
+
+CLASSES = 12  # in the table for people
+
+
+@click.command(
+    "morse-graphs",
+    epilog="Example: pinball sweep morse-graphs egg --shape alpha=0:1/10:65 --lams 0:0.98:65 --store graphs.zarr",
+)
+@varied_options
+@lams_option
+@click.option("--columns", type=click.IntRange(8, 1 << 10), default=96, show_default=True, help="Cells along theta.")
+@click.option("--rows", type=click.IntRange(8, 1 << 10), default=128, show_default=True, help="Cells along phi.")
+@click.option("--coarsest", type=click.IntRange(1, 64), default=8, show_default=True, help="Cells a box begins with.")
+@click.option("--page", metavar="FILE", help="Write a page that shows the graph of the box of parameters pointed at.")
+@plot_option("graphs.database", "what continues over both parameters")
+@sweep_options
+def graphs_command(
+    scene: Scene,
+    axis: str | None,
+    lams: str,
+    columns: int,
+    rows: int,
+    coarsest: int,
+    page: str | None,
+    how: How,
+) -> int:
+    """The Morse graph of each box of parameters, and which of them continue from box to box.
+
+    The N values of --lams and of --shape NAME=LOW:HIGH:N are the borders of the boxes; contractions are below 1. What
+    is proved of a box holds for each of its parameters. A table that turns keep is looked at up to them.
+    """
+    from verification.proofs.global_dynamics.database import database
+
+    if axis is None:
+        raise ValueError("one shape varies besides lam; give --shape NAME=LOW:HIGH:N")
+    scene, parameter, values = along(scene, axis)
+    sweep = database(scene, parameter, values.tolist(), numbers("--lams", lams), columns, rows, coarsest)
+
+    def lines(found: "xr.Dataset") -> list[str]:
+        if page is not None:
+            from verification.reports.explorer import explorer
+
+            write_whole(Path(page), explorer(found).encode())
+        return graph_lines(found)
+
+    return carried_out(sweep, how, lines)
+
+
+def graph_lines(found: "xr.Dataset") -> list[str]:
+    """How many boxes each of the largest classes has, and how many trapping regions are proved, in letters."""
+    import numpy as np
+
+    from verification.proofs.global_dynamics.database import continued
+
+    label, sets, attracting = continued(found), found.sets.values, found.attracting.values
+    known = int((label >= 0).sum())
+    shown = [
+        f"{label.size} boxes of parameters, {known} with a Morse graph; {int(label.max()) + 1} classes",
+        "  class   boxes  Morse sets  trapping regions",
+    ]
+    for index in range(min(CLASSES, int(label.max()) + 1)):
+        on = label == index
+        first = tuple(np.argwhere(on)[0])
+        shown.append(f"  {index:5}  {int(on.sum()):6}  {int(sets[first]):10}  {int(attracting[first]):16}")
+    parameter, ends = str(found.sets.dims[0]), (float(found.lam[0]), float(found.lam[-1]))
+    shown.append(f"{parameter} down, lam from {ends[0]:.4g} to {ends[1]:.4g} across; trapping regions up to rotation")
+    step = max(1, -(-found.lam.size // WIDTH))
+    for value, row in zip(found[parameter].values, attracting[:, ::step], strict=True):
+        shown.append(f"{value:<9.4g}" + "".join("." if count < 0 else str(min(count, 9)) for count in row.tolist()))
+    return shown

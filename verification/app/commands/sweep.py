@@ -246,9 +246,16 @@ SWEEP_ROWS = 24  # contractions shown to people
 class Kinds(click.Group):
     """A group that says which kinds there are when another is asked for."""
 
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return [*super().list_commands(ctx), "morse-graphs"]
+
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
+        if cmd_name == "morse-graphs":
+            from verification.app.commands.morse import graphs_command  # which takes what is above from here
+
+            return graphs_command
         if cmd_name not in self.commands:
-            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {', '.join(self.commands)}")
+            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {', '.join(self.list_commands(ctx))}")
         return self.commands[cmd_name]
 
 
@@ -258,7 +265,7 @@ class Kinds(click.Group):
     epilog="Example: pinball sweep parameter-space --alphas 0:0.1:21 --lams 0:1:41 --dry-run",
 )
 def command() -> None:
-    """Parameter space, exponents, basins and bifurcation diagrams.
+    """Parameter space, exponents, basins, bifurcation diagrams and Morse graphs.
 
     The bits of the results depend on the seed and on nothing else, and a sweep with a --store that was stopped goes
     on from there when the same command is given again.

@@ -141,6 +141,21 @@ def hull(low: Any, high: Any) -> BallArray:
     return BallArray(m, (r + ROUNDING * r + TINY) * GROWTH)
 
 
+def common_part(x: BallArray, y: BallArray) -> BallArray:
+    """What two enclosures of one number have in common; one where the other knows nothing."""
+    low = np.fmax(np.where(np.isfinite(x.r), x.lower(), -np.inf), np.where(np.isfinite(y.r), y.lower(), -np.inf))
+    high = np.fmin(np.where(np.isfinite(x.r), x.upper(), np.inf), np.where(np.isfinite(y.r), y.upper(), np.inf))
+    with np.errstate(invalid="ignore"):
+        return hull(low, high)
+
+
+def spread(value: Any, like: Array) -> BallArray:
+    """A ball array of the shape of another; programs give one ball for a coordinate that is constant."""
+    value = value if isinstance(value, BallArray) else BallArray(value)
+    m, r = np.broadcast_arrays(value.m, value.r, like)[:2]
+    return BallArray(m, r)
+
+
 class ArrayOps:
     """What a program of `numeric.lowering` needs of ball arrays: constants, roots and the functions of a formula.
 

@@ -16,7 +16,7 @@ Where the arc holds a join, the image is given for both sides of it. Paper: sect
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,9 +35,11 @@ from verification.proofs.global_dynamics.boxes import (
     Row,
     centred,
     collected,
+    common_part,
     direction,
     exactly,
     hull,
+    spread,
     turned,
 )
 
@@ -171,24 +173,29 @@ class PinballImages:
                 whole.m[on], whole.r[on] = value.m, value.r
         return made
 
+    def flights(self, boxes: Boxes) -> "Flights":
+        """The flights that leave a block of boxes."""
+        return Flights(self, boxes)
+
     def images(self, boxes: Boxes) -> Images:
         with np.errstate(all="ignore"):  # what overflows or is no number counts as not known
-            flights = _Flights(self, boxes)
+            flights = self.flights(boxes)
             rows = [flights.within(*piece) for piece in flights.pieces(*flights.arcs())]
         return collected(rows, np.arange(boxes.chart.size))
 
     def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
         """The derivative over whole boxes, for each piece of their arcs; entries of infinite radius are not known."""
         with np.errstate(all="ignore"):
-            flights = _Flights(self, boxes)
+            flights = self.flights(boxes)
             pieces = flights.pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]
 
 
 End = tuple[Indices, Array]  # component and parameter of boundary points
+Places = dict[str, BallArray]
 
 
-class _Flights:
+class Flights:
     """What a block of boxes needs more than once."""
 
     def __init__(self, map: PinballImages, boxes: Boxes) -> None:
@@ -219,7 +226,7 @@ class _Flights:
 
     def arcs(self) -> tuple[End, End]:
         """An arc for each box that holds its landings; parameters are nan where none is proved."""
-        chart, theta, ahead, behind = self._guess()
+        chart, theta, ahead, behind = self.guess()
         found = []
         for sign in (-1, 1):
             where, at = chart.copy(), np.full(theta.shape, np.nan)
@@ -240,7 +247,7 @@ class _Flights:
                 where[use], at[use] = self.chart[use], own[use]
         return found[0], found[1]
 
-    def _guess(self) -> tuple[Indices, Array, Array, Array]:
+    def guess(self) -> tuple[Indices, Array, Array, Array]:
         """Landings of the midpoints, and how far the box's landings may lie before and after, in float64."""
         ends = self.map.map.states.ends
         low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
@@ -306,13 +313,13 @@ class _Flights:
         Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
         """
         arc = hull(low, high)
-        eta = _incidence(self.phis[on] + _turn(self._tangent(on, self.thetas), self.map.place(chart, arc)[2:4]))
+        eta = incidence(self.phis[on] + turn_between(self.tangent(on, self.thetas), self.map.place(chart, arc)[2:4]))
         theta, phi = arc, None
         if smooth:
-            theta, eta, phi = self._mean_value(on, chart, arc, eta)
-            theta = _both(arc, theta)
+            theta, eta, phi = self.mean_value(on, chart, arc, eta)
+            theta = common_part(arc, theta)
         exit, top = self.map.exit(eta, theta), self.map.top
-        phi = exit if phi is None else _both(phi, exit)
+        phi = exit if phi is None else common_part(phi, exit)
         low_y, high_y = np.maximum(phi.lower(), -top), np.minimum(phi.upper(), top)
         known = np.isfinite(phi.r) & (low_y <= high_y)
         none = np.isfinite(phi.r) & (low_y > high_y) & (not smooth)  # no landing has such an angle
@@ -321,41 +328,47 @@ class _Flights:
         left, right = np.where(bad, np.nan, theta.lower()), np.where(bad, np.nan, theta.upper())
         return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
 
-    def _tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
+    def tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
         return self.map.place(self.chart[on], theta[on])[2:4]
 
-    def _mean_value(
+    def mean_value(
         self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
     ) -> tuple[BallArray, BallArray, BallArray | None]:
         """Landing, incidence and, under a law of the place, exit, by the mean-value theorem about the midpoint's."""
         by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
-        middle = self._midpoint(on, chart, arc)
+        middle = self.midpoint(on, chart, arc)
         theta = middle + by_theta * reach[0] + by_phi * reach[1]
-        turn = _turn(self._tangent(on, self.theta), self.map.place(chart, middle)[2:4])
+        turn = turn_between(self.tangent(on, self.theta), self.map.place(chart, middle)[2:4])
         by = there * by_theta - here, there * by_phi + 1
         fine = self.phi[on] + turn + by[0] * reach[0] + by[1] * reach[1]
         phi = None
         if self.map.placed:  # place and incidence move together
-            phi = self.map.exit(_incidence(self.phi[on] + turn), middle)
+            phi = self.map.exit(incidence(self.phi[on] + turn), middle)
             phi = phi + (drift * by_theta - law * by[0]) * reach[0] + (drift * by_phi - law * by[1]) * reach[1]
-        return theta, _both(eta, _incidence(fine)), phi
+        return theta, common_part(eta, incidence(fine)), phi
 
     def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
         """The derivatives over the boxes `on`, whose landings lie in an arc."""
-        at = {name: value[on] for name, value in self.whole.items()}
-        x, y, dx, dy, ddx, ddy = self.map.place(chart, arc)
-        along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
-        slope = at["v"] * dy - at["w"] * dx
-        slope = BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
+        at, (dx, dy, ddx, ddy), along, slope = self.across(on, chart, arc)
         by_theta = (at["bend"] * along - at["cos"] * at["speed"]) / slope
         law, drift = self.map.lam, BallArray(0.0)
         if self.map.law is not None:
-            turn = self.phis[on] + _turn(self._tangent(on, self.thetas), [dx, dy])
-            law, drift = self.map.slopes(_incidence(turn), arc)
+            turn = self.phis[on] + turn_between(self.tangent(on, self.thetas), [dx, dy])
+            law, drift = self.map.slopes(incidence(turn), arc)
         return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy), law, drift)
 
-    def _midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
+    def across(
+        self, on: Indices, chart: Indices, arc: BallArray
+    ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
+        """The boxes `on`; velocity and acceleration over an arc; how far it is, and how fast it leaves the lines."""
+        at = {name: value[on] for name, value in self.whole.items()}
+        x, y, *velocity = self.map.place(chart, arc)
+        along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
+        slope = at["v"] * velocity[1] - at["w"] * velocity[0]
+        return at, velocity, along, BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
+
+    def midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
         """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
         at = {name: value[on] for name, value in self.centre.items()}
         guess = BallArray(np.asarray(arc.m))
@@ -371,30 +384,15 @@ class _Flights:
         return BallArray(found.m, np.where(inside, found.r, np.inf))
 
 
-def _turn(first: list[BallArray], last: list[BallArray]) -> BallArray:
+def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
     """The angle from one tangent to another, less half a turn, up to whole turns."""
     c, s = first[0] * last[0] + first[1] * last[1], first[0] * last[1] - first[1] * last[0]
     return direction(-c, -s)
 
 
-def _incidence(eta: BallArray) -> BallArray:
+def incidence(eta: BallArray) -> BallArray:
     """Angles of incidence known up to whole turns, as they are: they lie within a quarter turn.
 
     An enclosure within three quarters of a turn holds no number a whole turn away from one; a wider one is not kept.
     """
     return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))
-
-
-def _both(x: BallArray, y: BallArray) -> BallArray:
-    """What two enclosures of one number have in common; one where the other knows nothing."""
-    low = np.fmax(np.where(np.isfinite(x.r), x.lower(), -np.inf), np.where(np.isfinite(y.r), y.lower(), -np.inf))
-    high = np.fmin(np.where(np.isfinite(x.r), x.upper(), np.inf), np.where(np.isfinite(y.r), y.upper(), np.inf))
-    with np.errstate(invalid="ignore"):
-        return hull(low, high)
-
-
-def spread(value: Any, like: Array) -> BallArray:
-    """A ball array of the shape of another; programs give one ball for a coordinate that is constant."""
-    value = value if isinstance(value, BallArray) else BallArray(value)
-    m, r = np.broadcast_arrays(value.m, value.r, like)[:2]
-    return BallArray(m, r)

@@ -1,0 +1,149 @@
+"""Morse graphs over boxes of parameters: images hold for every parameter of a box, and what continues is the same."""
+
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from numeric.sweeps.run import run
+from symbolic import Scene
+from verification.app.cli import main
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.database import ParameterBox, common, continued, database, same_order
+
+EGG = Scene("egg", alpha="1/20")
+FLOWER = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/90:0..1/30"}})
+LAM = Fraction(1, 2), Fraction(33, 64)
+BOXES = 60
+
+
+@pytest.mark.parametrize(
+    ("scene", "parameter", "shape"),
+    [
+        (EGG, "alpha", ("1/20", "33/640")),
+        (EGG, "alpha", ("0", "1/640")),
+        (EGG, "alpha", ("63/640", "1/10")),
+        (FLOWER, "b", ("1/100", "1/90")),
+        (Scene("ellipse", a="3/2"), "a", ("3/2", "31/20")),
+    ],
+)
+def test_the_image_of_a_box_holds_the_landings_at_every_parameter_of_its_range(scene, parameter, shape):
+    low, high = map(Fraction, shape)
+    box = ParameterBox(scene, LAM, parameter, (low, high))
+    (chart,), rng = box.charts, np.random.default_rng(1)
+    width = 0.01
+    theta = rng.uniform(*chart.x, BOXES)
+    phi = rng.uniform(chart.y[0], chart.y[1] - width, BOXES)
+    images = box.images(Boxes(np.zeros(BOXES, dtype=np.int64), (theta, theta + width), (phi, phi + width)))
+    assert images.lost.size < BOXES / 3
+    for share in (0, 1, Fraction(1, 3), Fraction(2, 3)):
+        for lam in (*LAM, (LAM[0] + LAM[1]) / 2):
+            there = PinballMap(scene.at(**{parameter: str(low + (high - low) * share)}), lam=lam)
+            corner = rng.integers(0, 2, (2, BOXES)) * width
+            landed = there.step(theta + corner[0], phi + corner[1])
+            known = ~np.isin(images.source, images.lost)
+            ends, exit = ([end[known] for end in side] for side in (images.boxes.x, images.boxes.y))
+            source = images.source[known]
+            turn = 2 * np.pi * np.round(((ends[0] + ends[1]) / 2 - landed.theta[source]) / (2 * np.pi))
+            assert np.all((ends[0] <= landed.theta[source] + turn) & (landed.theta[source] + turn <= ends[1]))
+            assert np.all((exit[0] <= landed.phi[source]) & (landed.phi[source] <= exit[1]))
+
+
+def test_with_the_shape_as_a_coordinate_images_are_smaller_than_with_its_range_in_every_formula():
+    from verification.proofs.global_dynamics.images import PinballImages
+
+    box = ParameterBox(EGG, LAM, "alpha", (Fraction(1, 20), Fraction(33, 640)))
+    some = Boxes(np.zeros(1, dtype=np.int64), (np.array([0.3]), np.array([0.31])), (np.array([0.1]), np.array([0.11])))
+    plain = type("Plain", (ParameterBox,), {"flights": PinballImages.flights})(EGG, LAM, "alpha", box.over)
+    sides = [float(np.ptp(np.array(found.images(some).boxes.x))) for found in (box, plain)]
+    assert sides[0] < 0.9 * sides[1]
+
+
+def test_up_to_its_turns_the_egg_has_a_third_of_the_phase_space():
+    (chart,) = ParameterBox(EGG, LAM, "alpha", (Fraction(1, 20), Fraction(33, 640))).charts
+    assert chart.x[1] - chart.x[0] == pytest.approx(2 * np.pi / 3, rel=1e-15)
+
+
+def test_sets_without_a_common_cell_have_nothing_in_common_and_strips_of_two_heights_are_told_apart_by_angle():
+    here = np.array([[0], [0], [-1], [1]], dtype=np.int8)
+    assert common(here, here, 1.0, 1.0, (2, 2)).tolist() == [[True, False], [False, True]]
+    # a strip of twice the height: its two middle rows reach as far as all four of the first
+    there = np.array([[0], [1], [0], [-1]], dtype=np.int8)
+    assert common(here, there, 1.0, 2.0, (2, 2)).tolist() == [[False, True], [True, False]]
+    assert common(there, here, 2.0, 1.0, (2, 2)).tolist() == [[False, True], [True, False]]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_graphs_continue_only_where_the_same_sets_lead_to_the_same(turned):
+    order = np.array([[1, 1, 0], [0, 1, 0], [0, 1, 1]], dtype=np.int8)
+    match = np.array([[0, 0, 1], [0, 1, 0], [1, 0, 0]], dtype=bool)  # the first and the last exchanged
+    other = order[np.ix_([2, 1, 0], [2, 1, 0])]
+    assert same_order(match, order, other.T if turned else other) is not turned
+
+
+@pytest.fixture(scope="module")
+def found():
+    sweep = database(EGG, "alpha", [0.05, 0.0501, 0.0502], [0.3, 0.301, 0.302], 64, 64, 8)
+    return sweep, run(sweep)
+
+
+def test_boxes_next_to_one_another_in_a_quiet_place_are_one_class_and_its_map_stays_with_the_sets(found):
+    dataset = found[1]
+    assert np.unique(continued(dataset)).tolist() == [0]
+    assert (dataset.attracting.values >= 1).all()
+    box = ParameterBox(EGG, (Fraction(3, 10), Fraction(301, 1000)), "alpha", (Fraction(1, 20), Fraction(501, 10000)))
+    (chart,) = box.charts
+    cells, rng = dataset.cells.values[0, 0], np.random.default_rng(2)
+    map = PinballMap(EGG.at(alpha="0.05005"), lam=0.3005)
+    end = map.exponents(rng.uniform(-np.pi, np.pi, 200), rng.uniform(-0.4, 0.4, 200), 1, 3000)
+    column = np.floor((end.theta - chart.x[0]) / (chart.x[1] - chart.x[0]) * 64).astype(int) % 64
+    row = np.floor((end.phi / box.height + 1) / 2 * 64).astype(int)
+    assert np.all(cells[row, column] >= 0)  # where orbits end, there is a Morse set
+
+
+def test_what_is_computed_part_by_part_is_the_same_as_in_memory(found, tmp_path):
+    whole, stored = found[1], run(found[0], tmp_path / "graphs.zarr")
+    for name in ("sets", "attracting", "cells", "leads"):
+        assert np.array_equal(whole[name].values, stored[name].values)
+
+
+def test_a_set_that_meets_none_of_the_other_graph_stands_in_no_ones_way():
+    order = np.array([[1, 1, 1], [0, 1, 1], [0, 0, 1]], dtype=np.int8)
+    match = np.array([[1, 0], [0, 0], [0, 1]], dtype=bool)  # the second holds nothing at the border
+    assert same_order(match, order, order[np.ix_([0, 2], [0, 2])])
+
+
+def test_where_convexity_is_not_proved_nothing_is_said():
+    star = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/30:0..1/10"}})
+    dataset = run(database(star, "b", [0.05, 0.06], [0.1, 0.2], 16, 16, 4))
+    assert dataset.sets.values.tolist() == [[-1]]
+    assert continued(dataset).tolist() == [[-1]]
+
+
+@pytest.mark.parametrize(
+    ("lams", "shape", "words"),
+    [
+        ("0:1:3", "alpha=0:1/10:3", "accepted: 0 <= LOW < HIGH < 1"),
+        ("0:0.9:3", "alpha=1/20:1/20:1", "a box has two ends"),
+        ("0.5", "alpha=0:1/10:3", "is no range"),
+    ],
+)
+def test_what_is_no_grid_of_boxes_is_refused_in_a_sentence(lams, shape, words, capsys):
+    assert main(["sweep", "morse-graphs", "egg", "--shape", shape, "--lams", lams]) == 2
+    assert words in " ".join(capsys.readouterr().err.split())
+
+
+def test_the_command_writes_a_picture_and_a_page_that_holds_every_box(tmp_path):
+    page, picture, told = tmp_path / "graphs.html", tmp_path / "graphs.png", tmp_path / "graphs.json"
+    size = ["--columns", "24", "--rows", "16", "--coarsest", "4"]
+    files = ["--page", str(page), "--plot", str(picture), "--json", str(told)]
+    grid = ["--shape", "alpha=0.05:0.06:3", "--lams", "0.1:0.3:3"]
+    assert main(["sweep", "morse-graphs", "egg", *grid, *size, *files]) == 0
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+    text = page.read_text(encoding="utf-8")
+    data = json.loads(text.split('id="data">')[1].split("</script>")[0])
+    assert len(data["sets"]) == len(data["classes"]) == 4
+    assert data["lams"] == ["0.1", "0.2", "0.3"]
+    assert "turns by 1/3" in text

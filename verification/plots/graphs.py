@@ -1,0 +1,90 @@
+"""Pictures of Morse graphs: the sets over phase space, and what continues over boxes of parameters."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from verification.plots.results import CELLS
+from verification.plots.sheet import AXES, PALETTE, figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from verification.proofs.global_dynamics.graph import MorseGraph
+
+NAMED = len(PALETTE)  # classes that have a colour of their own
+
+
+def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
+    """The Morse sets over phase space, and in pale colours the basins that are proved; a panel for each component."""
+    from matplotlib.colors import to_rgb
+
+    grid, leaf, count = graph.transitions.grid, graph.transitions.leaf, graph.transitions.count
+    colours = np.ones((count + 1, 3))
+    attracting = graph.attracting
+    for number, index in enumerate(attracting):
+        block = graph.trapping(index)
+        if not block[-1]:
+            colours[graph.basin(block)] = 0.75 + 0.25 * np.array(to_rgb(f"C{number % 10}"))
+    for index, members in enumerate(graph.sets):
+        paint = f"C{attracting.index(index) % 10}" if index in attracting else "black"
+        colours[members] = to_rgb(paint)
+    everything = np.append(leaf, False)
+    picture = grid.painted(graph.transitions.chosen(everything), np.flatnonzero(leaf), count)
+    made = figure(7.0, 3.2 * len(grid.charts))
+    panels = np.atleast_1d(made.subplots(len(grid.charts), 1))
+    for axes, chart, cells in zip(panels, grid.charts, picture, strict=True):
+        axes.imshow(
+            colours[cells].swapaxes(0, 1),
+            origin="lower",
+            extent=(*chart.x, *chart.y),
+            aspect="auto",
+            interpolation="nearest",
+        )
+        axes.set_xlabel(rf"$\theta$, {chart.name}")
+        axes.set_ylabel(r"$\varphi$")
+    panels[0].set_title(f"{label}: {len(graph.sets)} Morse sets, {len(attracting)} attracting")
+    return made
+
+
+def database(found: "xr.Dataset") -> "Figure":
+    """Boxes of parameters, coloured alike where all continues, and by how many trapping regions are proved."""
+    from matplotlib.colors import ListedColormap, to_rgb
+
+    from verification.proofs.global_dynamics.database import continued
+
+    label, attracting = continued(found), found.attracting.values.astype(float)
+    colours = np.array([*map(to_rgb, PALETTE), (0.82, 0.82, 0.82), (1.0, 1.0, 1.0)])
+    made = figure(7.0, 3.6)
+    left, right = made.subplots(1, 2, sharey=True)
+    extent = _extent(found)
+    left.imshow(colours[np.where(label < 0, NAMED + 1, np.minimum(label, NAMED))], extent=extent, **CELLS)
+    left.set_title("Morse graphs that continue", fontsize=9)
+    most = max(1, int(attracting.max(initial=1)))
+    shades = ListedColormap([str(0.93 - 0.75 * i / max(1, most - 1)) for i in range(most)])
+    shown = right.imshow(
+        np.where(attracting < 1, np.nan, attracting), extent=extent, cmap=shades, vmin=0.5, vmax=most + 0.5, **CELLS
+    )
+    right.set_title("disjoint trapping regions, up to rotation", fontsize=9)
+    made.colorbar(shown, ax=right, ticks=range(1, most + 1), pad=0.02)
+    _labelled(left, found)
+    _labelled(right, found)
+    right.set_ylabel("")
+    return made
+
+
+def _extent(found: "xr.Dataset") -> tuple[float, float, float, float]:
+    """The outer borders of the boxes."""
+    ends = []
+    for values in (found.lam.values, found[str(found.sets.dims[0])].values):
+        half = (values[1] - values[0]) / 2 if values.size > 1 else 0.5 * max(abs(values[0]), 1e-3)
+        ends += [float(values[0] - half), float(values[-1] + half)]
+    return ends[0], ends[1], ends[2], ends[3]
+
+
+def _labelled(axes: "Axes", found: "xr.Dataset") -> None:
+    shape = str(found.sets.dims[0])
+    axes.set_xlabel(AXES["lam"])
+    axes.set_ylabel(AXES.get(shape, shape))

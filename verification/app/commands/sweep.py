@@ -255,7 +255,7 @@ class Kinds(click.Group):
 
             return graphs_command
         if cmd_name not in self.commands:
-            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {', '.join(self.list_commands(ctx))}")
+            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {', '.join(self.commands)}, morse-graphs")
         return self.commands[cmd_name]
 
 

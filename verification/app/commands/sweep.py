@@ -255,7 +255,8 @@ class Kinds(click.Group):
 
             return graphs_command
         if cmd_name not in self.commands:
-            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {', '.join(self.commands)}, morse-graphs")
+            known = ", ".join([*self.commands, "morse-graphs"])
+            raise click.UsageError(f"no sweep is called {cmd_name!r}; accepted: {known}")
         return self.commands[cmd_name]
 
 

@@ -248,7 +248,7 @@ def _typed(text: str) -> str:
 TYPED = {"<=": r"\le", ">=": r"\ge", "+-": r"\pm", "->": r"\to", "oo": r"\infty"}
 STEMS = "alpha|theta|kappa|lambda|delta|eta|phi|pi|mu|nu|lam"
 LETTER_OR_SIGN = re.compile(
-    rf"((?<![\w-])(?:{STEMS})(?:_(?:\w|[+-])|\*)?(?!\w)|(?<!\w)[A-Za-z]_\w(?!\w)|<=|>=|\+-|->|(?<!\w)oo(?!\w))"
+    rf"((?<!\w)(?<!\w-)(?:{STEMS})(?:_(?:\w|[+-])|\*)?(?!\w)|(?<!\w)[A-Za-z]_\w(?!\w)|<=|>=|\+-|->|(?<!\w)oo(?!\w))"
 )
 
 

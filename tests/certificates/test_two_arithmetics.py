@@ -165,7 +165,7 @@ def test_wide_intervals_hold_the_values_at_all_their_points(check, bits):
     assert met > 350
 
 
-@pytest.mark.parametrize("operation", ["+", "-", "*", "/", "neg", "mid", "hull"])
+@pytest.mark.parametrize("operation", ["+", "-", "*", "/", "neg", "mid", "hull", "times a fraction", "by a fraction"])
 def test_rounding_is_outwards(check, operation):
     """At a coarse precision, where every operation rounds, exact fractions at the ends and inside stay inside."""
     dice = random.Random(7)
@@ -181,6 +181,8 @@ def test_rounding_is_outwards(check, operation):
             "neg": lambda x, y: -x,
             "mid": lambda x, y: x,
             "hull": lambda x, y: x,
+            "times a fraction": lambda x, y, b=b: x * b,
+            "by a fraction": lambda x, y, b=b: x * (1 / (b or 1)),
         }[operation]
         if operation == "/" and 0 in y:
             with pytest.raises(check.Unproved):

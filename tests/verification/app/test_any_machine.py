@@ -85,3 +85,36 @@ def test_the_answers_are_the_same(machine, usual):
     assert status == 0, error
     assert said == usual
     assert "Traceback" not in error
+
+
+REPORT = """
+import pathlib, sys
+BEFORE
+from verification.app.cli import main
+status = main(["verify", "--only", "cuspless.lambda_c", "--only", "circle.elastic_angles", "--report", "report"])
+for name in ("report.json", "report.tex", "letter.tex"):
+    lines = pathlib.Path("report", name).read_text().splitlines()
+    print(*(line for line in lines if '"seconds"' not in line), sep="\\n")
+sys.exit(status)
+"""
+
+
+def test_a_report_has_the_same_bytes_but_for_seconds_with_few_instructions(tmp_path):
+    """With AVX2 and fused multiply-add as the machine has them, and without; AVX-512 is not tried."""
+    said = []
+    few = MACHINES["the instructions of every x86-64 and no more, in kernels, NumPy and OpenBLAS"]
+    for k, (before, environment) in enumerate(
+        [("", {}), (BASELINE, {key: few[key] for key in few if key != "before"})]
+    ):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        known = os.environ | {"PYTHONPATH": str(ROOT), "PINBALL_CACHE": str(folder / "cache")} | environment
+        made = subprocess.run(
+            [sys.executable, "-W", "ignore::DeprecationWarning", "-c", REPORT.replace("BEFORE", before)],
+            cwd=folder, env=known, text=True, capture_output=True, check=False,
+        )  # fmt: skip
+        assert made.returncode == 0, made.stderr
+        said.append(made.stdout[made.stdout.index("{") :])
+
+    assert '"verdict": "confirmed"' in said[0]
+    assert said[0] == said[1]

@@ -225,7 +225,7 @@ HOMES = {  # commands that share a module
 }
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}
-EXTRAS["pyarrow"] = "table"
+EXTRAS |= {"pyarrow": "table", "hypothesis": "hypothesis"}
 EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
 LONGEST = 600  # characters of a sentence; a reader sees the end of it
 

@@ -17,6 +17,7 @@ from symbolic.expressions.signs import Outcome
 from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
+from symbolic.tables.law import PAPERS_LAW
 from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import balls, cuts, exact_balls, working
 from verification.cycles.chain import Chain
@@ -30,7 +31,7 @@ from verification.proofs.corner.half_return import trapping_region
 from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
 from verification.proofs.periodic import bifurcation, triangles
 from verification.proofs.periodic.bifurcation import Stability, doubling_curve, over_interval
-from verification.proofs.periodic.interval_newton import Cover, Status, dense, interval_newton, least_gap
+from verification.proofs.periodic.interval_newton import Cover, Status, dense, interval_newton, least_gap, reflection
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
 from verification.proofs.slap_map import exponent as slap
 from verification.proofs.slap_map.exponent import periodic_points
@@ -245,8 +246,8 @@ def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():
     beside = held[0], held[1] + 0.05, held[2] - 0.05
     with working(64):
         angle, half = load(chord_kernel(table, 0, 0, 1), balls(64)), arb("0.5")
-        gap = least_gap(angle, half)
-        cover = Cover(Problem(table, (0, 0, 0), lam=half), angle, half, gap, [])
+        gap = least_gap(angle, half * arb.pi() / 2)
+        cover = Cover(Problem(table, (0, 0, 0), lam=half), angle, reflection(PAPERS_LAW, half), gap, [])
         largest = half * arb.pi() / (1 + half)
         for size in range(4, 28):
             box = around(held, size, chance)

@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from functools import cached_property, wraps
 from importlib import import_module
 from importlib.util import find_spec
@@ -238,7 +239,8 @@ class Questions(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
-            raise click.UsageError(f"no command is called {cmd_name!r}; accepted: {', '.join(COMMANDS)}")
+            near = "".join(f"; did you mean {name}?" for name in get_close_matches(cmd_name, COMMANDS, 1))
+            raise click.UsageError(f"no command is called {cmd_name!r}; accepted: {', '.join(COMMANDS)}{near}")
         home, attribute = HOMES.get(cmd_name, (cmd_name, "command"))
         command: click.Command = getattr(import_module(f"verification.app.commands.{home}"), attribute)
         return command

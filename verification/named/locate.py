@@ -7,6 +7,7 @@ where there is a closed form it must agree. `value` and `radius` are decimals th
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -112,7 +113,8 @@ def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
     '0.0934003354313602414161'
     """
     if name not in NAMES:
-        raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}")
+        near = "".join(f"; did you mean {each}?" for each in get_close_matches(name, NAMES, 1))
+        raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}{near}")
     if not 1 <= digits <= MOST_DIGITS:
         raise ValueError(f"locate: digits = {digits} is out of range; accepted: 1 to {MOST_DIGITS}")
     search, parameters = NAMES[name]

@@ -163,6 +163,7 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--json", "."], "'.' is a directory; accepted: a file, or - for standard output"),
         (["verify", "--report", "/dev/null/x"], "--report '/dev/null/x' cannot be made"),
         (["judge"], "no command is called 'judge'; accepted: verify, "),
+        (["reprt"], "; did you mean report?"),
         (["judge\nme\x1b"], "no command is called 'judge\\nme\\x1b'"),
     ],
 )

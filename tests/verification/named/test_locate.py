@@ -116,6 +116,7 @@ def test_the_papers_cascade_is_judged_digit_by_digit(n, printed, right):
     ("name", "shape", "message"),
     [
         ("lambda", {}, "no value is called 'lambda'; accepted: lambda-star"),
+        ("lamda-star", {}, "; did you mean lambda-star"),
         ("lambda-c", {"lam": Integer(0)}, "given --lam; it takes no parameter"),
         ("doubling", {"alpha": ALPHA}, "it takes --alpha, --n"),
         ("doubling", {"alpha": ALPHA, "n": Integer(40)}, "n = 40 is out of range; accepted: 2 to 17"),

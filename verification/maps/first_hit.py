@@ -10,7 +10,7 @@ between the ends, or next to an end, where `d x q'` keeps its sign so that the l
 itself.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
@@ -62,7 +62,7 @@ def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
 def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
     bend = turning(table.components[index])
     ranges = {p.symbol: p.range for p in table.shapes}
-    if bend.is_nonnegative or _exactly_nonnegative(bend, ranges):
+    if bend.is_nonnegative or (_all_within(shape, ranges.values()) and _exactly_nonnegative(bend, ranges)):
         return True
     if ranges and not shape:
         shape = tuple(_over(r) for r in ranges.values())
@@ -80,6 +80,17 @@ def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
                     return False
                 queue += [(low, middle), (middle, high)]
     return True
+
+
+def _all_within(shape: tuple[arb, ...], ranges: Iterable[Interval]) -> bool:
+    """Do enclosed shape parameters lie in their ranges? What is proved over these is else nothing of them."""
+    return not shape or all(isinstance(r, Interval) and _within(x, r) for x, r in zip(shape, ranges, strict=True))
+
+
+def _within(x: arb, range: Interval) -> bool:
+    low, high = (_exact(Fraction(str(end))) if end.is_Rational else None for end in (range.start, range.end))
+    above = range.start.is_infinite or (low is not None and x >= low)
+    return bool(above and (range.end.is_infinite or (high is not None and x <= high)))
 
 
 def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:

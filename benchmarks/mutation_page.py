@@ -119,9 +119,8 @@ def summary(name: str, figures: dict[str, dict]) -> str:
     first = sum(entry.get("first", killed(entry)) for entry in figures.values())
     low, high = map(percent, wilson(first, asked))
     text += f". Asked was a random part of {total}. The short tests alone killed {first} of them at first,"
-    text += (
-        f" {percent(first / asked)}: of all, {low} to {high} (Wilson's 95 per cent interval). The others were killed"
-    return text + " later, by longer tests or by tests written for them after they were read."
+    text += f" {percent(first / asked)}: of all, {low} to {high} (Wilson's 95 per cent interval). The others were"
+    return text + " killed later, by longer tests or by tests written for them after they were read."
 
 
 def row(path: str, entry: dict) -> str:

@@ -10,8 +10,9 @@ from pybtex.style.labels import BaseLabelStyle
 
 project = "Pinball billiards"
 author = "The pinball-billiards authors"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinxcontrib.bibtex"]
-source_suffix = {".md": "markdown"}
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinxcontrib.bibtex"]
+source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb"}
+nb_execution_mode = "off"  # they are kept with what they show; the tests execute them
 html_theme = "furo"
 html_title = "Pinball billiards"
 html_static_path = ["static"]
@@ -50,6 +51,14 @@ def plain(app, what, name, obj, options, lines):
     lines[:] = [re.sub(r"\[([A-Z][A-Za-z]+\d{4})\]", r":cite:p:`\1`", line.replace("|", r"\|")) for line in lines]
 
 
+def notebooks(app):
+    """Puts the notebooks beside the pages."""
+    there = Path(__file__).parent / "notebooks"
+    there.mkdir(exist_ok=True)
+    for notebook in (there.parents[1] / "notebooks").glob("*.ipynb"):
+        (there / notebook.name).write_bytes(notebook.read_bytes())
+
+
 def pictures(app):
     """Makes the pictures of the gallery that are missing, each from the code below it."""
     sys.path.insert(0, str(Path(__file__).parent))
@@ -60,5 +69,6 @@ def pictures(app):
 
 def setup(app):
     """Called by Sphinx."""
+    app.connect("builder-inited", notebooks)
     app.connect("builder-inited", pictures)
     app.connect("autodoc-process-docstring", plain)

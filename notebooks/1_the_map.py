@@ -64,6 +64,21 @@ numeric = egg.derivative(theta, phi)
 symbolic, numeric
 # -
 
+# ## An orbit
+#
+# Sixty bounces, in the table and in phase space:
+
+# +
+from IPython.display import Image
+
+from verification.plots.results import drawn
+
+flight = egg.orbit(theta, phi, 60)
+places = {"x": flight.x, "y": flight.y, "s": egg.arclength.s(flight.theta, flight.component), "phi": flight.phi}
+bounces = [{name: values[n] for name, values in places.items()} for n in range(61)]
+Image(drawn("results.orbit", (egg, bounces), ".png"))
+# -
+
 # ## A check that can fail
 
 assert simplify(D.det() - lam * cos_phi0 / cos_eta1) == 0

@@ -59,6 +59,20 @@ show(r"P(\sqrt 2)", P.subs(a, sqrt(2)))
 
 show("P", double_normal.stability_number(major_axis()))
 
+# The two of them at $a = 3/2$, found by a search that knows nothing of axes:
+
+# +
+from IPython.display import Image
+
+from symbolic import Scene
+from verification.cycles.search import all_cycles
+from verification.plots.results import drawn
+
+scene = Scene("ellipse", a="3/2", lam="9/10")
+found = all_cycles(scene.table, scene.lam, 2)
+Image(drawn("results.cycles", (scene, found.catalogue), ".png"))
+# -
+
 # ## A check that can fail
 #
 # An orbit that starts next to the major axis is carried away from it and ends on the minor axis.

@@ -51,17 +51,25 @@ least = slap_cardioid.infimum_attained()
 print(proof.outcome.value, "-", proof.reason)
 print(least.outcome.value, "-", least.reason)
 
+# The slap map with its second iterate, and the slope of the first:
+
+# +
+import numpy as np
+from IPython.display import Image
+
+from numeric import PinballMap
+from verification.plots.results import drawn
+
+slap = PinballMap("cardioid", lam=0)
+launch = np.linspace(-3.1, 3.1, 2000)
+Image(drawn("results.slap", (slap, np.zeros(2000, dtype=int), launch, slap.slap(launch, 2)), ".png"))
+# -
+
 # ## A check that can fail
 #
 # Sampled slopes of $T_0^2$ stay above the proved infimum, and come near it; those of $T_0$ do not stay above 1.
 
-# +
-import numpy as np
-
-from numeric import PinballMap
-
 theta = np.linspace(-3.1, 3.1, 20000)  # not 0, whose normal runs into the cusp
-slap = PinballMap("cardioid", lam=0)
 once = slap.slap(theta, 1)
 twice = once.slope * slap.slap(once.theta[1], 1).slope
 assert proof
@@ -69,7 +77,6 @@ assert least
 assert np.min(np.abs(once.slope)) < 1
 assert np.min(twice) >= float(infimum) * (1 - 1e-12)
 assert np.min(twice) < float(infimum) * (1 + 1e-3)
-# -
 
 # ## Every contraction below 1
 #

@@ -48,6 +48,16 @@ for item, answer in star.checks.items():
 print("printed 0.0712173, true", star.value[:12])
 print("printed -0.0289796, true", angle.value[:13])
 
+# An orbit that leaves the upper corner as the angle varies: where its fourth bounce lies, and the angle proved
+
+# +
+from IPython.display import Image
+
+from verification.plots.results import drawn
+
+Image(drawn("dynamics.situated", ([star],), ".png"))
+# -
+
 # ## A check that can fail
 #
 # In float64 the ball leaves the upper corner, meets the arc once and arrives at the lower corner within rounding.

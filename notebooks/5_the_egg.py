@@ -63,6 +63,16 @@ print(found.value, "+-", found.radius)
 for item, answer in found.checks.items():
     print(f"  {item:30} {answer}")
 
+# The triangle at its birth, and the two branches that begin there:
+
+# +
+from IPython.display import Image
+
+from verification.plots.results import drawn
+
+Image(drawn("dynamics.situated", ([found],), ".png"))
+# -
+
 # ## A check that can fail
 
 # +

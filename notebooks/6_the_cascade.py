@@ -29,6 +29,23 @@ for n, each in doublings.items():
 
 # $\lambda_3$ is 0.371 to three digits, not 0.372, and $\lambda_6$ is 0.3933, not 0.3935.
 #
+# Where random particles are after a long time, as a density, with the certified values as lines:
+
+# +
+import numpy as np
+from IPython.display import Image
+
+from numeric.sweeps.fields import bifurcation
+from numeric.sweeps.run import run
+from numeric.sweeps.sweep import text_of
+from symbolic import Scene
+from verification.plots.results import Marked, drawn
+
+sweep = bifurcation(text_of(Scene("egg", alpha=SHAPE)), np.linspace(0.35, 0.4, 400), 20, 100, 2000, 4000, 1)
+lines = [Marked(float(each.value), f"doubling {n}") for n, each in doublings.items()]
+Image(drawn("results.bifurcation", (run(sweep), lines), ".png"))
+# -
+
 # ## The end of the cascade
 #
 # Two extrapolations that share nothing but the doublings (iterated Aitken and Wynn's epsilon) give $\lambda_\infty$ and

@@ -42,6 +42,16 @@ for found in (merging, boundary):
     print(f"{found.kind:9} {nstr(found.parameter, 13)} +- {nstr(found.error, 2)}, methods apart {found.apart:.1e}")
 # -
 
+# The attractor with both manifolds, in a third of phase space, and the place where they touch:
+
+# +
+from IPython.display import Image
+
+from verification.plots.results import drawn
+
+Image(drawn("dynamics.portrait", ("boundary", SHAPE, 0.0, 0.2), ".png"))
+# -
+
 # ## What sampling sees
 #
 # Below the crisis no ball leaves the attractor; above it the mean stay falls like a power of the distance, and the

@@ -46,6 +46,17 @@ print(orbit.theta)
 found = map.exponents(0.3, 0.2, bounces=20000, transient=1000)
 print(float(found.nu_plus), float(found.nu_minus))
 
+# Where 500 random particles end:
+
+# +
+from IPython.display import Image
+
+from numeric.dynamics.attractors import find
+from verification.plots.results import drawn
+
+Image(drawn("results.attractors", (map, find(map, 500, 1)), ".png"))
+# -
+
 # ## A certified doubling
 #
 # The same threshold on the chord system, in balls, with the whole checklist.

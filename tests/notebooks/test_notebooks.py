@@ -34,5 +34,13 @@ def test_a_notebook_ends_with_a_check_that_can_fail(text):
     assert "assert " in sources(text)[-1][1]
 
 
+@pytest.mark.parametrize("text", TEXTS, ids=lambda path: path.stem)
+def test_a_notebook_shows_a_picture(text):
+    cells = jupytext.read(text.with_suffix(".ipynb")).cells
+    shown = [output for cell in cells for output in cell.get("outputs", [])]
+
+    assert any("image/png" in output.get("data", {}) for output in shown)
+
+
 def test_there_are_notebooks_one_to_eight():
     assert [int(text.name[0]) for text in TEXTS] == list(range(1, 9))

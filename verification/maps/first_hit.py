@@ -19,7 +19,7 @@ from math import gcd
 from typing import Any
 
 from flint import arb
-from sympy import QQ, ZZ, Expr, Interval, Matrix, Poly, S, Symbol, chebyshevt, expand, pi, simplify
+from sympy import QQ, ZZ, Dummy, Expr, Interval, Matrix, Poly, S, chebyshevt, expand, pi, simplify
 
 from symbolic.expressions.signs import nonnegative
 from symbolic.expressions.text import kernel, load
@@ -104,7 +104,7 @@ def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
     if not all(map(_rational, waves.values())) or not all(isinstance(r, Interval) for r in ranges.values()):
         return False
     step = gcd(*waves)
-    c = Symbol("c", real=True)
+    c = Dummy("c", real=True)  # a parameter may be called so, too
     polynomial = sum((w * (2 if k else 1) * chebyshevt(k // step, c) for k, w in waves.items() if k >= 0), S.Zero)
     used = {p: r for p, r in ranges.items() if p in polynomial.free_symbols}
     return bool(nonnegative(polynomial, {c: Interval(-1, 1)} | used))

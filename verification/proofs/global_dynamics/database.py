@@ -25,10 +25,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from sympy import S
 
 from numeric.lowering.lower import converted
 from numeric.lowering.program import Builder, Program
 from numeric.sweeps.sweep import Axis, Field, Part, Sweep, map_of, text_of
+from symbolic.tables.law import parameters_of_law
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table, theta
 from verification.cycles.systems import rotations
@@ -157,7 +159,7 @@ def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]
 
     They are those of point and velocity of the first component. `ValueError` where the table is not proved convex.
     """
-    table: Table = Scene.parse(text).over(parameter, low, high)
+    table = varied(Scene.parse(text), parameter, low, high)
     if convex(table) is not True:
         raise ValueError(f"{table.name}: not proved convex for {parameter} = {low} to {high}; accepted: convex tables")
     symbols = {p.symbol.name: p.symbol for p in table.shapes}
@@ -167,6 +169,19 @@ def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]
     rates = [each.diff(symbols[parameter]) for each in (*point, *(x.diff(theta) for x in point))]
     program = builder.program(*(converted(builder, rate, nodes) for rate in rates))
     return _turns(table), program
+
+
+def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
+    """The table with one parameter free; `ValueError` where that moves the cells' borders, or the law beside the table.
+
+    Charts end where components do, at the same places for all boxes; and of a law the numbers are those of one scene.
+    """
+    table: Table = scene.over(parameter, low, high)
+    if any(parameter in map(str, S(end).free_symbols) for part in table.components for end in (part.start, part.end)):
+        raise ValueError(f"{table.name}: components end elsewhere for another {parameter}; accepted: ends that stay")
+    if scene.law.measured or parameter in parameters_of_law(scene.law.formula):
+        raise ValueError(f"law = {scene.law}: it depends on {parameter}; accepted: laws that no shape changes")
+    return table
 
 
 def _turns(table: Table) -> int:
@@ -260,7 +275,7 @@ def database(
         low, high = (Fraction(str(end)) for end in ends)
         shapes = [min(max(shape, low), high) for shape in shapes]
     contractions = [Fraction(repr(float(value))) for value in lams]
-    family = scene.over(parameter, shapes[0], shapes[-1])
+    family = varied(scene, parameter, shapes[0], shapes[-1])
     charts, turns = len(family.components), 1 if scene.law.placed else _turns(family)
     start, end = float(scene.table.components[0].start), float(scene.table.components[-1].end)
     task = Graphs(

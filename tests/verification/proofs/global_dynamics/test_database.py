@@ -10,6 +10,7 @@ from numeric import PinballMap
 from numeric.sweeps.run import run
 from symbolic import Scene
 from verification.app.cli import main
+from verification.maps.first_hit import convex
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.database import ParameterBox, common, continued, database, same_order
 
@@ -120,6 +121,31 @@ def test_where_convexity_is_not_proved_nothing_is_said():
     dataset = run(database(star, "b", [0.05, 0.06], [0.1, 0.2], 16, 16, 4))
     assert dataset.sets.values.tolist() == [[-1]]
     assert continued(dataset).tolist() == [[-1]]
+
+
+HALVES = {"x": "cos(theta)", "y": "sin(theta)"}
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        ({"component": [{**HALVES, "from": "0", "to": "pi + b"}, {**HALVES, "from": "pi + b", "to": "2*pi"}]}, "end"),
+        ({"polar": "1 + b*cos(3*theta)", "law": "-lam*eta*(1/2 + 10*b)"}, "law"),
+    ],
+)
+def test_a_shape_that_moves_the_ends_of_the_charts_or_the_law_is_refused(scene, words):
+    scene = Scene.of({**scene, "shape": {"b": "1/50"}})
+    with pytest.raises(ValueError, match=words):
+        database(scene, "b", [0.01, 0.02], [0.1, 0.2], 16, 16, 4)
+    with pytest.raises(ValueError, match=words):
+        ParameterBox(scene, LAM, "b", (Fraction(1, 100), Fraction(1, 50)))
+
+
+@pytest.mark.parametrize("name", ["b", "c"])
+def test_a_shape_is_proved_convex_or_not_whatever_its_parameter_is_called(name):
+    flower = Scene.of({"polar": f"1 + {name}*cos(5*theta)", "shape": {name: "1/50"}})
+    assert convex(flower.over(name, 0, "1/26")) is True
+    assert convex(flower.over(name, 0, "1/10")) is None
 
 
 @pytest.mark.parametrize(

@@ -270,6 +270,8 @@ class Family(ABC):
 
     def arc(self, ops: Backend[N, M], position: Fields[N], component: N, theta: N, law: LawIR) -> N:
         """Arc length from the table's origin, for a law that speaks of it."""
+        if law.lengths:  # a circle that its formula does not show, as that of any radius
+            return law.length(ops, 0, theta)
         how, numbers = law.series or (plane.CLOSED, ())
         return self.along(ops, position, theta, how, [ops.number(x) for x in numbers])
 

@@ -219,3 +219,11 @@ def test_on_the_circle_arc_length_is_the_angle():
     one, other = (made("circle", law, kernels=False) for law in (MEASURED, MEASURED.replace("(s)", "(theta)")))
 
     assert np.array_equal(one.step(theta, phi).phi, other.step(theta, phi).phi)
+
+
+def test_arc_length_is_known_on_a_circle_whose_radius_is_a_parameter():
+    law = "-lam*eta + sin(s)/9"
+    free = Scene.of({"polar": "b", "law": law, "shape": {"b": "4/5:1/2..3/2"}, "lam": "1/2"})
+    fixed = Scene.of({"polar": "4/5", "law": law, "lam": "1/2"})
+    one, other = (PinballMap(scene).step(np.linspace(-3, 3, 9), np.full(9, 0.2)).phi for scene in (free, fixed))
+    assert np.allclose(one, other, rtol=0, atol=1e-14)

@@ -97,6 +97,18 @@ def test_a_law_that_a_whole_turn_changes_is_asked_between_the_ends_alone(law, ad
     assert proof.checks["admissible"] is admissible
 
 
+def test_a_law_of_arc_length_on_a_disc_among_sides_is_asked_between_the_ends_alone():
+    """A turn less on the disc the same point has another length, and a zero of the chord system is no cycle."""
+    problem = Problem(sinai(), (0, 4), lam=Rational(1, 2), law=Law("-lam*eta + sin(s)/9"))
+    for start, admissible in (([0.467, 1.669], True), ([0.4745, -4.644], False)):
+        solution = refined(problem, start, 20)
+        with working(150):
+            proof = proved(Claim(problem, tuple(exact_balls(solution.z)), arb("1e-22").mid(), 150, 20))
+
+        assert proof.checks["exists"] is True
+        assert proof.checks["admissible"] is admissible
+
+
 def test_a_piece_that_crosses_a_chord_never_passes_and_a_small_one_beside_it_does():
     """Straight pieces in all directions through points of the chord from (0, 0) to (2, 1), and beside it."""
     chance = random.Random(1)

@@ -159,7 +159,7 @@ def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]
 
     They are those of point and velocity of the first component. `ValueError` where the table is not proved convex.
     """
-    table = varied(Scene.parse(text), parameter, low, high)
+    table = _varied(Scene.parse(text), parameter, low, high)
     if convex(table) is not True:
         raise ValueError(f"{table.name}: not proved convex for {parameter} = {low} to {high}; accepted: convex tables")
     symbols = {p.symbol.name: p.symbol for p in table.shapes}
@@ -171,7 +171,7 @@ def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]
     return _turns(table), program
 
 
-def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
+def _varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
     """The table with one parameter free; `ValueError` where that moves the cells' borders, or the law beside the table.
 
     Charts end where components do, at the same places for all boxes; and of a law the numbers are those of one scene.
@@ -275,7 +275,7 @@ def database(
         low, high = (Fraction(str(end)) for end in ends)
         shapes = [min(max(shape, low), high) for shape in shapes]
     contractions = [Fraction(repr(float(value))) for value in lams]
-    family = varied(scene, parameter, shapes[0], shapes[-1])
+    family = _varied(scene, parameter, shapes[0], shapes[-1])
     charts, turns = len(family.components), 1 if scene.law.placed else _turns(family)
     start, end = float(scene.table.components[0].start), float(scene.table.components[-1].end)
     task = Graphs(

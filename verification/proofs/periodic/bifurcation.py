@@ -137,7 +137,8 @@ def proved(claim: Claim) -> Proof:
 def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shape: tuple[arb, ...]) -> bool | None:
     """In a convex table the bounces lie inside their parts; in any other each chord is examined too."""
     law = problem.law
-    placed = inside(problem.table, parts, whole, shape, not law.placed or is_periodic(law.phi))
+    turns = not law.measured and is_periodic(law.phi)  # arc length grows by a whole perimeter
+    placed = inside(problem.table, parts, whole, shape, turns or not law.placed)
     if placed is not True or convex(problem.table, shape) is True:
         return placed
     return first_hits(problem.table, parts, whole, shape)

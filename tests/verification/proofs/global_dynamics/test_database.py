@@ -141,6 +141,12 @@ def test_a_shape_that_moves_the_ends_of_the_charts_or_the_law_is_refused(scene, 
         ParameterBox(scene, LAM, "b", (Fraction(1, 100), Fraction(1, 50)))
 
 
+@pytest.mark.parametrize("size", [(18, 16, 4), (18, 18, 6)])
+def test_blocks_that_do_not_fit_are_an_error_and_not_boxes_of_which_nothing_is_known(size):
+    with pytest.raises(ValueError, match="no power of 2"):
+        database(EGG, "alpha", [0.05, 0.06], [0.1, 0.2], *size)
+
+
 @pytest.mark.parametrize("name", ["b", "c"])
 def test_a_shape_is_proved_convex_or_not_whatever_its_parameter_is_called(name):
     flower = Scene.of({"polar": f"1 + {name}*cos(5*theta)", "shape": {name: "1/50"}})

@@ -257,7 +257,7 @@ def database(
     `rows` across the strip of exit angles; a box begins with blocks of `coarsest` cells.
 
     >>> sweep = database(Scene("egg", alpha="1/20"), "alpha", [0.05, 0.06], [0.1, 0.2], 24, 16, 4)
-    >>> found = sweep.task(sweep.part((0, 0)))
+    >>> found = sweep.task(sweep.part((0,) * 6))
     >>> found["sets"].tolist(), found["cells"].shape
     ([[1]], (1, 1, 16, 24))
     """

@@ -10,7 +10,7 @@ Two boxes with a common border are compared there. At a parameter of the border 
 after box of its walk, in one Morse set of either graph; so sets of the two graphs that have no cell in common hold no
 such orbit in common, and a set that meets none of the other graph holds none at all there. Where the other sets match
 one to one, and the same lead to the same, what is recurrent within matched sets is the same there: it continues from
-box to box, and with it its Conley index. Boxes that are joined by such borders are a class. (Arai, Kalies, Kokubu,
+box to box, and with it, where the map is continuous, its Conley index. Boxes that are joined by such borders are a class. (Arai, Kalies, Kokubu,
 Mischaikow, Oka and Pilarczyk 2009, A database schema for the analysis of global dynamics of multiparameter systems.)
 """
 
@@ -54,6 +54,7 @@ Range = tuple[Fraction, Fraction]
 Numbers = NDArray[np.int64]
 KNOWN = 40  # Morse sets of a box whose order is kept; a box with more has its count alone
 TOGETHER = 8  # contractions of a task
+TAKEN = {"sets", "attracting", "top", "cells", "leads", "row", "column", "from", "to"}  # names of fields and axes
 
 
 class ParameterBox(PinballImages):
@@ -265,6 +266,8 @@ def database(
         raise ValueError(
             f"{parameter} is no shape parameter of {scene.name}; accepted: one of {', '.join(scene.shape)}"
         )
+    if parameter in TAKEN:
+        raise ValueError(f"{parameter} is what a field of the results is called; give the parameter another name")
     if not 0 <= min(lams) < max(lams) < 1:
         raise ValueError(f"lam = {min(lams)} to {max(lams)} is no range; accepted: 0 <= LOW < HIGH < 1")
     if min(len(values), len(lams)) < 2:

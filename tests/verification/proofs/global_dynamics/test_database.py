@@ -116,6 +116,12 @@ def test_a_set_that_meets_none_of_the_other_graph_stands_in_no_ones_way():
     assert same_order(match, order, order[np.ix_([0, 2], [0, 2])])
 
 
+def test_a_parameter_that_is_called_as_a_field_of_the_results_is_refused():
+    scene = Scene.of({"polar": "1 + top*cos(5*theta)", "shape": {"top": "1/90:0..1/30"}})
+    with pytest.raises(ValueError, match="give the parameter another name"):
+        database(scene, "top", [0.01, 0.02], [0.1, 0.2], 16, 16, 4)
+
+
 def test_where_convexity_is_not_proved_nothing_is_said():
     star = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/30:0..1/10"}})
     dataset = run(database(star, "b", [0.05, 0.06], [0.1, 0.2], 16, 16, 4))

@@ -10,8 +10,9 @@ Two boxes with a common border are compared there. At a parameter of the border 
 after box of its walk, in one Morse set of either graph; so sets of the two graphs that have no cell in common hold no
 such orbit in common, and a set that meets none of the other graph holds none at all there. Where the other sets match
 one to one, and the same lead to the same, what is recurrent within matched sets is the same there: it continues from
-box to box, and with it, where the map is continuous, its Conley index. Boxes that are joined by such borders are a class. (Arai, Kalies, Kokubu,
-Mischaikow, Oka and Pilarczyk 2009, A database schema for the analysis of global dynamics of multiparameter systems.)
+box to box, and with it, where the map is continuous, its Conley index. Boxes that are joined by such borders are a
+class. (Arai, Kalies, Kokubu, Mischaikow, Oka and Pilarczyk 2009, A database schema for the analysis of global dynamics
+of multiparameter systems.)
 """
 
 from collections.abc import Iterator, Sequence

@@ -122,7 +122,7 @@ def own(table, way, scene):
     Where a law has theta, and not its period, a bounce lies between the ends."""
     if way != "table":
         table.closed = list(map(closed, table.parts))
-        need(way == "component" or table.closed[0] or comes_round(table), "scene: the boundary is not closed", Wrong)
+        joined(table, scene)
         table.marks = [marked(table, mark) for mark in scene.get("undefined", [])]
         if way == "polar" and not table.marks:
             positive(table)
@@ -130,10 +130,76 @@ def own(table, way, scene):
         table.closed = [False] * len(table.parts)
 
 
-def comes_round(table):
-    """Do the ends of the first component meet, as far as can be seen? Of one whose period is not seen."""
-    (x, y, *_), (u, v, *_) = (table.at(0, end, table.letters, table.p) for end in table.ends(0, table.p))
-    return 0 in I.of(x - u, table.p) and 0 in I.of(y - v, table.p)
+def fraction(node, names):
+    """The value of a formula of fractions, sums, products and whole powers; None of another."""
+    if isinstance(node, ast.Constant | ast.Name):
+        return node.value if isinstance(node, ast.Constant) else names.get(node.id)
+    parts = [getattr(node, key) for key in ("operand", "left", "right") if hasattr(node, key)]
+    found = [fraction(part, names) for part in parts]
+    if not found or None in found:
+        return None
+    x, y, op = found[0], found[-1], type(node.op)
+    if op in (ast.USub, ast.UAdd, ast.Add, ast.Sub, ast.Mult):
+        return {ast.USub: -x, ast.UAdd: x, ast.Add: x + y, ast.Sub: x - y, ast.Mult: x * y}[op]
+    if op is ast.Div:
+        return x / y if y else None
+    bits = x.numerator.bit_length() + x.denominator.bit_length()
+    fit = op is ast.Pow and y.denominator == 1 and bits * abs(y) < 10**6 and (x or y > 0)
+    return x ** int(y) if fit else None
+
+
+def number(node, names, p):
+    """The value of a formula: as a fraction where it is one, else as an interval."""
+    found = fraction(node, {name: x for name, x in names.items() if isinstance(x, Fraction)})
+    letters = {name: I.of(x, p) for name, x in names.items()}
+    return I.of(evaluate(node, letters, p)[0], p) if found is None else found
+
+
+def settings(scene, p):
+    """The numbers of a scene's parameters: nine times, from end to end, where one has a range."""
+    ends = {name: text.partition("..") for name, text in scene.get("shape", {}).items()}
+    ends = {name: [number(parse(at[k] or at[0]), {}, p) for k in (0, 2)] for name, at in ends.items()}
+    shares = [Fraction(k, 8) for k in range(9)] if ".." in "".join(scene.get("shape", {}).values()) else [Fraction(0)]
+    return [{name: low + (high - low) * share for name, (low, high) in ends.items()} for share in shares]
+
+
+def joined(table, scene):
+    """Refuses a piece that does not run forward, and pieces that are no closed curves, one after the other.
+
+    A curve goes on where the next piece begins at a piece's end, and else has to be back where it began."""
+    p, cases, known = table.p, settings(scene, table.p), {*scene.get("shape", {}), "theta", "pi", "E"}
+    for k, part in enumerate(table.parts, 1):
+        nodes = [node for tree in part for node in ast.walk(tree)]
+        called = {getattr(node.func, "id", "") for node in nodes if isinstance(node, ast.Call)}
+        words = {node.id for node in nodes if isinstance(node, ast.Name)} - called
+        need(words <= known, f"scene: piece {k} has a letter without a number or a range", Wrong)
+        for here, there in zip(cases, cases[1:] or cases, strict=False):
+            names = {name: I.of(x, p).hull(I.of(there[name], p)) for name, x in here.items()}
+            low, high = (number(node, names, p) for node in part[-2:])
+            need(I.of(high - low, p) > 0, f"scene: piece {k} does not run forward, from less to more", Wrong)
+    for names in cases:
+        tips, first = [[tip(part, end, names, p) for end in part[-2:]] for part in table.parts], 0
+        for k, (_, last) in enumerate(tips, 1):
+            if k == len(tips) or not meet(last, tips[k][0], p):
+                back = meet(last, tips[first][0], p)
+                need(back, f"scene: the boundary is not closed: piece {k} ends where no other begins", Wrong)
+                first = k
+
+
+def tip(part, end, names, p):
+    """The point at an end of a piece."""
+    at = names | {"theta": number(end, names, p)}
+    found = [number(node, at, p) for node in part[:-2]]
+    if len(found) > 1:
+        return found
+    s, c = I.of(at["theta"], p).sin_cos()
+    return c * found[0], s * found[0]
+
+
+def meet(one, other, p):
+    """Are two points the same: exactly where they are fractions, and else as far as intervals see?"""
+    pairs = zip(one, other, strict=True)
+    return all(x == y if isinstance(x - y, Fraction) else 0 in I.of(x - y, p) for x, y in pairs)
 
 
 def positive(table):

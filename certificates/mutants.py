@@ -134,7 +134,10 @@ def formula(given: Document, dice: random.Random) -> None:
 
 def reworded(text: str, dice: random.Random) -> str:
     """A formula with one digit, sign or word replaced."""
-    place = dice.choice(list(re.finditer(r"[a-z]{3,}(?=\()|\d|[-+*/]|\.\.", text)))
+    places = list(re.finditer(r"[a-z]{3,}(?=\()|\d|[-+*/]|\.\.", text))
+    if not places:  # a letter alone
+        return f"-{text}"
+    place = dice.choice(places)
     kind = next(kind for kind in (FUNCTIONS, "0123456789", "+-*/", ("..",)) if place[0] in kind)
     return text[: place.start()] + dice.choice(kind) + text[place.end() :]
 

@@ -82,6 +82,7 @@ class Scene:
         """Keeps the one line that says all of it; the same line for every way to write it."""
         name, law = name_of(boundary), law if isinstance(law, Law) else Law(law)
         parameters = tuple(dict.fromkeys((*parameters_of(boundary), *parameters_of_law(law.formula))))
+        _one_number(name, law, parameters_of(boundary), shape)
         shape = {**dict(law.numbers), **shape}
         for parameter in shape:
             if parameter not in parameters:
@@ -289,6 +290,17 @@ class Scene:
         from symbolic.tables.table import latex
 
         return rf"$\displaystyle {latex(self.table)}, \quad \varphi = {latex(self.law.phi)}$"
+
+
+def _one_number(name: str, law: Law, own: tuple[str, ...], shape: Mapping[str, Any]) -> None:
+    """Refuses a law that holds one number under a name for which the table, or the scene, has another or none."""
+    for parameter, held in law.numbers:
+        given = value_text(parameter_text(f"{name}: {parameter}", shape[parameter])) if parameter in shape else None
+        if given != held and (given is not None or parameter in own):
+            raise ValueError(
+                f"{name}: {parameter} is {held} in the law and has {given or 'no number'} in the "
+                f"{'table' if parameter in own else 'scene'}; a name means one number, so rename one of the two"
+            )
 
 
 def _with_ranges(shape: Mapping[str, Any], ranges: Mapping[str, str]) -> dict[str, Any]:

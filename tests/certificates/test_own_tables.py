@@ -86,6 +86,90 @@ def test_another_scene_is_not_proved(check, name, scene, answer):
     assert said(check, replaced(document(name), **scene)).startswith(answer)
 
 
+def turned(given: dict, piece: int, **entries: str) -> dict:
+    """The document with entries of one piece replaced; the statement does not say them."""
+    again = copy.deepcopy(given)
+    again["scene"]["component"][piece] |= entries
+    return again
+
+
+@pytest.mark.parametrize(
+    ("name", "piece", "entries", "item"),
+    [
+        ("scatterer", 0, {"y": "-1/2 - theta/10**60"}, "the boundary is not closed: piece 1 "),
+        ("scatterer", 1, {"from": "1/10**60"}, "the boundary is not closed: piece 1 "),
+        ("scatterer", 2, {"x": "1/2 - theta - theta*(1 - theta)"}, ""),  # between its ends a piece is as it likes
+        ("scatterer", 0, {"from": "1", "to": "0", "x": "1/2 - theta"}, "piece 1 does not run forward"),
+        ("scatterer", 0, {"from": "5", "to": "1"}, "piece 1 does not run forward"),
+        ("scatterer", 0, {"to": "0"}, "piece 1 does not run forward"),
+        ("scatterer", 4, {"to": "pi - 10**(-20)"}, "the boundary is not closed: piece 5 "),
+        ("scatterer", 4, {"y": "-sin(theta)/4 + theta/10**20"}, "the boundary is not closed: piece 5 "),
+        ("scatterer", 1, {"x": "1/2 + b"}, "piece 2 has a letter without a number"),
+    ],
+)
+def test_pieces_join_and_run_forward_or_are_no_boundary(check, name, piece, entries, item):
+    """The cycle itself is on other pieces, and its chords are free of these."""
+    answer = said(check, turned(document(name), piece, **entries))
+
+    assert answer.startswith(f"refused: scene: {item}" if item else "proved: ")
+
+
+@pytest.mark.parametrize("piece", range(9))
+def test_a_gap_in_a_spline_is_seen_at_every_join(check, piece):
+    given = document("spline")
+    moved = given["scene"]["component"][piece]["x"] + " + 1/10**80"
+
+    assert "the boundary is not closed" in said(check, turned(given, piece, x=moved))
+
+
+SIDES = [("theta", "0"), ("1", "theta"), ("1 - theta", "1"), ("0", "1 - theta")]
+
+
+@pytest.mark.parametrize(
+    ("bottom", "shape", "closed"),
+    [
+        ("sqrt(b)**2*theta*(1 - theta)", {"b": "1/3"}, True),
+        ("sqrt(b)*theta", {"b": "1/10**30"}, False),
+        ("b*theta*(1 - theta)", {"b": "0..1/4"}, True),
+        ("b*theta", {"b": "0..1/4"}, False),
+        ("b*(1/4 - b)*theta", {"b": "0..1/4"}, False),  # closed where the range begins and where it ends
+        ("tan(theta - 1) + tan(1)*(1 - theta)", {}, True),
+        ("cosh(theta) - 1", {}, False),
+    ],
+)
+def test_joins_are_looked_at_for_numbers_and_over_the_range_of_a_free_parameter(check, bottom, shape, closed):
+    pieces = [{"x": x, "y": y, "from": "0", "to": "1"} for x, y in [(SIDES[0][0], bottom), *SIDES[1:]]]
+    free = "b" if ".." in shape.get("b", "") else ""
+    read = lambda: check.read_scene({"component": pieces, "shape": shape, "lam": "1/3"}, free, 144)  # noqa: E731
+
+    if closed:
+        assert read()[0].closed == [False] * 4
+    else:
+        with pytest.raises(check.Wrong, match="the boundary is not closed: piece 1 "):
+            read()
+
+
+def test_ends_that_move_with_a_parameter_stay_in_order_over_its_range(check):
+    pieces = [{"x": "theta - b", "y": "0", "from": "b", "to": "b + 1"}]
+    pieces += [{"x": x, "y": y, "from": "0", "to": "1"} for x, y in SIDES[1:]]
+    scene = {"component": pieces, "shape": {"b": "0..2"}, "lam": "1/3"}
+
+    check.read_scene(scene, "b", 144)
+    pieces[0] |= {"x": "theta/(2 - b)", "from": "0", "to": "2 - b"}  # at the end of the range of no length
+    with pytest.raises(check.Wrong, match="piece 1 does not run forward"):
+        check.read_scene(scene, "b", 144)
+
+
+def test_a_letter_of_the_law_alone_is_none_of_the_table(check):
+    """A radius with a mark is not asked to be positive, and would be read with the law's parameter for its own."""
+    scene = {"polar": "1 + b*cos(5*theta)", "law": "-b*eta", "lam": "1/3"}
+    scene["undefined"] = [{"name": "m", "component": 0, "theta": "1"}]
+
+    with pytest.raises(check.Wrong, match="piece 1 has a letter without a number or a range"):
+        check.read_scene(scene, "b", 144)
+    check.read_scene(scene | {"polar": "1 + cos(5*theta)/40"}, "b", 144)
+
+
 def test_a_parameter_with_a_number_is_not_free(check):
     """Both would be said of one parameter: that it is 1/10, and that it lies in the box."""
     given = document("alpha-tilde")

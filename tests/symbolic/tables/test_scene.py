@@ -19,6 +19,7 @@ from symbolic.tables.scene import Scene
 from symbolic.tables.table import Shape, theta
 
 b = Symbol("b", real=True)
+WAVES = tables.polar(1 + b * cos(5 * theta), "waves", [Shape(b, Interval(0, Rational(1, 30)), "crosses itself")])
 
 TRIANGLE = """
 name = "triangle"
@@ -103,6 +104,32 @@ def test_the_law_of_a_scene_is_the_paper_s_unless_another_points_into_the_table(
     assert Scene("circle", law="-eta**3/9").law == Law("-eta**3/9")
     with pytest.raises(ValueError, match="does not lie between -pi/2 and pi/2"):
         Scene("circle", law="-eta**3")
+
+
+@pytest.mark.parametrize(
+    ("table", "shape", "says"),
+    [
+        (WAVES, {"b": "1/40"}, "waves: b is 1/10 in the law and has 1/40 in the table"),
+        (WAVES, {"b": "1/40:0..1/50 + 1/100"}, "waves: b is 1/10 in the law and has 1/40 in the table"),
+        (WAVES, {}, "waves: b is 1/10 in the law and has no number in the table"),
+        ("circle", {"b": "1/40"}, "circle: b is 1/10 in the law and has 1/40 in the scene"),
+    ],
+)
+def test_a_name_means_one_number_in_table_and_law(table, shape, says):
+    law = Law("-lam*eta - b*sin(2*eta)").at(b="0.1")
+
+    with pytest.raises(ValueError, match=says + "; a name means one number, so rename one of the two$"):
+        Scene(table, law=law, lam="1/2", **shape)
+
+
+def test_a_name_in_table_and_law_has_the_number_that_both_say():
+    law = Law("-lam*eta - alpha*sin(2*eta)")
+    scene = Scene("egg", alpha="0.08", lam="1/2", law=law)
+
+    assert scene == Scene("egg", alpha="2/25", lam="1/2", law=law.at(alpha="0.08"))
+    assert scene.at(alpha="1/20").law == law.at(alpha="1/20")
+    with pytest.raises(ValueError, match=r"alpha is 1/10 in the law and has 2/25 in the table"):
+        Scene("egg", alpha="2/25", law="-lam*eta").at(law=law.at(alpha="1/10"))
 
 
 @pytest.mark.parametrize(

@@ -277,6 +277,7 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
     keys = ("law", "polar", "component", "undefined", *(("shape",) if "polar" in original["scene"] else ()))
+    keys += ("lam",) * ("lam" not in original["scene"].get("law", "lam"))  # of a law without lam any will do
     if any(given["scene"].get(key) != original["scene"].get(key) for key in keys):
         return proved_by_the_package(given)
     same = all(given[key] == original.get(key) for key in ("kind", "scene", "free", *({"mirror"} & set(given))))

@@ -275,18 +275,22 @@ def test_a_table_of_several_pieces_and_its_order_are_read(check):
 
 
 def test_a_bounce_beyond_the_end_of_its_piece_is_none_though_no_chord_is_in_the_way(check):
-    """The axis of a lens: its upper arc is there as a whole, or without the middle."""
-    lower = {"x": "theta", "y": "theta**2/8 - 1", "from": "-1", "to": "1"}
-    upper = {"x": "-theta", "y": "1 - theta**2/8", "from": "-1", "to": "1"}
-    whole, part = ({"component": [lower, upper | {"to": end}], "lam": "1/3"} for end in ("1", "-1/2"))
+    """The axis of a lens: its upper arc is there as a whole, or ends before the middle, where a bay begins."""
+    said_by = lambda x, y, low, high: {"x": x, "y": y, "from": low, "to": high}  # noqa: E731
+    lower, right = said_by("theta", "theta**2/8 - 1", "-1", "1"), said_by("1", "theta", "-7/8", "7/8")
+    upper, left = said_by("-theta", "1 - theta**2/8", "-1", "1"), said_by("-1", "-theta", "-7/8", "7/8")
+    bay = [said_by("1/2", "theta", "31/32", "3"), said_by("-theta", "3", "-1/2", "1")]
+    ends = [upper | {"to": "-1/2"}, *bay, left | {"from": "-3"}]
+    whole, part = ({"component": [lower, right, *rest], "lam": "1/3"} for rest in ([upper, left], ends))
 
-    assert said(check, cycle(whole, ["0", "0"], [0, 1])).startswith("proved")
-    assert said(check, cycle(part, ["0", "0"], [0, 1])).startswith("not proved: admissible: a bounce may be off")
+    assert said(check, cycle(whole, ["0", "0"], [0, 2])).startswith("proved")
+    assert said(check, cycle(part, ["0", "0"], [0, 2])).startswith("not proved: admissible: a bounce may be off")
 
 
 def test_a_wall_that_is_put_into_the_way_is_seen(check):
-    wall = {"x": "1/2", "y": "theta/4", "from": "-1/2", "to": "1"}
-    scene = {"component": [*STADIUM, wall], "lam": "1/3"}
+    """A wall has two sides, of which one runs back."""
+    sides = {"x": "1/2", "y": "theta/4", "from": "-1/2", "to": "1"}, {"y": "-theta/4", "from": "-1", "to": "1/2"}
+    scene = {"component": [*STADIUM, sides[0], sides[0] | sides[1]], "lam": "1/3"}
 
     assert said(check, cycle(scene, ["0", "0"], [0, 2])).startswith("not proved: admissible: a chord may meet")
 

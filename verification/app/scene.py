@@ -9,11 +9,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from fractions import Fraction
 from functools import wraps
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from symbolic import tables
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text, range_ends, range_text
 from symbolic.tables.law import Law, parameters_of_law
 from symbolic.tables.scene import Scene
@@ -58,13 +60,16 @@ def scene(
     if file is not None:
         return _from_file(file, lam, values, K, shape, formula)
     law = UNIFORM if formula is None else _law(formula).formula
-    own: dict[str, Any] = {n: values.pop(n) for n in parameters_of_law(law) if n in values and name in BUILT}
+    own: dict[str, Any] = {n: values[n] for n in parameters_of_law(law) if n in values and name in BUILT}
+    values = {n: text for n, text in values.items() if n not in own or n in _lengths(name)}  # one number for both
     if drawn is not None:
         for key in values:
             raise ValueError(f"--shape {key}: a table from a file of data has no shape parameter; leave it out")
         _fitting(drawn.name, (), shape)
         return Scene(drawn, lam=_contraction(lam), law=law, **own)
     if name in PAPER:
+        if twice := [key for key in values if shape.get(key) is not None]:
+            raise ValueError(f"--shape {twice[0]} is given, and --{twice[0]} {shape[twice[0]]} too; leave one out")
         shape = {**shape, **values}
     if K is not None and name != "egg":
         raise ValueError(f"{name}: --K = {K} is only for the egg; leave it out")
@@ -170,17 +175,18 @@ def _from_file(
     return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)
 
 
+def _lengths(name: str) -> tuple[str, ...]:
+    """The names of a built table's numbers, which for those of the gallery are lengths."""
+    return tuple(signature(tables.GALLERY[name]).parameters) if name in GALLERY else PAPER.get(name, ())
+
+
 def _of_gallery(name: str, values: dict[str, str]) -> "tuple[Table, dict[str, str]]":
     """One of the gallery's tables, with the lengths that were given; those with a range stay free, and have text."""
-    from inspect import signature
-
     from sympy import Interval, Symbol
 
-    from symbolic.tables.gallery import GALLERY as MAKERS
     from symbolic.tables.table import Shape
 
-    make = MAKERS[name]
-    known = list(signature(make).parameters)
+    make, known = tables.GALLERY[name], _lengths(name)
     lengths: dict[str, Any] = {}
     ranged = {key: parameter_text(f"--shape {key}", text) for key, text in values.items() if ":" in text}
     for key, text in values.items():

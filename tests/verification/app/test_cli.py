@@ -244,6 +244,17 @@ def test_a_length_with_a_range_is_a_parameter_and_the_others_are_numbers(scenes)
     assert table == tables.stadium(2, Rational(1, 2))
 
 
+def test_a_number_that_table_and_law_share_is_that_of_both(scenes):
+    law = ("--law", "-lam*eta*(1 - straight/100)")
+    assert main(["show", "stadium", "--lam", "9/10", "--shape", "straight=1/2", *law]) == 0
+    assert main(["show", "egg", "--lam", "9/10", "--shape", "alpha=2/25", "--law", "-lam*eta*(1 - alpha)"]) == 0
+
+    (stadium, table), (egg, _) = scenes
+    assert table == tables.stadium(Rational(1, 2))
+    assert stadium.law.numbers == (("straight", "1/2"),)
+    assert (egg.shape, egg.law.numbers) == ({"alpha": Fraction(2, 25)}, (("alpha", "2/25"),))
+
+
 def test_a_scene_file_is_taken_by_a_command_and_its_contraction_may_be_changed(scenes, tmp_path):
     path = tmp_path / "sinai.toml"
     path.write_text(Scene(tables.sinai("1/5"), lam="1/2").text)
@@ -274,6 +285,7 @@ def test_the_shapes_known_here_are_those_of_the_tables():
     [
         ("--lam 1", "one table is needed, none given; accepted: circle, ellipse, cardioid, cuspless, egg, --polar or"),
         ("stadium --shape b=1 --lam 1", "stadium: --shape b is none of its lengths; accepted: straight, radius"),
+        ("egg --alpha 2/25 --shape alpha=1/20 --lam 1", "--shape alpha is given, and --alpha 2/25 too; leave one out"),
         ("stadium --shape straight --lam 1", "--shape 'straight' sets nothing; give NAME=VALUE such as b=1/10"),
         ("--polar 1+b*cos(theta) --shape b=0.1:0..2 --lam 1", "--polar: rho = b*cos(theta) + 1 is not positive at"),
         ("--polar 1+b*cos(theta) --shape b=0.1:1/4 --lam 1", "--shape b=0.1:1/4 varies a parameter; this"),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from verification.plots.sheet import Panels
 
 DRAFT, FULL = 1.0, 8.0  # resolutions
-LINES = 2500  # points that are small as lines
+LINES, HEAVY = 2500, 100_000  # points that may be small as lines, and bytes that are not
 WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
 
 
@@ -59,13 +59,16 @@ class Picture:
         """The drawn panels for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
         count = sum(curve.x.size for panel in panels for curve in panel.curves.values())
         if count <= LINES and all(panel.raster is None for panel in panels):
-            form: dict[str, Any] = {"format": "svg", **FORMATS[".svg"]}
-        else:
-            form = {"format": "webp", "dpi": 140, "pil_kwargs": {"quality": 55}}
+            lines = self._saved(panels, {"format": "svg", **FORMATS[".svg"]})
+            if len(lines) <= HEAVY:
+                return lines
+        return self._saved(panels, {"format": "webp", "dpi": 140, "pil_kwargs": {"quality": 55}})
+
+    def _saved(self, panels: "Panels", form: dict[str, Any]) -> bytes:
+        buffer = BytesIO()
         with styled():
-            buffer = BytesIO()
             self._pair[1](panels).savefig(buffer, transparent=True, **form)
-            return buffer.getvalue()
+        return buffer.getvalue()
 
     def document(self, panels: "Panels", fine: float) -> dict[str, Any]:
         """The data as JSON has them."""

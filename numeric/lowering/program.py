@@ -201,6 +201,7 @@ SOURCES = (
     "symbolic/expressions",
     "symbolic/motion",
     "symbolic/tables",
+    "numeric/backends",
     "numeric/lowering",
 )  # what a table IR depends on
 

@@ -377,22 +377,6 @@ def test_a_table_of_ones_own_is_read_and_proved_once_and_then_without_sympy(tabl
         assert third.stderr == "True\n"
 
 
-def test_the_catalogue_has_every_id_that_scripts_rely_on():
-    from verification.paper.report.report import catalogue
-
-    egg = "monodromy alpha_tilde alpha_hat period3_elliptic saddle_node merging_crisis boundary_crisis"
-    ids = {
-        "map": "derivative_matrix",
-        "ellipse": "monodromy P1 P2 lambda_minus major_axis_unstable",
-        "cardioid": "slap_expanding",
-        "cuspless": "monodromy mu lambda_c lambda_star phi_star",
-        "egg": egg + " doubling.3 doubling.4 doubling.5 doubling.6",
-    }
-    promised = {f"{table}.{thing}" for table, things in ids.items() for thing in things.split()}
-
-    assert promised <= {claim.id for claim in catalogue()}
-
-
 def test_every_command_has_help_with_an_example():
     for name in COMMANDS:
         done = pinball(name, "--help")

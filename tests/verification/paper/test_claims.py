@@ -213,3 +213,17 @@ def test_results_have_the_keys_of_the_schema():
 
     keys = ["id", "section", "quote", "printed", "derived", "verdict", "value", "radius", "method", "seconds"]
     assert list(result.to_dict())[: len(keys)] == keys
+
+
+def test_the_catalogue_has_every_id_that_scripts_rely_on():
+    egg = "monodromy alpha_tilde alpha_hat period3_elliptic saddle_node merging_crisis boundary_crisis"
+    ids = {
+        "map": "derivative_matrix",
+        "ellipse": "monodromy P1 P2 lambda_minus major_axis_unstable",
+        "cardioid": "slap_expanding",
+        "cuspless": "monodromy mu lambda_c lambda_star phi_star",
+        "egg": egg + " doubling.3 doubling.4 doubling.5 doubling.6",
+    }
+    promised = {f"{table}.{thing}" for table, things in ids.items() for thing in things.split()}
+
+    assert promised <= {claim.id for claim in catalogue()}

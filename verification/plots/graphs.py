@@ -5,11 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verification.plots.results import CELLS
-from verification.plots.sheet import AXES, PALETTE, figure
+from verification.plots.sheet import AXES, PALETTE, figure, sides
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from verification.proofs.global_dynamics.graph import MorseGraph
@@ -59,7 +58,8 @@ def database(found: "xr.Dataset") -> "Figure":
     colours = np.array([*map(to_rgb, PALETTE), (0.82, 0.82, 0.82), (1.0, 1.0, 1.0)])
     made = figure(7.0, 3.6)
     left, right = made.subplots(1, 2, sharey=True)
-    extent = _extent(found)
+    shape = str(found.sets.dims[0])
+    extent = (*sides(found.lam.values), *sides(found[shape].values))
     left.imshow(colours[np.where(label < 0, NAMED + 1, np.minimum(label, NAMED))], extent=extent, **CELLS)
     left.set_title("Morse graphs that continue", fontsize=9)
     most = max(1, int(attracting.max(initial=1)))
@@ -69,22 +69,7 @@ def database(found: "xr.Dataset") -> "Figure":
     )
     right.set_title("disjoint trapping regions, up to rotation", fontsize=9)
     made.colorbar(shown, ax=right, ticks=range(1, most + 1), pad=0.02)
-    _labelled(left, found)
-    _labelled(right, found)
-    right.set_ylabel("")
+    for axes in (left, right):
+        axes.set_xlabel(AXES["lam"])
+    left.set_ylabel(AXES.get(shape, shape))
     return made
-
-
-def _extent(found: "xr.Dataset") -> tuple[float, float, float, float]:
-    """The outer borders of the boxes."""
-    ends = []
-    for values in (found.lam.values, found[str(found.sets.dims[0])].values):
-        half = (values[1] - values[0]) / 2 if values.size > 1 else 0.5 * max(abs(values[0]), 1e-3)
-        ends += [float(values[0] - half), float(values[-1] + half)]
-    return ends[0], ends[1], ends[2], ends[3]
-
-
-def _labelled(axes: "Axes", found: "xr.Dataset") -> None:
-    shape = str(found.sets.dims[0])
-    axes.set_xlabel(AXES["lam"])
-    axes.set_ylabel(AXES.get(shape, shape))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from symbolic.tables.scene import Scene
 from verification.plots.sheet import PALETTE
-from verification.proofs.global_dynamics.database import KNOWN, continued
+from verification.proofs.global_dynamics.database import KNOWN, Numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,14 +22,13 @@ if TYPE_CHECKING:
 COLUMNS, ROWS = 48, 64  # cells of phase space on the page, at most
 
 
-def explorer(found: "xr.Dataset") -> str:
-    """The page, one file that needs no network."""
+def explorer(found: "xr.Dataset", label: Numbers) -> str:
+    """The page, one file that needs no network; `label` has the class of each box."""
     settings = json.loads(found.attrs["settings"])
     parameter, sets = settings["parameter"], found.sets.values
     scene = Scene.parse(found.attrs["scene"])
     cells = _thinned(found.cells.values)
     packed = np.concatenate([cells.reshape(sets.size, -1), found.leads.values.reshape(sets.size, -1)], axis=1)
-    label = continued(found)
     data = {
         "lams": [f"{float(Fraction(end)):.6g}" for end in settings["lams"]],
         "values": [f"{float(Fraction(end)):.6g}" for end in settings["values"]],

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from rich.console import Console
 
+    from verification.proofs.global_dynamics.database import Numbers
     from verification.proofs.global_dynamics.graph import MorseGraph
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import Region
@@ -199,7 +200,7 @@ def graphs_command(
     The N values of --lams and of --shape NAME=LOW:HIGH:N are the borders of the boxes; contractions are below 1. What
     is proved of a box holds for each of its parameters. A table that turns keep is looked at up to them.
     """
-    from verification.proofs.global_dynamics.database import database
+    from verification.proofs.global_dynamics.database import continued, database
 
     if axis is None:
         raise ValueError("one shape varies besides lam; give --shape NAME=LOW:HIGH:N")
@@ -207,22 +208,21 @@ def graphs_command(
     sweep = database(scene, parameter, values.tolist(), numbers("--lams", lams), columns, rows, coarsest)
 
     def lines(found: "xr.Dataset") -> list[str]:
+        label = continued(found)
         if page is not None:
             from verification.reports.explorer import explorer
 
-            write_whole(Path(page), explorer(found).encode())
-        return graph_lines(found)
+            write_whole(Path(page), explorer(found, label))
+        return graph_lines(found, label)
 
     return carried_out(sweep, how, lines)
 
 
-def graph_lines(found: "xr.Dataset") -> list[str]:
+def graph_lines(found: "xr.Dataset", label: "Numbers") -> list[str]:
     """How many boxes each of the largest classes has, and how many trapping regions are proved, in letters."""
     import numpy as np
 
-    from verification.proofs.global_dynamics.database import continued
-
-    label, sets, attracting = continued(found), found.sets.values, found.attracting.values
+    sets, attracting = found.sets.values, found.attracting.values
     known = int((label >= 0).sum())
     shown = [
         f"{label.size} boxes of parameters, {known} with a Morse graph; {int(label.max()) + 1} classes",

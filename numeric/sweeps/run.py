@@ -52,20 +52,26 @@ def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
-    """The results of each part, by the workers of the Dask scheduler at `address`."""
-    from distributed.comm.core import CommClosedError
-
+def connected(address: str) -> Any:
+    """A client of the Dask scheduler at `address`; `ValueError` where none answers."""
     dask: Any = import_module("distributed")  # untyped
     try:
         if "://" not in address:
             raise ValueError
-        client = dask.Client(address, timeout=ANSWER)
+        return dask.Client(address, timeout=ANSWER)
     except (OSError, ValueError, TypeError):
         raise ValueError(
             f"--scheduler {address}: no Dask scheduler answers there; accepted: the address that "
             "`dask scheduler` prints, such as tcp://127.0.0.1:8786"
         ) from None
+
+
+def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
+    """The results of each part, by the workers of the Dask scheduler at `address`."""
+    from distributed.comm.core import CommClosedError
+
+    dask: Any = import_module("distributed")
+    client = connected(address)
     with _quiet("distributed", "distributed.client", "distributed.core"):
         try:
             yield from _shared_out(dask, client, sweep, indices)

@@ -126,10 +126,13 @@ class Asked:
 
 
 class Parts:
-    """The folder of a report's parts: a document for each step, arrays and pictures."""
+    """The folder of a report's parts: a document for each step, arrays and pictures.
 
-    def __init__(self, folder: Path, digest: str) -> None:
-        self.folder, self.digest = folder, digest
+    `scheduler` is the address of a Dask cluster whose workers do the grids; left out, this machine does them.
+    """
+
+    def __init__(self, folder: Path, digest: str, scheduler: str | None = None) -> None:
+        self.folder, self.digest, self.scheduler = folder, digest, scheduler
 
     def made(self, asked: Asked) -> None:
         """Makes the folder, with the scene as a file in it."""

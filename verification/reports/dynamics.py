@@ -101,7 +101,7 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     transient, bounces = 1000 * 2**level, 512 * 2**level
     text, lam = text_of(asked.scene), float(asked.scene.lam)
     sweep = bifurcation(text, values, orbits, points, bounces, transient, asked.seed, asked.parameter, lam)
-    found = run(sweep)
+    found = run(sweep, scheduler=parts.scheduler)
     half = PinballMap(asked.scene).arclength.perimeter / 2
     s = wrapped(found.s.values, half)
     cells = 240
@@ -144,7 +144,7 @@ def plane(asked: Asked, parts: Parts, level: int) -> Found:
     sweep = parameter_space(
         values, lams, starts, bounces, transient, seed=asked.seed, scene=text_of(asked.scene), parameter=name
     )
-    found = run(sweep)
+    found = run(sweep, scheduler=parts.scheduler)
     arrays = {"values": values, "lams": lams, "nu": found.nu_max.values, "chaotic": found.chaotic.values}
     parts.keep(f"plane-{level}", arrays)
     over = f"--shape {name}={low}:{high}:{rows} --lams {asked.low}:{asked.high}:{columns}"
@@ -291,7 +291,7 @@ def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], 
     columns, rows = 120 * 2**level, 60 * 2**level
     scene = asked.scene.at(lam=text)
     sweep = basins(text_of(scene), float(scene.lam), columns, rows, None, 0, 500, asked.seed, True, tuple(attractors))
-    label = run(sweep).label.values
+    label = run(sweep, scheduler=parts.scheduler).label.values
     half = PinballMap(scene).arclength.perimeter / 2
     order = sorted(range(len(attractors)), key=lambda i: (attractors[i].family, i))
     colours = [order.index(i) for i in range(len(attractors))]

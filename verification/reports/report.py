@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from numeric.sweeps.run import connected
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.reports import lives
@@ -113,6 +114,7 @@ def report(
     digits: int = 20,
     seed: int = 1,
     latex: str | Path | None = None,
+    scheduler: str | None = None,
     clock: Clock = time.monotonic,
     tick: Tick = lambda said: None,
 ) -> Report:
@@ -123,6 +125,7 @@ def report(
     an end. With one contraction for `lam` it is that parameter alone which varies.
 
     The page is useful after its first steps and refined until the `minutes` are over. Asked again, it goes on.
+    Diagrams, planes and basins are grids: the workers of the Dask cluster at `scheduler` do them, or else all cores.
     """
     second = None if vary is None else (vary[0], str(vary[1]), str(vary[2]))
     if vary is not None:
@@ -137,10 +140,12 @@ def report(
     asked = Asked(here, parameter, str(low), str(high), tuple(at), period, digits, seed, second)
     if asked.second:
         lives.plane_of(asked)  # a law that is none somewhere in the plane is refused before any work
+    if scheduler is not None:
+        connected(scheduler).close()
     if not minutes > 0:
         raise ValueError(f"report: minutes = {minutes} is no time; give a positive number such as 2")
     page = Path(out)
-    parts = Parts(page.with_suffix(".parts"), asked.digest)
+    parts = Parts(page.with_suffix(".parts"), asked.digest, scheduler)
     parts.made(asked)
     return worked(asked, parts, page, clock() + 60 * minutes, clock, tick, latex)
 

@@ -3,12 +3,14 @@
 import json
 import re
 from fractions import Fraction
+from importlib.util import find_spec
 from itertools import pairwise
 from math import pi
 
 import numpy as np
 import pytest
 
+from numeric.sweeps.run import on_threads
 from symbolic import Scene
 from symbolic.cycles.thresholds import flip_contraction, stability_number
 from symbolic.tables.gallery import GALLERY
@@ -20,6 +22,7 @@ from verification.paper.report.mathml import remark
 from verification.reports import lives
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Certificate, Known, Listing, Number, Picture, Section
+from verification.reports.dynamics import diagram
 from verification.reports.page import again
 from verification.reports.report import FIRST, composed, report
 from verification.reports.scene import double_normals, inflections
@@ -168,6 +171,7 @@ def test_the_commands_of_a_report_name_the_scene():
         (["--lam", "1"], "accepted: LOW:HIGH"),
         (["--at", "2"], "lam = 2 is no contraction"),
         (["--out", "/no/such/place.html"], "/no/such/place.html cannot be written"),
+        (["--scheduler", "nowhere"], "--scheduler nowhere: no Dask scheduler answers there"),
     ],
 )
 def test_bad_input_is_one_sentence(arguments, said, tmp_path, capsys):
@@ -196,6 +200,38 @@ def test_another_parameter_varies_at_one_contraction_from_the_scenes_own_number_
     assert inside.document()["asked"]["vary"] == "b"
     with pytest.raises(ValueError, match="give two contractions"):
         report(flower, tmp_path / "b.html", lam="1/10")
+
+
+def test_the_grids_of_a_report_are_done_where_its_scheduler_says_with_the_same_picture(tmp_path, monkeypatch):
+    """Threads stand for a cluster: that Dask gives the bits of threads is the law of sweeps."""
+    asked, asked_of = Asked(ELLIPSE, **SMALL), []
+
+    def cluster(sweep, indices, address):
+        asked_of.append((sweep.name, address))
+        return on_threads(sweep, indices, 2)
+
+    monkeypatch.setattr("numeric.sweeps.run.on_cluster", cluster)
+    found = {}
+    for scheduler in (None, "tcp://cluster:8786"):
+        parts = Parts(tmp_path / str(scheduler is None), asked.digest, scheduler)
+        parts.made(asked)
+        diagram(asked, parts, 0)
+        found[scheduler] = parts.arrays("diagram-0")
+
+    assert asked_of == [("bifurcation", "tcp://cluster:8786")]
+    assert all(np.array_equal(a, b) for a, b in zip(*(each.values() for each in found.values()), strict=True))
+
+
+def test_a_package_that_a_report_needs_is_asked_for_before_any_work(tmp_path, capsys, monkeypatch):
+    there = find_spec
+    monkeypatch.setattr(
+        "verification.app.commands.report.find_spec", lambda name: None if name == "xarray" else there(name)
+    )
+
+    assert main(["report", "circle", "--out", str(tmp_path / "circle.html")]) == 2
+    said = "report: xarray is missing; install what it needs with: pip install 'pinball-billiards[plot,sweep]'"
+    assert said in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.fixture(scope="module")

@@ -2,16 +2,18 @@
 
 import json
 from functools import wraps
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import click
 
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, Output, json_option
+from verification.app.cli import DONE, EXTRAS, FAILED, Output, json_option
 from verification.app.scene import Command, varied_options
 
 STEPS = 45  # about; of a bar
+NEEDED = "matplotlib", "xarray"  # by its pictures and grids, which come after some work
 
 
 def as_shape(command: Command) -> Command:
@@ -35,6 +37,15 @@ def varied(text: str) -> tuple[str, str, str]:
     if not equals or not colon or ":" in high:
         raise ValueError(f"{text} is no interval; accepted: LOW:HIGH such as 0:1, or NAME=LOW:HIGH")
     return name, low, high
+
+
+def needed() -> None:
+    """Refuses, before any work, when a package that a report needs is not there, with the command that brings them."""
+    absent = [name for name in NEEDED if find_spec(name) is None]
+    if absent:
+        extras = ",".join(EXTRAS[name] for name in NEEDED)
+        are = f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} missing"
+        raise ValueError(f"report: {are}; install what it needs with: pip install 'pinball-billiards[{extras}]'")
 
 
 @click.command(epilog="Example: pinball report --polar '1 + cos(5*theta)/40' --minutes 2 --out flower.html")
@@ -63,6 +74,7 @@ def varied(text: str) -> tuple[str, str, str]:
 @click.option("--digits", type=click.IntRange(5, 200), default=20, show_default=True, help="Of certified events.")
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
 @click.option("--latex", metavar="FILE", help="The same as a LaTeX article.")
+@click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler whose workers do the grids, or else all cores.")
 @json_option
 def command(
     scene: Scene,
@@ -75,6 +87,7 @@ def command(
     digits: int,
     seed: int,
     latex: str | None,
+    scheduler: str | None,
     output: Output,
 ) -> int:
     """What becomes of this table as the contraction varies? One page of HTML that needs no network.
@@ -83,6 +96,8 @@ def command(
     birth to death with certificates. With --vary NAME=LOW:HIGH also the plane of that parameter and the contraction,
     shaded by exponent, with curves of events. A report that was stopped goes on when the same command is given again.
     """
+    needed()
+    from numeric.sweeps.run import UnfinishedError
     from verification.reports.report import report
 
     page, folder = Path(out), Path(out).suffix != ".html"
@@ -98,19 +113,25 @@ def command(
     lams = interval.strip() if single else varied(f"lam={interval}")[1:]
     places = tuple(text.strip() for text in at.split(","))
     with output.progress("Reporting", STEPS) as step:
-        made = report(
-            scene,
-            page,
-            minutes=minutes,
-            lam=lams,
-            vary=None if axis is None else varied(axis),
-            at=places,
-            period=period,
-            digits=digits,
-            seed=seed,
-            latex=latex,
-            tick=step,
-        )
+        try:
+            made = report(
+                scene,
+                page,
+                minutes=minutes,
+                lam=lams,
+                vary=None if axis is None else varied(axis),
+                at=places,
+                period=period,
+                digits=digits,
+                seed=seed,
+                latex=latex,
+                scheduler=scheduler,
+                tick=step,
+            )
+        except UnfinishedError as stop:
+            reason = str(stop).partition(";")[0]  # what follows is of a sweep without a store
+            click.echo(f"pinball: {reason}; what was done is in {page}, and the same command goes on", err=True)
+            return FAILED
     output.write(made.document())
     if folder:
         page.with_suffix(".json").write_text(json.dumps(made.document(), indent=1), encoding="utf-8")

@@ -54,6 +54,8 @@ def test_python_on_a_page_gives_what_the_page_shows(page, tmp_path, monkeypatch)
 @pytest.mark.parametrize(("page", "block"), COMMANDS)
 def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    for name, content in re.findall(r"Save this as `([\w.]+)`:\n\n```\w+\n(.*?)```", page.read_text(), re.DOTALL):
+        Path(name).write_text(content)
     for line in (line for line in block.splitlines() if line.startswith("$ ")):  # the others are what was printed
         prompt, command, *arguments = shlex.split(line)
 
@@ -61,21 +63,31 @@ def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
         assert main(arguments) in (0, 1), capsys.readouterr().err
 
 
-def test_the_paper_that_a_page_makes_is_judged_as_the_page_says(tmp_path, capsys):
-    """Its TOML and its Python, put where it says, and the lines that it prints."""
-    text = (DOCS / "how_to" / "judge_a_paper.md").read_text()
+@pytest.mark.parametrize(
+    ("page", "table", "verdicts"),
+    [
+        ("how_to/judge_a_paper", False, ["corrected", "confirmed", "supported"]),
+        ("tutorial", True, ["confirmed", "corrected", "supported"]),
+    ],
+)
+def test_the_paper_that_a_page_makes_is_judged_as_the_page_says(page, table, verdicts, tmp_path, monkeypatch, capsys):
+    """Its TOML and its Python, put where it says, and the lines that it prints; with the table, where it writes one."""
+    monkeypatch.chdir(tmp_path)
+    text = (DOCS / f"{page}.md").read_text()
     blocks = {kind: re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("toml", "python", "text")}
-    (tmp_path / "paper.toml").write_text(blocks["toml"][0])
-    (tmp_path / "judges.py").write_text("\n\n".join(blocks["python"]))
+    if table:
+        Path("stadium.toml").write_text(blocks["toml"].pop(0))
+    Path("paper.toml").write_text(blocks["toml"][0])
+    Path("judges.py").write_text("\n\n".join(block for block in blocks["python"] if ">>>" not in block))
 
-    assert main(["verify", "--claims", str(tmp_path), "--report", str(tmp_path / "report")]) == 0
+    assert main(["verify", "--claims", str(tmp_path), "--report", "report"]) == 0
     told = capsys.readouterr().out
     shown = [line for line in told.splitlines() if ": " in line and "stadium." in line]
-    expected = blocks["text"][0].splitlines()
+    (expected,) = (block.splitlines() for block in blocks["text"] if block.startswith("corrected"))
     assert len(shown) == len(expected) == 2
     assert all(line.startswith(wanted) for line, wanted in zip(shown, expected, strict=True))
-    report = json.loads((tmp_path / "report" / "report.json").read_text())
-    assert [claim["verdict"] for claim in report["claims"]] == ["corrected", "confirmed", "supported"]
+    report = json.loads(Path("report", "report.json").read_text())
+    assert [claim["verdict"] for claim in report["claims"]] == verdicts
 
 
 @pytest.mark.parametrize("page", PAGES, ids=named)

@@ -250,7 +250,7 @@ def table_options(command: Command, varies: bool = False, optional: bool = False
     """Gives `command` the arguments of a table, as a keyword `scene` whose `lam` is 0.
 
     Where a parameter `varies`, what --shape says of it is a keyword `axis`, None where lambda varies. Where a table is
-    `optional`, the scene is None without one, and a keyword `bare` has --K, --alpha, --lam.
+    `optional`, the scene is None without one, and a keyword `bare` has --K, --alpha, --lam, --law.
     """
 
     @wraps(command)
@@ -279,9 +279,9 @@ def table_options(command: Command, varies: bool = False, optional: bool = False
         elif axis is not None:
             raise ValueError(f"--shape {axis} varies a parameter; this command takes one number, as in b=1/10")
         if optional:
-            others["bare"], lam = {"K": K, "alpha": alpha, "lam": lam}, "0"
+            others["bare"], lam = {"K": K, "alpha": alpha, "lam": lam, "law": law}, "0"
             if not (table or polar or parametric or file or data):
-                for option, said in (("a", a), ("law", law), ("shape", axis or next(iter(given), None))):
+                for option, said in (("a", a), ("shape", axis or next(iter(given), None))):
                     if said is not None:
                         raise ValueError(f"--{option} {said} says something of a table, and none is given")
                 return command(scene=None, **others)

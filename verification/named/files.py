@@ -75,8 +75,8 @@ def document(proof: "Proof | CornerProof | TangencyProof", schema: int = SCHEMA)
     claim = proof.claim
     first = {"schema": schema, "name": name_of(claim, schema)}
     if not isinstance(claim, Claim | CornerClaim):
-        words = WORDS["tangency"].format(scene=f"egg, alpha = {claim.alpha}")
-        chain = claim.chain() if proof.certified else {}
+        words = WORDS["tangency"].format(scene=_of_tangency(claim))
+        chain = claim.chain() if proof.certified and claim.law.uniform else {}  # its reader knows the paper's law alone
         return first | {"statement": words} | _contact_said(claim) | chain | {"checks": dict(proof.checks)}
     what = _special(claim) if isinstance(claim, CornerClaim) else _problem_said(claim.problem, schema)
     if schema == SCHEMA:
@@ -90,10 +90,15 @@ def document(proof: "Proof | CornerProof | TangencyProof", schema: int = SCHEMA)
     )
 
 
+def _of_tangency(claim: "TangencyClaim") -> str:
+    """Its scene in words."""
+    return "egg, " + ("" if claim.law.uniform else f"phi = {claim.law}, ") + f"alpha = {claim.alpha}"
+
+
 def _contact_said(claim: "TangencyClaim") -> dict[str, Any]:
     """What a tangency is about; its value stands among the starts that a reader with series takes."""
     said = claim.to_dict()
-    scene = {"table": said["table"], "shape": said["shape"]}
+    scene = {"table": said["table"], "shape": said["shape"]} | ({"law": said["law"]} if "law" in said else {})
     contact = said["contact"] | {"value": said["value"]}
     return {"kind": said["kind"], "scene": scene, "free": "lam", "digits": said["digits"], "contact": contact}
 
@@ -102,6 +107,7 @@ def _contact_of(given: Mapping[str, Any]) -> dict[str, Any]:
     """The entries of a claim in a document of this version."""
     scene, contact = given["scene"], dict(given["contact"])
     said = {"table": scene["table"], "points": scene.get("K", POINTS), "shape": scene["shape"]}
+    said |= {"law": scene["law"]} if "law" in scene else {}
     return said | {"value": contact.pop("value"), "contact": contact, "digits": given["digits"]}
 
 
@@ -198,7 +204,7 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim", schema: int = SCHEMA) 
             "alpha-hat" if _in_box(claim, thresholds.alpha_hat().subs(lam_symbol, claim.lam)) else "equal multipliers"
         )
     if not isinstance(claim, Claim):
-        return f"tangency of two manifolds: egg, alpha = {claim.alpha}"
+        return f"tangency of two manifolds: {_of_tangency(claim)}"
     problem = claim.problem
     table, plain = problem.table, not problem.mirror
     what = table.name, problem.period, problem.kind, problem.free

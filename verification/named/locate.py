@@ -18,6 +18,7 @@ from sympy import Expr, Integer, N, S, acos
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
 from symbolic.expressions.text import kernel, load
+from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
@@ -106,8 +107,8 @@ class Found:
     steps: Steps = ()
 
 
-def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
-    """The bifurcation `name` (see `NAMES`) to `digits` decimal digits.
+def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) -> Located:
+    """The bifurcation `name` (see `NAMES`) to `digits` decimal digits; tangencies under any `law`.
 
     >>> locate("lambda-c", 20).value
     '0.0934003354313602414161'
@@ -121,8 +122,10 @@ def locate(name: str, digits: int = 30, **shape: Expr) -> Located:
     shape = dict(USUAL.get(name, {})) | shape
     if set(shape) != set(parameters):
         raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(parameters)}")
+    if not law.uniform and not isinstance(search, partial):
+        raise ValueError(f"locate {name}: law = {law}; accepted: {PAPERS_LAW}, and any law for tangencies of manifolds")
     started = time.perf_counter()
-    found = search(digits, **shape)
+    found = search(digits, **shape) if law.uniform else search(digits, **shape, law=Law(str(law.phi)))
     value, radius = decimal(found.ball, digits + 1)
     seconds = time.perf_counter() - started
     rest = found.ball, found.proof, found.notes, found.steps
@@ -251,14 +254,14 @@ def symmetry_breaking(digits: int, alpha: Expr) -> Found:
     return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
 
 
-def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
+def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> Found:
     """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch, which is proved. Paper: section 6.7.
 
     That no other contact ends the attractor before is not.
     """
     from verification.proofs.manifolds.known import SHAPE, crisis, decimals, proof  # NumPy, which no other name needs
 
-    found = crisis(kind, alpha, digits)
+    found = crisis(kind, alpha, digits, law)
     stable, unstable = found.touch.multipliers[:2]
     orbit = found.touch.contact.unstable
     proved_fold = False
@@ -272,13 +275,13 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
         "second_method": f"tangency of the manifolds, {found.apart:.1e} away with error {found.touch.error:.1e}",
         "transient": f"if an attractor ends here, lasts like (distance beyond)^-{found.exponent:.4f}, in the limit",
     }
-    if alpha != SHAPE:
-        notes = _continued(kind, alpha, float(found.parameter), notes)
+    if alpha != SHAPE or not law.uniform:
+        notes = _continued(kind, alpha, float(found.parameter), notes, law)
     value, error = decimals(found)
     with working(bits_of(digits, 100)):
         ball = arb(value, error)
     checks: Checks = {"shadowing_fold": proved_fold or None, "two_methods_agree": found.agrees or None}
-    made = proof(found, alpha, digits + 2)
+    made = proof(found, alpha, digits + 2, law)
     inside = bool(ball.contains(made.value))
     checks |= {"tangency": True if made.proof.touches and inside else None}
     checks |= {item: made.checks[item] if inside else None for item in ("quadratic", "transversal")}
@@ -292,8 +295,8 @@ def egg_crisis(kind: str, digits: int, alpha: Expr) -> Found:
     return Found(ball, checks, made if held else None, notes)
 
 
-def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str]) -> dict[str, str]:
-    """The notes of a tangency away from the shape at which the attractor was looked at: its name, and what balls see.
+def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: Law = PAPERS_LAW) -> dict[str, str]:
+    """The notes of a tangency away from where the attractor was looked at: its name, and what particles see.
 
     An exponent of transients belongs to an attractor that ends; where no orbit is chaotic, there is none.
     """
@@ -301,9 +304,10 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str]) -> dic
     from verification.named.crises import ORBITS, extent
 
     event = f"{kind} crisis" if kind in ("merging", "boundary") else kind
-    notes = {"called": f"tangency continued from the {event} at alpha = 2/25"} | notes
+    paper = "" if law.uniform else f" under {PAPERS_LAW} to alpha = {alpha}, phi = {law}"
+    notes = {"called": f"tangency continued from the {event} at alpha = 2/25{paper}"} | notes
     below = lam * (1 - 1e-3)
-    seen = extent(PinballMap("egg", lam=below, alpha=str(alpha)))
+    seen = extent(PinballMap("egg", lam=below, alpha=str(alpha), law=law))
     if seen is None:
         del notes["transient"]
         return notes | {"attractor": f"none of {ORBITS} orbits is chaotic at lam = {below:.6f}: no crisis is seen"}
@@ -312,7 +316,7 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str]) -> dic
     }
 
 
-def one_of(kind: str, parameter: str, digits: int, alpha: Expr, **which: Expr) -> Found:
+def one_of(kind: str, parameter: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW, **which: Expr) -> Found:
     """Where a window or a small family of some period ends or its bands join, or the n-th interior crisis is."""
     from verification.proofs.manifolds.known import CONTACTS
 
@@ -321,7 +325,7 @@ def one_of(kind: str, parameter: str, digits: int, alpha: Expr, **which: Expr) -
         known = sorted(int(other.rpartition("-")[2]) for other in CONTACTS if other.rpartition("-")[0] == kind)
         listed = ", ".join(str(other) for other in known)
         raise ValueError(f"locate {kind}: {parameter} = {which[parameter]} is not known; accepted: {listed}")
-    return egg_crisis(name, digits, alpha)
+    return egg_crisis(name, digits, alpha, law)
 
 
 def _unit(parameter: str, value: Expr) -> Expr:
@@ -343,10 +347,10 @@ NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
     "saddle-node": (saddle_node, ("alpha",)),
     "doubling": (doubling, ("alpha", "n")),
     "symmetry-breaking": (symmetry_breaking, ("alpha",)),
-    "merging-crisis": (lambda digits, alpha: egg_crisis("merging", digits, alpha), ("alpha",)),
-    "boundary-crisis": (lambda digits, alpha: egg_crisis("boundary", digits, alpha), ("alpha",)),
+    "merging-crisis": (partial(egg_crisis, "merging"), ("alpha",)),
+    "boundary-crisis": (partial(egg_crisis, "boundary"), ("alpha",)),
     "band-merging": (partial(one_of, "band-merging", "period"), ("alpha", "period")),
-    "symmetry-restoring": (lambda digits, alpha: egg_crisis("symmetry-restoring", digits, alpha), ("alpha",)),
+    "symmetry-restoring": (partial(egg_crisis, "symmetry-restoring"), ("alpha",)),
     "interior-crisis": (partial(one_of, "interior-crisis", "n"), ("alpha", "n")),
     "window-end": (partial(one_of, "window-end", "period"), ("alpha", "period")),
     "window-merging": (partial(one_of, "window-merging", "period"), ("alpha", "period")),

@@ -15,6 +15,7 @@ from sympy import Expr
 
 from numeric import PinballMap
 from symbolic.tables import egg
+from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import ARRAYS, FLOAT64
 from verification.cycles.arc import Steps
 from verification.cycles.branch import Branch, spectrum_of, through
@@ -103,7 +104,8 @@ def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
     if isinstance(claim, CornerClaim) and claim.lam is None:
         return _through_corners(float(one.value) if claim.value == "lam" else float(claim.centre[1].mid()))
     if not isinstance(claim, Claim | CornerClaim):
-        return portrait(kind if kind in CONTACTS else f"{one.name}-{number or NUMBERED.get(one.name)}", claim.alpha)
+        kind = kind if kind in CONTACTS else f"{one.name}-{number or NUMBERED.get(one.name)}"
+        return portrait(kind, claim.alpha, law=claim.law)
     z = np.array([float(x.mid()) for x in claim.centre])
     problem = claim.problem if isinstance(claim, Claim) else None
     ring, free, lam = _diameter(), "alpha", getattr(claim, "lam", None)
@@ -286,17 +288,18 @@ JOINED = 0.02
 COLOURS = {"unstable": "#c1272d", "stable": "#1f4e99", "attractor": "0.55"}
 
 
-def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> "Figure":
+def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0, law: Law = PAPERS_LAW) -> "Figure":
     """A crisis of the egg, one of `CONTACTS`, modulo its rotations, in `theta` and `phi`.
 
     `below` moves the contraction below the tangency; `share` shortens the curves, for a quick look.
     """
-    where = contact(kind, alpha)
-    map, lam = table(alpha).over(FLOAT64), where.parameter - below
+    where = contact(kind, alpha, law)
+    map, lam = table(alpha, law).over(FLOAT64), where.parameter - below
     made = figure(12, 5.2)
     whole, close = made.subplots(1, 2)
     found, arrays = saddle(where.unstable, map, lam), map.over(ARRAYS)
-    cloud = attractor(kind, alpha, lam)
+    cloud = attractor(kind, alpha, lam, law)
+    mirrors = (1, -1) if law.odd else (1,)
     target = _touching_point(where, map)
     for axes, size in ((whole, 0.3), (close, 1.5)):
         axes.plot(*cloud, ",", color=COLOURS["attractor"], zorder=1)
@@ -306,11 +309,11 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
                 here, following = grown.here, grown.following
                 for _ in found.points:  # the curve through one bounce, and its images through the others
                     theta, phi = arrays.plane(here, following)
-                    for sign in (1, -1):
+                    for sign in mirrors:
                         _curve(axes, sign * theta, sign * phi, COLOURS[word], 0.5 + size / 3)
                     here, following = following, arrays.following(here, following, lam)
         ring = found.around()
-        for sign in (1, -1):
+        for sign in mirrors:
             theta, phi = zip(*(map.plane(a, b) for a, b in pairwise(ring[1:])), strict=True)
             axes.plot(_modulo(sign * np.array(theta)), sign * np.array(phi), "o", ms=4, color="black", zorder=4)
         axes.set_xlabel(r"$\theta$ modulo $2\pi/3$")
@@ -330,10 +333,10 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0) -> 
     return made
 
 
-def attractor(kind: str, alpha: Expr, lam: float) -> tuple[Any, Any]:
+def attractor(kind: str, alpha: Expr, lam: float, law: Law = PAPERS_LAW) -> tuple[Any, Any]:
     """A cloud of points on the chaotic attractor, just below the crisis where it still attracts."""
     rng = np.random.default_rng(SEED)
-    map = PinballMap("egg", lam=lam - (1e-4 if kind == "boundary" else 1e-6), alpha=alpha)
+    map = PinballMap("egg", lam=lam - (1e-4 if kind == "boundary" else 1e-6), alpha=alpha, law=law)
     theta, phi = rng.uniform(-0.05, 0.05, (2, BALLS))
     ball = map.exponents(theta, phi, 200, TRANSIENT)
     chaotic = ball.nu_plus > 0

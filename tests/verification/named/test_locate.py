@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 from sympy import Integer, Rational
 
+from symbolic.tables.law import Law
 from verification.app.commands.locate import check_command as check
 from verification.app.commands.locate import command as locate_command
 from verification.cycles.cascade import cascade
@@ -129,6 +130,8 @@ def test_the_papers_cascade_is_judged_digit_by_digit(n, printed, right):
         ("window-end", {"alpha": ALPHA, "period": Integer(7)}, "accepted: 6, 8, 9, 12, 14, 15, 18, 20"),
         ("band-merging", {"alpha": ALPHA, "period": Integer(3)}, "accepted: 4, 8, 16"),
         ("interior-crisis", {"alpha": ALPHA, "n": Integer(8)}, "accepted: 1, 2, 3"),
+        ("lambda-c", {"law": Law("-lam*sin(eta)")}, "any law for tangencies of manifolds"),
+        ("merging-crisis", {"alpha": ALPHA, "law": Law("-lam*eta + eta**2/99")}, "mirror images of orbits are no orb"),
     ],
 )
 def test_a_search_that_cannot_succeed_says_what_is_accepted(name, shape, message):
@@ -190,6 +193,7 @@ def test_digits_out_of_range_are_refused(digits):
         ),
         ("doubling egg --alpha 0.08 --shape b=0:1 --lam 0.1 --period 2", "b = 0 is no shape parameter of this table"),
         ("doubling --alpha 0.08 --shape b=0:1", "--shape b=0:1 says something of a table, and none is given"),
+        ("doubling --alpha 0.08 --n 3 --law=-lam*sin(eta)", "accepted: -lam*eta, and any law for tangencies"),
         ("saddle-node --alpha 0.08 --K 4", "--K 4 says something of a table; accepted: egg --K 4"),
     ],
 )

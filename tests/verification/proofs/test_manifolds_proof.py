@@ -11,14 +11,20 @@ from flint import arb, arb_mat
 from sympy import Rational
 
 from symbolic.tables import cardioid, cuspless
-from verification.arithmetic.balls import FLOAT64, multiprecision, working
+from symbolic.tables.law import Law
+from verification.arithmetic.balls import FLOAT64, balls, multiprecision, working
+from verification.cycles.newton import refined
 from verification.cycles.recurrence import Closure
-from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, table
+from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, shadow, table
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import (
     ITEMS,
     STRANGE,
+    TangencyClaim,
     admissible,
+    claim_of,
+    falling,
+    objection,
     settled,
     sharpened,
     smooth,
@@ -255,3 +261,80 @@ def test_chords_are_admissible_in_convex_tables_only():
     assert admissible(EGG) is True
     assert admissible(Pinball(cardioid)) is None
     assert admissible(Henon(Rational(3, 10))) is True
+
+
+# The boundary tangency under another law, followed there from the paper's, and the fold of a cycle of 35 bounces.
+BENT = Law("-lam*eta*(1 - eta**2/40)")
+TRIANGLE = Orbit("triangle of the vertices", (-0.16812306,), Closure(1, (1, 3)))
+UNDER_LAW = Contact(TRIANGLE, TRIANGLE, 5, 1, 0.0352, -0.0257, 0.66481197)
+
+
+def test_a_tangency_under_another_law_is_proved_where_the_cycles_that_shadow_it_fold():
+    map = table(SHAPE, BENT)
+    cycle = shadow(UNDER_LAW, map, UNDER_LAW.parameter, 24)
+    fold = refined(cycle.problem, cycle.start, 20).z[-1]
+    value = sharpened(UNDER_LAW, map, "0.66481197", 12)
+    found = tangency_proved(UNDER_LAW, map, value, 12)
+
+    assert cycle.problem.law == BENT
+    assert abs(mpmath.mpf(value) - fold) < 1e-12
+    assert found.holds
+    assert strange_attractors(UNDER_LAW, map, found) == dict.fromkeys(STRANGE, True)
+    assert not tangency_proved(UNDER_LAW, EGG, value, 12).touches
+    assert not tangency_proved(UNDER_LAW, map, str(mpmath.mpf(value) + 3e-12), 12).touches
+
+
+def test_the_rule_and_its_derivative_by_the_parameter_are_the_same_in_either_way_of_writing_the_papers_law():
+    egg = EGG.over(balls(64))
+    same = replace(egg, law=Law("-lam*eta + sin(eta)**2 + cos(eta)**2 - 1"))
+    near = [arb("0.1"), arb("2.3"), arb("4.2")]
+
+    for one, two in zip(egg.varied(near, arb("0.6")), same.varied(near, arb("0.6")), strict=True):
+        assert (one - two).contains(0)
+    bent = table(SHAPE, Law("-sin(lam*eta)")).over(balls(64))
+    value, moving = bent.varied(near, arb("0.6"))
+    quotient = (bent.rule(near, arb("0.6") + arb("1e-6")) - bent.rule(near, arb("0.6") - arb("1e-6"))) / arb("2e-6")
+    assert (value - bent.rule(near, arb("0.6"))).contains(0)
+    assert abs(moving - quotient) < 1e-6
+
+
+def test_backwards_a_particle_comes_from_where_forwards_it_left():
+    map = table(SHAPE, BENT)
+    before, here = np.array([0.1, 0.4]), np.array([2.3, 3.3])
+
+    following = map.following(before, here, 0.6)
+    assert np.allclose(map.previous(here, following, 0.6), before, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "formula", "says"),
+    [
+        ("merging", "-lam*eta + eta**2/99", "no odd function of eta"),
+        ("boundary", "-lam*eta + cos(theta)/99", "the orbit closes by turns of the table"),
+        ("band-merging", "-lam*eta + cos(theta/2)/99", "the orbit closes by turns of the table"),
+        ("boundary", "-lam*eta + sin(s)/99", "arc length s"),
+        ("boundary", "-lam*eta - b*sin(2*eta)", "b is no number"),
+        ("boundary", "-2*lam*eta", "at eta = "),
+    ],
+)
+def test_a_law_without_what_a_contact_needs_is_refused_and_proves_nothing(kind, formula, says):
+    law, where = Law(formula), CONTACTS[kind]
+
+    assert says in objection(where, table(SHAPE, law), 0.9)
+    with pytest.raises(ValueError, match=says):
+        TangencyClaim(where, SHAPE, "0.9", 12, law)
+
+
+def test_a_law_with_a_slope_that_vanishes_or_with_a_root_is_not_proved_to_be_analytic_both_ways():
+    assert falling(Law("-lam*eta*(1 - eta**2/40)"), arb("0.6"))
+    assert falling(Law("-lam*eta + cos(theta)/99"), arb("0.6"))
+    assert not falling(Law("-lam*eta + eta**3/10"), arb("0.6"))
+    assert not falling(Law("-lam*eta*sqrt(1 + eta**2/99)"), arb("0.6"))
+    assert not falling(BENT, None)
+
+
+def test_a_claim_with_a_law_is_read_back_with_its_law():
+    claim = TangencyClaim(UNDER_LAW, SHAPE, "0.66481196848210", 12, BENT)
+
+    assert claim_of(claim.to_dict()) == claim
+    assert claim_of({k: v for k, v in claim.to_dict().items() if k != "law"}).law.uniform

@@ -53,13 +53,14 @@ def command(
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
     merging-crisis, boundary-crisis, symmetry-restoring, band-merging, interior-crisis and, with --period, window-end,
     window-merging, family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes
-    there, and nowhere before, is not.
+    there, and nowhere before, is not. With --law they are those of another law, followed there from the paper's.
 
     With a table, saddle-node, doubling and symmetry-breaking are those of its cycles of one --period, as --lam
     LOW:HIGH varies, or --shape NAME=LOW:HIGH and --lam is one number. Cycles are looked for at some values: each
     bifurcation that is found is proved, and that there is no other is not.
     """
     from symbolic.tables.formula import number
+    from symbolic.tables.law import PAPERS_LAW, Law
     from verification.named.locate import locate
 
     if certificate is not None:
@@ -77,8 +78,9 @@ def command(
         raise ValueError(f"--n {n} is no integer; accepted: integers from 2")
     if "period" in shape and not shape["period"].is_Integer:
         raise ValueError(f"--period {period} is no integer; accepted: the period of a window, as in docs/crises.md")
+    law = PAPERS_LAW if bare["law"] is None else Law(bare["law"])
     with output.progress(f"Locating {name}", 1) as step:
-        found = locate(name, digits, **shape)
+        found = locate(name, digits, law, **shape)
         step(name)
     if certificate is not None:
         _write(certificate, found)

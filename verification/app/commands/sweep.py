@@ -311,6 +311,8 @@ def parameter_space(
 
     if (axis is None) == (alphas is None) or (scene is None) != (axis is None):
         raise ValueError("one shape varies; accepted: --alphas LOW:HIGH:N, or a table with --shape NAME=LOW:HIGH:N")
+    if bare["law"] is not None:
+        raise ValueError(f"--law {bare['law']} says something of a table, and none is given")
     contractions = np.array(span("--lams", lams))
     if scene is None or axis is None:
         K = bare["K"] or POINTS

@@ -36,7 +36,7 @@ has to agree.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -46,13 +46,21 @@ from numpy.typing import NDArray
 from sympy import Expr, Rational
 
 from symbolic.tables import egg
+from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.progress import telling
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.proof import LEAST_DIGITS, TangencyClaim, TangencyProof, sharpened, worked_through
+from verification.proofs.manifolds.proof import (
+    LEAST_DIGITS,
+    TangencyClaim,
+    TangencyProof,
+    objection,
+    sharpened,
+    worked_through,
+)
 from verification.proofs.manifolds.saddle import Orbit, horner
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
 from verification.proofs.manifolds.touching import composed
@@ -91,7 +99,7 @@ def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball,
         shift = turns % map.turn
     after = [sign * x + shift * unit for x in points[: bent + 1]]
     closure = Closure(sign, (shift, map.turn) if shift else (0, 1))
-    problem = Problem(map.table, (0,) * len(points), BifurcationKind.FOLD, "lam", closure=closure)
+    problem = Problem(map.table, (0,) * len(points), BifurcationKind.FOLD, "lam", closure=closure, law=map.law)
     return Shadow(problem, [*points[bent + 1 :], *after, parameter])
 
 
@@ -162,6 +170,7 @@ def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) 
 SHAPE = Rational(2, 25)
 STEP = Rational(1, 500)  # of the shape, in continuation
 LEAST = Rational(1, 10_000)
+SHARE, LEAST_SHARE = Rational(1, 4), Rational(1, 1000)  # of another law, mixed with the paper's, in continuation
 TRIANGLE = Orbit("triangle of the vertices", (-0.165533,), Closure(1, (1, 3)))
 MIRRORED = Orbit("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), Closure(-1, (7, 3)))
 SYMMETRIC = Orbit("symmetric cycle of period 4", (-0.645971, 2.02441), Closure(-1, (2, 3)))
@@ -185,32 +194,62 @@ BOUNDARY = {  # the boundary tangency at four shapes, and its contraction there
 }
 
 
-def table(alpha: Expr) -> Pinball:
-    """The map of the three-pointed egg."""
-    return Pinball(egg(3).at(alpha=alpha), turn=3)
+def table(alpha: Expr, law: Law = PAPERS_LAW) -> Pinball:
+    """The map of the three-pointed egg; its rotations are symmetries unless the law depends on the place."""
+    return Pinball(egg(3).at(alpha=alpha), turn=1 if law.placed else 3, law=law)
 
 
-def contact(kind: str, alpha: Expr) -> Contact:
-    """A contact by its name at a shape, followed there from `alpha = 0.08`."""
+def contact(kind: str, alpha: Expr, law: Law = PAPERS_LAW) -> Contact:
+    """A contact by its name at a shape, followed there from `alpha = 0.08`, and then to another law than the paper's.
+
+    On the way to a law `phi` it is that of `-lam*eta + share*(phi + lam*eta)`, a law as well.
+    """
     if kind not in CONTACTS:
         raise ValueError(f"crisis: {kind!r} is not known; accepted: {', '.join(CONTACTS)}")
-    before = here = CONTACTS[kind]
-    shape, step, last = SHAPE, STEP, STEP
-    tick = telling(f"following the tangency to alpha = {alpha}")
-    while shape != alpha:
-        move = max(-step, min(step, alpha - shape))
+    if why := objection(CONTACTS[kind], table(alpha, law), CONTACTS[kind].parameter):
+        raise ValueError(f"{kind} crisis: {why}")
+
+    def lost(here: Expr, why: Exception) -> str:
+        return (
+            f"{kind} crisis: followed from alpha = 0.08 to alpha = {alpha}, the tangency is lost beyond "
+            f"alpha = {float(here):.5g} ({why}); accepted: shapes on this side of it"
+        )
+
+    def mixed(share: Expr) -> Pinball:
+        return table(alpha, Law(f"-lam*eta + ({share})*(lam*eta + {law.phi})"))
+
+    def parted(share: Expr, why: Exception) -> str:
+        return (
+            f"{kind} crisis: followed to the law {law}, the tangency is lost beyond {float(share):.5g} of the way from "
+            f"the paper's ({why}); accepted: laws nearer to -lam*eta"
+        )
+
+    there = followed(CONTACTS[kind], (SHAPE, alpha), (STEP, LEAST), table, lost)
+    return there if law.uniform else followed(there, (Rational(0), Rational(1)), (SHARE, LEAST_SHARE), mixed, parted)
+
+
+def followed(
+    here: Contact,
+    ends: tuple[Expr, Expr],
+    steps: tuple[Expr, Expr],
+    map: Callable[[Expr], Pinball],
+    lost: Callable[[Expr, Exception], str],
+) -> Contact:
+    """A contact followed from one end of a family of maps to the other, in steps between a least and a largest."""
+    (place, goal), (step, least) = ends, steps
+    whole, last, before = goal - place, step, here
+    tick = telling(f"following the tangency to {goal}")
+    while place != goal:
+        move = max(-step, min(step, goal - place))
         try:
-            following = settled(extrapolated(before, here, float(move / last)), table(shape + move))
+            following = settled(extrapolated(before, here, float(move / last)), map(place + move))
         except (ValueError, ArithmeticError) as why:
             step = step / 2
-            if step < LEAST:
-                raise ValueError(
-                    f"{kind} crisis: followed from alpha = 0.08 to alpha = {alpha}, the tangency is lost beyond "
-                    f"alpha = {float(shape):.5g} ({why}); accepted: shapes on this side of it"
-                ) from why
+            if step < least:
+                raise ValueError(lost(place, why)) from why
             continue
-        shape, last, before, here = shape + move, move, here, following
-        tick(float(move / (alpha - SHAPE)))
+        place, last, before, here = place + move, move, here, following
+        tick(float(move / whole))
     return here
 
 
@@ -277,7 +316,7 @@ def heteroclinic_exponent(stable: float, unstable: float) -> float:
     return 0.5 + math.log(abs(unstable)) / abs(math.log(abs(stable)))
 
 
-def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
+def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> Crisis:
     """The `merging` or the `boundary` crisis of the three-pointed egg to `digits` digits, not proved.
 
     >>> from sympy import Rational
@@ -286,8 +325,8 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     """
     if digits > MOST_DIGITS:
         raise ValueError(f"{kind} crisis: digits = {digits} is out of range; accepted: up to {MOST_DIGITS}")
-    map = table(alpha)
-    where = contact(kind, alpha)
+    map = table(alpha, law)
+    where = contact(kind, alpha, law)
     touch = tangency(where, map, min(digits, MANIFOLD_DIGITS))
     unstable = abs(touch.multipliers[1])
     rounds = math.ceil((digits + 2) * math.log(10) / math.log(unstable))
@@ -304,17 +343,17 @@ def crisis(kind: str, alpha: Expr, digits: int) -> Crisis:
     )
 
 
-def proof(found: Crisis, alpha: Expr, digits: int) -> TangencyProof:
+def proof(found: Crisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> TangencyProof:
     """The proof in balls of a tangency near the value, within `10**-digits` or less.
 
     It proves the contact of the manifolds, and not that the attractor ends there.
     """
-    digits, map, touch = max(LEAST_DIGITS, digits), table(alpha), found.touch
+    digits, map, touch = max(LEAST_DIGITS, digits), table(alpha, law), found.touch
     try:
         value = sharpened(touch.contact, map, str(touch.parameter), digits)
     except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
         value = str(touch.parameter)
-    return worked_through(TangencyClaim(touch.contact, alpha, value, digits))
+    return worked_through(TangencyClaim(touch.contact, alpha, value, digits, law))
 
 
 def boundary(alpha: Expr) -> TangencyProof:

@@ -26,6 +26,7 @@ from verification.cycles.chords import Chords, chord_angles, landing
 from verification.cycles.recurrence import Recurrence, Rule, henon
 
 NEWTON = Stop(small=1e-13, steps=60)  # after a landing in float64, in other numbers and order by order in jets
+HALVINGS = 54  # of the incidence angles
 
 
 class PlaneMap(Protocol):
@@ -55,6 +56,9 @@ class PlaneMap(Protocol):
 
     def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         """The derivatives of the rule by its three points."""
+
+    def varied(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
+        """The rule, and its derivative by the parameter."""
 
     def following(self, previous: Any, here: Any, parameter: Any) -> Any:
         """The map: what comes after `previous, here`."""
@@ -98,6 +102,12 @@ class _Bound(ABC):
     def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         return self._rule(0, near, self.at(parameter)).slope
 
+    def varied(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
+        zero = parameter * 0
+        plain = self.rule(near, zero)
+        moving = self.rule(near, zero + 1) - plain  # affine in the parameter
+        return plain + parameter * moving, moving
+
 
 @dataclass(frozen=True, eq=False)
 class Henon(_Bound):
@@ -138,8 +148,8 @@ class Pinball(_Bound):
     """The pinball map of a convex table of one component, with `lam` for its parameter, on angles that count turns.
 
     Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal, or what another law says;
-    backwards, under the paper's law alone, it came from where the chord makes `-phi/lam`, which is no angle of a
-    chord, and so `nan`, beyond `pi/2`.
+    backwards it came from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`,
+    or the angle that another law, one that falls, takes to `phi`; in float64.
 
     >>> from symbolic.tables import circle
     >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)
@@ -155,16 +165,36 @@ class Pinball(_Bound):
     def ring(self) -> Recurrence:
         return Chords(self.table, (0,), law=self.law)
 
+    def varied(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
+        if self.law.uniform:
+            return super().varied(near, parameter)
+        terms = self._rule(0, near, self.at(parameter))
+        return terms.value, terms.by["lam"]
+
+    @cached_property
+    def exit(self) -> Callable[..., Any]:
+        """The exit angle of a law other than the paper's, in the angle of incidence, the parameter and the place."""
+        made = load(law_kernel(self.law, 0), self.words)
+        return lambda *at: made(*at)[0]
+
     def following(self, previous: Any, here: Any, parameter: Any) -> Any:
         eta = self.angle(here, previous)[0]
-        if self.law.uniform:
-            return self._other_end(here, -parameter * eta, 0)
-        return self._other_end(here, load(law_kernel(self.law, 0), self.words)(eta, parameter, here)[0], 0)
+        phi = -parameter * eta if self.law.uniform else self.exit(eta, parameter, here)
+        return self._other_end(here, phi, 0)
 
     def previous(self, here: Any, following: Any, parameter: Any) -> Any:
-        if not self.law.uniform:
-            raise ValueError(f"{self.label}: law = {self.law} is not solved for the angle of incidence")
-        return self._other_end(here, -self.angle(here, following)[0] / parameter, -1)
+        phi = self.angle(here, following)[0]
+        if self.law.uniform:
+            return self._other_end(here, -phi / parameter, -1)
+        if self.words is not ARRAYS:
+            raise ValueError(f"{self.label}: law = {self.law} is solved for the angle of incidence in float64 alone")
+        low, high = np.full_like(phi, -np.pi / 2), np.full_like(phi, np.pi / 2)
+        beyond = ~((self.exit(low, parameter, here) > phi) & (phi > self.exit(high, parameter, here)))
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            over = self.exit(middle, parameter, here) > phi
+            low, high = np.where(over, middle, low), np.where(over, high, middle)
+        return self._other_end(here, np.where(beyond, np.nan, low), -1)
 
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
         return here, self.angle(here, following)[0]

@@ -9,6 +9,9 @@ unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and th
 
 The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the parameter varies.
 
+Under another law than the paper's a symmetry of the table is one of the map only where the law has it too: `objection`
+says what is missing. Nothing else asks which law it is, as the rule and its derivatives have it in them.
+
 `strange_attractors` checks what Mora and Viana ask for beside that. Then in every neighbourhood of the parameter there
 is a set of positive measure for whose parameters the map has a strange attractor: it attracts an open set, and holds a
 dense orbit along which vectors grow exponentially [MoraViana1993]. docs/global.md states the theorem, each hypothesis
@@ -24,11 +27,16 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from flint import arb, arb_mat
-from sympy import Expr
+from sympy import Expr, Pow, Rational
 
 from symbolic import tables
+from symbolic.expressions.text import load
+from symbolic.motion.chords import law_kernel
+from symbolic.tables.curves import is_periodic
+from symbolic.tables.definition import UNIFORM, text_entry
 from symbolic.tables.formula import number
-from verification.arithmetic.balls import working
+from symbolic.tables.law import PAPERS_LAW, Law
+from verification.arithmetic.balls import balls, between, working
 from verification.arithmetic.iteration import Stop, iterated
 from verification.cycles.chain import dot
 from verification.cycles.recurrence import Closure
@@ -42,6 +50,8 @@ from verification.proofs.periodic.interval_newton import Status, slope_bits, ste
 
 LEAST_DIGITS = 24
 NEWTON = 12
+NEAR = Rational(1, 10**6)  # the law is proved to be one for parameters so near the contact's
+PIECES, PLACES = 2048, 64  # of incidence angles, and of the boundary under a law of the place
 SMALL = 1e-5  # beside the box, where Newton's method ends
 ITEMS = ("saddle", "remainder", "exists", "unique", "admissible", "quadratic", "transversal")  # in this order
 Checks = Mapping[str, bool | None]
@@ -106,7 +116,7 @@ def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
         "remainder": True,
         "exists": found,
         "unique": found,
-        "admissible": admissible(map),
+        "admissible": admissible(map) if not objection(system.contact, map, float(system.parameter)) else None,
     }
     if not found:
         return Proof(box.parameter, checks | {"quadratic": None, "transversal": None})
@@ -124,6 +134,30 @@ def admissible(map: PlaneMap) -> bool | None:
         map.table
     )  # bounces may run over the end of the parameter
     return convex(map.table) if seamless else None
+
+
+def objection(contact: Contact, map: PlaneMap, parameter: float) -> str:
+    """Why a contact is none of a law of its own: what of its symmetry the law lacks, or where it is no law; else ''.
+
+    >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
+    >>> objection(CONTACTS["merging"], table(SHAPE, Law("-lam*eta + eta**2/99")), 0.44)
+    'law = eta**2/99 - eta*lam: no odd function of eta, so mirror images of orbits are no orbits'
+    """
+    law = map.law if isinstance(map, Pinball) else PAPERS_LAW
+    if law.uniform:
+        return ""
+    if law.parameters:
+        return f"law = {law}: {', '.join(law.parameters)} is no number; write it into the formula"
+    if law.measured:
+        return f"law = {law}: tangencies are those of the egg, whose arc length s is no closed formula; write theta"
+    closures = [orbit.closure for orbit in (contact.unstable, contact.stable)]
+    if law.placed and (map.turn != 1 or not is_periodic(law.phi) or any(p % q for p, q in (c.shift for c in closures))):
+        return f"law = {law}: the orbit closes by turns of the table, after which a law of the place is another one"
+    if not law.odd and not contact.sign == 1 == min(closure.turn for closure in closures):
+        return f"law = {law}: no odd function of eta, so mirror images of orbits are no orbits"
+    low, high = (Rational(parameter) + side * NEAR for side in (-1, 1))
+    finding = law.proof((max(low, Rational(0)), min(high, Rational(1))))
+    return "" if finding else f"law = {law}: {finding.reason}"
 
 
 def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
@@ -183,7 +217,7 @@ def strange_attractors(contact: Contact, map: PlaneMap, proof: Proof) -> Checks:
     found: dict[str, bool | None] = dict.fromkeys(STRANGE)
     found["tangency"] = True if proof.holds else None
     found["homoclinic"] = contact.kind == "homoclinic"  # the same start leads to the same cycle
-    found["analytic"] = smooth(map)
+    found["analytic"] = smooth(map, proof.parameter)
     if proof.multipliers:
         with working(Precision(LEAST_DIGITS).bits):
             stable, unstable = (abs(x) for x in proof.multipliers)
@@ -192,9 +226,35 @@ def strange_attractors(contact: Contact, map: PlaneMap, proof: Proof) -> Checks:
     return found
 
 
-def smooth(map: PlaneMap) -> bool | None:
-    """True when the map is analytic with an analytic inverse: in a convex table whose one curve closes smoothly."""
-    return True if admissible(map) and (not isinstance(map, Pinball) or closes_smoothly(map.table)) else None
+def smooth(map: PlaneMap, parameter: arb | None = None) -> bool | None:
+    """True when the map is analytic with an analytic inverse: in a convex table whose one curve closes smoothly.
+
+    Of another law than the paper's it is asked besides that it has no roots, and falls as the incidence grows.
+    """
+    if not admissible(map):
+        return None
+    if not isinstance(map, Pinball):
+        return True
+    return True if closes_smoothly(map.table) and (map.law.uniform or falling(map.law, parameter)) else None
+
+
+def falling(law: Law, parameter: arb | None) -> bool:
+    """Is the law analytic with a negative derivative by `eta`, proved for all angles and places at a contraction?
+
+    >>> falling(Law("-lam*eta + eta**3/40"), arb("0.6")), falling(Law("-lam*eta + eta**3/10"), arb("0.6"))
+    (True, False)
+    """
+    if parameter is None or any(not power.exp.is_Integer for power in law.phi.atoms(Pow)):
+        return False
+    turns = PLACES if law.placed else 1
+    with working(Precision(LEAST_DIGITS).bits):
+        slope = load(law_kernel(law), balls(Precision(LEAST_DIGITS).bits))
+        quarter, half = arb.pi() / 2, arb.pi()
+        angles, places = (
+            [whole * between(2 * k / n - 1, 2 * (k + 1) / n - 1) for k in range(n)]
+            for whole, n in ((quarter, PIECES // turns), (half, turns))
+        )
+        return all(slope(eta, parameter, theta)[1] < 0 for eta in angles for theta in places)
 
 
 def nonresonant(stable: arb, unstable: arb) -> bool | None:
@@ -222,11 +282,16 @@ class TangencyClaim:
     alpha: Expr
     value: str
     digits: int
+    law: Law = PAPERS_LAW
+
+    def __post_init__(self) -> None:
+        if why := objection(self.contact, self.map, float(self.value)):
+            raise ValueError(why)
 
     @property
     def map(self) -> Pinball:
-        """The map of the table, with its rotations."""
-        return Pinball(tables.egg(3).at(alpha=self.alpha), turn=3)
+        """The map of the table, with its rotations where the law has them."""
+        return Pinball(tables.egg(3).at(alpha=self.alpha), turn=1 if self.law.placed else 3, law=self.law)
 
     def chain(self) -> dict[str, Any]:
         """The orbit bounce by bounce, for a reader that knows no series; a few seconds, not proved."""
@@ -249,7 +314,7 @@ class TangencyClaim:
             "contact": _entries(self.contact),
             "value": self.value,
             "digits": self.digits,
-        }
+        } | ({} if self.law.uniform else {"law": str(self.law.phi)})
 
 
 @dataclass(frozen=True)
@@ -294,10 +359,10 @@ def claim_of(given: Mapping[str, Any]) -> TangencyClaim:
         digits, value = int(given["digits"]), str(given["value"])
         if not 10 <= digits <= LARGEST_DIGITS or not DECIMAL.fullmatch(value):
             raise ValueError(f"certificate: digits = {digits} or value = {value[:30]} is out of range")
-        contact = _contact(given["contact"])
+        contact, law = _contact(given["contact"]), Law(text_entry("law", given.get("law", UNIFORM)))
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
-    return TangencyClaim(contact, alpha, value, digits)
+    return TangencyClaim(contact, alpha, value, digits, law)
 
 
 def _entries(contact: Contact) -> dict[str, Any]:

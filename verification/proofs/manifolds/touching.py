@@ -144,6 +144,7 @@ class Touching:
     """The system of a contact near one parameter, with both manifolds enclosed."""
 
     def __init__(self, contact: Contact, map: PlaneMap, parameter: arb, precision: Precision) -> None:
+        self.contact = contact
         self.map, self.parameter = map.over(balls(precision.bits)), parameter
         self.pairs: list[Pair] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
@@ -186,12 +187,10 @@ class Touching:
         return [(self.pairs[0], at.orbit[0]), (self.pairs[1], at.orbit[-1])]
 
     def _bounced(self, made: Linear, at: Point, k: int) -> None:
-        """The rule at `y[k]`; it is affine in the parameter."""
+        """The rule at `y[k]`."""
         near = [Jet(at.orbit[j], at.along[j]) for j in range(k, k + 3)]
         map = self.map.lifted
-        plain = map.rule(near, arb(0))
-        moving = map.rule(near, arb(1)) - plain
-        value = plain + at.parameter * moving
+        value, moving = map.varied(near, at.parameter)
         slopes = map.slopes(near, at.parameter)
         m = len(at.orbit)
         rows = ([arb(0)] * k + [s.c[order] for s in slopes] + [arb(0)] * (m - k - 3) for order in (0, 1))

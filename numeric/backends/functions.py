@@ -362,6 +362,11 @@ def polynomial_zero(
 class DoubleBackend(Backend[N, M], Protocol[N, M]):
     """What backends of float64 have in common: their elementary functions and zeros are those of this module."""
 
+    @property
+    def doubles(self) -> bool:
+        """Yes."""
+        return True
+
     def angle(self, y: N, x: N) -> N:
         """`atan2(y, x)` for `x >= 0`."""
         return angle(self, y, x)

@@ -195,6 +195,16 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         """A double."""
         return LLVMVector(self, value=float(x))
 
+    def constant(self, x: LLVMVector) -> bool:
+        """Is this number known while the kernel is written?"""
+        return x.value is not None
+
+    def same(self, x: LLVMVector, y: LLVMVector) -> bool:
+        """Are two values known to be equal while the kernel is written?"""
+        if x is y or (x.value is not None and y.value is not None):
+            return x is y or x.value == y.value
+        return x.value is y.value and x.text == y.text
+
     @property
     def pi(self) -> LLVMVector:
         """The double nearest to pi."""

@@ -34,8 +34,21 @@ class Backend(NumberSystem[N], Protocol[N, M]):
         """What `pi` lacks."""
         ...
 
+    @property
+    def doubles(self) -> bool:
+        """Are its numbers doubles? Then known numbers may be kept as such; else they may have more digits."""
+        ...
+
     def number(self, x: float, /) -> N:
         """A double."""
+        ...
+
+    def constant(self, x: N, /) -> bool:
+        """Is this a known number, the same for all particles?"""
+        ...
+
+    def same(self, x: N, y: N, /) -> bool:
+        """Are two values known to be equal?"""
         ...
 
     def atan2(self, y: N, x: N, /) -> N:

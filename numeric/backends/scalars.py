@@ -33,6 +33,14 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         """A double, which stands for an array of any shape."""
         return cast(Array, x)
 
+    def constant(self, x: Array) -> bool:
+        """An array has a number for each particle."""
+        return not np.ndim(x)
+
+    def same(self, x: Array, y: Array) -> bool:
+        """Are two values equal everywhere?"""
+        return x is y or bool(np.all(x == y))
+
     @property
     def pi(self) -> Array:
         """The double nearest to pi."""
@@ -164,9 +172,22 @@ class ScalarBackend(Backend[N, bool]):
         """`p/n` to the context's precision."""
         return self.context.mpf(p) / n  # type: ignore[operator,no-any-return]  # an integer of any size, exactly
 
+    @property
+    def doubles(self) -> bool:
+        """No: a context may have any number of digits."""
+        return False
+
     def number(self, x: float) -> N:
         """A double, exactly."""
         return self.context.mpf(x)
+
+    def constant(self, x: N) -> bool:
+        """One particle, one number."""
+        return True
+
+    def same(self, x: N, y: N) -> bool:
+        """Are two values equal?"""
+        return x is y or bool(x == y)
 
     @property
     def pi(self) -> N:

@@ -1,14 +1,14 @@
 """Sides and arcs in a row: their numbers and coordinates, which follows which, and what a flight may pass there."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Generic, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
-from numeric.backends.protocol import Backend, M, N, modulus
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import Array, Boundary, Family, Landing
 from numeric.flights.general import UNSURE
 from numeric.lowering.program import Program
@@ -17,31 +17,29 @@ LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
 FOCAL = "focal"  # an arc of an ellipse by its radius about a focus
 MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
 TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
-Pair = tuple[Any, Any]
-Masks = Any
 
 
-class Piece(NamedTuple):
+class Piece(NamedTuple, Generic[N]):
     """The numbers of a piece in some arithmetic."""
 
     kind: str
-    origin: Pair
-    A: Pair
-    B: Pair
-    start: Pair  # its first corner
-    D: Any  # A x B: positive where the arc focuses
-    radius: Any  # of a focal arc, one minus the eccentricity
-    middle: Pair  # (p, q) in the middle of an arc; the ends of the parameter of a side
-    half: Pair  # sine and cosine of half the angle of an arc
+    origin: Pair[N]
+    A: Pair[N]
+    B: Pair[N]
+    start: Pair[N]  # its first corner
+    D: N  # A x B: positive where the arc focuses
+    radius: N  # of a focal arc, one minus the eccentricity
+    middle: Pair[N]  # (p, q) in the middle of an arc; the ends of the parameter of a side
+    half: Pair[N]  # sine and cosine of half the angle of an arc
 
 
-def piece_of(kind: str, x: Sequence[Any]) -> Piece:
+def piece_of(kind: str, x: Fields[N]) -> Piece[N]:
     """From the fourteen numbers of a piece's program."""
     pairs = [(x[i], x[i + 1]) for i in (0, 2, 4, 6, 10, 12)]
     return Piece(kind, pairs[0], pairs[1], pairs[2], pairs[3], x[8], x[9], pairs[4], pairs[5])
 
 
-def span(piece: Piece) -> Pair:
+def span(piece: Piece[N]) -> Pair[N]:
     """Bounds of the sum of moduli that a point of a piece is added up from: at `p = 0`, and more for a unit of `p`."""
     x, y, ax, ay, bx, by = (modulus(z) for pair in (piece.origin, piece.A, piece.B) for z in pair)
     if piece.kind == FOCAL:
@@ -49,48 +47,30 @@ def span(piece: Piece) -> Pair:
     return (x + y, ax + ay) if piece.kind == LINE else (x + y + ax + ay + bx + by, x - x)
 
 
-def from_focus(ops: Any, gap: Any, u: Pair) -> Any:
+def from_focus(ops: Backend[N, M], gap: N, u: Pair[N]) -> N:
     """`p - e` to its last bits, `e` being the eccentricity and `gap` one minus it."""
     one, (p, q) = ops.number(1.0), u
     return gap - ops.select(ops.number(0.0) < p, q * q / (one + p), one - p)
 
 
-def column(pieces: list[Piece], i: int) -> list[Any]:
-    """One entry of every piece."""
-    return [piece[i] for piece in pieces]
-
-
-def chosen(ops: Any, component: Any, values: list[Any]) -> Any:
+def chosen(ops: Backend[N, M], component: N, values: list[N]) -> N:
     """The value of the particle's piece; neighbours that are equal cost nothing."""
-    if len(values) > MANY and all(map(_constant, values)):
-        return values[0] if all(same(value, values[0]) for value in values) else ops.look_up(values, component)
+    if len(values) > MANY and all(map(ops.constant, values)):
+        return values[0] if all(ops.same(value, values[0]) for value in values) else ops.look_up(values, component)
     found = values[0]
     for i in range(1, len(values)):
-        if not same(values[i], values[i - 1]):
+        if not ops.same(values[i], values[i - 1]):
             found = ops.select(ops.number(i - 0.5) < component, values[i], found)
     return found
 
 
-def _constant(value: Any) -> bool:
-    """Is this one number, of a vector of LLVM a known one? An array has one for each particle."""
-    return getattr(value, "value", 0.0) is not None and not getattr(value, "ndim", 0)
-
-
-def chosen_mask(ops: Any, component: Any, values: list[bool]) -> Any:
+def chosen_mask(ops: Backend[N, M], component: N, values: list[bool]) -> M:
     """Where the particle's piece is one of those marked."""
-    return ops.number(0.5) < chosen(ops, component, [ops.number(float(value)) for value in values])
+    marked: M = ops.number(0.5) < chosen(ops, component, [ops.number(float(value)) for value in values])
+    return marked
 
 
-def same(x: Any, y: Any) -> bool:
-    """Are two values of an arithmetic known to be equal?"""
-    if x is y:
-        return True
-    if hasattr(x, "factors"):  # a vector of LLVM
-        return bool(x.value == y.value if None not in (x.value, y.value) else x.value is y.value and x.text == y.text)
-    return bool(np.all(x == y))
-
-
-def following(boundary: Boundary, pieces: list[Piece]) -> list[int]:
+def following(boundary: Boundary, pieces: list[Piece[float]]) -> list[int]:
     """The piece that begins where each one ends: the next one, or the first of a closed curve."""
     found, first, count = [], 0, len(pieces)
     size = max(abs(x) for piece in pieces for x in piece.start) + 1.0
@@ -116,7 +96,7 @@ def loops(after: list[int]) -> list[list[int]]:
     return found
 
 
-def convex(boundary: Boundary, pieces: list[Piece], loop: list[int], after: list[int]) -> bool:
+def convex(boundary: Boundary, pieces: list[Piece[float]], loop: list[int], after: list[int]) -> bool:
     """Does every arc of the curve focus, and every corner bend inwards?"""
     if any(pieces[j].kind != LINE and not pieces[j].D > 0 for j in loop):
         return False
@@ -132,7 +112,7 @@ def convex(boundary: Boundary, pieces: list[Piece], loop: list[int], after: list
     return abs(turning - 2 * np.pi) < 1e-6
 
 
-def passable(boundary: Boundary, pieces: list[Piece], j: int, after: list[int]) -> bool:
+def passable(boundary: Boundary, pieces: list[Piece[float]], j: int, after: list[int]) -> bool:
     """May a flight pass the first corner of a piece? Not where the curve bends inwards, or is smooth and focuses.
 
     A cusp counts as one that may be passed: its tangents do not say to which side it points.
@@ -148,14 +128,14 @@ def passable(boundary: Boundary, pieces: list[Piece], j: int, after: list[int]) 
     return bool(plane.dot(arriving, leaving) < 0 or not focuses)
 
 
-def _direction(boundary: Boundary, j: int, end: int) -> Pair:
+def _direction(boundary: Boundary, j: int, end: int) -> Pair[float]:
     """The unit tangent at an end of a piece."""
     _, _, dx, dy, _, _ = boundary.curve(np.array([j]), np.array([boundary.ends[j][end]]))[:, 0]
     size = np.hypot(dx, dy)
     return dx / size, dy / size
 
 
-def _turned(boundary: Boundary, j: int, piece: Piece) -> float:
+def _turned(boundary: Boundary, j: int, piece: Piece[float]) -> float:
     """The angle by which the tangent of a piece turns."""
     low, high = boundary.ends[j]
     theta = np.linspace(low, high, 257)
@@ -178,10 +158,10 @@ class Coordinates(Family):
     programs: list[Program]
 
     @abstractmethod
-    def pieces(self, ops: Any, shape: Sequence[Any]) -> list[Piece]:
+    def pieces(self, ops: Backend[N, M], shape: Fields[N]) -> list[Piece[N]]:
         """All pieces in the arithmetic of `ops`."""
 
-    def enter(self, ops: Any, component: Any, theta: Any) -> list[Any]:
+    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         line = chosen_mask(ops, component, [kind == LINE for kind in self.kinds])
         minus = ops.number(-1.0) + ops.number(0.0) * theta
         u = ops.cos(theta), ops.sin(theta)
@@ -191,19 +171,19 @@ class Coordinates(Family):
             u = self._there(ops, component, j, E, u)
         return [component, ops.select(line, theta, u[0]), ops.select(line, minus, u[1])]
 
-    def _foci(self, ops: Any) -> Iterator[tuple[int, Pair, Any]]:
+    def _foci(self, ops: Backend[N, M]) -> Iterator[tuple[int, Pair[N], N]]:
         """Of every arc about a focus the direction of `A`, and the ratio of the tangents of half the angles."""
         for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
             if kind == FOCAL:
                 *_, x, y, ratio = program(ops, *(ops.number(float(a)) for a in self.boundary.shape))
                 yield j, (x, y), ratio
 
-    def _there(self, ops: Any, component: Any, j: int, new: Pair, old: Pair) -> Pair:
+    def _there(self, ops: Backend[N, M], component: N, j: int, new: Pair[N], old: Pair[N]) -> Pair[N]:
         """`new` on piece `j`, and `old` elsewhere."""
         here = modulus(component - ops.number(float(j))) < ops.number(0.25)
         return ops.select(here, new[0], old[0]), ops.select(here, new[1], old[1])
 
-    def place(self, ops: Any, position: Sequence[Any]) -> tuple[Any, Any]:
+    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         component, p, q = position
         shape = [ops.number(float(x)) for x in self.boundary.shape]
         pieces = self.pieces(ops, shape)
@@ -230,7 +210,7 @@ class Coordinates(Family):
         D = self._turning(ops, self.pieces(ops, shape), at[0])
         return np.where(focal, speed, rate), np.where(focal, -D / speed**3, curvature)
 
-    def drifting(self, ops: Any, landing: Landing[Any], below: Any, drift: Any) -> Any:
+    def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         component, p, _ = landing.position
         one, rate = ops.number(1.0), ops.number(1.0)
         for j, _, ratio in self._foci(ops):  # dtheta/dE
@@ -239,42 +219,46 @@ class Coordinates(Family):
             rate, _ = self._there(ops, component, j, (new, new), (rate, rate))
         return drift * below * rate if FOCAL in self.kinds else drift * below
 
-    def _pair(self, ops: Any, component: Any, pairs: list[Pair]) -> Pair:
+    def _pair(self, ops: Backend[N, M], component: N, pairs: list[Pair[N]]) -> Pair[N]:
         return chosen(ops, component, [x for x, _ in pairs]), chosen(ops, component, [y for _, y in pairs])
 
-    def _axes(self, ops: Any, pieces: list[Piece], component: Any) -> list[Pair]:
+    def _axes(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
         """`A` and `B` of the particle's piece."""
-        return [self._pair(ops, component, column(pieces, i)) for i in (2, 3)]
+        return [
+            self._pair(ops, component, [piece.A for piece in pieces]),
+            self._pair(ops, component, [piece.B for piece in pieces]),
+        ]
 
-    def _turning(self, ops: Any, pieces: list[Piece], component: Any) -> Any:
+    def _turning(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> N:
         """`A x B` of the particle's piece."""
-        return chosen(ops, component, column(pieces, 5))
+        return chosen(ops, component, [piece.D for piece in pieces])
 
-    def tangent(self, ops: Any, shape: Sequence[Any], position: Sequence[Any]) -> Pair:
+    def tangent(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
         """The velocity `d` at a boundary point."""
         component, p, q = position
         A, B = self._axes(ops, self.pieces(ops, shape), component)
         return p * B[0] - q * A[0], p * B[1] - q * A[1]
 
 
-class Flight(NamedTuple):
+class Flight(NamedTuple, Generic[N, M]):
     """The line along which a particle leaves: its piece, point and direction, and `d x v` there."""
 
-    ops: Any
-    component: Any
-    z0: Pair
-    v: Pair
-    rate: Any
-    p: Any  # of the point
-    q: Any
+    ops: Backend[N, M]
+    component: N
+    z0: Pair[N]
+    v: Pair[N]
+    rate: N
+    p: N  # of the point
+    q: N
 
 
-def passing(flight: Flight, corner: Pair, side: Any, start: Any, t: Any) -> Masks:
+def passing(flight: Flight[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:
     """Does a flight of length `t` come to a corner on its way, as near as its rounding?"""
     ops, (x, y) = flight.ops, corner
     slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
     ahead = plane.dot(flight.v, (x - flight.z0[0], y - flight.z0[1]))
-    return (modulus(side) <= slack) & (slack < ahead) & (ahead < t)
+    comes: M = (modulus(side) <= slack) & (slack < ahead) & (ahead < t)
+    return comes
 
 
 def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:

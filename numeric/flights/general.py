@@ -113,7 +113,7 @@ class General(Family):
         size = modulus(start[1]) + modulus(start[2]) + modulus(x) + modulus(y) + modulus(at) * speed
         doubt = ops.number(UNSURE) * size
         straight = ops.select(own, speed, modulus(along))
-        if getattr(ops, "context", None) is not None:  # with more digits, which leave no such doubt: one distance
+        if not ops.doubles:  # with more digits, which leave no such doubt: one distance
             straight, doubt = speed, ops.number(NEAR)
         alike = len(set(self.joins)) == 1
         for index, (low, high) in enumerate(self.joins[:1] if alike else self.joins):

@@ -6,14 +6,14 @@ a landing is the same to the last bit as that of the walk through all pieces. A 
 as the walls round many discs, is met first: which of its pieces it is costs nothing to say.
 """
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
-from numeric.backends.protocol import modulus
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.corners import (
     CIRCLE,
     ELLIPSE,
@@ -21,18 +21,15 @@ from numeric.flights.corners import (
     LINE,
     MANY,
     Flight,
-    Masks,
-    Pair,
     Piece,
     chosen_mask,
-    column,
     passing,
     span,
 )
 from numeric.flights.family import Boundary, Landing
 from numeric.flights.general import UNSURE
 from numeric.flights.grid import laid, met
-from numeric.flights.pieces import FAR, Pieces, Row
+from numeric.flights.pieces import FAR, Pieces
 
 SOME = 32  # pieces, from which on it pays to find the first hit by a grid
 PARTS = 64  # boxes round a piece
@@ -73,8 +70,8 @@ class Many(Pieces):
     def identity(self) -> str:
         return repr((super().identity, self.rows, self.grid))
 
-    def fly(self, ops: Any, shape: Row, law: str, position: Row, exit: Row) -> Landing[Any]:
-        if hasattr(ops, "context"):
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
+        if not ops.doubles:
             return super().fly(ops, shape, law, position, exit)
         component, p, q = position
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
@@ -84,7 +81,7 @@ class Many(Pieces):
         best = [far, component]
         if self.outer:
             around = pieces[: len(self.outer)]
-            t, *_, where = self._round(flight, around, self._sides(flight, column(around, 4)))
+            t, *_, where = self._round(flight, around, self._sides(flight, [piece.start for piece in around]))
             best = [t, where]
         t, where, *passed = met(
             ops, self.grid, z0, v, [*best, far] if self.passed else best,
@@ -97,24 +94,24 @@ class Many(Pieces):
         ends = self._sides(flight, self._row(ops, where)[6:])
         return self._landed(flight, pieces, [t, *best, where], [*ends, *passed])
 
-    def _where(self, flight: Flight, kind: str, where: Any, best: list[Any]) -> list[Any]:
+    def _where(self, flight: Flight[N, M], kind: str, where: N, best: list[N]) -> list[N]:
         """`p`, `q` and `v x d` of the landing, where it is on a piece of this kind; else `best`."""
         ops, marked = flight.ops, [known == kind for known in self.kinds]
         if all(marked):
             return list(self._met(flight, self._at(ops, kind, where), where)[1:4])
         here = chosen_mask(ops, where, marked)
 
-        def found() -> list[Any]:
+        def found() -> list[N]:
             new = self._met(flight, self._at(ops, kind, where), where)[1:4]
             return [ops.select(here, x, y) for x, y in zip(new, best, strict=True)]
 
         return list(ops.when(here, best, found))
 
-    def _sides(self, flight: Flight, corners: Row) -> list[Any]:
+    def _sides(self, flight: Flight[N, M], corners: Sequence[Pair[N]]) -> list[N]:
         """On which side of the line some corners lie."""
         return [plane.cross(flight.v, (x - flight.z0[0], y - flight.z0[1])) for x, y in corners]
 
-    def _tried(self, flight: Flight, reached: Masks, line: list[Any], best: list[Any]) -> list[Any]:
+    def _tried(self, flight: Flight[N, M], reached: M, line: list[N], best: list[N]) -> list[N]:
         """The nearest of `best` and of the arrival on a piece; and the nearest corner that is passed."""
         ops, nought, (x0, y0, x1, y1, j), (t, where, *passed) = flight.ops, flight.ops.number(0.0), line, best
         first, last = self._sides(flight, ((x0, y0), (x1, y1)))
@@ -129,28 +126,18 @@ class Many(Pieces):
             if not all(marked):
                 here = here & chosen_mask(ops, j, marked)
             tried = self._side if kind == LINE else self._arc
-            t, where = ops.when(
-                here,
-                [t, where],
-                lambda tried=tried, kind=kind, here=here, t=t, where=where: tried(
-                    flight, kind, here, j, first, last, t, where
-                ),
-            )
+            t, where = ops.when(here, [t, where], partial(tried, flight, kind, here, j, first, last, t, where))
         return [t, where, *passed]
 
-    def _side(
-        self, flight: Flight, kind: str, here: Masks, j: Any, first: Any, last: Any, t: Any, where: Any
-    ) -> list[Any]:
+    def _side(self, flight: Flight[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
         """The nearest landing of those on a straight side that is met and of the one that is known."""
         return self._nearer(flight.ops, here, self._met(flight, self._at(flight.ops, kind, j), j)[0], j, t, where)
 
-    def _arc(
-        self, flight: Flight, kind: str, here: Masks, j: Any, first: Any, last: Any, t: Any, where: Any
-    ) -> list[Any]:
+    def _arc(self, flight: Flight[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
         """The same for an arc that may be met."""
         ops, piece, nought = flight.ops, self._at(flight.ops, kind, j), flight.ops.number(0.0)
         new, p, q, _, left = self._met(flight, piece, j)
-        own = abs(flight.component - j) < ops.number(0.25)
+        own = modulus(flight.component - j) < ops.number(0.25)
         slack = nought
         if any(self.bulges):
             slack = ops.select(chosen_mask(ops, j, self.bulges), -self._slack(flight, [], piece), nought)
@@ -163,35 +150,35 @@ class Many(Pieces):
             turns = (turns & inside) | ((first <= nought) & (nought < last))
         return self._nearer(ops, here & turns, new, j, t, where)
 
-    def _nearer(self, ops: Any, meets: Masks, new: Any, j: Any, t: Any, where: Any) -> list[Any]:
+    def _nearer(self, ops: Backend[N, M], meets: M, new: N, j: N, t: N, where: N) -> list[N]:
         """A landing that is nearer than the one that is known; of two at the same length the first in order."""
         meets = meets & (ops.number(0.0) < new) & ((new < t) | ((new == t) & (j < where)))
         return [ops.select(meets, new, t), ops.select(meets, j, where)]
 
-    def _row(self, ops: Any, j: Any) -> list[Pair]:
+    def _row(self, ops: Backend[N, M], j: N) -> list[Pair[N]]:
         """All pairs of numbers of a piece, from memory."""
         row = ops.look_up_row(self.rows, j)
         return list(zip(row[::2], row[1::2], strict=True))
 
-    def _at(self, ops: Any, kind: str, j: Any) -> Piece:
+    def _at(self, ops: Backend[N, M], kind: str, j: N) -> Piece[N]:
         """The piece of that number, of a known kind."""
         origin, A, B, (D, radius), middle, half, start, _ = self._row(ops, j)
         return Piece(kind, origin, A, B, start, D, radius, middle, half)
 
-    def _axes(self, ops: Any, pieces: list[Piece], component: Any) -> list[Pair]:
-        return super()._axes(ops, pieces, component) if hasattr(ops, "context") else self._row(ops, component)[1:3]
+    def _axes(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
+        return super()._axes(ops, pieces, component) if not ops.doubles else self._row(ops, component)[1:3]
 
-    def _turning(self, ops: Any, pieces: list[Piece], component: Any) -> Any:
-        return super()._turning(ops, pieces, component) if hasattr(ops, "context") else self._row(ops, component)[3][0]
+    def _turning(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> N:
+        return super()._turning(ops, pieces, component) if not ops.doubles else self._row(ops, component)[3][0]
 
-    def point(self, ops: Any, pieces: list[Piece], position: Row) -> Pair:
-        if hasattr(ops, "context"):
+    def point(self, ops: Backend[N, M], pieces: list[Piece[N]], position: Fields[N]) -> Pair[N]:
+        if not ops.doubles:
             return super().point(ops, pieces, position)
         component, p, q = position
         origin, A, B, *_ = self._row(ops, component)
         return p * A[0] + q * B[0] + origin[0], p * A[1] + q * B[1] + origin[1]
 
-    def _passed(self, flight: Flight, near: Masks, corner: Pair, j: Any, side: Any, passed: Any) -> Any:
+    def _passed(self, flight: Flight[N, M], near: M, corner: Pair[N], j: N, side: N, passed: N) -> N:
         """The length to the first corner of a piece, if it may be passed, and is nearer than the one that is known."""
         ops = flight.ops
         marked = near & chosen_mask(ops, j, [k in self.passed for k in range(len(self.known))])
@@ -201,19 +188,19 @@ class Many(Pieces):
 
     # ---- rounding
 
-    def _farthest(self, ops: Any, pieces: list[Piece]) -> Any:
+    def _farthest(self, ops: Backend[N, M], pieces: list[Piece[N]]) -> N:
         return ops.number(self.size)
 
-    def _near(self, ops: Any, farthest: Any, sides: Row) -> Iterator[Masks]:
+    def _near(self, ops: Backend[N, M], farthest: N, sides: Fields[N]) -> Iterator[M]:
         yield from super()._near(ops, farthest, sides[:2])
         if self.passed:
             yield sides[2] < ops.number(FAR)
 
-    def _passes(self, flight: Flight, pieces: list[Piece], start: Any, t: Any, sides: Row) -> Iterator[Masks]:
+    def _passes(self, flight: Flight[N, M], pieces: list[Piece[N]], start: N, t: N, sides: Fields[N]) -> Iterator[M]:
         if self.passed:
             yield sides[2] < t
 
-    def _slack_at(self, flight: Flight, pieces: list[Piece], where: Any) -> Any:
+    def _slack_at(self, flight: Flight[N, M], pieces: list[Piece[N]], where: N) -> N:
         ops = flight.ops
         found = -ops.number(1.0)
         for kind in (CIRCLE, ELLIPSE):
@@ -224,7 +211,7 @@ class Many(Pieces):
         return found
 
 
-def boxes_of(piece: Piece, ends: Pair) -> NDArray[np.float64]:
+def boxes_of(piece: Piece[float], ends: Pair[float]) -> NDArray[np.float64]:
     """Boxes round parts of a piece: left, right, low, high."""
     low, high = (float(end) for end in ends)
     p = np.linspace(low, high, PARTS + 1)

@@ -25,12 +25,11 @@ off by `UNSURE*S` along the arc, and the line moves sideways by `UNSURE` times i
 State: the piece, `p`, `q`, and the direction `v`.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
-from typing import Any
 
 from numeric.backends import functions as plane
-from numeric.backends.protocol import modulus
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.corners import (
     CIRCLE,
     ELLIPSE,
@@ -39,12 +38,9 @@ from numeric.flights.corners import (
     MANY,
     Coordinates,
     Flight,
-    Masks,
-    Pair,
     Piece,
     chosen,
     chosen_mask,
-    column,
     convex,
     following,
     from_focus,
@@ -60,7 +56,6 @@ from numeric.flights.general import UNSURE, refuse_long
 from numeric.lowering.program import LawIR
 
 FAR = 2.0**100  # as far as nothing was met
-Row = Sequence[Any]
 
 
 class Pieces(Coordinates):
@@ -80,7 +75,7 @@ class Pieces(Coordinates):
         self.programs = [program for _, program in ir.programs]
         self.halving: list[list[float]] | None = None
         self.constants: list[list[float]] | None = None  # numbers that are looked up
-        known = self.pieces(boundary.ops, boundary.shape)
+        known = [piece_of(*named) for named in zip(self.kinds, self.numbers(), strict=True)]
         self.known = known
         self.following = following(boundary, known)
         self.closed = [
@@ -106,14 +101,15 @@ class Pieces(Coordinates):
         return repr(told)
 
     def numbers(self) -> list[list[float]]:
-        """The numbers of every piece of a table without parameters."""
-        return [[float(x) for x in program(self.boundary.ops)] for program in self.programs]
+        """The numbers of every piece."""
+        ops, shape = self.boundary.ops, self.boundary.numbers
+        return [[float(x) for x in program(ops, *shape)] for program in self.programs]
 
-    def pieces(self, ops: Any, shape: Row) -> list[Piece]:
+    def pieces(self, ops: Backend[N, M], shape: Fields[N]) -> list[Piece[N]]:
         """All pieces in the arithmetic of `ops`."""
         found = []
         for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
-            if self.constants and not hasattr(ops, "context"):
+            if self.constants and ops.doubles:
                 x = [ops.number(value) for value in self.constants[j]]
             else:
                 x = program(ops, *shape)
@@ -125,36 +121,43 @@ class Pieces(Coordinates):
         """The pieces that are no straight sides."""
         return [i for i, kind in enumerate(self.kinds) if kind != LINE]
 
-    def arc(self, ops: Any, position: Row, component: Any, theta: Any, law: LawIR) -> Any:
-        slope, begin = self._pair(ops, component, [tuple(length(ops)) for length in law.lengths])
+    def arc(self, ops: Backend[N, M], position: Fields[N], component: N, theta: N, law: LawIR) -> N:
+        slope, begin = self._pair(
+            ops, component, [(slope, begin) for slope, begin in (length(ops) for length in law.lengths)]
+        )
         return slope * theta + begin
 
     # ---- a bounce
 
-    def point(self, ops: Any, pieces: list[Piece], position: Row) -> Pair:
+    def point(self, ops: Backend[N, M], pieces: list[Piece[N]], position: Fields[N]) -> Pair[N]:
         """The Cartesian point."""
         component, p, q = position
-        origin, A, B = (self._pair(ops, component, column(pieces, i)) for i in (1, 2, 3))
+        origin, A, B = self._axes_at(ops, pieces, component)
         if FOCAL in self.kinds:
             arc = chosen_mask(ops, component, [kind == FOCAL for kind in self.kinds])
             p = ops.select(arc, from_focus(ops, self._gap_of(ops, component, pieces), (p, q)), p)
         return p * A[0] + q * B[0] + origin[0], p * A[1] + q * B[1] + origin[1]
 
-    def _gap_of(self, ops: Any, component: Any, pieces: list[Piece]) -> Any:
+    def _axes_at(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
+        """`O`, `A` and `B` of the particle's piece."""
+        columns = [x.origin for x in pieces], [x.A for x in pieces], [x.B for x in pieces]
+        return [self._pair(ops, component, column) for column in columns]
+
+    def _gap_of(self, ops: Backend[N, M], component: N, pieces: list[Piece[N]]) -> N:
         """One minus the eccentricity, of arcs about a focus; one of others, which start from their centre."""
         return chosen(ops, component, [x.radius if x.kind == FOCAL else ops.number(1.0) for x in pieces])
 
-    def fly(self, ops: Any, shape: Row, law: str, position: Row, exit: Row) -> Landing[Any]:
+    def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         component, p, q = position
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0 = self.point(ops, pieces, position)
         d0 = self.tangent(ops, shape, position)
         flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q)
         corners = [piece.start for piece in pieces]
-        best: list[Any] | None = None
+        best: list[N] | None = None
         if self.halving:
 
-            def side(at: Any) -> Any:
+            def side(at: N) -> N:
                 x, y = (ops.look_up([corner[i] for corner in corners], at) for i in (0, 1))
                 return plane.cross(v, (x - z0[0], y - z0[1]))
 
@@ -172,7 +175,7 @@ class Pieces(Coordinates):
             t, p, q, along, left = self._met(flight, piece, here)
             crosses = (sides[j] <= nought) & (nought < sides[self.following[j]])
             if piece.kind != LINE:
-                own = abs(component - here) < ops.number(0.25)
+                own = modulus(component - here) < ops.number(0.25)
                 turns = (nought if not self.bulges[j] else -self._slack(flight, pieces, piece)) < left
                 if not self.closed[j]:
                     turns = turns & (nought < self._inside(ops, piece, (p, q), self.wide[j]))
@@ -188,28 +191,28 @@ class Pieces(Coordinates):
         assert best is not None
         return self._landed(flight, pieces, best, sides)
 
-    def _round(self, flight: Flight, pieces: list[Piece], sides: Row) -> list[Any]:
+    def _round(self, flight: Flight[N, M], pieces: list[Piece[N]], sides: Fields[N]) -> list[N]:
         """Where a flight lands on the convex curve round all others."""
         ops, where = flight.ops, flight.component
         nought = ops.number(0.0)
         for j in self.outer:
-            other = ops.number(0.25) < abs(flight.component - ops.number(float(j)))
+            other = ops.number(0.25) < modulus(flight.component - ops.number(float(j)))
             meets = other & (sides[j] <= nought) & (nought < sides[self.following[j]])
             where = ops.select(meets, ops.number(float(j)), where)
         return [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
 
-    def _spans(self, ops: Any, pieces: list[Piece]) -> list[Pair]:
+    def _spans(self, ops: Backend[N, M], pieces: list[Piece[N]]) -> list[Pair[N]]:
         """What the points of every piece are added up from; constants, if there are no parameters."""
         if self.boundary.shape:
             return [span(piece) for piece in pieces]
         return [(ops.number(float(x)), ops.number(float(y))) for x, y in map(span, self.known)]
 
-    def _size(self, ops: Any, pieces: list[Piece], component: Any, p: Any) -> Any:
+    def _size(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N, p: N) -> N:
         """The sum of the moduli of the numbers that a point of a piece is added up from, or a bound of it."""
         base, slope = self._pair(ops, component, self._spans(ops, pieces))
         return base + slope * modulus(p)
 
-    def _farthest(self, ops: Any, pieces: list[Piece]) -> Any:
+    def _farthest(self, ops: Backend[N, M], pieces: list[Piece[N]]) -> N:
         """A bound of this sum over the whole table."""
         largest = ops.number(0.0)
         for (base, slope), (low, high) in zip(
@@ -218,7 +221,7 @@ class Pieces(Coordinates):
             largest = ops.maximum(largest, base + slope * ops.maximum(modulus(low), modulus(high)))
         return largest
 
-    def _slack(self, flight: Flight, pieces: list[Piece], piece: Piece) -> Any:
+    def _slack(self, flight: Flight[N, M], pieces: list[Piece[N]], piece: Piece[N]) -> N:
         """`(v x d)**2` below which rounding hides on which side of a tangent of an arc the line passes."""
         ops, radius = flight.ops, piece.radius
         if piece.kind != CIRCLE:
@@ -227,26 +230,26 @@ class Pieces(Coordinates):
         size = self._size(ops, pieces, flight.component, flight.p) + span(piece)[0]
         return ops.number(2 * UNSURE) * radius * size
 
-    def _gathered(self, ops: Any, where: Any, pieces: list[Piece]) -> Piece:
+    def _gathered(self, ops: Backend[N, M], where: N, pieces: list[Piece[N]]) -> Piece[N]:
         """The piece of every particle; its kind is that of the outer ones, or empty where there are several."""
         several = len({self.kinds[j] for j in self.outer}) > 1
-        origin, A, B = (self._pair(ops, where, column(pieces, i)) for i in (1, 2, 3))
-        D, radius = (chosen(ops, where, column(pieces, i)) for i in (5, 6))
+        origin, A, B = self._axes_at(ops, pieces, where)
+        D, radius = self._turning(ops, pieces, where), chosen(ops, where, [piece.radius for piece in pieces])
         kind = "" if several else self.kinds[self.outer[0]]
         radius = self._gap_of(ops, where, pieces) if FOCAL in self.kinds else radius
         return Piece(kind, origin, A, B, origin, D, radius, origin, origin)
 
-    def _met(self, flight: Flight, piece: Piece, where: Any) -> tuple[Any, Any, Any, Any, Masks]:
-        """Length, `p`, `q` and `v x d` of the arrival on a piece, and where an arc has one."""
+    def _met(self, flight: Flight[N, M], piece: Piece[N], where: N) -> tuple[N, N, N, N, N]:
+        """Length, `p`, `q` and `v x d` of the arrival on a piece; and what is positive if the line meets the whole conic."""
         ops, v = flight.ops, flight.v
         w = flight.z0[0] - piece.origin[0], flight.z0[1] - piece.origin[1]
         a, b, m = plane.cross(v, piece.A), plane.cross(v, piece.B), plane.cross(v, w)
         one = ops.number(1.0)
         if piece.kind == LINE:
             inverse = one / a
-            return plane.cross(piece.A, w) * inverse, m * inverse, ops.number(-1.0), a, None
+            return plane.cross(piece.A, w) * inverse, m * inverse, ops.number(-1.0), a, one
         kinds = {kind for kind in self.kinds if kind != LINE} if not piece.kind else {piece.kind}
-        nought, own = ops.number(0.0), abs(flight.component - where) < ops.number(0.25)
+        nought, own = ops.number(0.0), modulus(flight.component - where) < ops.number(0.25)
         if kinds == {CIRCLE}:
             square = piece.radius * piece.radius
             left = (piece.radius - m) * (piece.radius + m)
@@ -275,13 +278,13 @@ class Pieces(Coordinates):
         t = ops.select(own, chord, v[0] * x + v[1] * y)
         return t, p, q, along, left
 
-    def _inside(self, ops: Any, piece: Piece, u: Pair, wide: bool) -> Any:
+    def _inside(self, ops: Backend[N, M], piece: Piece[N], u: Pair[N], wide: bool) -> N:
         """The sine of the angle from the nearer end of an arc, negative beyond it."""
-        c, s = plane.dot(piece.middle, u), abs(plane.cross(piece.middle, u))
+        c, s = plane.dot(piece.middle, u), modulus(plane.cross(piece.middle, u))
         gap = piece.half[0] * c - piece.half[1] * s
         return ops.select(ops.number(0.0) < c, ops.number(1.0), gap) if wide else gap
 
-    def _landed(self, flight: Flight, pieces: list[Piece], best: Row, sides: Row) -> Landing[Any]:
+    def _landed(self, flight: Flight[N, M], pieces: list[Piece[N]], best: Fields[N], sides: Fields[N]) -> Landing[N]:
         ops, v, (t, p, q, along, where) = flight.ops, flight.v, best
         nought = ops.number(0.0)
         A, B = self._axes(ops, pieces, where)
@@ -289,9 +292,12 @@ class Pieces(Coordinates):
         across = plane.dot(d, v)
         code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
         farthest = self._farthest(ops, pieces)
-        near = ops.negated(ops.number(4 * UNSURE) * farthest * farthest < along * along) if any(self.bulges) else None
+        near: M | None = None
+        if any(self.bulges):
+            near = ops.negated(ops.number(4 * UNSURE) * farthest * farthest < along * along)
         for by in self._near(ops, farthest, sides):
             near = by if near is None else near | by
+        assert near is not None
         doubt = ops.when(near, [nought + nought * t], lambda: [self._doubt(flight, pieces, best, d, sides)])[0]
         code = ops.select(ops.number(0.5) < doubt, doubt, code)
         if not self.outer:  # what passes between two pieces is at a join
@@ -299,7 +305,7 @@ class Pieces(Coordinates):
         D = self._turning(ops, pieces, where)
         return Landing([where, p, q], across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
 
-    def _doubt(self, flight: Flight, pieces: list[Piece], best: Row, d: Pair, sides: Row) -> Any:
+    def _doubt(self, flight: Flight[N, M], pieces: list[Piece[N]], best: Fields[N], d: Pair[N], sides: Fields[N]) -> N:
         """`JOIN` or `GRAZING`, by number, where rounding hides on which side of a corner or tangent the line passes."""
         ops, (t, p, q, along, where) = flight.ops, best
         nought, one = ops.number(0.0), ops.number(1.0)
@@ -310,7 +316,7 @@ class Pieces(Coordinates):
         aside, doubt = gap * along, size * size
         aside = aside * aside
         if self.arcs:
-            own = abs(flight.component - where) < ops.number(0.25)
+            own = modulus(flight.component - where) < ops.number(0.25)
             doubt = ops.select(own, t * t * speed + along * along * doubt, doubt)
             aside = aside * ops.select(own, speed, one)
         sure = (nought < gap) & (ops.number(UNSURE * UNSURE) * doubt < aside) | (ops.number(0.5 * FAR) < gap)
@@ -322,30 +328,32 @@ class Pieces(Coordinates):
             code = ops.select(touches, ops.number(float(Status.GRAZING.code)), nought)
         return ops.select(sure, code, ops.number(float(Status.JOIN.code)))
 
-    def _near(self, ops: Any, farthest: Any, sides: Row) -> Iterator[Masks]:
+    def _near(self, ops: Backend[N, M], farthest: N, sides: Fields[N]) -> Iterator[M]:
         """Whether the line passes a corner so near that its side may be in doubt."""
         for side in sides:
             yield ops.negated(ops.number(8 * UNSURE) * farthest < modulus(side))
 
-    def _passes(self, flight: Flight, pieces: list[Piece], start: Any, t: Any, sides: Row) -> Iterator[Masks]:
+    def _passes(self, flight: Flight[N, M], pieces: list[Piece[N]], start: N, t: N, sides: Fields[N]) -> Iterator[M]:
         """Whether rounding hides on which side of a corner that may be passed the flight passes it."""
         for j in self.passed:
             yield passing(flight, pieces[j].start, sides[j], start, t)
 
-    def _slack_at(self, flight: Flight, pieces: list[Piece], where: Any) -> Any:
+    def _slack_at(self, flight: Flight[N, M], pieces: list[Piece[N]], where: N) -> N:
         """`_slack` of the dispersing arc on which a flight ends; negative on other pieces."""
         none, known = -flight.ops.number(1.0), zip(pieces, self.bulges, strict=True)
         slack = [self._slack(flight, pieces, piece) if bulges else none for piece, bulges in known]
         return chosen(flight.ops, where, slack)
 
-    def _gap(self, ops: Any, pieces: list[Piece], where: Any, u: Pair) -> Any:
+    def _gap(self, ops: Backend[N, M], pieces: list[Piece[N]], where: N, u: Pair[N]) -> N:
         """How far a landing is from the nearer end of its piece, in units of the velocity; negative beyond it."""
         far, gaps = ops.number(FAR), []
         if len(self.arcs) < len(self.kinds):
             low, high = self._pair(ops, where, [piece.middle for piece in pieces])
             gaps.append(-ops.maximum(low - u[0], u[0] - high))
         if self.arcs:
-            M, half = (self._pair(ops, where, column(pieces, i)) for i in (7, 8))
+            M, half = (
+                self._pair(ops, where, pairs) for pairs in ([x.middle for x in pieces], [x.half for x in pieces])
+            )
             gap = self._inside(ops, pieces[0]._replace(middle=M, half=half), u, False)
             if any(self.wide):
                 ahead = chosen_mask(ops, where, self.wide) & (ops.number(0.0) < plane.dot(M, u))
@@ -357,23 +365,25 @@ class Pieces(Coordinates):
             gaps[0] if len(gaps) == 1 else ops.select(chosen_mask(ops, where, [k == LINE for k in self.kinds]), *gaps)
         )
 
-    def leave(self, ops: Any, shape: Row, law: str, lam: Any, landing: Landing[Any]) -> list[Any]:
+    def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         return reflected(self, ops, law, lam, landing)
 
-    def slapped(self, ops: Any, shape: Row, position: Row) -> list[Any]:
+    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.tangent(ops, shape, position)
         return list(plane.normalised(ops, (-dy, dx)))
 
-    def departure(self, ops: Any, shape: Row, position: Row, exit: Row) -> Any:
+    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         return plane.cross(self.tangent(ops, shape, position), (exit[0], exit[1]))
 
-    def leaving_rate(self, ops: Any, shape: Row, landing: Landing[Any], leaving: Row) -> Any:
+    def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
         d = landing.vectors["d"]
         return plane.cross(d, (leaving[0], leaving[1])) if leaving else ops.sqrt(plane.dot(d, d))
 
-    def length(self, ops: Any, shape: Row, n0: Any, start: Row, end: Row, landing: Landing[Any]) -> Any:
+    def length(
+        self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
+    ) -> N:
         return landing.numbers["t"]
 
-    def bend(self, ops: Any, shape: Row, landing: Landing[Any]) -> Pair:
+    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         d = landing.vectors["d"]
         return -landing.numbers["D"], plane.dot(d, d)

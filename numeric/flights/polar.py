@@ -240,7 +240,7 @@ class Flight:
         """
         ops, family, v = self.ops, self.family, self.v
         r, slope, bent = family.bent(ops, *u, *self.shape)
-        if not family.refines or getattr(ops, "context", None) is not None:  # with more digits there is no need
+        if not family.refines or not ops.doubles:  # with more digits there is no need
             return u, plane.times((slope, r), u)
         doubles: Any = Doubles(ops)
         shape = [doubles.of(x) for x in self.shape]

@@ -62,14 +62,14 @@ class Spline(General):
 
     def _row(self, ops: Backend[N, M], which: N) -> list[N]:
         """The eight coefficients of a component."""
-        if getattr(ops, "context", None) is None:
+        if ops.doubles:
             return ops.look_up_row(self.rows, which)
         columns = zip(*self.programmed(ops), strict=True)
         return [ops.look_up(list(column), which) for column in columns]
 
     def programmed(self, ops: Backend[N, M]) -> list[list[N]]:
         """The coefficients of every component in some arithmetic; in floats they are constants."""
-        exact = getattr(ops, "context", None) is not None
+        exact = not ops.doubles
         if not exact:
             return [[ops.number(x) for x in row] for row in self.rows]
         return [program(ops) for _, program in self.boundary.ir.programs]
@@ -85,7 +85,7 @@ class Spline(General):
         flight = (component, theta), row, (x0, y0), v
         if self.convex:
             best = self._across(ops, *flight)
-        elif self.few and getattr(ops, "context", None) is None:
+        elif self.few and ops.doubles:
             best = self._first(ops, *flight)
         else:
             best = self._nearest(ops, *flight)
@@ -295,7 +295,7 @@ class Spline(General):
         """
         component, theta = start
         one, half, nought, far = (ops.number(x) for x in (1.0, 0.5, 0.0, FAR))
-        exact, each = getattr(ops, "context", None) is not None, nought * theta
+        exact, each = not ops.doubles, nought * theta
         size, end = (modulus(v[0]), modulus(v[1])), ops.number(float(len(self.tree)))
         best, sides = [far + each, component + each, theta], (nought, nought)
         if not exact:

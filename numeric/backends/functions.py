@@ -28,9 +28,8 @@ COS = (
     0.041666666666666664, -0.0013888888888887398, 2.480158729876569e-05,
     -2.7557317271729677e-07, 2.087614626837883e-09, -1.1382632423766107e-11,
 )  # fmt: skip
-TAN_EIGHTH = 0.41421356237309503  # tan(pi/8)
+TAN_EIGHTH, TWO_OVER_PI = 0.41421356237309503, 0.6366197723675814  # tan(pi/8), 2/pi
 HALF_PI, HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17  # their sum is pi/2 to 107 bits
-TWO_OVER_PI = 0.6366197723675814
 
 
 def horner(ops: Backend[N, M], coefficients: tuple[float, ...], x: N) -> N:
@@ -362,10 +361,7 @@ def polynomial_zero(
 class DoubleBackend(Backend[N, M], Protocol[N, M]):
     """What backends of float64 have in common: their elementary functions and zeros are those of this module."""
 
-    @property
-    def doubles(self) -> bool:
-        """Yes."""
-        return True
+    doubles: bool = True
 
     def angle(self, y: N, x: N) -> N:
         """`atan2(y, x)` for `x >= 0`."""

@@ -6,10 +6,12 @@ difference of the two divided by a small number, exactly where they almost agree
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Generic
 
 import numpy as np
 from numpy.typing import NDArray
+
+from numeric.backends.protocol import Backend, M, N, Pair
 
 Array = NDArray[np.float64]
 OUTWARDS = 2.0**-48  # relative error of an elementary function of NumPy, sixteen times over
@@ -18,7 +20,7 @@ OUTWARDS = 2.0**-48  # relative error of an elementary function of NumPy, sixtee
 class Interval:
     """Arrays of lower and upper bounds; infinite ones say nothing."""
 
-    def __init__(self, low: Any, high: Any) -> None:
+    def __init__(self, low: Array, high: Array) -> None:
         known = np.isfinite(low) & np.isfinite(high)
         self.low, self.high = np.where(known, low, -np.inf), np.where(known, high, np.inf)
 
@@ -121,7 +123,7 @@ def whole_turn(cells: int) -> tuple[Interval, Interval]:
     return Intervals().cos(angle), Intervals().sin(angle)
 
 
-class Secant:
+class Secant(Generic[N, M]):
     """The values `first` and `last` at the ends of a chord, and `slope = (last - first)/step` for a known `step`.
 
     >>> from numeric.backends.scalars import ArrayBackend
@@ -130,63 +132,63 @@ class Secant:
     8.0
     """
 
-    def __init__(self, ops: Any, first: Any, last: Any, slope: Any) -> None:
+    def __init__(self, ops: Backend[N, M], first: N, last: N, slope: N) -> None:
         self.ops, self.first, self.last, self.slope = ops, first, last, slope
 
-    def __add__(self, other: "Secant") -> "Secant":
+    def __add__(self, other: "Secant[N, M]") -> "Secant[N, M]":
         return Secant(self.ops, self.first + other.first, self.last + other.last, self.slope + other.slope)
 
-    def __sub__(self, other: "Secant") -> "Secant":
+    def __sub__(self, other: "Secant[N, M]") -> "Secant[N, M]":
         return Secant(self.ops, self.first - other.first, self.last - other.last, self.slope - other.slope)
 
-    def __mul__(self, other: "Secant") -> "Secant":
+    def __mul__(self, other: "Secant[N, M]") -> "Secant[N, M]":
         slope = self.slope * other.last + self.first * other.slope
         return Secant(self.ops, self.first * other.first, self.last * other.last, slope)
 
-    def __truediv__(self, other: "Secant") -> "Secant":
+    def __truediv__(self, other: "Secant[N, M]") -> "Secant[N, M]":
         first, last = self.first / other.first, self.last / other.last
         return Secant(self.ops, first, last, (self.slope - first * other.slope) / other.last)
 
-    def __neg__(self) -> "Secant":
+    def __neg__(self) -> "Secant[N, M]":
         return Secant(self.ops, -self.first, -self.last, -self.slope)
 
 
-class Secants:
+class Secants(Generic[N, M]):
     """Programs on both ends of a chord whose differences are divided by `step`; words by their addition theorems."""
 
-    def __init__(self, ops: Any, step: Any) -> None:
+    def __init__(self, ops: Backend[N, M], step: N) -> None:
         self.ops, self.step = ops, step
 
-    def constant(self, x: Any) -> Secant:
+    def constant(self, x: N) -> Secant[N, M]:
         """The same at both ends."""
         return Secant(self.ops, x, x, self.ops.number(0.0))
 
-    def q(self, p: int, n: int) -> Secant:
+    def q(self, p: int, n: int) -> Secant[N, M]:
         """The rational `p/n`."""
         return self.constant(self.ops.q(p, n))
 
     @property
-    def pi(self) -> Secant:
+    def pi(self) -> Secant[N, M]:
         """Pi."""
         return self.constant(self.ops.pi)
 
-    def _ratio(self, value: Any, x: Any) -> Any:
+    def _ratio(self, value: N, x: N) -> N:
         """`value/x` for a function that is 0 at 0 with slope 1 there."""
         flat = x == self.ops.number(0.0)
         one = self.ops.number(1.0)
         return self.ops.select(flat, one, value / self.ops.select(flat, one, x))
 
-    def _half(self, x: Secant) -> tuple[Any, Any]:
+    def _half(self, x: Secant[N, M]) -> Pair[N]:
         """Mean of both ends, and half their difference."""
         half = self.ops.number(0.5)
         return half * (x.first + x.last), half * self.step * x.slope
 
-    def sqrt(self, x: Secant) -> Secant:
+    def sqrt(self, x: Secant[N, M]) -> Secant[N, M]:
         """The square root."""
         first, last = self.ops.sqrt(x.first), self.ops.sqrt(x.last)
         return Secant(self.ops, first, last, x.slope / (first + last))
 
-    def root(self, x: Secant, n: int) -> Secant:
+    def root(self, x: Secant[N, M], n: int) -> Secant[N, M]:
         """The `n`-th root: the difference of `n`-th powers has `n` terms over that of their bases."""
         first, last = self.ops.root(x.first, n), self.ops.root(x.last, n)
         total, power = self.ops.number(1.0), self.ops.number(1.0)
@@ -195,51 +197,51 @@ class Secants:
             total = total * last + power
         return Secant(self.ops, first, last, x.slope / total)
 
-    def exp(self, x: Secant) -> Secant:
+    def exp(self, x: Secant[N, M]) -> Secant[N, M]:
         """The exponential."""
         middle, half = self._half(x)
         slope = self.ops.exp(middle) * self._ratio(self.ops.sinh(half), half) * x.slope
         return Secant(self.ops, self.ops.exp(x.first), self.ops.exp(x.last), slope)
 
-    def sinh(self, x: Secant) -> Secant:
+    def sinh(self, x: Secant[N, M]) -> Secant[N, M]:
         """The hyperbolic sine."""
         middle, half = self._half(x)
         slope = self.ops.cosh(middle) * self._ratio(self.ops.sinh(half), half) * x.slope
         return Secant(self.ops, self.ops.sinh(x.first), self.ops.sinh(x.last), slope)
 
-    def cosh(self, x: Secant) -> Secant:
+    def cosh(self, x: Secant[N, M]) -> Secant[N, M]:
         """The hyperbolic cosine."""
         middle, half = self._half(x)
         slope = self.ops.sinh(middle) * self._ratio(self.ops.sinh(half), half) * x.slope
         return Secant(self.ops, self.ops.cosh(x.first), self.ops.cosh(x.last), slope)
 
-    def tanh(self, x: Secant) -> Secant:
+    def tanh(self, x: Secant[N, M]) -> Secant[N, M]:
         """The hyperbolic tangent: `tanh b - tanh a = tanh(b - a)*(1 - tanh a*tanh b)`."""
         first, last = self.ops.tanh(x.first), self.ops.tanh(x.last)
         gap = self.step * x.slope
         factor = self.ops.number(1.0) - first * last
         return Secant(self.ops, first, last, self._ratio(self.ops.tanh(gap), gap) * factor * x.slope)
 
-    def sin(self, x: Secant) -> Secant:
+    def sin(self, x: Secant[N, M]) -> Secant[N, M]:
         """The sine."""
         middle, half = self._half(x)
         slope = self.ops.cos(middle) * self._ratio(self.ops.sin(half), half) * x.slope
         return Secant(self.ops, self.ops.sin(x.first), self.ops.sin(x.last), slope)
 
-    def cos(self, x: Secant) -> Secant:
+    def cos(self, x: Secant[N, M]) -> Secant[N, M]:
         """The cosine."""
         middle, half = self._half(x)
         slope = -(self.ops.sin(middle) * self._ratio(self.ops.sin(half), half) * x.slope)
         return Secant(self.ops, self.ops.cos(x.first), self.ops.cos(x.last), slope)
 
-    def log(self, x: Secant) -> Secant:
+    def log(self, x: Secant[N, M]) -> Secant[N, M]:
         """The logarithm: `h/tanh h`, which hardly feels the rounding of `h`, half the difference of both."""
         first, last = self.ops.log(x.first), self.ops.log(x.last)
         half = self.ops.number(0.5) * (last - first)
         mean = (x.first + x.last) * self._ratio(self.ops.tanh(half), half)
         return Secant(self.ops, first, last, self.ops.number(2.0) * x.slope / mean)
 
-    def atan(self, x: Secant) -> Secant:
+    def atan(self, x: Secant[N, M]) -> Secant[N, M]:
         """The arc tangent: `atan b - atan a = atan((b - a)/(1 + a*b))` where the divisor is positive."""
         ops, one = self.ops, self.ops.number(1.0)
         first, last, gap = ops.atan(x.first), ops.atan(x.last), self.step * x.slope

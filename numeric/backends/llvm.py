@@ -122,8 +122,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         self.masks, self.integers = f"<{width} x i1>", f"<{width} x i64>"
         self.lines: list[str] = []
         self.known: list[dict[str, str]] = [{}]
-        self.scopes, self.scope, self.opened = [0], 0, 0
-        self.block, self.count = "entry", 0
+        self.scopes, self.scope, self.opened, self.block, self.count = [0], 0, 0, "entry", 0
         self.called: set[str] = set()
         self.constants: dict[str, str] = {}  # names of arrays in memory
 
@@ -201,9 +200,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
 
     def same(self, x: LLVMVector, y: LLVMVector) -> bool:
         """Are two values known to be equal while the kernel is written?"""
-        if x is y or (x.value is not None and y.value is not None):
-            return x is y or x.value == y.value
-        return x.value is y.value and x.text == y.text
+        return x is y or (x.value == y.value if x.value is not None or y.value is not None else x.text == y.text)
 
     @property
     def pi(self) -> LLVMVector:
@@ -238,9 +235,8 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         """`x` where the mask holds, else `y`."""
         if x is y:
             return x
-        return LLVMVector(
-            self, self.emit(f"select {self.masks} {mask.text}, {self.type} {x.text}, {self.type} {y.text}")
-        )
+        text = f"select {self.masks} {mask.text}, {self.type} {x.text}, {self.type} {y.text}"
+        return LLVMVector(self, self.emit(text))
 
     def look_up(self, values: Sequence[LLVMVector], index: LLVMVector) -> LLVMVector:
         """The constant of that index, gathered from memory; the first one where there is none."""
@@ -256,8 +252,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
 
     def rounded(self, x: LLVMVector) -> LLVMVector:
         """The nearest integer, for `|x| < 2**51`."""
-        magic = self.number(1.5 * 2.0**52)
-        return (x + magic) - magic
+        return (x + (magic := self.number(1.5 * 2.0**52))) - magic
 
     def with_sign(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
         """`|x|` with the sign of `y`."""
@@ -358,8 +353,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     ) -> list[LLVMVector]:
         """Apply `body` to lanes for which `condition` holds, until it does for none; `steady`: leaving others alone."""
         head, inside, after = (self.fresh(stem)[1:] for stem in ("head", "inside", "after"))
-        starts, before = [x.text for x in state], self.block
-        names = [self.fresh() for _ in state]
+        starts, before, names = [x.text for x in state], self.block, [self.fresh() for _ in state]
         index, following = self.fresh("pass"), self.fresh("pass")
         self.lines.append(f"  br label %{head}")
         self.label(head)

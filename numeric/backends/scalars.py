@@ -165,17 +165,14 @@ class Context(Protocol[N]):
 class ScalarBackend(Backend[N, bool]):
     """Numbers of a multiprecision context. Masks are Python's bools."""
 
+    doubles = False
+
     def __init__(self, context: Context[N]) -> None:
         self.context = context
 
     def q(self, p: int, n: int) -> N:
         """`p/n` to the context's precision."""
         return self.context.mpf(p) / n  # type: ignore[operator,no-any-return]  # an integer of any size, exactly
-
-    @property
-    def doubles(self) -> bool:
-        """No: a context may have any number of digits."""
-        return False
 
     def number(self, x: float) -> N:
         """A double, exactly."""

@@ -9,7 +9,7 @@ and angles from the direction of `Q`, `tan(theta/2) = sqrt((1 + e)/(1 - e))*tan(
 """
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, Generic, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,14 +183,14 @@ class Ellipse(Harmonic):
         return [-dy, dx]
 
 
-class Focus(NamedTuple):
+class Focus(NamedTuple, Generic[N]):
     """The numbers of a conic about the origin, in some arithmetic."""
 
-    ahead: Pair[Any]  # the direction of `Q`, from which its angles are counted
-    p: Any
-    size: Any  # of `Q`
-    gap: Any  # `p - |Q|` to its last bit
-    ratio: Any  # `sqrt((1 + e)/(1 - e))`
+    ahead: Pair[N]  # the direction of `Q`, from which its angles are counted
+    p: N
+    size: N  # of `Q`
+    gap: N  # `p - |Q|` to its last bit
+    ratio: N  # `sqrt((1 + e)/(1 - e))`
 
 
 class Conic(Ellipse):
@@ -209,7 +209,7 @@ class Conic(Ellipse):
     def elliptic(self) -> float | None:
         return None
 
-    def focus(self, ops: Any) -> Focus:
+    def focus(self, ops: Backend[N, M]) -> Focus[N]:
         """The conic's numbers."""
         x, y, p, size, left = self.boundary.ir.program("focus")(
             ops, *(ops.number(float(a)) for a in self.boundary.shape)

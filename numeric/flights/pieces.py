@@ -240,7 +240,7 @@ class Pieces(Coordinates):
         return Piece(kind, origin, A, B, origin, D, radius, origin, origin)
 
     def _met(self, flight: Flight[N, M], piece: Piece[N], where: N) -> tuple[N, N, N, N, N]:
-        """Length, `p`, `q` and `v x d` of the arrival on a piece; and what is positive if the line meets the whole conic."""
+        """Length, `p`, `q` and `v x d` of the arrival on a piece; and what is positive if the line meets its conic."""
         ops, v = flight.ops, flight.v
         w = flight.z0[0] - piece.origin[0], flight.z0[1] - piece.origin[1]
         a, b, m = plane.cross(v, piece.A), plane.cross(v, piece.B), plane.cross(v, w)

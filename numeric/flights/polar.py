@@ -32,16 +32,17 @@ tangency, and is said to (`Status.GRAZING`).
 """
 
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Generic, NamedTuple, cast
 
 import numpy as np
 
 from numeric.backends import functions as plane
-from numeric.backends.doubled import WORDS, Doubles
+from numeric.backends.doubled import WORDS, Double, Doubles
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
-from numeric.backends.protocol import Backend, Fields, M, N, modulus
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing
 from numeric.flights.harmonic import Harmonic
+from symbolic.expressions.numbers import NumberSystem
 
 CELLS = 4096  # intervals that cover the turn
 STEEP = 2.0**10  # radius times W beyond which marches are long: then every piece is searched instead
@@ -105,10 +106,10 @@ class Polar(Harmonic):
         return landing
 
 
-class Flight:
+class Flight(Generic[N, M]):
     """A ray and the march along it, on some arithmetic."""
 
-    def __init__(self, family: Polar, ops: Any, shape: Any, u0: Any, v: Any) -> None:
+    def __init__(self, family: Polar, ops: Backend[N, M], shape: Fields[N], u0: Pair[N], v: Pair[N]) -> None:
         self.family, self.ops, self.shape, self.u0, self.v = family, ops, shape, u0, v
         self.r0, slope = family.radius(ops, *u0, *shape)
         sine, cosine = plane.exact_cross(ops, u0, v), plane.exact_dot(ops, u0, v)
@@ -117,7 +118,7 @@ class Flight:
         self.size = modulus(self.h)
         self.rate = slope * sine - self.r0 * cosine  # N0
 
-    def marched(self) -> list[Any]:
+    def marched(self) -> list[N]:
         """Where the march ends, as a unit vector; 1 where it does not; and the length of the last step, or more."""
         ops, family = self.ops, self.family
         one, nought = ops.number(1.0), ops.number(0.0)
@@ -131,17 +132,18 @@ class Flight:
         flag = ops.select(shallow, nought, one)
         state = ops.repeat(self._going, self._step, [*u, flag, modulus(s)], MOST)
 
-        def careful() -> list[Any]:
+        def careful() -> list[N]:
             start = [*state[:2], ops.select(shallow, one, state[2]), state[3]]
             return list(ops.repeat(self._going, self._careful, start, MOST))
 
         return list(ops.when(shallow, state, careful))
 
-    def _going(self, state: Any) -> Any:
+    def _going(self, state: list[N]) -> M:
         """Has the march not ended?"""
-        return self.ops.number(0.5) < state[2]
+        going: M = self.ops.number(0.5) < state[2]
+        return going
 
-    def _step(self, state: Any) -> list[Any]:
+    def _step(self, state: list[N]) -> list[N]:
         """A step of the march; the third number becomes 0 where it was the last."""
         ops, u = self.ops, (state[0], state[1])
         r, slope = self.family.radius(ops, *u, *self.shape)
@@ -150,7 +152,7 @@ class Flight:
         c, s, ends = self._stepped(u, r, slope, k, ops.number(FLOOR), ops.number(self.family.bounds.highest))
         return [*self._turned(u, c, s), ends, modulus(s)]
 
-    def _careful(self, state: Any) -> list[Any]:
+    def _careful(self, state: list[N]) -> list[N]:
         """The same for flights that begin along the wall, which may follow it from where it is almost straight.
 
         `K` is that of the divided equation, small to the last bit. A step is at most `GROWTH` times the one before,
@@ -173,7 +175,7 @@ class Flight:
         ends = ops.select(far, ops.number(1.0), ends)
         return [*self._turned(u, c, s), ends, ops.maximum(modulus(s), ops.number(2.0**-52))]
 
-    def _stepped(self, u: Any, r: Any, slope: Any, k: Any, floor: Any, highest: Any) -> tuple[Any, Any, Any]:
+    def _stepped(self, u: Pair[N], r: N, slope: N, k: N, floor: N, highest: N) -> tuple[N, N, N]:
         """Cosine and sine of the safe step where `w <= highest`, and 0 where the march ends with it."""
         ops, one, nought = self.ops, self.ops.number(1.0), self.ops.number(0.0)
         square = r * r
@@ -189,10 +191,10 @@ class Flight:
         ends = (k1 < nought) & (close | (k <= floor * square))
         return c, s, ops.select(ends, nought, one)
 
-    def _turned(self, u: Any, c: Any, s: Any) -> Any:
+    def _turned(self, u: Pair[N], c: N, s: N) -> Pair[N]:
         return plane.unit(self.ops, plane.times(u, (c, self.ops.times_sign(s, self.side))))
 
-    def _divided(self, u: Any) -> tuple[Any, Any, Any]:
+    def _divided(self, u: Pair[N]) -> tuple[N, N, N]:
         """`H`, `scale` and `weight` with `v x (z - z0) = H*scale/weight`, none of them small for want of digits.
 
         `u - u0 = tan(B)*i*(u + u0)` for half the angle `B` between them: up to a quarter of a turn differences are
@@ -212,15 +214,15 @@ class Flight:
         (r,) = self.family.alone(Secants(ops, step), *inputs, *constants)
         return self.r0 * plane.exact_cross(ops, v, f) + r.slope * plane.cross(v, u), scale, weight
 
-    def sharpened(self, u: Any, reach: Any) -> Any:
+    def sharpened(self, u: Pair[N], reach: N) -> Pair[N]:
         """The landing, from the end of the march: Newton's steps on the divided equation."""
         ops, one, two = self.ops, self.ops.number(1.0), self.ops.number(2.0)
 
-        def at(x: Any) -> Any:
+        def at(x: N) -> Pair[N]:
             s = two * x / (x * x + one)
             return self._turned(u, one - x * s, s)
 
-        def function(x: Any) -> tuple[Any, Any]:
+        def function(x: N) -> Pair[N]:
             here = at(x)
             value, scale, weight = self._divided(here)
             d = self.family.velocity(ops, *here, *self.shape)
@@ -232,7 +234,7 @@ class Flight:
         x = ops.zero(function, nought, -far, far, one, 1)
         return at(x)
 
-    def refined(self, u: Any, normal: bool) -> tuple[Any, Any]:
+    def refined(self, u: Pair[N], normal: bool) -> tuple[Pair[N], Pair[N]]:
         """The landing after one more step of Newton's method, whose residual has twice the digits; the velocity there.
 
         What is left is the rounding of the landing. The velocity is that of the landing before it is rounded, and its
@@ -242,12 +244,13 @@ class Flight:
         r, slope, bent = family.bent(ops, *u, *self.shape)
         if not family.refines or not ops.doubles:  # with more digits there is no need
             return u, plane.times((slope, r), u)
-        doubles: Any = Doubles(ops)
-        shape = [doubles.of(x) for x in self.shape]
-        (c0, s0), (c, s) = doubles.unit(self.u0), doubles.unit(u)
+        words = Doubles(ops)
+        doubles = cast(NumberSystem[Double[N, M]], words)  # the radius has no other words than these
+        shape = [words.of(x) for x in self.shape]
+        (c0, s0), (c, s) = words.unit(self.u0), words.unit(u)
         (start, slope0), (far, rise) = (family.radius(doubles, *at, *shape) for at in ((c0, s0), (c, s)))
         x, y = far * c - start * c0, far * s - start * s0
-        along = doubles.of(v[0]), doubles.of(v[1])
+        along = words.of(v[0]), words.of(v[1])
         if normal:
             along = -(slope0 * s0 + start * c0), slope0 * c0 - start * s0
             v = along[0].high, along[1].high

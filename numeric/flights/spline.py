@@ -11,7 +11,6 @@ and so is a landing on that piece. State: the component, the parameter `theta`, 
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -124,13 +123,13 @@ class Spline(General):
         x, y, *_ = evaluated(ops, other, at)
         return [plane.dot(v, (x - z0[0], y - z0[1])), where, at]
 
-    def _first(self, ops: Any, start: Pair[Any], own: list[Any], z0: Pair[Any], v: Pair[Any]) -> list[Any]:
+    def _first(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
         """The nearest landing: on the pieces whose box the flight may meet, the nearest box first."""
         far, (component, theta) = ops.number(FAR), start
         each = ops.number(0.0) * theta
         best, sides = self._own(ops, start, own, v, [far + each, component + each, theta])
 
-        def tried(state: list[Any]) -> list[Any]:
+        def tried(state: list[N]) -> list[N]:
             floor, *best = state
             one, two, third = self._ahead(ops, component, z0, v, floor)
             best = self._met(ops, one, component, sides, z0, v, best)
@@ -140,7 +139,9 @@ class Spline(General):
 
         return list(ops.repeat(lambda at: -at[0] < at[1], tried, [far + each, *best], len(self.boxes)))[1:]
 
-    def _own(self, ops: Any, start: Pair[Any], own: list[Any], v: Pair[Any], best: list[Any]) -> tuple[Any, Any]:
+    def _own(
+        self, ops: Backend[N, M], start: Pair[N], own: list[N], v: Pair[N], best: list[N]
+    ) -> tuple[list[N], Pair[N]]:
         """The nearest of `best` and the landings on the piece of departure, whose known zero is divided out.
 
         Also on which sides of the flight the two ends of this piece lie.
@@ -156,7 +157,7 @@ class Spline(General):
         middle = half * (low + high) * q[1] + (low * high * q[2] + q[0])
         lowest, highest = least(ops, first, least(ops, middle, last)), most(ops, first, most(ops, middle, last))
 
-        def solved() -> list[Any]:
+        def solved() -> list[N]:
             w = half * q[1]
             root = ops.sqrt(ops.maximum(plane.exact_cross(ops, (w, q[0]), (q[2], w)), nought))
             w = -(w + ops.times_sign(root, w))
@@ -178,7 +179,7 @@ class Spline(General):
         best = ops.when((lowest <= nought) & (nought <= highest), best, solved)
         return best, (low * first, high * last)
 
-    def _ahead(self, ops: Any, component: Any, z0: Pair[Any], v: Pair[Any], floor: Any) -> tuple[Any, Any, Any]:
+    def _ahead(self, ops: Backend[N, M], component: N, z0: Pair[N], v: Pair[N], floor: N) -> tuple[list[N], list[N], N]:
         """The nearest two pieces whose box the flight may meet, none nearer than `floor`, and how near the third is.
 
         A piece comes with minus a length before which it is not met, and with its number. There is one mask for each
@@ -205,15 +206,15 @@ class Spline(General):
             one = [most(ops, one[0], key), ops.select(first, number, one[1])]
         return one, two, third
 
-    def _side(self, ops: Any, corner: Sequence[Any], component: Any, ends: Pair[Any], v: Pair[Any], aside: Any) -> Any:
+    def _side(self, ops: Backend[N, M], corner: Fields[N], component: N, ends: Pair[N], v: Pair[N], aside: N) -> N:
         """How far a corner lies to the left of the flight; of the piece of departure this is known better."""
         x, y, before, after = corner
         side = v[0] * y + (aside - v[1] * x)
         return ops.select(component == before, ends[1], ops.select(component == after, ends[0], side))
 
     def _met(
-        self, ops: Any, piece: list[Any], component: Any, ends: Pair[Any], z0: Pair[Any], v: Pair[Any], best: list[Any]
-    ) -> list[Any]:
+        self, ops: Backend[N, M], piece: list[N], component: N, ends: Pair[N], z0: Pair[N], v: Pair[N], best: list[N]
+    ) -> list[N]:
         """The nearest of `best` and the landings on a piece that has no known zero."""
         key, number = piece
         nought, one, half = (ops.number(x) for x in (0.0, 1.0, 0.5))
@@ -226,10 +227,10 @@ class Spline(General):
         p[0] = plane.cross(v, (row[0] - z0[0], row[4] - z0[1]))
         third = (high - low) * ops.number(1 / 3)
 
-        def value(u: Any) -> Any:
+        def value(u: N) -> N:
             return ((p[3] * u + p[2]) * u + p[1]) * u + p[0]
 
-        def slope(u: Any) -> Any:
+        def slope(u: N) -> N:
             return (ops.number(3.0) * p[3] * u + ops.number(2.0) * p[2]) * u + p[1]
 
         first, last = value(low), value(high)
@@ -238,7 +239,7 @@ class Spline(General):
         guess, none = low - (high - low) * first / rise, nought * low
         begin = [rise, low, high, guess, none, none, ops.select(folded, nought, one + none)]
 
-        def parted() -> list[Any]:
+        def parted() -> list[N]:
             """Of a piece that turns back: the part that is met first, and where it turns back."""
             root = ops.sqrt(ops.maximum(p[2] * p[2] - ops.number(3.0) * p[3] * p[1], nought))
             w = -(p[2] + ops.times_sign(root, p[2]))
@@ -268,7 +269,7 @@ class Spline(General):
         )
         meets = reached & (half < meets)
 
-        def arrival(rise: Any, bottom: Any, top: Any, guess: Any, meets: Any, best: list[Any]) -> tuple[Any, Any]:
+        def arrival(rise: N, bottom: N, top: N, guess: N, meets: M, best: list[N]) -> tuple[N, list[N]]:
             sign = ops.times_sign(one, rise)
             at = ops.polynomial_zero([sign * x for x in p], guess, bottom, top, one, (0, 3), meets)
             x, y, *_ = evaluated(ops, row, at)
@@ -279,7 +280,7 @@ class Spline(General):
         t, best = arrival(rise, bottom, top, guess, meets, best)
         behind = meets & (t <= nought) & (half < modulus(back))
 
-        def other() -> list[Any]:
+        def other() -> list[N]:
             """The other part, where the first zero lies behind the departure."""
             left = back < nought
             ends = ops.select(left, low, m), ops.select(left, m, high)
@@ -287,7 +288,7 @@ class Spline(General):
 
         return list(ops.when(behind, best, other))
 
-    def _nearest(self, ops: Any, start: Pair[Any], own: list[Any], z0: Pair[Any], v: Pair[Any]) -> list[Any]:
+    def _nearest(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
         """The nearest landing: down the tree wherever the flight meets a box before the best so far.
 
         With more digits than doubles have, every zero on a piece is sought as on any table: nothing is shared there
@@ -301,7 +302,7 @@ class Spline(General):
         if not exact:
             best, sides = self._own(ops, start, own, v, best)
 
-        def walked(state: list[Any]) -> list[Any]:
+        def walked(state: list[N]) -> list[N]:
             """On to the next node, until a piece is reached or the tree is at its end."""
             node, _, best = state
             x, y, wide, high, skip, piece, *_ = ops.look_up_row(self.tree, node)
@@ -311,7 +312,7 @@ class Spline(General):
             meets = beside & (nought < away + reach) & (away - reach < best)
             return [ops.select(meets, node + one, skip), ops.select(meets, piece, -one), best]
 
-        def tried(state: list[Any]) -> list[Any]:
+        def tried(state: list[N]) -> list[N]:
             node, *best = state
             node, piece, _ = ops.repeat(
                 lambda at: (at[1] < -half) & (at[0] < end - half),
@@ -342,12 +343,12 @@ def evaluated(ops: Backend[N, M], row: Sequence[N], u: N) -> list[N]:
     return [value for pair in zip(*values, strict=True) for value in pair]
 
 
-def least(ops: Any, x: Any, y: Any) -> Any:
+def least(ops: Backend[N, M], x: N, y: N) -> N:
     """The smaller one."""
     return ops.select(x < y, x, y)
 
 
-def most(ops: Any, x: Any, y: Any) -> Any:
+def most(ops: Backend[N, M], x: N, y: N) -> N:
     """The larger one."""
     return ops.select(y < x, x, y)
 
@@ -357,7 +358,7 @@ def convex(boundary: Boundary) -> bool:
     if any((low, high) != (0.0, 1.0) for low, high in boundary.ends):
         return False
     theta = np.linspace(0.0, 1.0, 129)
-    rows: Any = [boundary.curve(np.full(theta.shape, i), theta) for i in range(len(boundary.ends))]
+    rows = [boundary.curve(np.full(theta.shape, i), theta) for i in range(len(boundary.ends))]
     size = max(np.max(np.abs(row[:2])) for row in rows)
     total = 0.0
     for row, after in zip(rows, [*rows[1:], rows[0]], strict=True):
@@ -367,7 +368,8 @@ def convex(boundary: Boundary) -> bool:
         if np.hypot(*(row[:2, -1] - after[:2, 0])) > SAME * size:
             return False  # a second curve begins
         angle = np.unwrap(np.arctan2(row[3], row[2]))
-        corner = np.arctan2(plane.cross(row[2:4, -1], after[2:4, 0]), plane.dot(row[2:4, -1], after[2:4, 0]))
+        u, v = (row[2, -1], row[3, -1]), (after[2, 0], after[3, 0])
+        corner = np.arctan2(plane.cross(u, v), plane.dot(u, v))
         if corner < -BEND:
             return False
         total += float(angle[-1] - angle[0] + corner)

@@ -73,8 +73,9 @@ def lower_law(law: Law, table: Callable[[], Table]) -> LawIR:
 
     known = (lengths(table()) if law.measured else None) or ()
     parts = () if any(length.has(sin, cos) for length in known) else tuple(map(line, known))
-    by_place = [law.phi.diff(place) for place in places]
-    return LawIR(str(law), program(law.phi), program(law.slope, *by_place), law.placed, law.measured, parts)
+    return LawIR(
+        str(law), program(law.phi), program(law.slope, *map(law.phi.diff, places)), law.placed, law.measured, parts
+    )
 
 
 def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any]) -> Table:
@@ -147,17 +148,31 @@ def _circular(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> 
     return builder.node("sin" if index else "cos", converted(builder, argument, nodes).number())
 
 
-def _program(symbols: list[Symbol], formula: Callable[[Any], list[Any]], *first: str) -> Program:
+class Nodes:
+    """Turns expressions into the nodes of one program; `inputs` are the nodes of what it is handed first."""
+
+    def __init__(self, builder: Builder, inputs: list[Node], known: dict[Symbol, Node]) -> None:
+        self.builder, self.inputs, self.known = builder, inputs, known
+
+    @property
+    def unit(self) -> tuple[Node, Node]:
+        """The first two inputs: cosine and sine of an angle."""
+        return self.inputs[0], self.inputs[1]
+
+    def harmonics(self, h: flight.Harmonics) -> flight.Harmonics:
+        """The vectors of a Fourier sum in nodes."""
+        return {k: tuple((self(x), self(y)) for x, y in vectors) for k, vectors in h.items()}  # type: ignore[misc]
+
+    def __call__(self, expression: Expr | int, more: dict[Symbol, Node] | None = None) -> Node:
+        return converted(self.builder, exact(expression), {**self.known, **more} if more else self.known)
+
+
+def _program(symbols: list[Symbol], formula: Callable[[Nodes], list[Node]], *first: str) -> Program:
     """The program whose outputs `formula` gives, when handed a converter of expressions."""
     builder = Builder(*first, *(symbol.name for symbol in symbols))
     nodes = dict(zip([theta] if first == ("theta",) else [], builder.nodes, strict=False))
     nodes |= dict(zip(symbols, builder.nodes[len(first) :], strict=True))
-
-    def convert(expression: Any, more: dict[Symbol, Node] | None = None) -> Node:
-        return converted(builder, exact(expression), {**nodes, **more} if more else nodes)
-
-    convert.inputs = builder.nodes[: len(first)]  # type: ignore[attr-defined]
-    return builder.program(*formula(convert))
+    return builder.program(*formula(Nodes(builder, builder.nodes[: len(first)], nodes)))
 
 
 def _part(component: Component, symbols: list[Symbol], ranges: Box) -> Part:
@@ -183,17 +198,15 @@ def _long_curve(component: Component, symbols: list[Symbol]) -> Program:
     c = flight.harmonics(component) if found is not None and highest(found) <= LONG else None
     if c is not None:
         once = flight.differentiated(c)
-        u = cos(theta), sin(theta)
+        sums = c, once, flight.differentiated(once)
 
-        def waved(nodes: Any) -> list[Any]:
-            at = nodes(u[0]), nodes(u[1])
-            known = [{k: tuple((nodes(x), nodes(y)) for x, y in v) for k, v in h.items()} for h in
-                     (c, once, flight.differentiated(once))]  # fmt: skip
-            return [value for h in known for value in flight.point_at(h, at)]  # type: ignore[arg-type]
+        def waved(nodes: Nodes) -> list[Node]:
+            u = nodes(cos(theta)), nodes(sin(theta))
+            return [x for h in sums for x in flight.point_at(nodes.harmonics(h), u)]
 
         return _program(symbols, waved, "theta")
 
-    def jets(nodes: Any) -> list[Any]:
+    def jets(nodes: Nodes) -> list[Node]:
         known: dict[Expr, Jet] = {}
         x, y = (_jet(expression, nodes, known) for expression in component.point)
         return [value for pair in zip(x, y, strict=True) for value in pair]
@@ -204,7 +217,7 @@ def _long_curve(component: Component, symbols: list[Symbol]) -> Program:
 Jet = tuple[Node, Node, Node]  # a value and its first two derivatives by theta
 
 
-def _jet(expression: Expr, nodes: Any, known: dict[Expr, Jet]) -> Jet:
+def _jet(expression: Expr, nodes: Nodes, known: dict[Expr, Jet]) -> Jet:
     """The value of an expression and its derivatives by `theta`, by the chain rule on each operation."""
     if expression in known:
         return known[expression]
@@ -227,10 +240,9 @@ def _jet(expression: Expr, nodes: Any, known: dict[Expr, Jet]) -> Jet:
     return found
 
 
-def _chained(outer: Any, inner: list[Jet], nodes: Any) -> Jet:
+def _chained(outer: Callable[..., Expr], inner: list[Jet], nodes: Nodes) -> Jet:
     """The jet of a function of one or two expressions, from theirs."""
-    letters = [Dummy(real=True) for _ in inner]
-    whole = outer(*letters)
+    whole = outer(*(letters := [Dummy(real=True) for _ in inner]))
     known = {letter: jet[0] for letter, jet in zip(letters, inner, strict=True)}
     value = nodes(whole, known)
     first, second = nodes(0), nodes(0)
@@ -263,34 +275,25 @@ def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     if not whole or any(highest(waves(x) or {}) > DEGREE for x in table.components[0].point):
         return {}
     h = flight.harmonics(table.components[0])
-    if h is None or max(h) > DEGREE:
-        return {}
-    return _harmonic(h, symbols)
+    return {} if h is None or max(h) > DEGREE else _harmonic(h, symbols)
 
 
 def _harmonic(h: flight.Harmonics, symbols: list[Symbol]) -> dict[str, Program]:
     """The programs of a finite Fourier sum."""
     degree = max(h)
 
-    def in_nodes(nodes: Any, harmonics: flight.Harmonics) -> flight.Harmonics:
-        return {k: tuple((nodes(x), nodes(y)) for x, y in vectors) for k, vectors in harmonics.items()}  # type: ignore[misc]
-
     def at_point(harmonics: flight.Harmonics) -> Program:
-        return _program(
-            symbols, lambda nodes: list(flight.point_at(in_nodes(nodes, harmonics), tuple(nodes.inputs))), "c", "s"
-        )
+        return _program(symbols, lambda nodes: list(flight.point_at(nodes.harmonics(harmonics), nodes.unit)), "c", "s")
 
     once = flight.differentiated(h)
     programs = {"point": at_point(h), "velocity": at_point(once), "acceleration": at_point(flight.differentiated(once))}
     if degree == 1:
-        programs["support"] = _program(
-            symbols, lambda nodes: list(flight.support(in_nodes(nodes, h), 1, tuple(nodes.inputs))), "ex", "ey"
-        )
-        return programs
+        support = _program(symbols, lambda nodes: list(flight.support(nodes.harmonics(h), 1, nodes.unit)), "ex", "ey")
+        return programs | {"support": support}
 
-    def chord(nodes: Any) -> list[Any]:
+    def chord(nodes: Nodes) -> list[Node]:
         ex, ey, bx, by = nodes.inputs
-        ahead = {k: flight.seen_ahead(k, *vectors, (ex, ey)) for k, vectors in in_nodes(nodes, h).items() if k}
+        ahead = {k: flight.seen_ahead(k, *vectors, (ex, ey)) for k, vectors in nodes.harmonics(h).items() if k}
         return flight.chord_polynomial(ahead, flight.ONE, (bx, by))
 
     programs["chord"] = _program(symbols, chord, "ex", "ey", "bx", "by")
@@ -314,21 +317,20 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     None where `theta` has a place outside sines and cosines of its whole multiples.
     """
     whole = table.components[0]
-    x, rho = whole.point[0], whole.radius
-    if rho is None or table.components[1:] or whole.end - whole.start != 2 * pi or size(x) > LONG or levels(x) > DEEP:
+    x, rho, turn = whole.point[0], whole.radius, whole.end - whole.start
+    if rho is None or table.components[1:] or turn != 2 * pi or size(x) > LONG or levels(x) > DEEP:
         return {}
     values = [rho.diff(theta, n) if n else rho for n in range(4)]
-    wanted = set().union(*(value.atoms(cos, sin) for value in values))
-    known = {wave: Dummy(real=True) for wave in wanted if _is_wave(wave)}
+    known = {wave: Dummy(real=True) for value in values for wave in value.atoms(cos, sin) if _is_wave(wave)}
     if any(value.xreplace(known).has(theta) for value in values):
         return {}
 
-    def radius(nodes: Any) -> list[Any]:
+    def radius(nodes: Nodes) -> list[Node]:
         waves = {}
         for wave in sorted(known, key=str):
-            multiple = int(wave.args[0] / theta)
-            value = flight.powers(tuple(nodes.inputs), abs(multiple))[abs(multiple)][isinstance(wave, sin)]
-            waves[wave] = -value if isinstance(wave, sin) and multiple < 0 else value
+            times = int(wave.args[0] / theta)
+            value = flight.powers(nodes.unit, abs(times))[abs(times)][isinstance(wave, sin)]
+            waves[wave] = -value if isinstance(wave, sin) and times < 0 else value
         return [nodes(value, waves) for value in values]
 
     return {"radius": _program(symbols, radius, "c", "s")}
@@ -354,7 +356,7 @@ def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     return {f"{kind} {index}": program(numbers) for index, (kind, numbers) in enumerate(known)}
 
 
-def _polynomial_curve(nodes: Any, known: list[list[Expr]]) -> list[Any]:
+def _polynomial_curve(nodes: Nodes, known: list[list[Expr]]) -> list[Node]:
     """Point, velocity and acceleration of polynomials, by Horner's rule."""
     found = []
     for _ in range(3):

@@ -76,7 +76,7 @@ class Hit(NamedTuple):
     size: Any  # sum of the moduli of the numbers from which the two ends are added up
 
 
-def pieces(family: Pieces, shape: Any) -> list[Piece]:
+def pieces(family: Pieces, shape: Any) -> list[Piece[Any]]:
     """The numbers of every piece in 80 bits, nothing looked up."""
     ops: Any = Wide()
     wide = [WIDE(float(x)) for x in shape]
@@ -86,7 +86,7 @@ def pieces(family: Pieces, shape: Any) -> list[Piece]:
     ]
 
 
-def centred(piece: Piece) -> Piece:
+def centred(piece: Piece[Any]) -> Piece[Any]:
     """The same piece from the centre of its ellipse, where it is an arc about a focus."""
     if piece.kind != FOCAL:
         return piece
@@ -94,7 +94,7 @@ def centred(piece: Piece) -> Piece:
     return piece._replace(kind=ELLIPSE, origin=(-e * piece.A[0], -e * piece.A[1]))
 
 
-def placed(known: list[Piece], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
+def placed(known: list[Piece[Any]], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
     """Point, unit direction and `size` of the states that the fields of particles say."""
     at, p, q = own[0].astype(int), own[1].astype(WIDE), own[2].astype(WIDE)
     line = np.array([kind == LINE for kind in family.kinds])[at]
@@ -146,7 +146,7 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
     return Hit(best, where, x, y, aside.astype(float), straight.astype(float), (size + weight).astype(float))
 
 
-def _added_up(piece: Piece, point: Any) -> Any:
+def _added_up(piece: Piece[Any], point: Any) -> Any:
     """The moduli of the numbers from which a piece adds up a point of its own: its origin, and the way from there."""
     return sum(abs(piece.origin[i]) + abs(point[i] - piece.origin[i]) for i in (0, 1))
 
@@ -155,7 +155,7 @@ def _cross(v: Any, w: Any) -> Any:
     return v[0] * w[1] - v[1] * w[0]
 
 
-def _met(piece: Piece, closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, Any, Any, Any, Any]]:
+def _met(piece: Piece[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
     """Where a line meets a piece's curve: length, `p`, `q`, cosine of the incidence, and whether it is on the piece."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
@@ -175,7 +175,7 @@ def _met(piece: Piece, closed: bool, z: Any, v: Any, own: Any, depart: Any) -> l
     return found
 
 
-def _within(piece: Piece, closed: bool, p: Any, q: Any) -> Any:
+def _within(piece: Piece[Any], closed: bool, p: Any, q: Any) -> Any:
     """Is `(p, q)` on the arc? By the angle from its middle."""
     if closed:
         return np.isfinite(p)
@@ -184,7 +184,7 @@ def _within(piece: Piece, closed: bool, p: Any, q: Any) -> Any:
     return np.abs(np.arctan2(s, c)) <= np.arctan2(piece.half[0], piece.half[1])
 
 
-def _tangent(piece: Piece, closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
+def _tangent(piece: Piece[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
     """How far ahead, and how far aside, the tangent of a piece along the line is; infinite where there is none."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
@@ -204,7 +204,7 @@ def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
     """Particles by what makes their flights hard, about `count` of each kind that the table has."""
     rng, family = np.random.default_rng(seed), map.family
     assert isinstance(family, Pieces)
-    known = family.pieces(map.states.ops, map.shape)
+    known = family.known
     starts = phase_starts(map, count, seed=seed)
     where, at = starts.component, starts.theta
     frame = map.states.frame(where, at)

@@ -7,7 +7,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test quick browser check-all formal lint docs dist bench mutation torture clean
+.PHONY: verify test quick browser check-all formal lint docs dist letter bench mutation torture clean
 .DELETE_ON_ERROR:
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
@@ -54,7 +54,13 @@ dist: $(VENV)/dist.stamp
 	$(BIN)/python -m build --outdir dist .
 	$(PYTHON) -m venv --clear dist/try
 	dist/try/bin/python -m pip install --quiet dist/*.whl
-	cd dist/try && bin/pinball locate lambda-c --digits 20 && bin/pinball verify --only 'circle.*' --report report
+	cd dist/try && bin/pinball locate lambda-c --digits 20 && bin/pinball verify --only 'ellipse.*' --report report
+
+# The letter to the authors, of two pages at most, and the tables of a report, where LaTeX is.
+REPORT := report
+letter:
+	cd $(REPORT) && pdflatex -halt-on-error letter.tex | grep -E 'letter.pdf .[12] pages?,' && pdflatex -halt-on-error -jobname tables \
+	  '\documentclass{article}\usepackage{booktabs,longtable}\begin{document}\input{report}\end{document}' | grep 'tables.pdf '
 
 # What moved since the dossier was measured; a machine that is busy moves something, and that is no failure.
 bench: $(VENV)/bench.stamp

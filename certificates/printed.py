@@ -9,6 +9,7 @@ inside of reports; `make check-all` proves the files of this folder as well. Exi
 import json
 import re
 import sys
+import tomllib
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -21,55 +22,16 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 REPORT = ROOT / "report" / "report.json"
 SECOND = r"`([\w.-]+\.json|-\d)`"  # in the table of docs/trust.md: `doubling-3.json`, `-4`
-DOUBLINGS = tuple(f"doubling-{n}" for n in range(3, 7))
-CLAIMS: dict[str, tuple[str, ...]] = {  # of the paper's report: what says `certified`, or has such a value
-    "cardioid.contraction_implies": ("cardioid-period-9",),
-    "cuspless.coexistence": ("lambda-c",),
-    "cuspless.no_stable_period4": ("lambda-c",),
-    "cuspless.unstable_period4": ("lambda-c",),
-    "cuspless.corner_orbit": ("lambda-star",),
-    "cuspless.lambda_star": ("lambda-star",),
-    "cuspless.lambda_star_body": ("lambda-star",),
-    "cuspless.lambda_star_caption": ("lambda-star",),
-    "cuspless.phi_star": ("phi-star",),
-    "cuspless.lambda_c": ("lambda-c",),
-    "cuspless.lambda_c_caption": ("lambda-c",),
-    "cuspless.lambda_c_digits": ("lambda-c",),
-    "egg.saddle_node": ("saddle-node",),
-    "egg.period3_end_caption": ("saddle-node",),
-    "egg.period3_lambda_c": ("saddle-node",),
-    "egg.no_period3_caption": ("saddle-node",),
-    **{f"egg.doubling.{n}": (f"doubling-{n}",) for n in range(3, 7)},
-    "egg.cascade": DOUBLINGS,
-    "egg.figure_attractors": ("doubling-4",),
-    "egg.exponent_period3": ("egg-period-3",),
-    "egg.period4_doubles": ("symmetry-breaking", "doubling-3"),
-    "egg.negative_exponents": ("doubling-3",),
-    "egg.tolerance_sensitive": ("doubling-3",),
-    "egg.noise": ("beside-12", "beside-24", "beside-8", "beside-16"),
-}
-WITHOUT: dict[str, str] = {  # and why
-    "ellipse.lambda_minus_5": "a closed form, by algebra",
-    "egg.alpha_tilde_0": "a closed form, by algebra",
-    "egg.alpha_tilde_1": "a closed form, by algebra",
-    "cardioid.slap_expanding": "a minimum over a set, by a cover in balls",
-    "cardioid.slap_expanding_caption": "a minimum over a set, by a cover in balls",
-    "cardioid.slap_second_derivative": "a minimum over a set, by a cover in balls",
-}
+LISTED = tomllib.loads((ROOT / "verification/paper/claims/focusing/certificates.toml").read_text(encoding="utf-8"))
+CLAIMS: dict[str, list[str]] = LISTED["files"]  # of the paper's report: what says `certified`, or has such a value
+WITHOUT: dict[str, str] = LISTED["without"]  # and why
+ALSO: dict[str, str] = LISTED["partly"]  # parts of a sentence that have none here
 TOO_LONG = {  # cycles that the second reader does not follow: `pinball check` proves what the report has of them
     "0.733045076874652845644": 48,
     "0.733048334966163011932": 96,
     "0.733049033237568648957": 192,
 }
 FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enough digits for the second reader
-ALSO: dict[str, str] = {  # parts of a sentence that have none here; `pinball locate ... --certificate FILE` writes one
-    "egg.cascade": "doublings 7 and 8: cycles of 64 and 128 bounces take the second reader too long",
-    "egg.exponent_period32": "exponents of cycles of 32 bounces, at contractions with no name",
-    "egg.isolated_resolution": "doublings of period 12 at alpha = 0.0795",
-    "egg.representative": "pitchforks and doublings at alpha = 0.075 and 0.09",
-    "map.cascades_of_different_periods": "doublings of periods 9 and 18",
-    "egg.isolated_regions": "doublings of periods 48, 8, 16 and 32, at the end of cascades",
-}
 
 
 def value(given: dict[str, Any]) -> Fraction:

@@ -3,7 +3,7 @@
 from . import fields
 from .fields import attractors_of, basins, bifurcation, egg, parameter_space
 from .orbits import written
-from .run import UnfinishedError, on_threads
+from .run import UnfinishedError, connected, on_threads
 from .store import Memory
 from .sweep import Array, Axis, Field, Measured, Part, Sweep, cores, floor_of, map_of, measured, text_of, versions
 
@@ -19,6 +19,7 @@ __all__ = [
     "attractors_of",
     "basins",
     "bifurcation",
+    "connected",
     "cores",
     "egg",
     "fields",

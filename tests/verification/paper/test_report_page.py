@@ -1,5 +1,6 @@
 """The HTML and LaTeX forms of the report: whole, faithful, self-contained."""
 
+import base64
 import re
 import tomllib
 from dataclasses import replace
@@ -139,6 +140,7 @@ def test_the_entry_of_a_matrix_that_differs_is_marked_and_no_other():
         ("has no root for a in (1, 1/10]", r"\left(1, \frac{1}{10}\right]"),
         ("(T0^2)' = 49/324 at both", r"\left(T_{0}^{2}\right)' = \frac{49}{324}"),
         ("below 9e-04*a", r"9 \cdot 10^{-4} \, a"),
+        ("a = 2 (trace -2)", "a = 2"),
     ],
 )
 def test_a_formula_within_a_sentence_is_set_as_one(text, latex):
@@ -153,10 +155,39 @@ def test_the_letter_has_each_substantial_erratum_and_is_balanced():
     text = letter(results(), paper())
     grave = graded(results(), paper())["substantial"]
 
-    assert text.count(r"\item ") == len(grave) > 0
+    assert len(grave) > 0
+    assert text.count(r"\item {[") == text.count(r"\item ") == sum(map(len, graded(results(), paper()).values()))
+    assert text.count(" -- ") >= len(grave)  # between what is printed and what is true
     assert text.count("{") == text.count("}")
     assert text.count("$") % 2 == 0
     assert paper().title in text
+
+
+@pytest.mark.parametrize(
+    ("typed", "latex"),
+    [
+        ("it reads lambda*(lambda^2 + ...) for it", r"$\lambda$$\,$($\lambda^{2}$ + $\dots$)"),
+        ("at lambda* and -0.5", r"$\lambda^*$ and $-$0.5"),
+        ("should read 'near the cusp'", "read `near the cusp'"),
+        ("a period-2 orbit", "period-2 orbit"),
+    ],
+)
+def test_words_of_the_letter_are_set_as_they_are_meant(typed, latex):
+    claim = next(result for result in results() if result.verdict is Verdict.CORRECTED)
+
+    assert latex in letter([replace(claim, erratum=typed)], paper())
+
+
+def test_a_certificate_is_offered_once_as_it_is_and_linked_from_each_claim_that_rests_on_it():
+    one, two = (replace(results()[0], id=name) for name in ("egg.doubling.3", "egg.negative_exponents"))
+    text = page([one, two, results()[1]], {"python": "3"})
+    (held,) = re.findall(r'download="doubling-3.json" href="data:application/json;base64,([^"]*)"', text)
+    (path,) = paper().certificates()[one.id]
+
+    assert base64.b64decode(held) == path.read_bytes()
+    assert text.count('<a href="#certificate-doubling-3">') == 2
+    assert "<code>pinball check doubling-3.json</code>" in text
+    assert 'id="certificates"' not in html()
 
 
 def test_two_runs_differ_in_nothing():

@@ -36,8 +36,8 @@ class Paper:
     """What a folder says of a paper: where it was printed, its sections in order, its claims in the order given.
 
     A section may name a source of its own. `judges` are modules, `figures` is one with a function `pictures`, `seconds`
-    a record of what judging takes, `unsettled` the reasons why claims are not settled; all are paths, empty where the
-    folder has none.
+    a record of what judging takes, `unsettled` the reasons why claims are not settled, `certified` which certificates
+    hold what claims say; all are paths, empty where the folder has none.
     """
 
     folder: Path
@@ -51,6 +51,7 @@ class Paper:
     figures: str = ""
     seconds: str = ""
     unsettled: str = ""
+    certified: str = ""
 
     @property
     def about(self) -> dict[str, object]:
@@ -66,8 +67,23 @@ class Paper:
         """Every sentence of the paper, in its order, as listed."""
         return [Sentence.from_dict(entry) for path in self.sentences for entry in _toml(path)["sentence"]]
 
+    def certificates(self) -> dict[str, tuple[Path, ...]]:
+        """The certificates that hold what a claim says, by its id; those whose files are there.
 
-NAMED = {"title": str, "citation": str, "figures": str, "seconds": str, "unsettled": str}
+        >>> [path.name for path in paper().certificates()["egg.doubling.3"]]
+        ['doubling-3.json']
+        """
+        if not self.certified:
+            return {}
+        listed = _toml(Path(self.certified))
+        folders = [Path(self.certified).parent / name for name in listed["folders"]]
+        home = next((path for path in folders if path.is_dir()), self.folder)
+        files = {name: tuple(home / f"{each}.json" for each in known) for name, known in listed["files"].items()}
+        return {name: paths for name, paths in files.items() if all(path.is_file() for path in paths)}
+
+
+BESIDE = ("figures", "seconds", "unsettled", "certified")
+NAMED = dict.fromkeys(("title", "citation", *BESIDE), str)
 LISTED = ("authors", "letters", "claims", "sentences", "judges")
 ENTRY = {"id": str, "section": str, "quote": str, "printed": (str, list), "kind": str, "over": dict, "base": str}
 
@@ -88,7 +104,7 @@ def read(folder: Path) -> Paper:
     twice = [name for name, number in Counter(claim.id for claim in claims).items() if number > 1]
     if twice or not claims:
         raise ValueError(f"{path}: {f'two claims have the id {twice[0]!r}' if twice else 'there is no [[claim]]'}")
-    beside = {name: str(folder / whole[name]) if name in whole else "" for name in ("figures", "seconds", "unsettled")}
+    beside = {name: str(folder / whole[name]) if name in whole else "" for name in BESIDE}
     judges, sentences = ([folder / name for name in lists[key]] for key in ("judges", "sentences"))
     return Paper(
         folder,

@@ -163,13 +163,14 @@ def letter(results: Sequence[Result], about: Paper) -> str:
     """A letter in LaTeX to the authors: the substantial errata with what is printed, the others in a line each."""
     by_grade = graded(results, about)
     items = [
-        rf"\item {_where(each)} ``{_quoted(each.claims[0].quote)}'' {_set(each.text)}"
+        rf"\item {_where(each)} ``{_quoted(each.claims[0].quote)}'' -- {_set(each.text)}"
         for each in by_grade["substantial"]
     ]
+    lines = {name: [rf"\item {_where(each)} {_set(each.text)}" for each in by_grade[name]] for name in by_grade}
     others = [
-        rf"\paragraph{{{title}}} " + " ".join(f"{_where(each)} {_set(each.text)}" for each in by_grade[name])
+        "\n".join([rf"\paragraph{{{title}}}", r"\begin{itemize}", *lines[name], r"\end{itemize}"])
         for name, title in (("misprint", "Misprints."), ("range", "Ends of ranges."))
-        if by_grade[name]
+        if lines[name]
     ]
     counted = f"{len(results)} sentences, {sum(map(len, by_grade.values()))} corrections"
     listed = [r"\begin{enumerate}", *items, r"\end{enumerate}"] if items else []
@@ -183,6 +184,7 @@ def letter(results: Sequence[Result], about: Paper) -> str:
 
 LETTER = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[T1]{fontenc}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \usepackage{amsmath}
 \usepackage[margin=16mm]{geometry}
 \usepackage{enumitem}
@@ -194,7 +196,6 @@ LETTER = r"""\documentclass[10pt,a4paper]{article}
 \providecommand{\nn}{\mathbf{n}}
 \providecommand{\vv}{\mathbf{v}}
 \begin{document}
-\small
 Dear authors,
 
 we derived anew each sentence of \emph{TITLE} that can be judged (COUNTED). Most of it is true as printed.
@@ -212,7 +213,7 @@ QUOTED = 190  # characters of a quotation
 
 def _where(erratum: Erratum) -> str:
     sections = dict.fromkeys(place(claim).removeprefix("Section ").split(" ")[0] for claim in erratum.claims)
-    return f"[{escaped(', '.join(sections))}]"
+    return f"{{[{escaped(', '.join(sections))}]}}"  # in braces: it is no label of an item
 
 
 def _quoted(quote: str) -> str:
@@ -240,15 +241,17 @@ def _set(text: str) -> str:
 
 
 def _typed(text: str) -> str:
-    """Words for LaTeX: letters of the paper and signs as mathematics."""
-    parts = LETTER_OR_SIGN.split(text)
+    """Words for LaTeX: letters of the paper and signs as mathematics, opening quotation marks as such."""
+    parts = LETTER_OR_SIGN.split(re.sub(r"(?<![\w)])'(?=\w)", "`", text))
     return "".join(_symbol(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
 
-TYPED = {"<=": r"\le", ">=": r"\ge", "+-": r"\pm", "->": r"\to", "oo": r"\infty"}
+TYPED = {"<=": r"\le", ">=": r"\ge", "+-": r"\pm", "->": r"\to", "oo": r"\infty", "-": "-", "*": r"\,"}
+TYPED |= {"...": r"\dots", "... .": r"\dots."}
 STEMS = "alpha|theta|kappa|lambda|delta|eta|phi|pi|mu|nu|lam"
 LETTER_OR_SIGN = re.compile(
-    rf"((?<!\w)(?<!\w-)(?:{STEMS})(?:_(?:\w|[+-])|\*)?(?!\w)|(?<!\w)[A-Za-z]_\w(?!\w)|<=|>=|\+-|->|(?<!\w)oo(?!\w))"
+    rf"((?<!\w)(?<!\w-)(?:{STEMS})(?:_(?:\w|[+-])|\*(?!\())?(?!\w)|(?<!\w)[A-Za-z]_\w(?!\w)|<=|>=|\+-|->|\.\.\.(?: \.)?"
+    r"|(?<!\w)oo(?!\w)|(?<![\w)-])-(?=[\w.])|(?<=\w)\*(?=\())"
 )
 
 

@@ -71,6 +71,7 @@ TOKEN = re.compile(
     r"|(?P<mark>[()\[\]|]'?)|(?P<comma>, )"
 )
 WORTH = re.compile(r"[\w)\]|']\s*(?:\*\*|[*/^<>=]|!=|[-+]\s|[-+](?=[\w(]))|\w\(|\|.")
+APPOSED = re.compile(r"\w -\d")  # a word or letter and a negative number, as in "trace -2": no difference
 PAIR = re.compile(r"([\[(])((?:[^\[\](),;:]|\([^()]*\))+), ((?:[^\[\](),;:]|\([^()]*\))+)([\])])")
 AN_ELEMENT = re.compile(rf"\b({NAME}) in (?=[\[(])")
 LOW = re.compile(r"\\left\(((?:[^()\\^]|\\(?!frac|sqrt|left|right|begin)[a-z,;]+)*)\\right\)")  # need not stretch
@@ -191,6 +192,7 @@ def _set(piece: str, text: str, start: int) -> str | None:
         piece != piece.strip()
         or piece.startswith("- ")
         or not WORTH.search(piece)
+        or APPOSED.search(piece)
         or (start and (text[start - 1].isalnum() or text[start - 1] in "\\_^*/"))
     ):
         return None

@@ -109,6 +109,7 @@ def page(
         place=place,
         sections=[(name, claims, counts(claims)) for name, claims in sections],
         beside=beside,
+        certificates=_certificates(results, about),
         home={claim.id: claim.home for claim in about.claims if not claim.home.endswith(".py")},
         together=_together(results, about),
         made=", ".join(f"{name} {number}" for name, number in versions.items()),
@@ -120,6 +121,30 @@ def page(
 
 def _text(name: str) -> str:
     return (files("verification.paper.report") / name).read_text(encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """A certificate that claims rest on: its file, what it states, and its content as an address."""
+
+    name: str
+    statement: str
+    address: str
+    claims: tuple[str, ...]
+
+
+def _certificates(results: "Sequence[Result]", about: "Paper") -> list[Certificate]:
+    """Those of the claims judged, each once, in the order of the paper."""
+    judged = {result.id for result in results}
+    resting: dict[Path, list[str]] = {}
+    for claim, paths in about.certificates().items():
+        for path in paths if claim in judged else ():
+            resting.setdefault(path, []).append(claim)
+    contents = {path: path.read_bytes() for path in resting}
+    return [
+        Certificate(path.stem, json.loads(text)["statement"], address("application/json", text), tuple(resting[path]))
+        for path, text in contents.items()
+    ]
 
 
 def _together(results: "Sequence[Result]", about: "Paper") -> dict[str, tuple[int, float]]:

@@ -5,12 +5,46 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from flint import arb, arb_series
-from sympy import Rational, Symbol, atan, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh
+from flint import acb, arb, arb_series, fmpq
+from sympy import (
+    Abs,
+    CRootOf,
+    I,
+    Integer,
+    Rational,
+    Symbol,
+    acos,
+    asin,
+    atan,
+    cos,
+    cosh,
+    exp,
+    log,
+    pi,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 
 from symbolic.expressions.text import kernel, load
-from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, enclose, multiprecision, working
-from verification.arithmetic.series import series, taylor
+from verification.arithmetic.balls import (
+    ARRAYS,
+    FLOAT64,
+    as_ball,
+    balls,
+    between,
+    bits_of,
+    decimal,
+    enclose,
+    halves,
+    joined,
+    multiprecision,
+    real_ball,
+    working,
+)
+from verification.arithmetic.series import Expansion, Jet, expanded, jets, series, taylor
 
 x = Symbol("x", positive=True)
 WORDS = [exp(x), log(x), sqrt(x), sin(x), cos(x), tan(x), atan(x), sinh(x), cosh(x), tanh(x)]
@@ -58,3 +92,126 @@ def test_a_table_of_any_analytic_formula_flies_to_the_digits_of_its_balls(formul
     assert ball.x.rad() < 1e-25
     assert abs(float(ball.x) - step.x) <= 8 * 2.0**-52
     assert abs(float(ball.phi) - step.phi) <= 8 * 2.0**-52
+
+
+@pytest.mark.parametrize("expression", [*WORDS, x**2 / (1 + x) - 3 / x, (x - 2) * (1 - x) / 7], ids=str)
+def test_a_jet_has_the_taylor_coefficients_that_differentiation_gives(expression):
+    """Five coefficients of `f(g(e))`, `g(e) = 7/5 + e/2 - e**2/3 + 2*e**3 - e**4`, from SymPy's derivatives of both."""
+    e = Symbol("e")
+    inner = [Rational(7, 5), Rational(1, 2), Rational(-1, 3), Rational(2), Rational(-1)]
+    outer = [expression.diff(x, k).subs(x, inner[0]) / math.factorial(k) for k in range(5)]
+    away = sum(c * e**k for k, c in enumerate(inner) if k)
+    whole = sum(c * away**k for k, c in enumerate(outer)).expand()
+    with working(160):
+        ball = balls(160)
+        made = load(kernel("f", [x], {"value": expression}), jets(ball))
+        found = made(Jet(*(ball.q(int(c.p), int(c.q)) for c in inner)))[0]
+
+        assert len(found.c) == 5
+        for k, c in enumerate(found.c):
+            assert c.overlaps(enclose(whole.coeff(e, k), digits=40).real)
+            assert c.rad() < 1e-35
+
+
+def test_an_expansion_bounds_the_function_its_slope_and_its_integral():
+    """Of polynomials, whose coefficients are known; the last coefficient may be any of a ball."""
+    random = np.random.default_rng(1)
+    for _ in range(20):
+        c, low, high = random.uniform(-1, 1, 5), -random.uniform(0.1, 2), random.uniform(0.1, 2)
+        spread = 0.01
+        held = Expansion(arb(low), arb(high), (*map(arb, c[:4]), arb(c[4], spread)))
+        at = np.linspace(low, high, 201)
+        for last in (c[4] - spread, c[4], c[4] + spread):
+            f = np.polynomial.Polynomial([*c[:4], last])
+            assert max(abs(f(at))) <= held.size() * (1 + 1e-12)
+            assert max(abs(f.deriv()(at))) <= held.slope() * (1 + 1e-12)
+            assert abs(float(held.integral().mid()) - (f.integ()(high) - f.integ()(low))) <= held.integral().rad()
+        farthest = max(-low, high)
+        assert float(held.size()) == pytest.approx(sum((abs(c) + np.eye(5)[4] * spread) * farthest ** np.arange(5)))
+        known = sum(c[k] * (high ** (k + 1) - low ** (k + 1)) / (k + 1) for k in range(4))
+        rest = (abs(c[4]) + spread) * (high**5 - low**5) / 5
+        assert float(abs(held.integral() - known).upper()) == pytest.approx(rest)
+
+
+@pytest.mark.parametrize("order", [1, 2, 5])
+def test_the_last_coefficient_of_an_expansion_holds_at_every_point_of_the_stretch(order):
+    low, high = arb("0.25"), arb("1.5")
+    found = expanded(lambda t: t.exp(), low, high, order)
+    top = [Rational(1, math.factorial(k)) * exp(Rational(7, 8)) for k in range(order)]
+
+    assert len(found.terms) == order
+    assert all(c.overlaps(enclose(t).real) for c, t in zip(found.terms[:-1], top, strict=False))
+    assert found.low == arb("-0.625")
+    assert found.high == arb("0.625")
+    for end in (low, high):
+        assert (found.terms[-1] * math.factorial(order - 1)).contains(end.exp())
+    assert found.terms[-1].rad() < 4
+
+
+EXACT = {  # a closed form, and the same number by another way
+    Abs(Integer(-3)) + I: (3, 1),
+    (1 + 2 * I) * (3 - I): (5, 5),
+    cos(pi / 3, evaluate=False) * 2: (1, 0),
+    tan(pi / 4, evaluate=False) ** -3: (1, 0),
+    acos(Rational(1, 2), evaluate=False) / pi - asin(Rational(1, 2), evaluate=False) / pi: ("1/6", 0),
+    sqrt(Rational(9, 4), evaluate=False) ** 3: ("27/8", 0),
+    Integer(8) ** Rational(1, 3): (2, 0),
+    CRootOf(x**3 - 2, 0) ** 3: (2, 0),
+    exp(log(Integer(5), evaluate=False), evaluate=False): (5, 0),
+}
+
+
+@pytest.mark.parametrize("number", EXACT, ids=str)
+def test_an_exact_expression_is_enclosed_with_the_digits_asked_for(number):
+    real, imaginary = (fmpq(*map(int, f"{part}/1".split("/")[:2])) for part in EXACT[number])
+    for digits in (10, 60):
+        found = enclose(number, digits=digits)
+        assert found.overlaps(acb(arb(real), arb(imaginary)))
+        assert found.real.rad() < arb(10) ** -digits
+    assert enclose(x + 1, {x: number}).overlaps(enclose(number) + 1)
+
+
+def test_what_has_no_enclosure_is_refused_by_name():
+    with pytest.raises(ValueError, match="no enclosure is known for Symbol in x"):
+        enclose(x)
+
+
+@pytest.mark.parametrize("number", ["0.1", "-12345.678", "2e-30", "-1e20", "0"])
+def test_decimals_hold_the_ball_that_they_say(number):
+    for radius in ("0", "1e-3", "1e-25"):
+        with working(300):
+            value = arb(number, radius)
+            shown, bound = decimal(value, 20)
+            again = arb(shown, bound)
+            assert again.contains(value)
+            assert again.rad() <= arb("1.25") * arb(radius) + abs(arb(number)) * arb("2e-19")
+
+
+def test_an_mpmath_number_becomes_the_ball_of_the_same_bits():
+    context = mpmath.MPContext()
+    context.prec = 120
+    with working(200):
+        for value in (context.mpf(1) / 3, -(context.mpf(10) ** 30) / 7, context.mpf(0), context.mpf(-5) / 1024):
+            ball = as_ball(value)
+            assert ball.is_exact()
+            assert context.mpf(ball.str(60, radius=False)) == pytest.approx(value, rel=1e-35)
+
+
+def test_balls_cut_and_joined_hold_the_same_numbers_and_no_more_than_rounding():
+    for low, high in ((0.1, 0.3), (-2.0, 5.0), (-1e-9, 0.0)):
+        whole = between(low, high)
+        parts = halves(whole)
+        for at in (low, high, (low + high) / 2):
+            assert whole.contains(arb(at))
+            assert any(part.contains(arb(at)) for part in parts)
+            assert joined(parts).contains(arb(at))
+        assert parts[0].overlaps(parts[1])
+        assert joined(parts).rad() < (high - low) / 2 * (1 + 1e-8)
+        assert all(part.rad() < (high - low) / 4 * (1 + 1e-6) for part in parts)
+        assert joined(reversed(parts)).contains(whole.lower())
+    assert bits_of(0) == 0
+    assert 10**20 < 2 ** bits_of(20) < 2 * 10**20
+    assert bits_of(20, 7) == bits_of(20) + 7
+    assert real_ball(lambda digits: arb(digits), 12) == 12
+    assert balls(64).root(27, 3).contains(3)
+    assert balls(64).sqrt(4) == 2

@@ -2,20 +2,21 @@
 
 import math
 import random
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from flint import arb
-from sympy import Rational, cos, sin, sqrt
+from sympy import Interval, Rational, Symbol, cos, oo, pi, sin, sqrt
 
 from symbolic.tables import cardioid, cuspless, egg, polar, sinai
 from symbolic.tables.law import Law
-from symbolic.tables.table import theta
+from symbolic.tables.table import Component, Table, theta
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.maps import first_hit
-from verification.maps.first_hit import convex, first_hits, inside, minimal
+from verification.maps.first_hit import closes_smoothly, convex, first_hits, inside, minimal
 from verification.proofs.periodic.bifurcation import Claim, proved
 
 WAISTED = polar(1 + cos(2 * theta) / 2)  # the waist at theta = +-pi/2 has radius 1/2
@@ -138,3 +139,148 @@ def test_convexity_is_proved_piece_by_piece_where_no_formula_decides_it():
     assert convex(egg(3), (arb("0.099"),)) is True
     assert convex(egg(3), (arb("0.101"),)) is None
     assert convex(sinai()) is None  # the disc bends outwards by a constant
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "held", "outside"),
+    [
+        ("0", "1/8", ["0", "0.125", "0.06"], ["-1e-15", "0.12500001", "0.1 +/- 0.03"]),
+        ("0", oo, ["0", "1e30"], ["-1e-15", "0 +/- 1e-9"]),
+        (-oo, "1/8", ["-1e30", "0.125"], ["0.126"]),
+        (0, pi, [], ["1"]),  # an end that is no rational is not asked
+        (-pi, 0, [], ["-1"]),
+    ],
+)
+def test_a_shape_is_within_its_range_up_to_the_ends_and_not_beyond(low, high, held, outside):
+    range = Interval(Rational(low) if isinstance(low, str) else low, Rational(high) if isinstance(high, str) else high)
+    with working(64):
+        assert all(first_hit._within(arb(x), range) for x in held)
+        assert not any(first_hit._within(arb(x), range) for x in outside)
+        for x in (*held, *outside):
+            assert first_hit._all_within((arb(0.06), arb(x)), [Interval(0, 1), range]) is (x in held)
+        whole = first_hit._over(range)
+        assert all(whole.overlaps(arb(x)) for x in held)
+        assert whole.is_finite() == (range == Interval(0, Rational(1, 8)))
+        if whole.is_finite():
+            assert whole.rad() < 0.0626
+    assert first_hit._all_within((), [range])
+    assert not first_hit._all_within((arb(1),), [Rational(1)])
+
+
+@pytest.mark.parametrize(
+    ("bend", "nonnegative"),
+    [
+        (1 + cos(theta), True),
+        (1 + 2 * cos(theta), False),
+        (1 - cos(2 * theta), True),
+        (cos(theta) + cos(theta) ** 2 + Rational(1, 4), True),  # a square
+        (cos(theta) + cos(theta) ** 2 + Rational(1, 5), False),
+        (2 + cos(3 * theta) + cos(6 * theta) / 2, True),
+        (2 + sin(theta), False),  # no sum of cosines: another way is taken
+        (2 + sqrt(2) * cos(theta), False),  # nor are these coefficients rational
+        (cos(theta), False),
+    ],
+)
+def test_sums_of_cosines_are_nonnegative_where_their_polynomial_is(bend, nonnegative):
+    assert first_hit._exactly_nonnegative(bend, {}) is nonnegative
+
+
+def test_a_sum_of_cosines_with_a_parameter_is_nonnegative_over_the_range_alone():
+    a = Symbol("a", real=True)
+    for end, nonnegative in ((1, True), (Rational(11, 10), False)):
+        assert first_hit._exactly_nonnegative(1 + a * cos(theta), {a: Interval(0, end)}) is nonnegative
+    assert not first_hit._exactly_nonnegative(1 + a * cos(theta), {a: a})
+
+
+def drawn(*corners):
+    """A table of straight sides between corners."""
+    ring = [*corners, corners[0]]
+    sides = [
+        Component(f"side {k}", (p[0] + theta * (q[0] - p[0]), p[1] + theta * (q[1] - p[1])), 0, 1)
+        for k, (p, q) in enumerate(pairwise(ring))
+    ]
+    return Table("drawn", tuple(sides))
+
+
+@pytest.mark.parametrize(
+    ("corners", "bends_in"),
+    [
+        ([(0, 0), (4, 0), (4, 4), (2, 3), (0, 4)], None),
+        ([(0, 0), (4, 0), (4, 4), (2, 5), (0, 4)], True),
+        ([(0, 0), (4, 0), (4, 4), (2, 4), (0, 4)], True),  # straight on
+        ([(0, 0), (4, 0), (1, 1)], None),  # so sharp that only a sharper proof would do
+    ],
+)
+def test_joins_bend_in_where_no_corner_is_reflex_and_none_is_a_cusp(corners, bends_in):
+    right = all(
+        (q[0] - p[0]) * (r[0] - q[0]) + (q[1] - p[1]) * (r[1] - q[1]) > 0
+        for p, q, r in zip(corners, corners[1:] + corners[:1], corners[2:] + corners[:2], strict=True)
+    )
+    assert convex(drawn(*corners)) is (bends_in if right else None)
+
+
+def test_a_boundary_closes_smoothly_only_as_one_formula_that_a_whole_turn_repeats():
+    assert closes_smoothly(cardioid)
+    assert not closes_smoothly(polar(1 + cos(theta / 2) / 4))
+    assert not closes_smoothly(sinai())
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 6, 8, 9, 12])
+def test_a_cycle_is_minimal_exactly_when_no_proper_part_of_it_is_repeated(n):
+    chance, table = random.Random(n), egg(3).at(alpha=Rational(2, 25))
+    for part in (k for k in range(1, n + 1) if n % k == 0):
+        shorter = [chance.uniform(-3, 3) for _ in range(part)]
+        turns = [2 * math.pi * chance.choice([-1, 0, 1]) for _ in range(n)]
+        zero = [arb(x + turn, 1e-9) for x, turn in zip(shorter * (n // part), turns, strict=True)]
+        assert minimal(table, (0,) * n, zero) is (True if part == n else None)
+        sides = [*[0] * (part - 1), 1]  # no shorter list is repeated in it
+        assert minimal(cuspless, tuple(sides * (n // part)), [arb("0.1")] * n) is (True if part == n else None)
+
+
+def around(place):
+    """A unit circle about a point, as a piece of boundary: point and velocity."""
+    return lambda t: (place[0] + t.cos(), place[1] + t.sin(), -t.sin(), t.cos())
+
+
+def test_a_curved_piece_that_meets_the_chord_never_passes_and_short_ones_that_do_not_pass():
+    """Arcs of circles around random places against the chord from (0, 0) to (2, 1), by 400 points of each."""
+    chance, met, passed = random.Random(3), 0, 0
+    p, d = (arb(0), arb(0)), (arb(2), arb(1))
+    for k in range(300):
+        place, half = (chance.uniform(-1, 3), chance.uniform(-1, 2)), 2.0 ** chance.uniform(-9, 0)
+        middle, share = chance.uniform(-math.pi, math.pi), chance.uniform(0, 1)
+        if k % 2:  # about a point of the chord
+            place = 2 * share - math.cos(middle + half / 3), share - math.sin(middle + half / 3)
+        at = np.linspace(middle - half, middle + half, 400)
+        x, y = place[0] + np.cos(at), place[1] + np.sin(at)
+        side, along = 2 * y - x, 2 * x + y
+        cross = np.flatnonzero(side[:-1] * side[1:] <= 0)
+        meets = any(0 <= along[k] <= 5 and 0 <= along[k + 1] <= 5 for k in cross)
+        found = first_hit._passes(around(place), arb(middle, half), [], p, d)
+        assert not (meets and found)
+        clear = np.min(np.hypot(side, np.maximum(0, np.abs(along - 2.5) - 2.5))) > 6 * half
+        assert found or not clear
+        met, passed = met + meets, passed + clear
+    assert min(met, passed) > 30
+
+
+def test_ways_from_a_bounce_to_a_piece_hold_the_shorter_way_along_the_boundary():
+    """On one closed curve through the seam where that is shorter; on an open component never."""
+    chance = random.Random(5)
+    with working(96):
+        ends = [(-arb.pi(), arb.pi())]
+        closed = first_hit.Boundary([around((0, 0))], ends)
+        open_ = first_hit.Boundary([around((0, 0))] * 2, [(arb(-3), arb(3)), (arb(0), arb(1))])
+        for _ in range(60):
+            at, piece = arb(chance.uniform(-3, 3), 1e-3), arb(chance.uniform(-3, 3), 1e-2)
+            gap = float(piece.mid() - at.mid())
+            turn = math.remainder(gap, 2 * math.pi)
+            for boundary, way in ((closed, turn), (open_, gap)):
+                ways = first_hit._between(boundary, 0, at, piece)
+                assert len(ways) == (1 if way == gap else 2)
+                for share in (0, 0.2, 0.5, 0.9, 1):
+                    there = math.remainder(float(at.mid()) + share * way, 2 * math.pi)
+                    assert any(held.overlaps(arb(there, 1e-12)) for held in ways)
+                assert sum(2 * float(held.rad()) for held in ways) < abs(way) + 0.05
+                assert ways[0].contains(piece)
+                assert ways[-1].contains(at)

@@ -4,11 +4,27 @@ import math
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
+from flint import arb
 from sympy import Rational
 
 from symbolic.tables import cuspless
-from verification.proofs.manifolds.horseshoe import Edge, HSet, built, crossings, horseshoe
+from verification.arithmetic.balls import FLOAT64, balls, working
+from verification.proofs.manifolds.horseshoe import (
+    BITS,
+    Edge,
+    HSet,
+    _apart,
+    _crosses,
+    _expands,
+    _frame,
+    _image,
+    _times,
+    built,
+    crossings,
+    horseshoe,
+)
 from verification.proofs.manifolds.known import SHAPE, TRIANGLE, table
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.saddle import Orbit
@@ -121,3 +137,105 @@ def test_a_horseshoe_of_the_egg_is_refused_with_another_symmetry_at_its_end():
 
     assert not replace(egg(), edges=(*egg().edges[:-1], turned)).proved
     assert replace(egg(), map=Pinball(cuspless)).checks["admissible"] is None
+
+
+def point(h, x, y):
+    """The point of an h-set with these coordinates."""
+    return np.array(h.centre) + x * np.array(h.expanded) + y * np.array(h.contracted)
+
+
+def random_h_set(random, size=1.0):
+    return HSet(*(tuple(size * x) for x in random.uniform(-1, 1, (3, 2))))
+
+
+def test_coordinates_in_an_h_set_are_those_that_its_points_have():
+    """Mirrored and turned as an edge says: a turn of the egg is 2*pi/3 at each of the two bounces."""
+    random = np.random.default_rng(1)
+    for _ in range(20):
+        h, (x, y) = random_h_set(random), random.uniform(-1, 1, 2)
+        for map, turn in ((table(SHAPE), 2 * math.pi / 3), (HENON, 0.0)):
+            for sign, turns in ((1, (0, 0)), (-1, (2, 1)), (1, (-1, 3))):
+                at = sign * point(h, x, y) + turn * np.array(turns)
+                inverse, centre = _frame(h, Edge(0, 0, sign, turns), map.over(balls(BITS)))
+                found = _times(inverse, *(arb(a) - b for a, b in zip(at, centre, strict=True)))
+
+                assert [float(z) for z in found] == pytest.approx([x, y], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("off", "matrix", "crosses"),
+    [
+        ((0, 0), (2, 0.5, 0.25, 0.5), True),
+        ((0, 0), (-2, 0.5, 0.25, 0.5), True),
+        ((0.75, 0), (2, 0.5, 0.25, 0.5), False),  # one end is not left by 0.25
+        ((-0.75, 0), (2, 0.5, 0.25, 0.5), False),
+        ((0, 0), (1.25, 0.5, 0.25, 0.5), False),
+        ((0, 0), (1.5, -0.5, 0, 0), False),  # just reaches the end
+        ((0, 0.25), (2, 0, 0.25, 0.5), False),  # just reaches a contracted end
+        ((0, -0.5), (2, 0, 0.25, 0.5), False),
+        ((0, 0), (2, 0, -0.75, 0.5), False),
+        ((0, 0), (2, 0, 0.25, -1), False),
+        ((0.25, -0.25), (2, -0.5, -0.25, 0.25), True),
+    ],
+)
+def test_one_h_set_covers_another_when_its_ends_leave_and_nothing_reaches_the_contracted_ends(off, matrix, crosses):
+    """The affine images of the four corners say the same: those of either end lie beyond 1 or -1, all between in y."""
+    corners = {(x, y): np.array(off) + np.array(matrix).reshape(2, 2) @ (x, y) for x in (1, -1) for y in (1, -1)}
+    ends = [[corners[x, y][0] for y in (1, -1)] for x in (1, -1)]
+    left = any(min(a) > 1 and max(b) < -1 for a, b in (ends, ends[::-1]))
+    assert bool(left and all(abs(c[1]) < 1 for c in corners.values())) is crosses
+    assert _crosses(tuple(map(arb, off)), tuple(map(arb, matrix))) is crosses
+
+
+def test_a_cone_condition_is_that_the_quadratic_form_grows_between_any_two_points():
+    random, seen = np.random.default_rng(2), set()
+    for _ in range(300):
+        matrix = random.uniform(-2, 2, 4) * (1, 0.5, 0.5, 0.5)
+        d, q = matrix.reshape(2, 2), np.diag([1.0, -1.0])
+        least = np.linalg.eigvalsh(d.T @ q @ d - q)[0]
+        if abs(least) > 1e-9:
+            assert _expands(tuple(map(arb, matrix))) is bool(least > 0)
+            seen.add(bool(least > 0))
+    assert seen == {True, False}
+    assert not _expands((arb(2, 1), arb(0), arb(0), arb(0)))
+
+
+def test_two_h_sets_are_apart_only_when_one_lies_beyond_an_end_of_the_expanded_side_of_the_other():
+    random, seen = np.random.default_rng(3), set()
+    for _ in range(200):
+        first, other = random_h_set(random, 0.3), random_h_set(random, 0.3)
+        for map, sign, turns in ((HENON, 1, (0, 0)), (table(SHAPE), -1, (1, 0))):
+            turn = 2 * math.pi / 3 * np.array(turns)
+            frame = np.column_stack([first.expanded, first.contracted]) * sign
+            corners = [point(other, x, y) - sign * np.array(first.centre) - turn for x in (1, -1) for y in (1, -1)]
+            along = [np.linalg.solve(frame, c)[0] for c in corners]
+            apart = bool(min(along) > 1 or max(along) < -1)
+            seen.add(apart)
+            assert _apart(first, Edge(0, 0, sign, turns), other, map.over(balls(BITS))) is apart
+    assert seen == {True, False}
+    far = HSet((7.0, 0.0), (0.1, 0.0), (0.0, 0.1))  # on angles the same place may come again a turn further
+    near = HSet((0.0, 0.0), (0.1, 0.0), (0.0, 0.1))
+    assert _apart(near, Edge(0, 0), far, HENON.over(balls(BITS)))
+    assert not _apart(near, Edge(0, 0), far, table(SHAPE).over(balls(BITS)))
+
+
+@pytest.mark.parametrize(("map", "parameter", "size"), [(HENON, 1.4, 0.05), (None, 0.7, 0.002)], ids=["henon", "egg"])
+def test_the_image_of_an_h_set_is_its_centres_and_the_slopes_times_the_way_from_there(map, parameter, size):
+    """Between any two points of the h-set, by the mean-value theorem; the map itself is float64's."""
+    map, random = map or table(SHAPE), np.random.default_rng(4)
+    centres = [(0.4, 0.3), (-0.5, 0.9)] if map is HENON else [(0.1, 2.2), (1.0, 3.2)]
+    floats, spread = map.over(FLOAT64), 1e-3
+    for centre in centres:
+        h = HSet(centre, (size, size / 2), (-size / 3, size))
+        with working(BITS):
+            start, slopes = _image(map.over(balls(BITS)), arb(parameter, spread), h, parameter)
+            for x, y in random.uniform(-1, 1, (40, 2)):
+                before, here = point(h, x, y)
+                at = parameter + spread * random.uniform(-1, 1)
+                away = slopes[0] * (before - h.centre[0]) + slopes[1] * (here - h.centre[1])
+
+                assert (start[1] + away + arb(0, 1e-12)).contains(float(floats.following(before, here, at)))
+                assert start[0] == h.centre[1]
+            assert float(slopes[1].rad()) < 1
+    wide = HSet(centres[0], (3.0, 0.0), (0.0, 3.0))
+    assert map is HENON or _image(map.over(balls(BITS)), arb(parameter), wide, parameter) is None

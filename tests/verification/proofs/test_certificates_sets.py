@@ -3,7 +3,7 @@
 import math
 import random
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import accumulate, pairwise, product
 
 import mpmath
 import numpy as np
@@ -30,6 +30,7 @@ from verification.paper.egg.basins import points_of_period_4, without_triangles
 from verification.proofs.corner.half_return import trapping_region
 from verification.proofs.corner.return_map import ARC, BITS, WALL, Flights, Piece, fourth_on_wall, minimum_at_kink
 from verification.proofs.periodic import bifurcation, triangles
+from verification.proofs.periodic import interval_newton as newton
 from verification.proofs.periodic.bifurcation import Stability, doubling_curve, over_interval
 from verification.proofs.periodic.interval_newton import Cover, Status, dense, interval_newton, least_gap, reflection
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, flips_nowhere, no_triangles, witness
@@ -339,3 +340,49 @@ def test_a_triangle_is_asked_from_its_largest_gap_on(gaps, asked):
     box = ((0.0, 2.0**-8), *((gap, 2.0**-8) for gap in gaps))
 
     assert triangles._impossible(normal, arb(1), arb("0.5"), 0.25, box) is not asked
+
+
+def made_up(values):
+    """A chord angle that has given values: a polynomial of both parameters, with its derivatives."""
+    pairs, powers = sorted(values), list(product(range(3), repeat=2))
+    c = np.linalg.lstsq([[h**a * t**b for a, b in powers] for h, t in pairs], [values[pair] for pair in pairs])[0]
+    terms = [(arb(float(x)), a, b) for x, (a, b) in zip(c, powers, strict=True)]
+
+    def angle(h, t):
+        by_here = sum(x * a * h ** max(a - 1, 0) * t**b for x, a, b in terms)
+        by_there = sum(x * b * h**a * t ** max(b - 1, 0) for x, a, b in terms)
+        return sum(x * h**a * t**b for x, a, b in terms), by_here, by_there
+
+    return angle
+
+
+def test_no_triangle_without_symmetry_is_excluded_and_one_that_breaks_a_rule_is(monkeypatch):
+    """Angles made up so that a triangle with three different gaps obeys all rules, or all but one of them.
+
+    A box around it is then excluded when it is small; much smaller ones would do without the mean-value theorem.
+    """
+    chance, ratio, contraction = random.Random(2), arb("0.5"), 0.4
+    monkeypatch.setattr(newton, "krawczyk", lambda *_: newton.Enclosure(Status.UNKNOWN, []))
+    problem, total = Problem(egg(3).at(alpha=ALPHA), (0,) * 3, lam=arb(contraction)), math.pi * 0.4 / 1.4
+    for _ in range(6):
+        gap = chance.uniform(2.2, 2.6)
+        held = chance.uniform(-1, 1), gap, chance.uniform(2 * math.pi - 2 * gap + 0.1, gap - 0.1)
+        at, phi = list(accumulate(held)), [total * chance.uniform(0.2, 0.3), total / 3]
+        phi.append(total - sum(phi))
+        for broken in (None, 0, 1, 2):
+            eta = [-p / contraction * (1.05 if i == broken else 1) for i, p in enumerate(phi)]
+            values = {(at[i], at[(i + 1) % 3]): phi[i] for i in range(3)} | {
+                (at[i], at[i - 1]): eta[i] for i in range(3)
+            }
+            with working(64):
+                angle, largest = made_up(values), ratio * arb.pi() / (1 + ratio)
+                cover = Cover(problem, angle, reflection(PAPERS_LAW, arb(contraction)), 0.5, [])
+                for size in (*range(2, 14), 22, 26):
+                    box = around(held, size, chance)
+                    exact, wide = accumulate(arb(m) for m, _ in box), accumulate(arb(m, r) for m, r in box)
+                    excluded = {
+                        triangles._impossible(angle, largest, ratio, 0.5, box),
+                        cover._impossible(box, list(exact), list(wide)),
+                    }
+                    assert True not in excluded or broken is not None
+                    assert False not in excluded or broken is None or size < 10

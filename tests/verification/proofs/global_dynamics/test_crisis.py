@@ -6,14 +6,27 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import arb
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app import cli
-from verification.arithmetic.balls import FLOAT64
+from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.recurrence import Closure
-from verification.proofs.global_dynamics.boxes import Chart
-from verification.proofs.global_dynamics.crisis import BoundaryCrisis, _marked, bracket
+from verification.proofs.global_dynamics import crisis
+from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images
+from verification.proofs.global_dynamics.crisis import (
+    CHECKS,
+    BoundaryCrisis,
+    _boxed,
+    _marked,
+    _meets,
+    _next,
+    _within,
+    bracket,
+    grown,
+    kept_apart,
+)
 from verification.proofs.global_dynamics.graph import Grid, Rectangles
 from verification.proofs.manifolds.known import BOUNDARY, CONTACTS, SHAPE
 from verification.proofs.manifolds.saddle import saddle
@@ -150,3 +163,134 @@ def test_the_cells_of_rectangles_are_marked_and_no_others():
         wanted[number, [column % 6 for column in range(left, right + 1)], bottom : top + 1] = True
 
     assert np.array_equal(_marked(grid, Rectangles(np.arange(4), chart, *sides, np.zeros(4, dtype=bool))), wanted)
+
+
+MISSING = {  # what goes wrong, and the items of the list that are open then
+    "_continued": set(CHECKS),
+    "_branch": set(CHECKS) - {"saddle"},
+    "seed": {"taken", "apart", "leaves"},
+    "taken": {"taken", "apart", "leaves"},
+    "kept": {"kept", "apart", "leaves"},
+    "_next": {"kept", "apart", "leaves"},
+    "_meets": {"apart"},
+    "_leaves": {"leaves"},
+    "": set(),
+}
+
+
+@pytest.mark.parametrize("wrong", MISSING, ids=lambda wrong: wrong or "nothing")
+def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wrong):
+    def unless(name, value, other=None):
+        def made(*_):
+            if name == wrong and other is None:
+                raise ArithmeticError
+            return other if name == wrong else value
+
+        return made
+
+    where = (arb(0), arb(0))
+    stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (2.0 if wrong == "seed" else 0.0, 0.0))
+    monkeypatch.setattr(crisis, "PinballImages", lambda scene, lam: lam)
+    monkeypatch.setattr(crisis, "_boxed", lambda points: None if wrong == "seed" and points[0][0] > 1 else points)
+    monkeypatch.setattr(crisis, "_next", lambda *_: None if wrong == "_next" else where)
+    monkeypatch.setattr(crisis, "_meets", lambda *_: wrong == "_meets")
+    steps = {
+        "_continued": unless("_continued", (None, None)),
+        "_branch": unless("_branch", "branch"),
+        "_launched": lambda *_: [where],
+        "_turned": lambda self, points: points,
+        "_leaves": lambda *_: wrong != "_leaves",
+        "_grown": lambda self, lam, start: None if wrong == ("kept" if lam == (BELOW, BELOW) else "taken") else lam,
+    }
+    for name, step in steps.items():
+        monkeypatch.setattr(BoundaryCrisis, name, step)
+
+    assert {item for item, value in stated.checks.items() if value is not True} == MISSING[wrong]
+    assert set(stated.checks.values()) <= {True, None}
+    assert stated.proved is (wrong == "")
+
+
+def test_boxes_about_phase_points_hold_them_up_to_whole_turns():
+    random = np.random.default_rng(1)
+    rows = random.uniform((-40, -1.5, 0), (40, 1.5, 0.1), (50, 3))
+    points = [(arb(theta, radius), arb(phi, radius)) for theta, phi, radius in rows]
+    boxes = _boxed(points)
+    with working(200):
+        for k, ball in enumerate(points):
+            middle = (boxes.x[0][k] + boxes.x[1][k]) / 2
+            turns = round(float(ball[0].mid() - middle) / (2 * np.pi))
+            for x, ends, by in zip(ball, (boxes.x, boxes.y), (turns, 0), strict=True):
+                low, high = (arb(float(end[k])) + by * 2 * arb.pi() for end in ends)
+                assert low < x.lower()
+                assert x.upper() < high
+                assert high - low < 2 * x.rad() + 1e-10
+            assert abs(middle) <= np.pi + 1e-9
+    for bad in ((arb("nan"), arb(0)), (arb(0), arb(0, "inf"))):
+        assert _boxed([(arb(0), arb(0)), bad]) is None
+
+
+class Thirds:
+    """A map of a closed chart that draws each third of it together about the middle, and may turn it."""
+
+    charts = (Chart("turning", (-np.pi, np.pi), (-1.0, 1.0), True, True),)
+    closed = True
+
+    def __init__(self, turn=0.0, lost=(), twice=False):
+        self.turn, self.lost, self.twice = 2 * np.pi * turn, np.array(lost, dtype=int), twice
+
+    def images(self, boxes):
+        on = np.setdiff1d(np.arange(boxes.chart.size), self.lost)
+        on = np.repeat(on, 2) if self.twice else on
+        centre = 0.05 + np.rint(((boxes.x[0] + boxes.x[1]) / 2 - 0.05) / (2 * np.pi / 3))[on] * (2 * np.pi / 3)
+        ends = tuple(centre + (x[on] - centre) / 2 + self.turn for x in boxes.x), tuple(y[on] / 2 for y in boxes.y)
+        return Images(on, Boxes(boxes.chart[on], *ends), self.lost)
+
+
+def at(*thetas, width=0.01):
+    return _boxed([(arb(theta, width), arb(0, width)) for theta in thetas])
+
+
+def test_boxes_are_followed_only_where_each_has_one_image_that_is_proved():
+    moved = _next(Thirds(0.4), at(0.05, 2.05))
+    centres = [0.05 + 0.8 * np.pi, (0.05 + 2 * np.pi / 3 + 2.05) / 2 + 0.8 * np.pi - 2 * np.pi]
+
+    assert np.allclose([(a + b) / 2 for a, b in zip(*moved.x, strict=True)], centres)
+    assert np.allclose(moved.x[1] - moved.x[0], 0.01)
+    assert _next(Thirds(lost=[1]), at(0.1, 3.1)) is None
+    assert _next(Thirds(twice=True), at(0.1, 3.1)) is None
+
+
+def test_a_set_that_grows_holds_its_image_and_none_is_found_where_a_box_is_lost():
+    size = (30, 8, 1)
+    for turn, copies in ((0.0, 1), (1 / 3, 3)):
+        grid, member = grown(Thirds(turn), size, at(0.05))
+        assert copies <= member[0].any(1).sum() <= 4 * copies
+        assert 2 <= member[0].any(0).sum() <= 4
+        assert _within((grid, member), at(0.05))
+        assert _within((grid, member), at(0.05 + 2 * np.pi / 3)) is (copies == 3)
+        assert _meets((grid, member), (grid, member))
+        assert not _meets((grid, member), (grid, member & False))
+    grid, member = grown(Thirds(0.0), size, at(0.05))
+    far = np.roll(member, 5, 1)
+    assert not _meets((grid, member), (grid, far))
+    assert _meets((grid, member), (grid, np.roll(member, 1, 1)))  # cells next to each other share a border
+    assert not _within((grid, far), at(0.05))
+    assert not _within((grid, member), at(0.05, width=0.9))
+    assert grown(Thirds(0.0, lost=[0]), size, at(0.05)) is None
+
+
+def test_a_region_apart_from_its_turned_copies_is_told_by_its_angles():
+    here = [(arb(0.05, 0.01), arb(0, 0.01))]
+    angles = kept_apart(Thirds(0.0), (30, 8, 1), here)
+    width = 2 * np.pi / 30
+
+    assert any(abs(x - 0.05) <= width for x in angles)
+    assert max(abs(x - 0.05) for x in angles) < 3 * width
+    assert np.allclose((angles + np.pi) / width % 1, 0.5)
+    assert kept_apart(Thirds(1 / 3), (30, 8, 1), here) is None  # a copy is reached
+    assert kept_apart(Thirds(2 / 3), (30, 8, 1), here) is None
+    assert kept_apart(Thirds(0.0), (32, 8, 1), here) is None  # thirds are no columns
+    assert kept_apart(Thirds(0.0), (30, 8, 1), [(arb("nan"), arb(0))]) is None
+    open_ = Thirds(0.0)
+    open_.closed = False
+    assert kept_apart(open_, (30, 8, 1), here) is None

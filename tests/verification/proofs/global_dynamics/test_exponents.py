@@ -4,13 +4,22 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
+from verification.proofs.global_dynamics import regions as statements
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
 from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
 from verification.proofs.global_dynamics.images import PinballImages, Slopes
-from verification.proofs.global_dynamics.regions import Derivatives, _factors, expansion
+from verification.proofs.global_dynamics.regions import (
+    Derivatives,
+    _arriving,
+    _factors,
+    _least_mean,
+    carried,
+    expansion,
+)
 
 
 def regions(scene, columns=512, rows=128, lam=None):
@@ -117,3 +126,94 @@ def test_a_box_that_may_shrink_vectors_to_nothing_bounds_no_exponent():
 
     assert np.allclose(np.exp(least), [1.5, 0, 0, 3])
     assert least[0] < np.log(1.5)
+
+
+def random_slopes(random, size, radius=0.0):
+    """Six arrays of balls, the stretch away from 0."""
+    middles = random.uniform(0.5, 1.5, (6, size)) * np.where(random.random((6, size)) < 0.5, -1, 1)
+    return Slopes(*(BallArray(m, np.full(size, radius)) for m in middles))
+
+
+def test_the_slope_of_an_image_is_that_of_the_image_of_a_vector():
+    """`d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, `d phi1 = drift*d theta1 - law*d eta1`."""
+    random = np.random.default_rng(1)
+    s, slope = random_slopes(random, 50), random.uniform(-0.3, 0.3, 50)
+    stretch, image = carried(s, BallArray(slope, np.zeros(50)))
+    there = s.by_theta.m + s.by_phi.m * slope
+    incidence = s.bend_there.m * there - s.bend_here.m + slope
+
+    assert np.allclose(stretch.m, there)
+    assert np.allclose(image.m * there, s.drift.m * there - s.law.m * incidence)
+
+
+def test_the_least_mean_weight_is_that_of_the_lightest_walk():
+    """By trying every walk of six steps in a graph of four vertices."""
+    edges = [(0, 1), (1, 0), (1, 2), (2, 3), (3, 3), (3, 0), (2, 2)]
+    graph = csr_matrix((np.ones(len(edges)), tuple(zip(*edges, strict=True))), shape=(4, 4))
+    for weights in np.random.default_rng(2).uniform(-1, 1, (10, 4)):
+        walks = [[k] for k in range(4)]
+        for _ in range(5):
+            walks = [[*walk, b] for walk in walks for a, b in edges if a == walk[-1]]
+        least = min(sum(weights[k] for k in walk) for walk in walks) / 6
+        assert abs(_least_mean(weights, graph, 6) - least) < 1e-12
+
+
+class Two:
+    """In the place of a map: two charts."""
+
+    charts = ("one", "other")
+
+
+def test_the_slopes_that_reach_a_box_are_those_from_all_boxes_that_lead_to_it_on_its_chart():
+    """Box 0 lands on both charts, box 1 on the first, of box 2 nothing is known."""
+    source, chart = np.array([0, 0, 1, 2]), np.array([0, 1, 0, 1])
+    one, none = np.ones(4), np.zeros(4)
+    drift = BallArray(np.array([1.0, -2.0, 5.0, 0.0]), np.array([0.5, 0.25, 0.0, np.inf]))
+    s = Slopes(BallArray(one, none), *(BallArray(none, none) for _ in range(3)), BallArray(none, none), drift)
+    edges = [(0, 0), (0, 1), (1, 0), (2, 1)]
+    inner = csr_matrix((np.ones(4), tuple(zip(*edges, strict=True))), shape=(3, 3))
+    cells = statements.Cells(np.array([0, 1, 0]), *(np.zeros(3, dtype=int) for _ in range(3)))
+    low, high = _arriving(Two(), Derivatives(source, chart, s), inner, cells, (np.zeros(3), np.zeros(3)))
+
+    assert np.allclose([low[0], high[0]], [0.5, 5.0], atol=1e-12)
+    assert (low[1], high[1]) == (-np.inf, np.inf)
+    assert (low[2], high[2]) == (np.inf, -np.inf)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_bound_holds_for_every_vector_of_a_cone_along_every_walk(monkeypatch, turned):
+    """Of random linear maps on a cycle of three boxes: cones hold their images, and the mean growth of the product."""
+    random, found = np.random.default_rng(5), 0
+    inner = csr_matrix((np.ones(3), ([0, 1, 2], [1, 2, 0])), shape=(3, 3))
+
+    class Graph:
+        grid, leaf, edges = None, np.ones(3, dtype=bool), csr_matrix((np.ones(3), ([0, 1, 2], [1, 2, 0])), shape=(4, 4))
+
+        def chosen(self, members):
+            return statements.Cells(*(np.zeros(3, dtype=int) for _ in range(4)))
+
+    class One:
+        charts = ("one",)
+
+    for _ in range(20):
+        s = random_slopes(random, 3)._replace(law=BallArray(np.full(3, 0.1), np.zeros(3)))
+        s = s._replace(by_theta=BallArray(s.by_theta.m * (4 if not turned else 0.2), np.full(3, 1e-3)))
+        rows = Derivatives(np.arange(3), np.zeros(3, dtype=int), s)
+        monkeypatch.setattr(statements, "derivatives", lambda *_, rows=rows: rows)
+        bound = expansion(One(), Graph(), np.array([True, True, True, False]))
+        product = np.eye(2)
+        for k in range(3):
+            a, b, here, there, law, drift = (float(x.m[k]) for x in s)
+            product = (
+                np.array([[a, b], [drift * a - law * (there * a - here), drift * b - law * (there * b + 1)]]) @ product
+            )
+        rate = np.log(max(abs(np.linalg.eigvals(product)))) / 3
+        assert bound.low <= rate + 1e-9
+        if np.isfinite(bound.low) and not turned:
+            found += 1
+            low, high = bound.cones
+            _, image = carried(s, statements.hull(low, high))
+            assert np.all(low[inner.indices] <= image.lower())
+            assert np.all(image.upper() <= high[inner.indices])
+            assert bound.low > rate - 1.0
+    assert found > 10 or turned

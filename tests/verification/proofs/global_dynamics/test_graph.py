@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,10 +11,30 @@ import pytest
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app.cli import main
-from verification.proofs.global_dynamics.boxes import ArrayOps, BallArray, Chart, PlaneImages
-from verification.proofs.global_dynamics.graph import Cells, Grid, inside, mapped, morse_graph, refined, transitions
+from verification.proofs.global_dynamics import graph as graphs
+from verification.proofs.global_dynamics.boxes import ArrayOps, BallArray, Boxes, Chart, Images, PlaneImages
+from verification.proofs.global_dynamics.graph import (
+    Cells,
+    Grid,
+    Rectangles,
+    halved,
+    inside,
+    mapped,
+    morse_graph,
+    refined,
+    transitions,
+)
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.global_dynamics.regions import Region, _runs, _unrolled, checked, region, sampled_share, shares
+from verification.proofs.global_dynamics.regions import (
+    Region,
+    _runs,
+    _unrolled,
+    checked,
+    region,
+    sampled_share,
+    shares,
+    whole,
+)
 
 EGG = Scene("egg", alpha="0.08", lam="1/2")
 
@@ -207,3 +228,144 @@ def test_blocks_written_as_runs_are_the_same_blocks():
     assert {*zip(*(field.tolist() for field in again), strict=True)} == {
         *zip(*(f.tolist() for f in cells), strict=True)
     }
+
+
+CHARTS = Chart("turning", (-np.pi, np.pi), (-0.1, 0.7), True), Chart("plain", (0.1, 0.3), (-1.0, 1.0))
+
+
+def test_the_boxes_of_blocks_hold_all_of_them_and_jut_out_by_rounding_alone():
+    """Against rational numbers; parts of boxes, too."""
+    grid = Grid(CHARTS, 12, 7 * 4)
+    for cells in (grid.whole(), grid.whole(4), halved(grid.whole(4))):
+        boxes = grid.boxes(cells)
+        (parts, source), across, up = boxes.parts(3, 2), 3, 2
+        for side, first, count, cut in (("x", cells.column, 12, across), ("y", cells.row, 28, up)):
+            ends, smaller = getattr(boxes, side), getattr(parts, side)
+            for i in range(0, cells.chart.size, 5):
+                low, high = (Fraction(float(end)) for end in getattr(CHARTS[cells.chart[i]], side))
+                step, slack = (high - low) / count, Fraction(1, 10**14)
+                exact = [low + int(first[i]) * step, low + int(first[i] + cells.size[i]) * step]
+                assert exact[0] - slack < Fraction(float(ends[0][i])) <= exact[0]
+                assert exact[1] <= Fraction(float(ends[1][i])) < exact[1] + slack
+                own = np.flatnonzero(source == i)
+                found = sorted({(float(smaller[0][k]), float(smaller[1][k])) for k in own})
+                assert len(own) == across * up
+                assert found[0][0] == ends[0][i]
+                assert max(high for _, high in found) == ends[1][i]
+                assert all(b[0] <= a[1] < b[0] + 1e-13 for a, b in pairwise(found))
+                assert max(b - a for a, b in found) < float(exact[1] - exact[0]) / cut + 1e-13
+
+
+def test_blocks_cut_into_four_are_the_same_cells():
+    grid = Grid(CHARTS, 8, 4)
+    one = np.ones(16, dtype=int)
+    counted = [grid.painted(cells, np.ones(cells.chart.size)) for cells in (grid.whole(4), halved(grid.whole(4)))]
+
+    assert np.array_equal(counted[0], counted[1])
+    assert set(halved(grid.whole(4)).size) == {2}
+    assert halved(grid.whole(4)).chart.size == 4 * grid.whole(4).chart.size == one.sum()
+
+
+def test_rectangles_meet_the_cells_of_all_their_points_and_none_that_is_farther_than_rounding():
+    """Over the seam of a chart that turns, and out of one that does not."""
+    random, grid = np.random.default_rng(2), Grid(CHARTS, 12, 8)
+    for _ in range(300):
+        number = int(random.integers(2))
+        chart = CHARTS[number]
+        sides = []
+        for low, high in (chart.x, chart.y):
+            middle, half = random.uniform(low, high), random.uniform(0, 0.4) * (high - low)
+            sides.append((np.array([middle - half]), np.array([middle + half])))
+        met = grid.met(Images(np.zeros(1, dtype=int), Boxes(np.array([number]), *sides), np.zeros(0, dtype=int)))
+        share = [
+            [(end[0] - low) / (high - low) for end in side]
+            for side, (low, high) in zip(sides, (chart.x, chart.y), strict=True)
+        ]
+        out = share[1][0] < 0 or share[1][1] > 1 or (number == 1 and (share[0][0] < 0 or share[0][1] > 1))
+        columns, rows = (
+            np.floor(np.linspace(*part, 500) * count).astype(int) for part, count in zip(share, (12, 8), strict=True)
+        )
+        rows = rows[(rows >= 0) & (rows < 8)]
+        columns = columns % 12 if number == 0 else columns[(columns >= 0) & (columns < 12)]
+
+        assert bool(met.out[0]) is bool(out)
+        assert {k % 12 for k in range(met.left[0], met.right[0] + 1)} == set(columns)
+        assert 0 <= met.left[0] <= met.right[0] < met.left[0] + 12
+        assert set(range(met.bottom[0], met.top[0] + 1)) == set(rows)
+
+
+def test_on_a_border_both_cells_are_met_and_a_map_that_keeps_to_its_chart_never_leaves_it():
+    unit = Chart("unit", (0.0, 1.0), (0.0, 1.0))
+    for kept in (False, True):
+        grid = Grid((unit._replace(kept=kept),), 4, 4)
+        sides = [(np.array([x]), np.array([y])) for x, y in ((0.25, 0.5), (-0.1, 1.5))]
+        met = grid.met(Images(np.zeros(1, dtype=int), Boxes(np.array([0]), *sides), np.zeros(0, dtype=int)))
+
+        assert [int(x[0]) for x in met[2:6]] == [0, 2, 0, 3]
+        assert bool(met.out[0]) is not kept
+
+
+class Partial:
+    """A map that moves boxes up by one row, and of which nothing is proved on every third box."""
+
+    charts = (Chart("plane", (0.0, 6.0), (0.0, 6.0), False, True),)
+
+    def images(self, boxes):
+        number = np.floor(boxes.x[0] + 1e-6) + 6 * np.floor(boxes.y[0] + 1e-6)
+        lost = np.flatnonzero(number % 3 == 1)
+        kept = np.flatnonzero(number % 3 != 1)
+        ends = tuple(
+            (low[kept] + up + 1e-3, high[kept] + up - 1e-3) for (low, high), up in ((boxes.x, 0), (boxes.y, 1))
+        )
+        return Images(kept, Boxes(boxes.chart[kept], *ends), lost)
+
+
+@pytest.mark.parametrize(("block", "parts"), [(1 << 14, 1), (5, 1), (8, 2)])
+def test_blocks_of_which_nothing_is_proved_are_lost_wherever_they_stand_in_the_work(monkeypatch, block, parts):
+    monkeypatch.setattr(graphs, "BLOCK", block)
+    told, grid = [], Grid(Partial.charts, 6, 6)
+    cells = grid.whole()
+    met, lost = mapped(Partial(), grid, cells, parts, told.append)
+    number = cells.column + 6 * cells.row
+
+    assert np.array_equal(lost, number % 3 == 1)
+    assert set(met.source) == set(np.flatnonzero(~lost))
+    for source, left, right, bottom, top in zip(met.source, *met[2:6], strict=True):
+        above = min(cells.row[source] + 1, 5)
+        assert (left, right, bottom, top) == (cells.column[source], cells.column[source], above, above)
+    assert told[-1] == 1
+    assert told == sorted(told)
+    assert not inside(grid, cells, met, lost)[lost].any()
+    assert inside(grid, cells, met, lost)[~lost].all()
+
+
+def test_a_block_is_mapped_inside_exactly_when_every_cell_of_its_image_is_one_of_the_blocks():
+    """By counting cell after cell, over the seam too."""
+    random, grid = np.random.default_rng(4), Grid(CHARTS, 6, 4)
+    for share in (0.5, 0.9, 1.0):
+        member = random.random((2, 6, 4)) < share
+        chart, column, row = np.nonzero(member)
+        cells = Cells(chart, column, row, np.ones(chart.size, dtype=int))
+        count = 200
+        source, on = random.integers(0, chart.size, count), random.integers(0, 2, count)
+        left, bottom = random.integers(0, 6, count), random.integers(0, 4, count)
+        right = left + random.integers(0, 6, count) * (on == 0)
+        top = np.minimum(bottom + random.integers(0, 2, count), 3)
+        out, lost = random.random(count) < 0.02, random.random(chart.size) < 0.05
+        wanted = ~lost
+        for k in range(count):
+            held = all(
+                member[on[k], i % 6, j] for i in range(left[k], right[k] + 1) for j in range(bottom[k], top[k] + 1)
+            )
+            wanted[source[k]] &= held and not out[k]
+        found = inside(grid, cells, Rectangles(source, on, left, right, bottom, top, out), lost)
+
+        assert np.array_equal(found, wanted)
+
+
+@pytest.mark.parametrize("given", [0, 8, True, 2.0, "3", None, 2.5])
+def test_what_is_no_whole_number_in_range_is_refused_by_name(given):
+    with pytest.raises(ValueError, match="certificate: rows holds"):
+        whole("rows", given, 7)
+    assert [whole("rows", x, 7) for x in (1, 7)] == [1, 7]
+    assert whole("a run", 0, 7, 0) == 0

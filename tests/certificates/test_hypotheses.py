@@ -1,6 +1,7 @@
 """Each hypothesis of the theorems that the second reader quotes: where it fails, nothing is proved."""
 
 import json
+import random
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
@@ -123,3 +124,123 @@ def test_the_status_of_the_second_reader_is_1_where_anything_is_not_proved(check
     assert check.main([]) == 1
     assert check.main([str(tmp_path / "none.json")]) == 1
     assert "refused" in capsys.readouterr().out
+
+
+def test_interval_newton_encloses_the_zero_of_any_three_equations_that_are_independent(check):
+    """`A*x = A*zero` plus squares that vanish there, for random matrices; with two rows alike nothing is proved."""
+    chance, p = random.Random(1), 100
+    box = [check.I.of(-1, p).hull(check.I.of(1, p))] * 3
+    for turn in range(20):
+        rows = [[Fraction(chance.randint(-2, 2), 10) + 4 * (i == k) for k in range(3)] for i in range(3)]
+        chance.shuffle(rows)
+        rows[0] = rows[1] if turn % 4 == 3 else rows[0]
+        zero = [Fraction(chance.randint(-9, 9), 20) for _ in range(3)]
+
+        def equations(x, d, rows=rows, zero=zero):
+            off = [check.Jet.of(v, d, k) - zero[k] for k, v in enumerate(x)]
+            return [
+                sum((y * a for y, a in zip(off, row, strict=True)), off[0] * off[0] * Fraction(1, 50)) for row in rows
+            ]
+
+        if turn % 4 == 3:
+            with pytest.raises((check.Unproved, ZeroDivisionError)):
+                check.newton(equations, box, p)
+            continue
+        for x, image in zip(zero, check.newton(equations, box, p), strict=True):
+            assert image.lo <= x * 2**p <= image.hi
+            assert image.width() < 2**p / 4
+
+
+@pytest.mark.parametrize("spare", ["0", "1/50", "-1/50"])
+@pytest.mark.parametrize("turn", range(4))
+def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, spare):
+    """Of `(x, y) -> (-x + a*x**2 + b*x*y + c*x**3, m*y + d*x**2)` it is `c + a**2 + b*d/(1 - m)`.
+
+    For on the curve `y = h*x**2` that is kept, `h = d/(1 - m)`. Coordinates are changed by a matrix.
+    """
+    chance, p = random.Random(turn), 120
+    a, b, d, m = (Fraction(chance.randint(1, 9), 10) * chance.choice([-1, 1]) for _ in range(4))
+    c = Fraction(spare) - a * a - b * d / (1 - m)
+    (q, r), (s, t) = ((1, 0), (0, 1)) if turn == 0 else ((chance.randint(1, 3), 1), (-1, chance.randint(1, 3)))
+    det = Fraction(q * t - r * s)
+    number = lambda x: check.I.of(Fraction(x), p).wide(check.I.of(Fraction(1, 2**100), p))  # noqa: E731
+
+    def around(u, v):
+        x, y = u * q + v * r, u * s + v * t
+        x, y = x * x * a + x * y * b + x * x * x * number(c) - x, y * m + x * x * d
+        return (x * t - y * r) * (1 / det), (y * q - x * s) * (1 / det)
+
+    image = [check.I.of(0, p)] * 3
+    cycle = check.Cycle.__new__(check.Cycle)
+    cycle.p, cycle.sign, cycle.kind, cycle.way, cycle.names = p, 1, "flip", [], lambda letter: {}
+    cycle.run = lambda *_: [None, around(*(check.Jet.of(image[k], 1, k) for k in (0, 1)))]
+    launched = lambda launch, at, d: around(*launch(*(check.Jet.of(x, d, k) for k, x in enumerate(at)))[:2])  # noqa: E731
+    cycle.table = SimpleNamespace(orbit=lambda launch, at, way, d, states: [None, launched(launch, at, d)])
+
+    if spare == "0":
+        with pytest.raises(check.Unproved, match="nondegenerate"):
+            cycle.generic(image)
+    else:
+        cycle.generic(image)
+
+
+@pytest.mark.parametrize(
+    ("psi", "arrives"),
+    [("0", True), ("1/2", True), ("-1", True), ("3", False), ("-3", False), ("7", False), ("31/5", False)],
+)
+def test_a_flight_runs_forwards_from_the_inward_side_and_its_angle_is_named_once(check, psi, arrives):
+    """In the circle it lands opposite, less two angles; backwards it lands too, and a turn more is no angle."""
+    p, scene = 100, {"polar": "1 + 0*cos(theta)", "lam": "1/3"}
+    table, lam, _ = check.read_scene(scene, "", p)
+    names = table.letters | {"lam": lam}
+    launched = Fraction(psi)
+    start = [check.Jet.of(check.I.of(x, p), 1, k) for k, x in enumerate((Fraction(1, 3), launched))]
+    turn = {"7": 44, "31/5": 44}.get(psi, 0)  # a whole turn is 44/7, nearly
+    near = check.I.of(Fraction(1, 3) + Fraction(22, 7) - 2 * (launched - Fraction(turn, 7)), p).wide(
+        check.I.of(Fraction(1, 100), p)
+    )
+
+    def landed():
+        return table.flight(0, (0, near), start, names)
+
+    if arrives:
+        theta, psi1 = landed()
+        for found, truth in (
+            (theta, check.pi(p) + Fraction(1, 3) - launched * 2),
+            (psi1, check.I.of(launched, p) * Fraction(1, 3)),
+        ):
+            off = check.value(found) - truth
+            assert 0 in off
+            assert off.width() < 2 ** (p - 60)
+    else:
+        with pytest.raises(check.Unproved, match="may not arrive from inside"):
+            landed()
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"mirror": 1}, {"mirror": None}, {"components": [0]}, {"components": [0] * 1025}, {"components": "00"},
+        {"components": [0, 1]}, {"components": [0, -1]}, {"components": [0, True]}, {"bits": 15}, {"bits": True},
+        {"digits": 0}, {"bits": 10**6}, {"digits": 10**6}, {"radius": ["0", "0"]}, {"radius": ["-1", "-9"]},
+        {"radius": ["3", "0"]}, {"centre": [["1", "30"], ["0", "0"]]}, {"free": "lam"}, {"free": 3}, {"schema": 3},
+        {"kind": "tangency"}, {"kind": "orbit"}, {"checks": {}}, {"name": "lambda-c"}, {"statement": ""}, {"more": 1},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_an_entry_out_of_its_range_is_wrong_and_says_so(check, changed):
+    given = json.loads((FOLDER / "minor-axis.json").read_text())
+    assert "last bounce at -1.57079632" in check.checked(given) or "last bounce at 4.71238898" in check.checked(given)
+    with pytest.raises(check.Wrong):
+        check.checked(given | changed)
+
+
+@pytest.mark.parametrize("given", [[], None, "kind", 3, {}, {"kind": "cycle"}, {"kind": ["cycle"]}])
+def test_what_is_no_document_is_refused_and_not_read_on(check, given, tmp_path, capsys):
+    file = tmp_path / "some.json"
+    file.write_text(json.dumps(given))
+    assert check.main([str(file)]) == 1
+    assert "refused: " in capsys.readouterr().out
+    if given != {"kind": ["cycle"]}:
+        with pytest.raises(check.Wrong):
+            check.checked(given)

@@ -9,7 +9,22 @@ from sympy import Rational
 from numeric import PinballMap
 from symbolic.tables import egg
 from verification.proofs.periodic import returning as cover
-from verification.proofs.periodic.returning import _folded, _round, image, returning
+from verification.proofs.periodic.returning import (
+    Image,
+    Piece,
+    _folded,
+    _hull,
+    _joined,
+    _judged,
+    _leads,
+    _once_round,
+    _parts,
+    _round,
+    _runs,
+    _spanning,
+    image,
+    returning,
+)
 
 SHAPE = Rational(2, 25)
 TABLE = egg(3).at(alpha=SHAPE)
@@ -80,3 +95,121 @@ def test_pieces_are_taken_in_the_order_in_which_they_lead_to_each_other():
     assert _round([{2}, {0}, {1}]) == [0, 2, 1]
     assert _round([{0}]) == [0]
     assert _round([{1, 0}, {0}]) == _round([{1}, {1}]) == []
+
+
+def thin(*entries):
+    """The image of a cell whose derivative is known."""
+    return Image((), (0.0, 0.0), tuple((x, x) for x in entries))
+
+
+def test_what_holds_for_several_images_are_the_outermost_bounds():
+    spans = [(0.1, 0.4), (-0.2, 0.3), (0.0, 0.5)]
+    assert _spanning(spans) == (-0.2, 0.5)
+    joined = _joined([thin(1, 2, 3, 4), thin(0, 5, 3, -1)])
+    assert joined.derivative == ((0, 1), (2, 5), (3, 3), (-1, 4))
+    assert _runs([3, 4, 5, 9, 10, 12]) == [[3, 4, 5], [9, 10], [12]]
+
+
+def test_once_round_vectors_of_the_cone_stretch_as_said_and_the_norm_bounds_the_multipliers():
+    random, both = np.random.default_rng(1), set()
+    for _ in range(200):
+        matrices = [np.array([[u * 2, v], [w / 100, x / 100]]) for u, v, w, x in random.uniform(-1, 1, (3, 4))]
+        slowest, fastest = _once_round([thin(*m.ravel()) for m in matrices])
+        product = matrices[2] @ matrices[1] @ matrices[0]
+        wide = 2 * abs(product[1, 0]) + 2.0**-20
+        corners = np.array([[1, 1, 1], [wide, 0, -wide]])
+        images = product @ corners
+        assert max(abs(np.linalg.eigvals(product))) <= fastest * (1 + 1e-9)
+        if slowest:
+            assert slowest <= np.min(np.abs(images[0])) * (1 + 1e-9)
+            assert np.all(np.abs(images[1]) <= wide * np.abs(images[0]) * (1 + 1e-9))
+            assert slowest > np.min(np.abs(images[0])) * 0.99 - 1e-6
+        norm = max(abs(product[0]) @ (1, wide), abs(product[1]) @ (1 / wide, 1))
+        assert fastest == pytest.approx(norm, rel=1e-6)
+        both.add((slowest > 1, fastest < 1))
+    assert len(both) > 1
+    assert _once_round([thin(0.1, -2, 2, 0.1)])[0] == 0  # a quarter turn keeps no such cone
+    spread = _once_round([Image((), (0.0, 0.0), ((1.5, 2.5), (-0.1, 0.1), (0, 0), (0, 0)))])
+    assert spread[0] == pytest.approx(1.5, abs=1e-4)
+    assert spread[1] == pytest.approx(2.5, abs=1e-4)
+
+
+def test_cells_lead_to_all_cells_that_a_stretch_meets_with_the_angles_of_all_contractions():
+    low = Image(((0.05, 0.15, 1), (0.32, 0.34, -1)), (-0.4, 0.2), ((0, 0),) * 4)
+    leads = _leads(dict.fromkeys((0, 1, 3, 7), low), (0.25, 0.5), 0.1)
+
+    assert set(leads) == {0, 1, 3, 7}
+    for found in leads.values():
+        assert set(found) == {0, 1, 3}
+        assert found[0] == found[1] == pytest.approx((-0.1, 0.2))  # -lam*eta, for both contractions
+        assert found[3] == pytest.approx((-0.2, 0.1))
+    twice = Image(((0.05, 0.08, 1), (0.02, 0.04, -1)), (-0.4, 0.2), ((0, 0),) * 4)
+    assert _leads({0: twice}, (0.5, 0.5), 0.1)[0][0] == pytest.approx((-0.2, 0.2))
+    edge = Image(((0.1, 0.15, 1),), (0.0, 0.1), ((0, 0),) * 4)
+    assert set(_leads({0: edge, 1: edge}, (0.5, 0.5), 0.1)[0]) == {0, 1}  # a rounding from the border
+
+
+def test_parts_are_cells_that_lead_to_each_other_and_a_cell_alone_only_when_it_leads_to_itself():
+    leads = {0: {1: (0, 0)}, 1: {0: (0, 0), 5: (0, 0)}, 5: {5: (0, 0)}, 7: {0: (0, 0)}, 8: {9: (0, 0)}, 9: {}}
+
+    assert sorted(map(sorted, _parts(leads))) == [[0, 1], [5]]
+
+
+@pytest.mark.parametrize(("slope", "repels"), [(1.2, True), (0.8, False), (1.0, None), (-1.2, True), (-0.8, False)])
+def test_a_part_repels_or_contracts_by_its_derivative_once_round(slope, repels):
+    """Two pieces of two cells each, that lead to each other."""
+    images = {k: thin(slope, 0, 0, 0) for k in (2, 3, 6, 7)}
+    leads = {k: dict.fromkeys((6, 7) if k < 4 else (2, 3), (0.0, 0.0)) for k in images}
+    found = _judged([2, 3, 6, 7], leads, images, 0.1)
+
+    assert (found and found[1]) is repels
+    if found:
+        assert np.allclose([(piece.low, piece.high) for piece in found[0]], [(0.2, 0.4), (0.6, 0.8)])
+    leads[3][2] = (0.0, 0.0)  # then a piece leads to two
+    assert _judged([2, 3, 6, 7], leads, images, 0.1) is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "signs", "slope", "found"),
+    [
+        ({}, (1, 1), 0.5, True),
+        ({}, (-1, -1), -0.5, True),
+        ({}, (1, -1), 0.5, False),  # on both sides of a vertex
+        ({}, (1, 1), 1.0, False),
+        ({"other": (Piece(0.3, 0.4, 0, 0),)}, (1, 1), 0.5, False),  # of another number of pieces
+        ({"low": 0.0}, (1, 1), 0.5, False),  # reaches a vertex
+        ({"high": math.pi / 3}, (1, 1), 0.5, False),  # or a flat point
+        ({"second": 0.28}, (1, 1), 0.5, False),  # the hulls meet
+    ],
+)
+def test_contracting_parts_have_one_hull_each_where_the_norm_contracts_over_all_of_it(
+    monkeypatch, wrong, signs, slope, found
+):
+    asked = []
+
+    def made(table, cell, phi, lams):
+        asked.append((cell, phi))
+        sign = signs[0] if cell[0] < 0.25 else signs[1]
+        return Image(
+            ((0.0, 0.1, sign),) + (((0.0, 0.1, signs[0]),) if cell[0] > 0.25 else ()),
+            (0, 0),
+            thin(slope, 0, 0, 0).derivative,
+        )
+
+    monkeypatch.setattr(cover, "image", made)
+    low, second = wrong.get("low", 0.1), wrong.get("second", 0.5)
+    parts = [
+        (Piece(low, 0.2, 0, 0), Piece(second, 0.6, 0, 0)),
+        (Piece(0.15, 0.3, 0, 0), Piece(0.5, wrong.get("high", 0.7), 0, 0)),
+    ]
+    parts = [*parts, wrong["other"]] if "other" in wrong else parts
+    hulls = _hull(parts, TABLE, 0.1, {1: (-0.1, 0.2), 2: (-0.3, 0.1)}, (0.0, 0.1))
+
+    assert (hulls is not None) is found
+    if found:
+        assert np.allclose([(piece.low, piece.high) for piece in hulls], [(0.1, 0.3), (0.5, 0.7)])
+        assert {phi for _, phi in asked} == {(-0.3, 0.2)}
+        for piece in hulls:
+            cells = [cell for cell, _ in asked if piece.low - 1e-9 <= cell[0] and cell[1] <= piece.high + 0.1 + 1e-9]
+            assert min(a for a, _ in cells) == pytest.approx(piece.low)
+            assert max(b for _, b in cells) >= piece.high - 1e-9

@@ -30,12 +30,12 @@ from typing import NamedTuple
 import coverage
 import pytest
 from mutation_mutants import ROOT, STATE, Mutant, changed, function_at, statements
-from mutation_server import QUIET, append, ask, in_fork, warm
+from mutation_server import QUIET, append, ask, file_of, in_fork, warm
 
 CORE = ROOT / "benchmarks" / "records" / "mutation_core.toml"
 RESULTS = STATE / "core.jsonl"
 SLOW = ROOT / "tests" / "slow.txt"
-LONGEST = 0.5  # seconds, by slow.txt, of a test that is asked
+LONGEST = 2.5  # seconds, by slow.txt, of a test that is asked
 NOTICED = ("killed", "timeout")
 LARGE = 16  # a whole number beyond is a budget, a precision, a size: one more proves the same
 BINARY = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*")}
@@ -283,18 +283,25 @@ def measured(group: Group) -> tuple[dict[str, float], dict[tuple[str, int], set[
 def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float) -> dict[str, float]:
     """The tests to be asked, quickest first, as far as the budget goes: those that execute the mutated statement.
 
-    What runs at import is not theirs: of such a statement those are asked that run any line of the module.
+    What runs at import is not theirs: of such a statement those are asked that run any line of the module. The other
+    tests of their files come after them, for what is kept for a file (a fixture, a memo) was made in the first test
+    that asked for it; in the fork it is made anew, so they have the time of that one.
     """
     first, last = mutant.statement
     running = set().union(*(lines.get((mutant.path, line), set()) for line in range(first, last + 1)))
     if "" in running:
         running = set().union(*(nodes for (path, _), nodes in lines.items() if path == mutant.path))
+    running &= seconds.keys()
+    dearest: dict[str, float] = {}
+    for node in running:
+        dearest[file_of(node)] = max(dearest.get(file_of(node), 0.0), seconds[node])
+    beside = {node for node in seconds if file_of(node) in dearest} - running
     chosen, total = {}, 0.0
-    for node in sorted(running & seconds.keys(), key=seconds.__getitem__):
+    for node in (*sorted(running, key=seconds.__getitem__), *sorted(beside, key=seconds.__getitem__)):
         total += seconds[node]
         if chosen and total > budget:
             break
-        chosen[node] = seconds[node]
+        chosen[node] = seconds[node] if node in running else max(seconds[node], dearest[file_of(node)])
     return chosen
 
 

@@ -4,17 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sympy import Rational, lambdify, pi
+from sympy import Rational, lambdify, pi, sympify
 
 from numeric import PinballMap
 from symbolic import tables
 from symbolic.tables.table import lam
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import paper
-from verification.paper.judges import elastic, polygons
+from verification.paper.judges import elastic, laws, polygons
 from verification.paper.report.report import judge
 
-CLAIMS = {claim.id: claim for name in ("polygons", "elastic") for claim in paper(name).claims}
+SHIPPED = ("polygons", "elastic", "laws")
+CLAIMS = {claim.id: claim for name in SHIPPED for claim in paper(name).claims}
 PROVED = {
     "triangle.law": Verdict.CONFIRMED,
     "triangle.contraction": Verdict.CORRECTED,
@@ -26,6 +27,9 @@ PROVED = {
     "square.integrable": Verdict.CONFIRMED,
     "slap.expanding": Verdict.CONFIRMED,
     "elastic.mean_free_path": Verdict.CONFIRMED,
+    "law.non_hamiltonian": Verdict.CONFIRMED,
+    "law.stability": Verdict.CONFIRMED,
+    "law.rotation": Verdict.CONFIRMED,
 }
 
 
@@ -39,7 +43,7 @@ def test_what_is_proved_is_told_as_proved(name):
 
 
 def test_every_section_names_its_source():
-    for name in ("polygons", "elastic"):
+    for name in SHIPPED:
         about = paper(name)
         assert all(about.sections.values())
         assert {claim.section for claim in about.claims} <= set(about.sections)
@@ -159,3 +163,31 @@ def test_the_two_published_constants_of_small_discs_are_told_apart(monkeypatch):
 
 def test_sampled_sentences_are_supported():
     assert {verdict(name) for name in ("square.coexistence", "stadium.elliptical")} == {Verdict.SUPPORTED}
+
+
+@pytest.mark.parametrize("angle", ["pi/6", "1"])
+def test_in_the_circle_the_line_of_a_law_with_a_fixed_angle_attracts_and_is_turned(angle):
+    """What `law.rotation` derives, against the map's own orbits: exact angles, the same turn at every bounce."""
+    p = float(sympify(angle))
+    map = PinballMap("circle", lam="1/2", law=f"({angle})/2 - eta/2")
+    orbit = map.orbit(np.linspace(-3, 3, 9), np.linspace(-1.5, 1.5, 9), 80)
+    turns = np.remainder(np.diff(orbit.theta[-20:], axis=0) - (np.pi - 2 * p) + 1, 2 * np.pi) - 1
+
+    assert np.max(np.abs(orbit.phi[-20:] - p)) < 1e-14
+    assert np.max(np.abs(turns)) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("name", "attribute", "wrong"),
+    [
+        ("law.non_hamiltonian", "area_factor", lambda phi: -phi.diff(laws.eta)),
+        ("law.stability", "double_normal", lambda sigma: laws.Matrix([[3, 0], [0, sigma**2]])),
+        ("law.rotation", "IRRATIONAL", Rational(2)),
+        ("law.rotation", "RATIONAL", pi / 5),
+        ("law.rotation", "landing", lambda formula: (laws.zero("", laws.phi), formula)),
+    ],
+)
+def test_no_sentence_on_laws_is_confirmed_of_another_derivation(monkeypatch, name, attribute, wrong):
+    monkeypatch.setattr(laws, attribute, wrong)
+
+    assert verdict(name) is not Verdict.CONFIRMED

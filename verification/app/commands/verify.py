@@ -163,7 +163,7 @@ def claims_command(what: str, folder: Path, output: Output) -> int:
 
 @click.command(epilog="Example: pinball verify --only 'egg.*' --digits 30")
 @click.option(
-    "--claims", "source", metavar="DIR", help="Another paper: its folder, or polygons or elastic. Runs its judges."
+    "--claims", "source", metavar="DIR", help="Another paper: its folder, or polygons, elastic, laws. Runs its judges."
 )
 @click.option("--only", metavar="GLOB", default="*", show_default=True, help="Judge the claims whose id matches.")
 @click.option("--section", metavar="LABEL", help="Judge the claims of a section, such as 6.3, 6 or Abstract.")

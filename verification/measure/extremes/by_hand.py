@@ -6,6 +6,7 @@ ahead, and on the arc that a particle leaves it is the other point where its lin
 closely each line passes a corner or a tangent on its way, as a share of the numbers from which its ends are added up.
 """
 
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -24,6 +25,7 @@ from verification.measure.extremes.kernels import Wide
 WIDE = np.longdouble
 START = WIDE(2.0**-58)  # as a share of the table: of another piece, what is nearer is rounding
 NEARBY = WIDE(2.0**-40)  # the same: of corners and tangents, what may lie behind the start
+ROUGHLY = 2.0**-30  # the same: a line that passes a piece by more has nothing to do with it
 SKEW = WIDE(2.0**-20)  # the same: by so much a tangent lies beyond the landing of a line that all but touches
 
 
@@ -119,31 +121,54 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
     count = z.shape[1]
     best, where = np.full(count, np.inf, dtype=WIDE), np.full(count, -1)
     straight, weight = np.zeros(count, dtype=WIDE), np.zeros(count, dtype=WIDE)
-    near: list[tuple[Any, Any, Any]] = []  # how far ahead, how far aside, size
+    near: list[tuple[Any, ...]] = []  # of whom, how far ahead, how far aside, size
+    roughly = z.astype(float), v.astype(float)
     with np.errstate(all="ignore"):
         for j, piece in enumerate(known):
-            corner = [piece.start[i] - z[i] for i in (0, 1)]
-            own_size = max(_added_up(one, piece.start) for one in (piece, known[family.following.index(j)]))
-            if not family.closed[j]:
-                near.append((v[0] * corner[0] + v[1] * corner[1], abs(_cross(v, corner)), size + own_size))
-            own = at == j
-            depart = abs(_cross(v, [p0 * piece.B[i] - q0 * piece.A[i] for i in (0, 1)]))
-            for t, p, q, cosine, inside in _met(piece, family.closed[j], z, v, own, depart):
+            some = np.flatnonzero(_may_meet(piece, known[family.following[j]].start, *roughly, table))
+            near += [(some, *one) for one in _near(family, known, j, z[:, some], v[:, some], size[some])]
+            own = at[some] == j
+            depart = abs(_cross(v[:, some], [p0[some] * piece.B[i] - q0[some] * piece.A[i] for i in (0, 1)]))
+            for t, p, q, cosine, inside in _met(piece, family.closed[j], z[:, some], v[:, some], own, depart):
                 there = sum(abs(piece.origin[i]) + abs(p * piece.A[i]) + abs(q * piece.B[i]) for i in (0, 1))
-                nearer = inside & (t > np.where(own, 0, START * table)) & (t < best) & (cosine > 0)
+                nearer = inside & (t > np.where(own, 0, START * table)) & (t < best[some]) & (cosine > 0)
                 nearer = nearer & ~(own & (piece.kind == LINE))
-                best, where = np.where(nearer, t, best), np.where(nearer, j, where)
-                straight, weight = np.where(nearer, cosine, straight), np.where(nearer, there, weight)
-            if piece.kind != LINE and piece.D < 0:
-                near.append(_tangent(piece, family.closed[j], z, v, size))
+                these = some[nearer]
+                best[these], where[these] = t[nearer], j
+                straight[these], weight[these] = cosine[nearer], there[nearer]
         aside = np.full(count, np.inf, dtype=WIDE)
-        for ahead, miss, both in near:
-            beyond = (NEARBY / np.minimum(straight, 1) + SKEW) * table
-            on_the_way = (ahead > -NEARBY * table) & (ahead < best + beyond)
-            aside = np.where(on_the_way, np.minimum(aside, miss / both / WIDE(2.0**-52)), aside)
+        beyond = (NEARBY / np.minimum(straight, 1) + SKEW) * table
+        for some, ahead, miss, both in near:
+            on_the_way = (ahead > -NEARBY * table) & (ahead < (best + beyond)[some])
+            least = np.where(on_the_way, miss / both / WIDE(2.0**-52), np.inf)
+            aside[some] = np.where(on_the_way, np.minimum(aside[some], least), aside[some])
     with np.errstate(invalid="ignore"):
         x, y = (z[i] + best * v[i] for i in (0, 1))
     return Hit(best, where, x, y, aside.astype(float), straight.astype(float), (size + weight).astype(float))
+
+
+def _may_meet(piece: Piece[Any], start: Any, z: Any, v: Any, table: float) -> Any:
+    """Which lines may meet a piece, or pass it by `ROUGHLY` of the table: in doubles, which err by much less."""
+    least = ROUGHLY * table
+    if piece.kind == LINE:  # both ends on one side
+        one, two = (_cross(v, [float(end[i]) - z[i] for i in (0, 1)]) for end in (piece.start, start))
+        return ~((np.minimum(one, two) > least) | (np.maximum(one, two) < -least))
+    a, b, m = (
+        _cross(v, w)
+        for w in (*np.array([piece.A, piece.B], dtype=float), [z[i] - float(piece.origin[i]) for i in (0, 1)])
+    )
+    return ~(abs(m) > np.hypot(a, b) + least)
+
+
+def _near(family: Pieces, known: list[Piece[Any]], j: int, z: Any, v: Any, size: Any) -> Iterator[tuple[Any, Any, Any]]:
+    """How far ahead and aside of lines the corner at which a piece begins and its tangent are, and the size there."""
+    piece = known[j]
+    if not family.closed[j]:
+        corner = [piece.start[i] - z[i] for i in (0, 1)]
+        both = max(_added_up(one, piece.start) for one in (piece, known[family.following.index(j)]))
+        yield v[0] * corner[0] + v[1] * corner[1], abs(_cross(v, corner)), size + both
+    if piece.kind != LINE and piece.D < 0:
+        yield _tangent(piece, family.closed[j], z, v, size)
 
 
 def _added_up(piece: Piece[Any], point: Any) -> Any:

@@ -1,6 +1,7 @@
 """The ways to find the next bounce, in the order in which they are asked whether a table is theirs.
 
-A new one is a module beside these and a line here.
+A new one is a module beside these and a line here: its module, its class, and the table of the paper that it is for,
+if it is for one alone.
 """
 
 from importlib import import_module
@@ -8,23 +9,25 @@ from importlib import import_module
 from numeric.flights.family import Boundary, Family
 
 FAMILIES = (
-    ("circle", "Circle"),
-    ("cardioid", "Cardioid"),
-    ("cuspless", "Cuspless"),
-    ("harmonic", "Conic"),
-    ("harmonic", "Ellipse"),
-    ("harmonic", "Fourier"),
-    ("many", "Many"),
-    ("pieces", "Pieces"),
-    ("spline", "Spline"),
-    ("polar", "Polar"),
-    ("general", "General"),
+    ("circle", "Circle", "circle"),
+    ("cardioid", "Cardioid", "cardioid"),
+    ("cuspless", "Cuspless", "cuspless"),
+    ("harmonic", "Conic", ""),
+    ("harmonic", "Ellipse", ""),
+    ("harmonic", "Fourier", ""),
+    ("many", "Many", ""),
+    ("pieces", "Pieces", ""),
+    ("spline", "Spline", ""),
+    ("polar", "Polar", ""),
+    ("general", "General", ""),
 )
 
 
 def family_of(boundary: Boundary) -> Family:
-    """The first family that serves the table; those after it are not even imported."""
-    for module, name in FAMILIES:
+    """The first family that serves the table; those after it, and those for another table, are not even imported."""
+    for module, name, table in FAMILIES:
+        if table not in ("", boundary.ir.same_as):
+            continue
         family: type[Family] = getattr(import_module(f"numeric.flights.{module}"), name)
         if family.matches(boundary):
             return family(boundary)

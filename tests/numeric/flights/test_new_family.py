@@ -71,7 +71,7 @@ def registered(monkeypatch):
     module = ModuleType("numeric.flights.disc")
     module.Disc = Disc
     monkeypatch.setitem(sys.modules, "numeric.flights.disc", module)
-    monkeypatch.setattr(registry, "FAMILIES", (("disc", "Disc"), *registry.FAMILIES))
+    monkeypatch.setattr(registry, "FAMILIES", (("disc", "Disc", ""), *registry.FAMILIES))
 
 
 @pytest.mark.parametrize("kernels", [True, False], ids=["LLVM", "NumPy"])

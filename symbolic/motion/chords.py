@@ -29,9 +29,9 @@ from sympy import Derivative, Expr, Function, Interval, Symbol, atan, diff, oo
 
 from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
 from symbolic.expressions.text import Kernel, kernel
-from symbolic.tables.geometry import in_half_tangent, turning
+from symbolic.tables.geometry import in_half_tangent, speed, turning
 from symbolic.tables.law import PAPERS_LAW, Law
-from symbolic.tables.table import Table, eta, lam, theta
+from symbolic.tables.table import Component, Table, eta, lam, s, theta
 from symbolic.tables.validity import parameter_box
 
 theta0 = Symbol("theta0", real=True)  # the bounce itself
@@ -134,8 +134,11 @@ def collision_rule(
 
 
 @cache
-def law_kernel(law: Law, order: int = 1) -> Kernel:
+def law_kernel(law: Law, order: int = 1, whole: Component | None = None) -> Kernel:
     """The exit angle as a generated function of `(eta, lam, theta, *own)`, with derivatives up to `order`.
+
+    Of a law that speaks of arc length on the closed curve `whole` it is one of `(eta, lam, theta, s, *own)`; the
+    derivatives by `theta` are those along the curve, on which that of `s` is the speed.
 
     The values are `phi`, then `phi_eta` and its like, and for order 2 `phi_eta_eta` and all other pairs with `eta` or
     `theta`.
@@ -143,14 +146,20 @@ def law_kernel(law: Law, order: int = 1) -> Kernel:
     >>> law_kernel(Law("-lam*eta - b*sin(2*eta)")).results
     ('phi', 'phi_eta', 'phi_theta', 'phi_lam', 'phi_b')
     """
-    letters = (eta, theta, lam, *law.symbols)
-    found = {"phi": law.phi}
+    letters, places = (eta, theta, lam, *law.symbols), (theta,) if whole is None else (theta, s)
+    length = Function("length", real=True)(theta)
+    phi = law.phi if whole is None else law.phi.subs(s, length)
+    found = {"phi": phi}
     if order:
-        found |= {f"phi_{p}": diff(law.phi, p) for p in letters}
+        found |= {f"phi_{p}": diff(phi, p) for p in letters}
     if order > 1:
         pairs = combinations_with_replacement(letters, 2)
-        found |= {f"phi_{p}_{q}": diff(law.phi, p, q) for p, q in pairs if p in (eta, theta)}
-    return kernel(f"law_{order}", (eta, lam, theta, *law.symbols), found, about=f"The law phi = {law}.")
+        found |= {f"phi_{p}_{q}": diff(phi, p, q) for p, q in pairs if p in (eta, theta)}
+    if whole is not None:
+        rate = speed(whole)
+        known = {length: s, diff(length, theta): rate, diff(length, theta, 2): diff(rate, theta)}
+        found = {name: value.xreplace(known) for name, value in found.items()}
+    return kernel(f"law_{order}", (eta, lam, *places, *law.symbols), found, about=f"The law phi = {law}.")
 
 
 @cache

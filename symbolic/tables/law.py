@@ -109,7 +109,7 @@ class Law:
         return not self.uniform and self.phi.has(s)
 
     def on(self, table: "Table", component: int = 0) -> "Law":
-        """The same law on one component of a table, with `s` written as a formula in `theta`; `ValueError` without one.
+        """The same law on one component, `s` written as a formula in `theta`; on a closed curve without one `s` stays.
 
         >>> from symbolic import tables
         >>> Law("-lam*eta + sin(s)/9").on(tables.square(), 2).phi
@@ -253,18 +253,18 @@ def _on(law: Law, table: "Table", component: int) -> Law:
 
     known = lengths(table)
     if known is None:
-        raise _unknown(law, table)
+        if len(table.components) > 1 or table.shapes:
+            raise _unknown(law, table)
+        return law
     if len(table.components) == 1:
         return Law(str(law.phi.subs(s, known[component])))
     return replace(law, along=known[component])
 
 
 def _unknown(law: Law, table: "Table") -> ValueError:
-    known = "orbits know it, and " if len(table.components) == 1 else ""
-    return ValueError(
-        f"law = {law}: the arc length s of {table.name} is no closed formula, as cycles, branches, boxes and "
-        f"certificates need it; {known}the landing's theta is accepted everywhere"
-    )
+    where = "on several pieces" if len(table.components) > 1 else "over a range of shapes"
+    why = f"the arc length s of {table.name} is no closed formula, as it has to be {where}; write the law in theta"
+    return ValueError(f"law = {law}: {why}")
 
 
 @cache

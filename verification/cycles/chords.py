@@ -7,14 +7,20 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from flint import arb, ctx
+from sympy import pi
 
-from symbolic.expressions.text import load
+from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_angle, chord_kernel, ends_kernel, law_kernel
 from symbolic.tables.definition import table_boundary
+from symbolic.tables.geometry import speed
 from symbolic.tables.law import PAPERS_LAW, Law
-from symbolic.tables.table import Table
+from symbolic.tables.table import Table, theta
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, between
+from verification.arithmetic.series import Jet
 from verification.cycles.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
+from verification.maps.enclosed import EnclosedMap
+from verification.maps.exact import ExactMap
 from verification.maps.first_hit import closes_smoothly, convex
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
@@ -119,8 +125,13 @@ class Chords:
         if self.law.uniform:
             return {}
         law = self.law.on(self.table, part)
-        made, own = law_kernel(law, order), [at[name] for name in law.parameters]
-        return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], here, *own), strict=True))
+        own, place = [at[name] for name in law.parameters], [here]
+        if not law.measured:
+            made = law_kernel(law, order)
+        else:
+            made, length = law_kernel(law, order, self.table.components[0]), _lengths(self.table)
+            place = length.placed(arithmetic, here)
+        return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], *place, *own), strict=True))
 
     def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int, law: Slopes) -> Terms[X]:
         """The rule from the angles of the chords ahead and back, with derivatives as the kernels return them."""
@@ -201,7 +212,8 @@ class Chords:
 
     def obstacle(self, x: Array, at: Parameters) -> str:
         """A bounce beyond its component, or next to its neighbour."""
-        if not closes_smoothly(self.table):  # beyond its ends another formula runs on along no boundary
+        cut = self.law.measured and self.law.on(self.table, self.components[0]).measured  # where the law may jump
+        if cut or not closes_smoothly(self.table):  # beyond its ends another formula runs on along no boundary
             ends = self.ends(at)
             for i, (part, value) in enumerate(zip(self.components, x, strict=True)):
                 if not ends[part][0] <= value <= ends[part][1]:
@@ -281,6 +293,50 @@ def _convex_throughout(table: Table) -> bool:
 @cache
 def _map_of(table: Table, maker: Any) -> Any:
     return maker(table, lam=1)
+
+
+class Lengths:
+    """The paper's arc length on a closed curve where it is an integral: of floats, arrays, mpmath numbers, balls, jets.
+
+    It is counted on one way round, between the ends of the curve's parameter: at them it jumps by the perimeter.
+    """
+
+    def __init__(self, table: Table) -> None:
+        from numeric import PinballMap
+
+        self.map, self.exact, self.enclosed = _map_of(table, PinballMap), dict[int, ExactMap](), dict[int, Any]()
+        (whole,) = table.components
+        if (whole.start, whole.end) != (-pi, pi):
+            raise ValueError(
+                f"{table.name}: the parameter of a closed curve runs from -pi to pi, where s is integrated"
+            )
+        self.rate = kernel("speed", [theta], {"speed": speed(whole)})
+
+    def placed(self, arithmetic: Arithmetic, here: Any) -> list[Any]:
+        """The parameter between -pi and pi, by its middle, and the arc length there."""
+        middle = here.c[0] if isinstance(here, Jet) else here
+        turns = np.round(np.asarray(middle, dtype=float) / (2 * np.pi))
+        here = here - 2 * arithmetic.pi * (turns if turns.ndim else int(turns)) if np.any(turns) else here
+        if not isinstance(here, Jet):
+            return [here, self.of(here)]
+        (rate,) = load(self.rate, arithmetic)(here)
+        steps = rate * Jet(*(k * c for k, c in enumerate(here.c[1:], 1)), 0)
+        return [here, Jet(self.of(here.c[0]), *(c / k for k, c in enumerate(steps.c[:-1], 1)))]
+
+    def of(self, here: Any) -> Any:
+        """The length at a number; of a ball it is enclosed, by the integral to its middle and the speed over it."""
+        if isinstance(here, arb):
+            if ctx.prec not in self.enclosed:
+                self.enclosed[ctx.prec] = EnclosedMap(self.map, 1, ctx.prec)
+            return self.enclosed[ctx.prec].length(0, here)
+        if not hasattr(here, "context"):
+            return self.map.arclength.s(here)
+        if here.context.dps not in self.exact:
+            self.exact[here.context.dps] = ExactMap(self.map, here.context.dps)
+        return here.context.mpf(self.exact[here.context.dps].length(0, here))
+
+
+_lengths = cache(Lengths)
 
 
 def landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:

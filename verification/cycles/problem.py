@@ -65,6 +65,8 @@ class Problem:
             raise ValueError(f"{self.table.name}: {kind} with {self.free or 'no parameter'} free is not square")
         if self.mirror and not all(mirrored(component) for component in self.table.components):
             raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
+        if self.law.placed and self.closure.shift[0] % self.closure.shift[1]:
+            raise ValueError(f"law = {self.law}: a turn of the table leads to another law, so the cycle closes by none")
         if self.mirror and not self.law.odd:
             raise ValueError(f"law = {self.law}: no odd function of eta, so mirror images of orbits are no orbits")
 

@@ -153,7 +153,7 @@ def _problem_said(problem: Problem, schema: int = SCHEMA) -> dict[str, Any]:
 
 def _law_said(problem: Problem, scene: dict[str, Any]) -> dict[str, Any]:
     """The law's formula, and the numbers of its own parameters beside the table's."""
-    if problem.law.measured:
+    if problem.law.measured and len(problem.table.components) > 1:
         raise ValueError(
             f"certificate: law = {problem.law} has another formula in theta on each component of {problem.table.name}, "
             "which a certificate has no words for; write the law in theta"

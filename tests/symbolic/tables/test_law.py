@@ -98,8 +98,11 @@ def test_arc_length_is_written_in_theta_component_by_component_where_it_is_a_for
     assert law.on(cardioid).phi == -eta * lam + sin(4 * sin(theta / 2)) / 9
     assert [law.on(tables.square(), i).phi for i in (0, 3)] == [-eta * lam + sin(theta + i) / 9 for i in (0, 3)]
     assert not law.on(circle).measured
-    with pytest.raises(ValueError, match="no closed formula"):
-        law.on(egg(3).at(alpha="2/25"))
+    assert law.on(egg(3).at(alpha="2/25")) is law
+    with pytest.raises(ValueError, match="no closed formula, as it has to be over a range of shapes"):
+        law.on(egg(3))
+    with pytest.raises(ValueError, match="no closed formula, as it has to be on several pieces"):
+        law.on(tables.semi_ellipse())
 
 
 def test_a_law_of_arc_length_is_proved_over_the_whole_boundary():

@@ -171,7 +171,11 @@ def test_all_exit_angles_are_below_the_bound_that_leaves_chords_out():
 
 @pytest.mark.parametrize(
     ("law", "said"),
-    [("-lam*eta + theta/20", "a whole turn of theta"), ("-eta", "below pi/2"), ("-lam*eta + sin(s)/9", "no closed")],
+    [
+        ("-lam*eta + theta/20", "a whole turn of theta"),
+        ("-eta", "below pi/2"),
+        ("-lam*eta + sin(s)/9", "a whole turn of theta"),
+    ],
 )
 def test_prove_refuses_a_law_that_its_theorem_does_not_know(law, said):
     with pytest.raises(ValueError, match=said):

@@ -1,8 +1,10 @@
 """Cycles, branches and certificates under other reflection laws, against the theorems that survive."""
 
+import json
 from dataclasses import replace
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 from flint import arb
@@ -14,9 +16,15 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse, square, stadium
 from verification import EnclosedMap, certify, find_cycles, follow
 from verification.app.cli import main
-from verification.cycles.chords import Chords
+from verification.arithmetic.balls import FLOAT64, balls, multiprecision, working
+from verification.arithmetic.series import Jet, jets
+from verification.cycles.chords import Chords, Lengths
 from verification.cycles.problem import Problem
-from verification.named.files import _problem, _problem_said
+from verification.cycles.recurrence import Closure
+from verification.maps.exact import ExactMap
+from verification.named.files import _problem, _problem_said, checked, document
+from verification.named.locate import certify as certify_cycle
+from verification.proofs.periodic.bifurcation import Claim, _admissible
 
 BENT = "-lam*eta - b*sin(2*eta)"
 SCENE = Scene("ellipse", a="3/2", lam="1/2", law=BENT, b="1/20")
@@ -59,6 +67,8 @@ ON = "-lam*eta*(1 + cos(2*s)/10) + b*sin(s) - eta*cos(theta)/30"
         (cardioid, ON, [0.1, 2.2, -1.4]),
         (cuspless, ON, [0.1, 0.2, 0.05]),
         (stadium(), ON, [0.1, 0.2, 0.05]),
+        (egg(3).at(alpha="2/25"), ON, [0.1, 2.2, -1.4]),  # arc length is an integral
+        (ellipse.at(a="3/2"), ON, [0.1, 2.2, 4.0]),  # and counted from the other side beyond pi
     ],
 )
 def test_the_chord_rule_of_a_law_has_its_own_derivatives(table, formula, x):
@@ -120,6 +130,77 @@ def test_a_cycle_under_a_law_of_arc_length_is_one_of_the_map_and_followed():
     assert abs(float(step.theta) - orbit.theta[1]) < 1e-12
     assert abs(float(step.phi) - orbit.phi[1]) < 1e-12
     assert branch.parameter == "b"
+
+
+INTEGRATED = [  # scenes whose arc length is no closed formula
+    Scene("egg", alpha="2/25", lam="1/2", law="-lam*eta + sin(s)/300"),
+    Scene("ellipse", a="3/2", lam="1/2", law="-lam*eta*(1 + cos(s)/9) + sin(2*s)/30"),
+    Scene.of({"polar": "exp(cos(3*theta)/40)", "lam": "1/2", "law": "-lam*eta + s**2/300"}),
+]
+
+
+@pytest.mark.parametrize("scene", INTEGRATED[1:], ids=lambda scene: scene.name)
+def test_where_arc_length_is_an_integral_cycles_are_those_of_the_map_and_proved(scene):
+    """By other means than the chord rule: flights in 40 digits, with the integral by mpmath."""
+    orbit = find_cycles(scene, period=2).orbits[0]
+    proof = certify_cycle(Problem(scene.table, (0, 0), lam=S(scene.lam), law=scene.law), list(orbit.theta), 25)
+    exact = ExactMap(PinballMap(scene), 40)
+    first, second = (exact.context.mpf(x.mid().str(40, radius=False)) for x in proof.enclosure.zero)
+    here, there = (exact.frame(0, theta) for theta in (first, second))
+    away = there.x - here.x, there.y - here.y
+    start = exact.along(0, first, away)
+    landed = exact.bounce(exact.bounce(start))
+    said = json.loads(json.dumps(document(proof)))
+
+    assert proof.certified
+    assert said["scene"]["law"] == scene.law.formula
+    assert checked(said).certified
+    assert abs(exact.context.sin((landed.theta - first) / 2)) < 1e-24
+    assert abs(landed.phi - start.phi) < 1e-24
+
+
+def test_a_fold_under_a_law_of_arc_length_that_is_an_integral_is_proved_and_below_it_cycles_are_fewer():
+    scene = Scene("egg", alpha="2/25", lam="1/2", law="-lam*eta + sin(s)/30")
+    branch = follow(find_cycles(scene, period=3).stable[0], lam=("0.37", "0.6"))
+    found = certify(branch.folds[0], digits=15)
+
+    assert found.certified
+    assert abs(float(found.ball.mid()) - branch.folds[0].value) < 1e-9
+    assert len(find_cycles(scene.at(lam="0.37836"), period=3)) < 4
+
+
+def test_arc_length_is_the_same_in_every_kind_of_number_and_its_derivative_the_speed():
+    length, context = Lengths(egg(3).at(alpha="2/25")), mpmath.MPContext()
+    context.dps = 30
+    at, floats = 2.2, length.placed(FLOAT64, 2.2)
+    mp = length.placed(multiprecision(context), context.mpf(at))
+    with working(100):
+        ball = length.placed(balls(100), arb(at, 1e-9))
+        moved = length.placed(jets(balls(100)), Jet(arb(at), arb(1), arb(0)))
+        h = arb(2) ** -20
+        ends = [length.placed(balls(100), arb(at) + side * h)[1] for side in (-1, 0, 1)]
+        first, second = (ends[2] - ends[0]) / (2 * h), (ends[2] - 2 * ends[1] + ends[0]) / (h * h)
+
+        assert abs(ball[1] - arb(str(mp[1]))) < 2e-9
+        assert ball[1].contains(ends[1])
+        assert abs(moved[1].c[1] - first) < 1e-9
+        assert abs(2 * moved[1].c[2] - second) < 1e-6
+    assert abs(float(mp[1]) - floats[1]) < 1e-14
+    around = length.placed(FLOAT64, at + 2 * np.pi)
+    assert np.allclose(around, floats, atol=1e-14)
+
+
+def test_no_box_reaches_over_the_place_where_a_law_of_arc_length_jumps():
+    scene, near = INTEGRATED[0], [-0.796017, 1.3111, -2.892]
+    problem = Problem(scene.table, (0, 0, 0), lam=S(1) / 2, law=scene.law)
+    claims = [Claim(problem, tuple(map(arb, near)), arb(radius), 64, 2) for radius in (0.1, 0.3)]
+
+    assert [_admissible(claim, problem.components, list(claim.centre), ()) for claim in claims] == [True, None]
+
+
+def test_a_cycle_under_a_law_of_the_place_closes_by_no_turn():
+    with pytest.raises(ValueError, match="closes by none"):
+        Problem(INTEGRATED[0].table, (0,), lam=S(1) / 2, closure=Closure(1, (1, 3)), law=INTEGRATED[0].law)
 
 
 def test_a_mirror_asks_for_an_odd_law():

@@ -352,7 +352,7 @@ def provable(scene: Scene) -> None:
         )
     if not scene.law.uniform:
         stated = scene.law.on(scene.table)
-        if stated.placed and not is_periodic(stated.phi):
+        if stated.placed and (stated.measured or not is_periodic(stated.phi)):
             raise ValueError(
                 f"--prove: a whole turn of theta is not seen to leave {stated} the same; leave --prove out"
             )

@@ -103,8 +103,8 @@ class PinballImages:
         if self.closed and not closes_smoothly(self.map.table):
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
-        if (law := scene.law.on(self.map.table)).along is not None:
-            raise ValueError(f"law = {law}: boxes know theta, and s on one closed curve alone")
+        if (law := scene.law.on(self.map.table)).measured or law.along is not None:
+            raise ValueError(f"law = {law}: boxes know theta, and s where it is a formula on one closed curve alone")
         self.law, self.placed = None if law.uniform else lower_law(law, lambda: self.map.table), law.placed
         if self.placed and self.closed and not is_periodic(law.phi):
             raise ValueError(f"law = {law}: a whole turn of theta is not seen to change nothing, as boxes need it")

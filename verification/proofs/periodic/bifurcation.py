@@ -120,9 +120,8 @@ def proved(claim: Claim) -> Proof:
         if problem.mirror:
             whole = whole + [-x for x in whole]
         parts = problem.components * (len(whole) // problem.period)
-        checks["admissible"] = (
-            _admissible(problem, parts, whole, shape) if found and _allowed(problem, zero[-1]) else None
-        )
+        inner = found and _allowed(problem, zero[-1])
+        checks["admissible"] = _admissible(claim, parts, whole, shape) if inner else None
         checks["minimal_period"] = minimal(problem.table, parts, whole) if found else None
         if problem.kind is None:
             return Proof(claim, checks, enclosure)
@@ -134,10 +133,12 @@ def proved(claim: Claim) -> Proof:
         return Proof(claim, checks | _generic(form), enclosure, form)
 
 
-def _admissible(problem: Problem, parts: tuple[int, ...], whole: list[arb], shape: tuple[arb, ...]) -> bool | None:
+def _admissible(claim: Claim, parts: tuple[int, ...], whole: list[arb], shape: tuple[arb, ...]) -> bool | None:
     """In a convex table the bounces lie inside their parts; in any other each chord is examined too."""
-    law = problem.law
+    problem, law = claim.problem, claim.problem.law
     turns = not law.measured and is_periodic(law.phi)  # arc length grows by a whole perimeter
+    if law.measured and len(problem.table.components) == 1:  # it jumps: beyond, the equations are of another law
+        whole = [arb(x, claim.radius) for x in claim.centre[: problem.period]]
     placed = inside(problem.table, parts, whole, shape, turns or not law.placed)
     if placed is not True or convex(problem.table, shape) is True:
         return placed

@@ -196,7 +196,7 @@ def no_others(
     if not closes_smoothly(table) or convex(table) is not True:
         return Completeness(n, None, 0, known)
     law = catalogue.law.on(table)
-    if law.placed and not is_periodic(law.phi):
+    if law.placed and (law.measured or not is_periodic(law.phi)):
         return Completeness(n, None, 0, known)
     with working(BITS):
         angle = load(chord_kernel(table, 0, 0, 1), balls(BITS))

@@ -1,8 +1,10 @@
 """Canaries: each judge is driven to each of its verdicts."""
 
+import numpy as np
 import pytest
-from sympy import Interval, S, log, pi, sqrt, symbols
+from sympy import Interval, Rational, S, log, oo, pi, sqrt, symbols
 
+from numeric import PinballMap
 from symbolic.expressions.signs import Finding, Outcome, positive
 from symbolic.tables.table import alpha, lam
 from verification.paper.claims.claim import Claim, Judgement, Verdict
@@ -17,11 +19,13 @@ from verification.paper.claims.judges import (
     implied,
     on_range,
     rounded,
+    witnesses,
     zero,
 )
 from verification.paper.judges import appendix as on_appendix
 from verification.paper.judges import cardioid as on_cardioid
 from verification.paper.judges import ellipse_stability as on_ellipse_stability
+from verification.paper.judges import hyperbolicity as on_hyperbolicity
 from verification.paper.judges import map as on_map
 from verification.paper.report.report import catalogue
 
@@ -178,3 +182,37 @@ def test_an_evolute_is_claimed_of_curved_components_alone(monkeypatch):
 
 def test_eigenlines_go_to_eigenlines_along_a_cycle():
     assert all(zero("", defect) for defect in on_ellipse_stability.eigenline_defects())
+
+
+def test_witnesses_are_rational_points_inside_the_ranges_and_no_two_alike():
+    x, y, z, free = symbols("x y z t")
+    box = {x: Interval(3, 5), y: Interval.open(-2, -1), z: Interval(1, oo)}
+    points = witnesses([z, x, y, free], box)
+
+    for letter in (x, y, z, free):
+        values = [point[letter] for point in points]
+        assert len(set(values)) == len(points) > 1
+        assert all(isinstance(value, Rational) for value in values)
+        assert all(value in box.get(letter, Interval.open(0, 1)).interior for value in values)
+    assert all(len(set(point.values())) == 4 for point in points)
+
+
+def test_the_map_whose_newton_iteration_may_stop_early_is_the_map_when_it_does_not():
+    map, rng = PinballMap("egg", alpha="0.08", lam="0.4"), np.random.default_rng(1)
+    theta, phi = rng.uniform(-np.pi, np.pi, 50), rng.uniform(-0.6, 0.6, 50)
+    landed = map.step(theta, phi)
+    for tolerance, close in ((1e-12, 1e-9), (0.3, 0.3)):
+        there, exit = on_hyperbolicity.bounced(theta, phi, np.full(50, 0.4), 0.08, tolerance)
+        off = np.abs(np.remainder(there - landed.theta + np.pi, 2 * np.pi) - np.pi)
+        assert np.max(off) < close
+        assert np.max(np.abs(exit - landed.phi)) < close
+    assert np.max(off) > 1e-6  # it did stop early
+
+
+def test_an_orbit_that_is_back_after_its_period_ends_nothing_and_one_that_is_not_ends_it():
+    """The egg's triangle attracts from the fold at 0.378 on; below it nothing has the period 3."""
+    lams = np.array([0.37, 0.45, 0.5])
+    ends = on_hyperbolicity.ends_of_period(3, lams, 0.08, 1e-12, (1.1, 0.3), 500, 1e-6)
+
+    assert list(ends) == [0.37]
+    assert list(on_hyperbolicity.ends_of_period(2, lams, 0.08, 1e-12, (1.1, 0.3), 500, 1e-6)) != list(ends)

@@ -10,16 +10,18 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Interval, Rational
 
+from symbolic.cycles.normal_forms import composed
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from verification.arithmetic.balls import balls, exact_balls, working
 from verification.cycles.critical import corner
 from verification.cycles.newton import refined
-from verification.cycles.problem import Linearised, Problem
+from verification.cycles.problem import Linearised, NormalForm, Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.named.locate import certify
-from verification.proofs.periodic.bifurcation import Claim, proved
-from verification.proofs.periodic.interval_newton import Status, interval_newton
+from verification.proofs.periodic import bifurcation
+from verification.proofs.periodic.bifurcation import Claim, birkhoff_normal_form, proved
+from verification.proofs.periodic.interval_newton import Cover, Enclosure, Status, compared, interval_newton, stepped
 
 AXIS = Problem(ellipse.at(a=Rational(3, 2)), (0, 0), lam=Rational(1, 3))
 EGG = egg(3).at(alpha=Rational(2, 25))
@@ -211,3 +213,150 @@ def test_a_proof_needs_every_item():
     assert proof.checks["unique"] is True
     assert proof.checks["precise"] is not True
     assert not proof.certified
+
+
+UNTIL = {  # what is not shown, and the items that are open then
+    "_admissible": {"admissible"},
+    "_allowed": {"admissible"},
+    "minimal": {"minimal_period"},
+    "_generic": {"nondegenerate"},
+    "": set(),
+}
+
+
+@pytest.mark.parametrize("wrong", UNTIL, ids=lambda wrong: wrong or "nothing")
+def test_each_item_of_the_checklist_is_what_its_step_says(monkeypatch, wrong):
+    claim = Claim(
+        Problem(cuspless, (1, 0), BifurcationKind.FLIP, "lam"), (arb(0), arb(0), arb(0.0934)), arb(1e-3), 80, 1
+    )
+    monkeypatch.setattr(
+        bifurcation, "interval_newton", lambda *_: Enclosure(Status.UNIQUE, [arb(0), arb(0), arb(0.0934)])
+    )
+    monkeypatch.setattr(bifurcation, "_admissible", lambda *_: None if wrong == "_admissible" else True)
+    monkeypatch.setattr(bifurcation, "_allowed", lambda *_: wrong != "_allowed")
+    monkeypatch.setattr(bifurcation, "minimal", lambda *_: None if wrong == "minimal" else True)
+    monkeypatch.setattr(bifurcation, "_form", lambda *_: None)
+    monkeypatch.setattr(bifurcation, "_generic", lambda form: {"nondegenerate": None if wrong == "_generic" else True})
+    found = proved(claim)
+
+    assert {item for item, value in found.checks.items() if value is not True} == UNTIL[wrong]
+    assert set(found.checks) == {"exists", "unique", "precise", "admissible", "minimal_period", "nondegenerate"}
+    assert found.certified is (wrong == "")
+    for status, items in ((Status.EMPTY, {False}), (Status.UNKNOWN, {None})):
+        monkeypatch.setattr(bifurcation, "interval_newton", lambda *_, status=status: Enclosure(status, [arb(0)] * 3))
+        checks = proved(claim).checks
+        assert {checks["exists"], checks["unique"]} == items
+        assert {checks["precise"], checks["admissible"], checks["minimal_period"]} == {None}
+
+
+@pytest.mark.parametrize(
+    ("changed", "broken"),
+    [
+        ({}, {}),
+        ({"turn": arb(0, 1)}, {"simple_multiplier": None}),
+        ({"speed": arb(0)}, {"transversal": None}),
+        ({"bend": arb("nan")}, {"nondegenerate": None}),
+        ({"bend": arb(1, "inf")}, {"nondegenerate": None}),
+        ({"determinant": arb("-1.5")}, {"other_multiplier_stable": False}),
+        ({"determinant": arb("1.5")}, {"other_multiplier_stable": False}),
+        ({"determinant": arb(1)}, {"other_multiplier_stable": False}),
+        ({"determinant": arb("-0.9", "0.2")}, {"other_multiplier_stable": None}),
+    ],
+)
+def test_each_number_of_a_normal_form_decides_its_own_item(changed, broken):
+    good = NormalForm(BifurcationKind.FLIP, arb(2), arb(-1, "0.5"), arb("1e-9"), arb("-0.5"))
+    items = bifurcation._generic(replace(good, **changed))
+    wanted = dict.fromkeys(("simple_multiplier", "transversal", "nondegenerate", "other_multiplier_stable"), True)
+
+    if changed.get("determinant") == 1:  # neither smaller nor larger
+        items["other_multiplier_stable"] = items["other_multiplier_stable"] or False
+    assert items == wanted | broken
+    assert set(bifurcation._generic(None).values()) == {None}
+
+
+@pytest.mark.parametrize(
+    ("free", "low", "high"), [("lam", "0", "1"), ("alpha", "0", "1/10")], ids=["contraction", "shape"]
+)
+def test_a_free_parameter_is_allowed_in_its_range_ends_included(free, low, high):
+    problem = (
+        Problem(EGG, (0, 0), BifurcationKind.FLIP, "lam")
+        if free == "lam"
+        else Problem(egg(3), (0, 0), BifurcationKind.FLIP, "alpha", Rational(1, 2))
+    )
+    with working(80):
+        ends = [arb(int(Rational(x).p)) / int(Rational(x).q) for x in (low, high)]
+        middle = (ends[0] + ends[1]) / 2
+        assert bifurcation._allowed(problem, middle)
+        assert bifurcation._allowed(problem, arb(0))
+        for off in (ends[0] - arb("1e-20"), ends[1] + arb("1e-20"), arb(middle, 1), arb("nan")):
+            assert not bifurcation._allowed(problem, off)
+
+
+def test_the_twist_of_a_turn_that_grows_is_found_in_any_coordinates_that_keep_areas():
+    """`z -> mu*z*(1 + i*twist*abs(z)**2)`, `z = x - i*p`, after a shear with two bends and a linear map of area 1."""
+    ball = lambda x: arb(float(x))  # noqa: E731
+    for angle, twist, a, b, q, r in (
+        (0.7, 1.5, 0, 0, 1, 0),
+        (1.9, -0.75, 0.5, 0.25, 2, 0.5),
+        (2.6, 0.25, -1, 0.5, 0.5, -1),
+    ):
+        with working(120):
+            c, s, minus = arb(angle).cos(), arb(angle).sin(), -arb(angle).sin()
+        cubes = {(3, 0): 1, (1, 2): 1}, {(2, 1): 1, (0, 3): 1}  # x*(x**2 + p**2), p*(x**2 + p**2)
+        turn = {(1, 0): c, (0, 1): s}, {(1, 0): minus, (0, 1): c}
+        # (x - i*p)*i*twist*size = twist*size*(p + i*x): to x comes twist*p*size, to p comes -twist*x*size
+        grown = (
+            {(1, 0): ball(1), (0, 1): ball(0)} | {k: ball(twist) for k in cubes[1]},
+            {(1, 0): ball(0), (0, 1): ball(1)} | {k: ball(-twist) for k in cubes[0]},
+        )
+        shear = lambda sign: (  # noqa: E731
+            {(1, 0): ball(1), (0, 1): ball(0)},
+            {(0, 1): ball(1), (1, 0): ball(0), (2, 0): ball(sign * a), (3, 0): ball(sign * b)},  # noqa: B023
+        )
+        there = {(1, 0): ball(q), (0, 1): ball(r)}, {(1, 0): ball(0), (0, 1): ball(1 / q)}
+        back = {(1, 0): ball(1 / q), (0, 1): ball(-r)}, {(1, 0): ball(0), (0, 1): ball(q)}
+        with working(120):
+            found = birkhoff_normal_form(composed([there, shear(1), grown, turn, shear(-1), back]))
+
+            assert found.trace.overlaps(2 * c)
+            assert abs(found.twist - twist) < 1e-20
+            assert abs(found.drift) < 1e-20
+
+
+@pytest.mark.parametrize(
+    ("image", "status"),
+    [
+        (["0.1", "0.9 +/- 0.05"], Status.UNIQUE),
+        (["0.1", "0.9 +/- 0.1001"], Status.UNKNOWN),  # reaches an end
+        (["0.1", "1.5 +/- 0.4"], Status.EMPTY),
+        (["5", "nan"], Status.UNKNOWN),
+        (["0", "1 +/- 0.5"], Status.UNKNOWN),
+        (["-1.01", "0"], Status.EMPTY),
+    ],
+)
+def test_a_box_holds_one_zero_when_the_image_lies_inside_and_none_when_they_are_apart(image, status):
+    box = [arb(0, 1), arb(0, 1)]
+    balls_of = [arb(x) for x in image]
+
+    assert compared(balls_of, box) is status
+    centre = [arb("0.25"), arb("-0.5")]
+    step = stepped(centre, box, lambda: [c - y for c, y in zip(centre, balls_of, strict=True)])
+    assert step.status in (status, Status.UNKNOWN)
+    assert all(x.overlaps(y) for x, y in zip(step.zero, balls_of, strict=True) if y.is_finite())
+
+    def singular():
+        raise ZeroDivisionError
+
+    assert stepped(centre, box, singular) == Enclosure(Status.UNKNOWN, box)
+
+
+def test_a_box_is_known_when_it_lies_in_a_neighbourhood_up_to_whole_turns():
+    cover = Cover(AXIS, None, None, 0.5, [([1.0, -3.0], 0.25), ([2.0, 2.0], 0.5)])
+
+    assert cover._known([1.1, -3.1 + 4 * math.pi], [0.1, 0.1])
+    assert cover._known([1.1 - 2 * math.pi, -2.9], [0.1, 0.1])
+    assert not cover._known([1.1, -3.1], [0.1, 0.16])
+    assert not cover._known([1.1, -3.1], [0.16, 0.1])
+    assert not cover._known([1.25, -3.0], [0.0, 0.0])
+    assert cover._known([2.2, 1.8], [0.2, 0.2])
+    assert not cover._known([1.0, 2.0], [0.0, 0.0])  # one bounce in each

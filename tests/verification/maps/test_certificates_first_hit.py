@@ -284,3 +284,14 @@ def test_ways_from_a_bounce_to_a_piece_hold_the_shorter_way_along_the_boundary()
                 assert sum(2 * float(held.rad()) for held in ways) < abs(way) + 0.05
                 assert ways[0].contains(piece)
                 assert ways[-1].contains(at)
+
+
+def test_next_to_a_bounce_all_ways_to_it_must_cross_the_line_in_one_sense():
+    """Of two ways, through the seam of a closed boundary, that cross in opposite senses nothing follows."""
+    p, d = (arb(0), arb(0)), (arb(2), arb(0))
+    place = lambda t: (arb(1), arb(0, 1), arb(0), t)  # noqa: E731  # on the chord, and up or down as `t` says
+    up, down = arb(1, "0.5"), arb(-1, "0.5")
+
+    for ways, passes in (([up], True), ([down], True), ([up, up], True), ([down, down], True), ([up, down], False)):
+        assert first_hit._passes(place, arb(0, 1), [ways], p, d) is passes
+        assert first_hit._passes(place, arb(0, 1), [[arb(0, 1)], ways], p, d) is passes  # one of two bounces is near

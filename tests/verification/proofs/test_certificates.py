@@ -19,9 +19,17 @@ from verification.cycles.problem import Linearised, NormalForm, Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.named.locate import certify
-from verification.proofs.periodic import bifurcation
+from verification.proofs.periodic import bifurcation, triangles
 from verification.proofs.periodic.bifurcation import Claim, birkhoff_normal_form, proved
-from verification.proofs.periodic.interval_newton import Cover, Enclosure, Status, compared, interval_newton, stepped
+from verification.proofs.periodic.interval_newton import (
+    Cover,
+    Enclosure,
+    Status,
+    compared,
+    interval_newton,
+    least_gap,
+    stepped,
+)
 
 AXIS = Problem(ellipse.at(a=Rational(3, 2)), (0, 0), lam=Rational(1, 3))
 EGG = egg(3).at(alpha=Rational(2, 25))
@@ -360,3 +368,22 @@ def test_a_box_is_known_when_it_lies_in_a_neighbourhood_up_to_whole_turns():
     assert not cover._known([1.25, -3.0], [0.0, 0.0])
     assert cover._known([2.2, 1.8], [0.2, 0.2])
     assert not cover._known([1.0, 2.0], [0.0, 0.0])  # one bounce in each
+
+
+@pytest.mark.parametrize("place", [0.1, 1.0, 3.0, 4.5, 6.2])
+@pytest.mark.parametrize("allowed", [0.3, 0.9])
+def test_a_gap_is_steep_all_around_and_the_largest_of_its_kind(place, allowed):
+    """Chords shorter than 1.2 leave steeply, but for a stretch about one place, where only those below `allowed` do."""
+
+    def angle(here, there):
+        near = abs((here - place) - 2 * arb.pi() * round(float((here - place).mid()) / (2 * math.pi)))
+        gap = abs(there - here)
+        steep = gap < (allowed if near < 0.2 else 1.2)
+        return ((1 if float(there) > float(here) else -1) * arb(1 if steep else 0),)
+
+    one_way = lambda here, there: (abs(angle(here, there)[0]),)  # noqa: E731
+    with working(64):
+        for found in (least_gap(angle, arb("0.5")), triangles._gap(one_way, arb("0.5"))):
+            assert allowed - 1 / 16 <= found < allowed
+        assert least_gap(one_way, arb("0.5")) == 0  # the other way round they do not
+        assert least_gap(angle, arb(1)) == triangles._gap(one_way, arb("1.5")) == 0

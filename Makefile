@@ -76,8 +76,8 @@ mutation: $(VENV)/test.stamp $(VENV)/mutation.stamp
 	  $(BIN)/python benchmarks/mutation.py run --only "$$storey/*" --again survived --budget 60 && \
 	  $(BIN)/python benchmarks/mutation.py page --only "$$storey/*" || exit 1; \
 	done
-	$(BIN)/python benchmarks/mutation.py core --count 300
-	$(BIN)/python benchmarks/mutation.py page
+	$(BIN)/python benchmarks/mutation.py core --count 120 --seed 3
+	$(BIN)/python benchmarks/mutation.py page --count 120 --seed 3
 
 # Half an hour of attacks on two free cores; see docs/reliability.md.
 torture: $(VENV)/test.stamp

@@ -6,7 +6,7 @@
     python benchmarks/mutation.py run --only 'symbolic/*.py' --near         a quick sieve: the module's own tests alone
     python benchmarks/mutation.py run --only symbolic/expressions/signs.py --again survived --budget 100  what passed it
     python benchmarks/mutation.py list --only symbolic/expressions/signs.py              survivors as they stand
-    python benchmarks/mutation.py core --count 300          a sample of what proves; resumes; --only, --again as above
+    python benchmarks/mutation.py core --count 120 --seed 3 a sample of what proves; resumes; --only, --again as above
     python benchmarks/mutation.py page                      benchmarks/records/mutation.json and docs/mutation.md
 
 `run` asks the tests that execute the mutated statement, quickest first, until their own seconds (as `cover` measured
@@ -211,7 +211,7 @@ def main() -> None:
     parser.add_argument("--only", default="*", metavar="GLOB", help="modules, as symbolic/*.py")
     parser.add_argument("--sample", type=float, default=1.0, metavar="SHARE", help="a random share of the mutants")
     parser.add_argument("--seed", default="1", help="of the sample")
-    parser.add_argument("--count", type=int, default=300, help="for core and page: how many of what proves")
+    parser.add_argument("--count", type=int, default=120, help="for core and page: how many of what proves")
     parser.add_argument("--workers", type=int, default=1, help="modules at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
     parser.add_argument("--near", action="store_true", help="a first sieve: the module's own tests alone")
@@ -227,7 +227,10 @@ def main() -> None:
     elif args.verb == "core":
         mutation_core.run(args.count, args.seed, args.budget, args.only, args.again)
     else:
-        write_page(figures(args) | mutation_core.figures(args.count, args.seed), f"cosmic-ray {version('cosmic-ray')}")
+        core = mutation_core.figures(args.count, args.seed)
+        write_page(
+            figures(args) | core, f"cosmic-ray {version('cosmic-ray')}", mutation_core.drawn(args.seed, core.values())
+        )
 
 
 if __name__ == "__main__":

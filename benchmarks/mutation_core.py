@@ -19,7 +19,7 @@ import sys
 import time
 import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import redirect_stdout
 from fnmatch import fnmatch
 from functools import cache
@@ -35,7 +35,7 @@ from mutation_server import QUIET, append, ask, file_of, in_fork, warm
 CORE = ROOT / "benchmarks" / "records" / "mutation_core.toml"
 RESULTS = STATE / "core.jsonl"
 SLOW = ROOT / "tests" / "slow.txt"
-LONGEST = 2.5  # seconds, by slow.txt, of a test that is asked
+LONGEST = 0.5  # seconds, by slow.txt, of a test that is asked
 NOTICED = ("killed", "timeout")
 LARGE = 16  # a whole number beyond is a budget, a precision, a size: one more proves the same
 BINARY = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*")}
@@ -352,6 +352,18 @@ def figures(count: int, seed: str) -> dict[str, dict]:
             found[path] = {"at": at, "mutants": len(population(path)), "asked": len(asked), "first": noticed}
             found[path] |= {"killed": status["killed"], "timeout": status["timeout"], "alive": kept}
     return found
+
+
+def drawn(seed: str, figures: Collection[dict]) -> dict[str, str | int]:
+    """What the record keeps of a sample: how many of all were asked, and killed before a survivor was read."""
+    asked, total, unread = (sum(entry[key] for entry in figures) for key in ("asked", "mutants", "first"))
+    return {
+        "seed": seed,
+        "asked": asked,
+        "of": total,
+        "unread": unread,
+        "at": max((e["at"] for e in figures), default=""),
+    }
 
 
 def listing(count: int, seed: str) -> None:

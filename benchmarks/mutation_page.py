@@ -55,9 +55,21 @@ their mutants a sample is drawn, in proportion, and only of mistakes that could 
 parts left out, `any` for `all`, a lower end for an upper one, a sign lost, a number one larger, a truth turned, a loop
 that does nothing. Left out are budgets and precisions (constants of modules, whole numbers above 16), the texts of
 errors, annotations and `strict`. Asked are the files named in `benchmarks/records/mutation_core.toml`, without tests of
-more than half a second, as far as six seconds of processor go (a second and a half, and eight by the clock, for the
-group of balls and interval Newton): what survived was read, and asked again of a longer test or of one that was written
-for it. `python benchmarks/mutation.py core --count 300` draws, asks and resumes.
+more than half a second (the list of `make quick` says which), as far as six seconds of processor go: first those that
+execute the mutated statement, then the others of their files, which may share what one of these has made.
+`python benchmarks/mutation.py core --count 120 --seed 3` draws, asks and resumes.
+
+A sample says how good the tests are only once: when its survivors have been read, and tests been written for them, it
+is fitted. So each round draws another.
+
+| seed | asked | killed before a survivor was read | of all, 95 per cent interval (Wilson) | commit |
+|---|---|---|---|---|
+{samples}
+
+What the survivors of seed 2 were, 58 of 139: in 18 the tests that see them had not been asked (the list of files was
+incomplete, or a fixture was made in another test's turn); in 29 a wrong result could have been said and no test saw it;
+in 11 nothing false can follow, as the reasons below say. None had found its way into the package: no statement that
+was certified is withdrawn.
 
 ## By module
 
@@ -118,9 +130,17 @@ def summary(name: str, figures: dict[str, dict]) -> str:
         return text + "."
     first = sum(entry.get("first", killed(entry)) for entry in figures.values())
     low, high = map(percent, wilson(first, asked))
-    text += f". Asked was a random part of {total}. The short tests alone killed {first} of them at first,"
+    text += f". Asked was a random part of {total}. Before anybody had read a survivor {first} of them were killed,"
     text += f" {percent(first / asked)}: of all, {low} to {high} (Wilson's 95 per cent interval). The others were"
     return text + " killed later, by longer tests or by tests written for them after they were read."
+
+
+def sample_row(sample: dict) -> str:
+    """The line of a sample in the table of samples."""
+    asked, hits = sample["asked"], sample["unread"]
+    low, high = map(percent, wilson(hits, asked))
+    cells = [sample["seed"], f"{asked} of {sample['of']}", f"{hits}, {percent(hits / asked)}", f"{low} to {high}"]
+    return "| " + " | ".join([*cells, sample["at"]]) + " |"
 
 
 def row(path: str, entry: dict) -> str:
@@ -141,6 +161,7 @@ def page(record: dict) -> str:
         made_with=record["made_with"],
         summary="\n\n".join(summary(*part) for part in parts.items() if part[1]),
         left_out="\n".join(f"- {what}: {why}." for what, why in LEFT_OUT.items()),
+        samples="\n".join(map(sample_row, record["samples"])),
     )
     return text + "".join(row(path, entry) for path, entry in sorted(modules.items()))
 
@@ -150,10 +171,14 @@ def known() -> dict:
     return json.loads(FIGURES.read_text())
 
 
-def write_page(new: dict[str, dict], made_with: str) -> None:
-    """Merges new figures into those that are kept, a line for each module, and writes the page."""
+def write_page(new: dict[str, dict], made_with: str, sample: dict) -> None:
+    """Merges new figures into those that are kept, a line for each module and each sample, and writes the page."""
     modules = {path: entry for path, entry in (known()["modules"] | new).items() if (ROOT / path).is_file()}
+    samples = {entry["seed"]: entry for entry in (*known()["samples"], *([sample] if sample["asked"] else []))}
     lines = [f" {json.dumps(path)}: {json.dumps(entry)}" for path, entry in sorted(modules.items())]
+    drawn = ",\n".join(f" {json.dumps(entry)}" for _, entry in sorted(samples.items()))
     body = ",\n".join(lines)
-    FIGURES.write_text(f'{{"made_with": {json.dumps(made_with)}, "modules": {{\n{body}\n}}}}\n')
+    FIGURES.write_text(
+        f'{{"made_with": {json.dumps(made_with)}, "samples": [\n{drawn}\n], "modules": {{\n{body}\n}}}}\n'
+    )
     PAGE.write_text(page(known()))

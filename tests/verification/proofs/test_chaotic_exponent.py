@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,9 +18,9 @@ from symbolic.expressions.text import load
 from verification.arithmetic.balls import ARRAYS, bits_of, working
 from verification.arithmetic.series import expanded
 from verification.proofs.slap_map import exponent as chaotic_exponent
-from verification.proofs.slap_map.candidate import Judge, Pieces, candidate
-from verification.proofs.slap_map.exponent import judged, symmetric
-from verification.proofs.slap_map.transfer import Branches, inverted, spread, ulam, variation
+from verification.proofs.slap_map.candidate import Judge, Pieces, Residual, candidate
+from verification.proofs.slap_map.exponent import gap, judged, symmetric
+from verification.proofs.slap_map.transfer import Branches, Inverted, Variation, inverted, spread, ulam, variation
 
 HALF = np.pi / 2
 DIGITS = 8
@@ -348,3 +349,49 @@ def test_the_branches_are_the_slap_map_of_the_float64_kernels():
 
         assert abs(float(found) - launch) < 1e-13
         assert abs(1 / float(rate) - slope) < 1e-9 * slope
+
+
+KNOWN, INVERSE = Variation(arb("0.75"), arb(2), True), Inverted(1000, 9.0, 0.0, 1)
+
+
+@pytest.mark.parametrize(
+    ("known", "inverse", "mass", "spread_of", "open_items"),
+    [
+        (KNOWN, INVERSE, 2, 1e-9, set()),
+        (replace(KNOWN, proved=False), INVERSE, 2, 1e-9, {"variation", "precise"}),
+        (KNOWN, replace(INVERSE, sign=-1), 2, 1e-9, {"inverse", "precise"}),
+        (KNOWN, replace(INVERSE, bound=None), 2, 1e-9, {"inverse", "gap", "precise"}),
+        (KNOWN, replace(INVERSE, cells=60), 2, 1e-9, {"gap", "precise"}),  # 1 - 2*pi/240*10/0.25 is negative
+        (KNOWN, replace(INVERSE, cells=64), 2, 1e-9, set()),
+        (KNOWN, INVERSE, -2, 1e-9, {"mass", "precise"}),
+        (KNOWN, INVERSE, 2, 0.02, {"precise"}),
+    ],
+)  # fmt: skip
+def test_each_item_of_the_exponents_checklist_is_asked_and_the_ball_is_that_of_the_inequalities(
+    monkeypatch, known, inverse, mass, spread_of, open_items
+):
+    residual = Residual(arb(spread_of), arb(spread_of) / 2)
+    judge = SimpleNamespace(residual=lambda: residual, mean=lambda: arb("0.75"))
+    monkeypatch.setattr(chaotic_exponent, "Judge", lambda *_: judge)
+    near = SimpleNamespace(grounded=lambda: SimpleNamespace(integral=lambda: arb(mass)))
+    found = judged(near, 4, inverse, known)
+
+    assert {item for item, value in found.checks.items() if value is not True} == open_items
+    assert set(found.checks) == {"variation", "inverse", "gap", "mass", "precise"}
+    assert found.certified is (not open_items)
+    bound = inverse.bound or 0
+    room = 1 - 2 * np.pi / (4 * inverse.cells) * (bound + 1) / 0.25
+    distance = (2 * bound * spread_of + spread_of / 2) / (0.25 * room * mass)
+    assert float(gap(inverse, known)) == pytest.approx(room)
+    assert found.gap == pytest.approx(room)
+    assert abs(float(found.distance)) == pytest.approx(abs(distance), rel=1e-6)
+    assert float(found.value.mid()) == pytest.approx(0.75 / mass)
+    assert float(found.value.rad()) == pytest.approx(abs(distance) * 3 * np.pi / (4 * np.e), rel=1e-6)
+
+
+def test_densities_are_their_own_mirror_images_only_by_an_inverse_for_odd_ones_with_room():
+    odd = replace(INVERSE, sign=-1)
+    assert symmetric(odd, KNOWN) is True
+    for inverse, known in ((INVERSE, KNOWN), (replace(odd, bound=None), KNOWN), (odd, replace(KNOWN, proved=False))):
+        assert symmetric(inverse, known) is None
+    assert symmetric(replace(odd, cells=60), KNOWN) is None

@@ -9,9 +9,10 @@ from scipy.sparse import csr_matrix
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
-from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _reach, _staying, holding
-from verification.proofs.global_dynamics.images import Slopes
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Chart
+from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _reach, _staying, clusters, holding
+from verification.proofs.global_dynamics.graph import Grid, Transitions
+from verification.proofs.global_dynamics.images import Piece, Slopes
 
 ONE = np.ones(1)
 HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))
@@ -127,3 +128,44 @@ def test_a_cycle_that_no_sink_holds_counts_for_none():
 
 def test_the_reach_of_a_cluster_is_that_of_its_furthest_box():
     assert list(_reach(np.array([3.0, 1.0, 5.0]), np.array([0, 0, 1]), 3)) == [3, 5, -np.inf]
+
+
+class Landings:
+    """In the place of a map: every box lands on one arc, and `theta` shrinks by a half."""
+
+    def __init__(self, wide=1.0, closed=True, smooth=True, joins=False, less=0):
+        self.wide, self.closed, self.smooth, self.joins, self.less = wide, closed, smooth, joins, less
+
+    def derivatives(self, boxes):
+        count = boxes.chart.size - self.less
+        chart = np.arange(count) % 2 if self.joins else np.zeros(count, dtype=int)
+        low = np.linspace(-self.wide / 2, 0, count)
+        piece = Piece(np.arange(count), chart, low, low + self.wide / 2, self.smooth)
+        zero = BallArray(np.zeros(count), np.zeros(count))
+        return [(piece, Slopes(BallArray(np.full(count, 0.5), np.zeros(count)), zero, zero, zero, zero))]
+
+
+@pytest.mark.parametrize(
+    ("map", "edges", "sinks"),
+    [
+        (Landings(), [(9, 9)], [True]),
+        (Landings(), [(9, 9), (27, 27)], [True, True]),
+        (Landings(), [(9, 27), (27, 9), (1, 9)], [True]),  # box 1 is passed once
+        (Landings(wide=6.0), [(9, 9)], None),  # with the box itself a whole turn and more
+        (Landings(wide=6.0, closed=False), [(9, 9)], [True]),
+        (Landings(smooth=False), [(9, 9)], None),
+        (Landings(joins=True), [(9, 9)], None),
+        (Landings(less=1), [(9, 9)], None),
+        (Landings(), [(9, 9), (9, 32), (32, 9)], None),  # 32 is the outside: some box is lost
+    ],
+)
+def test_boxes_that_return_are_judged_only_where_all_of_them_land_on_one_arc_less_than_a_turn(map, edges, sinks):
+    grid = Grid((Chart("turning", (-np.pi, np.pi), (-1.0, 1.0), True, True),), 8, 4)
+    cells = grid.whole()
+    found = clusters(map, Transitions(grid, cells, np.ones(32, dtype=bool), graph(33, *edges)), near=0)
+
+    assert (found and [part.sink for part in found]) == sinks
+    for part in found or ():
+        assert part.factor == pytest.approx(0.5, abs=1e-6)
+        assert np.all(part.boxes.x[1] - part.boxes.x[0] == pytest.approx(np.pi / 4))
+        assert np.all(part.boxes.y[1] - part.boxes.y[0] == pytest.approx(0.5))

@@ -369,3 +369,13 @@ def test_what_is_no_whole_number_in_range_is_refused_by_name(given):
         whole("rows", given, 7)
     assert [whole("rows", x, 7) for x in (1, 7)] == [1, 7]
     assert whole("a run", 0, 7, 0) == 0
+
+
+@pytest.mark.parametrize(
+    ("columns", "rows"), [(0, 1), (1, 0), ((1 << 20) + 1, 1), (1, (1 << 20) + 1), (1 << 13, 1 << 12)]
+)
+def test_a_grid_without_cells_or_with_too_many_is_refused(columns, rows):
+    with pytest.raises(ValueError, match="grid: "):
+        Grid(CHARTS, columns, rows)
+    assert Grid(CHARTS, 1, 1).whole().chart.size == 2
+    assert Grid(CHARTS[:1], 1 << 20, 16).columns == 1 << 20

@@ -26,6 +26,7 @@ Found = tuple[list[Block], list[Effort], dict[str, Any]]
 POINTS = 1200  # of the graph of the slap map
 COLUMNS, ROWS = 240, 160  # cells of a phase portrait
 SHAPES = 40  # values of another parameter than the contraction: each is a table of its own
+CELLS = 240  # of arc length in a bifurcation diagram
 FEW = 0.02  # of them
 LONGEST = 12  # period of an attracting cycle that is followed, whatever was asked for
 LISTED = 11  # contractions of a diagram whose exponents are listed
@@ -103,16 +104,14 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     sweep = bifurcation(text, values, orbits, points, bounces, transient, asked.seed, asked.parameter, lam)
     found = run(sweep, scheduler=parts.scheduler)
     half = PinballMap(asked.scene).arclength.perimeter / 2
-    s = wrapped(found.s.values, half)
-    cells = 240
-    counts = np.stack([np.histogram(row[np.isfinite(row)], cells, (-half, half))[0] for row in s.reshape(columns, -1)])
+    counts = density(found.s.values, half)
     nu, error = found.nu_plus.values, found.nu_plus_error.values
     best = np.nanargmax(np.where(np.isfinite(nu), nu, -np.inf), axis=1)
     rows = np.arange(columns)
     arrays = {
         "values": values,
         "half": np.array(half),
-        "counts": counts.T.astype(np.int32),
+        "counts": counts,
         "largest": nu[rows, best],
         "error": np.nan_to_num(error[rows, best]),
         "least": np.nanmin(np.where(np.isfinite(nu), nu, np.inf), axis=1),
@@ -131,6 +130,12 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     keys = asked.parameter, "chaotic_share", "nu_plus", "nu_plus_stderr"
     said["exponents"] = [dict(zip(keys, row, strict=True)) for row in rows_of]
     return [], [effort], said
+
+
+def density(s: NDArray[Any], half: float) -> NDArray[np.int32]:
+    """How often each cell of arc length is met, in a column for each value of the parameter."""
+    rows = wrapped(s, half).reshape(len(s), -1)
+    return np.stack([np.histogram(row[np.isfinite(row)], CELLS, (-half, half))[0] for row in rows], 1).astype(np.int32)
 
 
 def plane(asked: Asked, parts: Parts, level: int) -> Found:

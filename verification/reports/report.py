@@ -15,6 +15,7 @@ from typing import Any
 from numeric.sweeps.run import connected
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
+from verification.reports import crises as tangencies
 from verification.reports import lives
 from verification.reports import scene as exactly
 from verification.reports.asked import Asked, Parts
@@ -42,6 +43,7 @@ FIRST = {  # seconds, not measured yet
     "life": 1.5,
     "curves": 5.0,
     "cascade": 4.0,
+    "crises": 10.0,
 }
 GROWTH = 3.5  # of the seconds of a question from one level to the next
 LEVELS = 4
@@ -247,6 +249,8 @@ def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterato
     yield from _lives(asked, parts)
     if asked.second:
         yield from _curves(asked, parts, heard)
+    if asked.parameter == "lam":
+        yield Step("crises", "cycles", FIRST["crises"], partial(tangencies.crises, asked, parts, heard))
     yield from _cascades(asked, parts, 0)
     for level in range(1, LEVELS):
         finer: list[tuple[str, Callable[..., Made], tuple[int, ...]]] = [("diagram", dynamics.diagram, ())]
@@ -358,7 +362,7 @@ def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
 def _names(parts: Parts) -> list[str]:
     """The steps whose files are there, in the order in which they are told."""
     order = ["scene", "derivation", "slap", "portrait", "diagram", "plane", "census", "search", "life", "cascade"]
-    order.append("curves")
+    order += ["crises", "curves"]
     found = [path.stem for path in parts.folder.glob("*.json")]
 
     def place(name: str) -> tuple[int, list[int]]:

@@ -2,12 +2,12 @@
 
 from . import proof
 from .enclosed import Enclosed, TooWideError, attracting, complex_balls, enclosed_cycle, enclosed_saddle, remainder
-from .grow import branch
+from .grow import branch, touches
 from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis, decimals, table
 from .plane_map import Pinball
 from .proof import TangencyClaim, TangencyProof, orbit_of, orbit_said
 from .saddle import Orbit, Saddle, horner, local
-from .tangency import Gap, one_cycle, scale
+from .tangency import Gap, Touch, one_cycle, scale
 from .touching import bounce
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "TangencyClaim",
     "TangencyProof",
     "TooWideError",
+    "Touch",
     "attracting",
     "bounce",
     "boundary",
@@ -42,4 +43,5 @@ __all__ = [
     "remainder",
     "scale",
     "table",
+    "touches",
 ]

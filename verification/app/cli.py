@@ -228,6 +228,7 @@ DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}
 EXTRAS |= {"pyarrow": "table", "hypothesis": "hypothesis"}
 EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
+COMPLETE = "_PINBALL_COMPLETE"  # the variable of the environment by which a shell asks
 LONGEST = 600  # characters of a sentence; a reader sees the end of it
 
 
@@ -290,6 +291,10 @@ def run(arguments: Sequence[str]) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    if asked := os.environ.get(COMPLETE):  # by a shell, for its script or for what may follow
+        from click.shell_completion import shell_complete
+
+        return shell_complete(pinball, {}, "pinball", COMPLETE, asked)
     try:
         with pinball.make_context("pinball", list(arguments)) as context:
             return int(pinball.invoke(context) or DONE)

@@ -1,6 +1,7 @@
 """The same answers on odd machines: few instructions, no assertions, no locale or home, little memory, many threads."""
 
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -118,3 +119,35 @@ def test_a_report_has_the_same_bytes_but_for_seconds_with_few_instructions(tmp_p
 
     assert '"verdict": "confirmed"' in said[0]
     assert said[0] == said[1]
+
+
+def completed(folder, shell, *words):
+    """What `pinball` tells a shell, asked as its script asks."""
+    typed = {"COMP_WORDS": " ".join(words), "COMP_CWORD": words[-1] if shell == "fish" else str(len(words) - 1)}
+    known = os.environ | {"PYTHONPATH": str(ROOT), "_PINBALL_COMPLETE": f"{shell}_complete"} | typed
+    command = [sys.executable, "-m", "verification"]
+    done = subprocess.run(command, cwd=folder, env=known, text=True, capture_output=True, check=True)
+    return re.split(r"[\s,]+", done.stdout)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_commands_and_options_are_completed_for_each_shell(shell, tmp_path):
+    assert "report" in completed(tmp_path, shell, "pinball", "repo")
+    assert "--minutes" in completed(tmp_path, shell, "pinball", "report", "stadium", "--min")
+
+
+def test_a_real_shell_completes_after_the_line_that_the_page_gives(tmp_path):
+    """In bash, by the very line of the table on the page; the words are set as readline sets them."""
+    program = tmp_path / "pinball"
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m verification "$@"\n')
+    program.chmod(0o755)
+    (line,) = re.findall(r"\| bash \| `(.*)` \|", (ROOT / "docs" / "command_line.md").read_text())
+    known = os.environ | {"PYTHONPATH": str(ROOT), "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    asked = 'COMP_WORDS=(pinball repo); COMP_CWORD=1; _pinball_completion pinball; echo "${COMPREPLY[@]}"'
+    script = ["bash", "--noprofile", "--norc", "-c", f"{line}; complete -p pinball; {asked}"]
+    done = subprocess.run(script, cwd=tmp_path, env=known, text=True, capture_output=True, check=False)
+
+    said = done.stdout.splitlines()
+    assert done.stderr == ""
+    assert said[0].endswith("-F _pinball_completion pinball")
+    assert said[1:] == ["report"]

@@ -174,9 +174,10 @@ def _told(asked: Asked, changes: int, rows: list[tuple[Any, ...]]) -> Block:
     if not changes:
         return Words("The diagram shows no contraction at which a chaotic attractor gains or loses much at once.")
     if not rows:
+        where = "one contraction" if changes == 1 else f"{changes} contractions"
         return Words(
-            f"At {changes} contractions of the diagram a chaotic attractor gains or loses much at once; near none of "
-            f"them a tangency of the manifolds of a cycle up to period {asked.period} was found."
+            f"At {where} of the diagram a chaotic attractor gains or loses much at once; no tangency of the manifolds "
+            f"of a cycle up to period {asked.period} was found near by."
         )
     caption = (
         "Homoclinic tangencies near the contractions at which the diagram shows a chaotic attractor to gain or lose "

@@ -56,7 +56,7 @@ def search(asked: Asked, text: str, heard: Tick = lambda said: None) -> Made:
 def searched_blocks(asked: Asked, searches: Sequence[Document]) -> list[Block]:
     """What all searches found, in one table, and what they cannot tell."""
     rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (said["at"], str(n), Number(str(count), known=Known.SAMPLED), str(stable), sums)
+        (said["at"], str(n), *(Number(str(each), known=Known.SAMPLED) for each in (count, stable)), sums)
         for said in searches
         for n, count, stable, sums in said["rows"]
     )

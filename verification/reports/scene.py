@@ -193,7 +193,7 @@ def thresholds(cycle: Cycle) -> list[Block]:
     number = stability_number(cycle)
     value = number.evalf(20)
     blocks: list[Block] = [Formula(f"{cycle.name}: stability number P = (1 + t*K0)*(1 + t*K1)", f"P = {latex(number)}")]
-    decimals = f"P = {value.evalf(12)}"
+    decimals = f"P = {number if number.is_Integer else value.evalf(12)}"
     if number < -1 or number > 1:
         blocks.append(Words(f"{decimals}: unstable for every contraction."))
     elif number < 0:

@@ -16,7 +16,7 @@ from .cascade import (
 )
 from .cells import Array, fixed_points
 from .chain import Chain, dot, trace_and_determinant
-from .chords import Chords, chord_angles, landing
+from .chords import Chords, arc_length, chord_angles, landing
 from .critical import Small, corner, corner_angle, focus, polygon, solved
 from .newton import (
     ATTEMPTS,
@@ -84,6 +84,7 @@ __all__ = [
     "Tick",
     "UnsettledError",
     "all_cycles",
+    "arc_length",
     "at_contraction",
     "attractor",
     "chord_angles",

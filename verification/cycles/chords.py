@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -129,7 +129,7 @@ class Chords:
         if not law.measured:
             made = law_kernel(law, order)
         else:
-            made, length = law_kernel(law, order, self.table.components[0]), _lengths(self.table)
+            made, length = law_kernel(law, order, self.table.components[0]), arc_length(self.table)
             place = length.placed(arithmetic, here)
         return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], *place, *own), strict=True))
 
@@ -328,7 +328,7 @@ class Lengths:
         if isinstance(here, arb):
             if ctx.prec not in self.enclosed:
                 self.enclosed[ctx.prec] = EnclosedMap(self.map, 1, ctx.prec)
-            return self.enclosed[ctx.prec].length(0, here)
+            return _enclosed(self.enclosed[ctx.prec], here.lower().man_exp(), here.upper().man_exp())
         if not hasattr(here, "context"):
             return self.map.arclength.s(here)
         if here.context.dps not in self.exact:
@@ -336,7 +336,13 @@ class Lengths:
         return here.context.mpf(self.exact[here.context.dps].length(0, here))
 
 
-_lengths = cache(Lengths)
+@lru_cache(256)  # of boxes that differ in other bounces
+def _enclosed(map: EnclosedMap, low: Any, high: Any) -> arb:
+    found: arb = map.length(0, arb(low).union(arb(high)))
+    return found
+
+
+arc_length = cache(Lengths)
 
 
 def landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:

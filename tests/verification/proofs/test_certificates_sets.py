@@ -248,7 +248,7 @@ def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():
     with working(64):
         angle, half = load(chord_kernel(table, 0, 0, 1), balls(64)), arb("0.5")
         gap = least_gap(angle, half * arb.pi() / 2)
-        cover = Cover(Problem(table, (0, 0, 0), lam=half), angle, reflection(PAPERS_LAW, half), gap, [])
+        cover = Cover(Problem(table, (0, 0, 0), lam=half), angle, reflection(PAPERS_LAW, half, table), gap, [])
         largest = half * arb.pi() / (1 + half)
         for size in range(4, 28):
             box = around(held, size, chance)
@@ -376,7 +376,7 @@ def test_no_triangle_without_symmetry_is_excluded_and_one_that_breaks_a_rule_is(
             }
             with working(64):
                 angle, largest = made_up(values), ratio * arb.pi() / (1 + ratio)
-                cover = Cover(problem, angle, reflection(PAPERS_LAW, arb(contraction)), 0.5, [])
+                cover = Cover(problem, angle, reflection(PAPERS_LAW, arb(contraction), problem.table), 0.5, [])
                 for size in (*range(2, 14), 22, 26):
                     box = around(held, size, chance)
                     exact, wide = accumulate(arb(m) for m, _ in box), accumulate(arb(m, r) for m, r in box)

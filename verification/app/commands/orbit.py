@@ -352,11 +352,11 @@ def provable(scene: Scene) -> None:
         )
     if not scene.law.uniform:
         stated = scene.law.on(scene.table)
-        if stated.placed and (stated.measured or not is_periodic(stated.phi)):
+        if stated.placed and not (stated.measured or is_periodic(stated.phi)):
             raise ValueError(
                 f"--prove: a whole turn of theta is not seen to leave {stated} the same; leave --prove out"
             )
-        if not stays_below(stated, scene.lam):
+        if not stays_below(stated, scene.lam, scene.table):
             raise ValueError(f"--prove: |phi| = |{stated}| is not proved to stay below pi/2 by a margin; leave it out")
 
 

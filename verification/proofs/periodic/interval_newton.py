@@ -17,7 +17,8 @@ when one collision rule, by enclosure or by the mean value theorem, or Krawczyk'
 halved otherwise. On a convex table the chord's angle falls as its end moves on, so bounces that lie closer than the
 gap at which it exceeds every exit angle of the law need not be looked at: `lam*pi/2` for the paper's, for others a
 bound of `|phi|` over all incidence angles and places. A law of the place must be the same after a whole turn of
-`theta`, and its cycles have no copies turned with the table.
+`theta`, and its cycles have no copies turned with the table. One of arc length that is an integral is not seen to be
+the same: in a box that may reach the place where it jumps, the rule on either side must fail by enclosure.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -35,8 +36,10 @@ from symbolic.expressions.text import constant, load
 from symbolic.motion.chords import chord_kernel, law_kernel
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.law import Law
+from symbolic.tables.table import Table
 from verification.arithmetic.balls import balls, working
 from verification.cycles.chain import Chain
+from verification.cycles.chords import arc_length
 from verification.cycles.newton import System
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.search import Catalogue
@@ -167,7 +170,7 @@ SMALLEST = 2.0**-30
 Box = tuple[tuple[float, float], ...]  # midpoint and half width of the first bounce and of the gaps
 ANGLES = 512  # pieces of the incidence angles
 Tick = Callable[[str], None]
-Reflection = Callable[[arb, arb], tuple[arb, arb, arb]]
+Reflection = Callable[[arb, arb], list[tuple[arb, arb, arb]]]
 
 
 @dataclass(frozen=True)
@@ -196,12 +199,12 @@ def no_others(
     if not closes_smoothly(table) or convex(table) is not True:
         return Completeness(n, None, 0, known)
     law = catalogue.law.on(table)
-    if law.placed and (law.measured or not is_periodic(law.phi)):
+    if law.placed and not (law.measured or is_periodic(law.phi)):
         return Completeness(n, None, 0, known)
     with working(BITS):
         angle = load(chord_kernel(table, 0, 0, 1), balls(BITS))
         contraction = load(constant(lam), balls(BITS))()[0] + arb(0)
-        reflected = reflection(law, contraction)
+        reflected = reflection(law, contraction, table)
         gap = least_gap(angle, contraction * arb.pi() / 2 if law.uniform else steepest(law, reflected))
         if gap == 0:
             return Completeness(n, None, 0, known)
@@ -240,19 +243,34 @@ def start(turn: int, n: int, gap: float) -> Box:
     return ((0.0, float(reach)), *(((middle, float(half)),) * (n - 1)))
 
 
-def reflection(law: Law, contraction: arb) -> Reflection:
-    """The exit angle at an incidence angle and a place, `-d phi/d eta` and `d phi/d theta`, in balls."""
+def reflection(law: Law, contraction: arb, table: Table) -> Reflection:
+    """The exit angle at an incidence angle and a place, `-d phi/d eta` and `d phi/d theta`, in balls; on each side
+    of where a law of arc length jumps, if the ball of places may reach there.
+    """
     if law.uniform:
-        return lambda eta, theta: (-contraction * eta, contraction, arb(0))
-    made = law_kernel(law)
+        return lambda eta, theta: [(-contraction * eta, contraction, arb(0))]
+    made = law_kernel(law, 1, table.components[0] if law.measured else None)
     places = [made.results.index(name) for name in ("phi", "phi_eta", "phi_theta")]
-    phi = load(made, balls(BITS))
+    phi, length = load(made, balls(BITS)), arc_length(table) if law.measured else None
 
-    def reflected(eta: arb, theta: arb) -> tuple[arb, arb, arb]:
-        value, slope, drift = (phi(eta, contraction, theta)[i] + arb(0) for i in places)
-        return value, -slope, drift
+    def reflected(eta: arb, theta: arb) -> list[tuple[arb, arb, arb]]:
+        sides = [[side, length.of(side)] for side in parted(theta)] if length else [[theta]]
+        found = [[phi(eta, contraction, *side)[i] + arb(0) for i in places] for side in sides]
+        return [(value, -slope, drift) for value, slope, drift in found]
 
     return reflected
+
+
+def parted(theta: arb) -> list[arb]:
+    """A ball of parameters, its middle between -pi and pi; and the same from the other end, if it may reach over one.
+
+    >>> [len(parted(arb(x, "0.1"))) for x in (0, 3, 3.1, 3.2, 6.3)]
+    [1, 1, 2, 2, 1]
+    """
+    half = arb.pi()
+    theta = theta - 2 * half * round(float(theta.mid()) / (2 * pi))
+    beyond = theta - 2 * half if theta.mid() > 0 else theta + 2 * half
+    return [theta] if theta > -half and theta < half else [theta, beyond]
 
 
 def steepest(law: Law, reflected: Reflection) -> arb:
@@ -260,15 +278,20 @@ def steepest(law: Law, reflected: Reflection) -> arb:
     quarter, turns = arb.pi() / 2, 64 if law.placed else 1
     angles = [arb(2 * k + 1 - ANGLES, 1) / ANGLES * quarter for k in range(ANGLES)]
     places = [arb(2 * k + 1 - turns, 1) / turns * arb.pi() for k in range(turns)]
-    sizes = [abs(reflected(eta, theta)[0]).upper() for theta in places for eta in angles]
+    sizes = [abs(exit).upper() for theta in places for eta in angles for exit, _, _ in reflected(eta, theta)]
     return max(sizes) if all(size.is_finite() for size in sizes) else quarter
 
 
-def stays_below(law: Law, lam: Any) -> bool:
+def on_one_side(law: Law, box: Sequence[arb]) -> bool:
+    """Does no ball reach over the place where a law of arc length jumps? Beyond, the equations are of another law."""
+    return not law.measured or all(len(parted(theta)) == 1 for theta in box)
+
+
+def stays_below(law: Law, lam: Any, table: Table) -> bool:
     """Is `|phi|` proved to stay below `pi/2` by a margin?"""
     with working(BITS):
         contraction = load(constant(S(lam)), balls(BITS))()[0] + arb(0)
-        return bool(steepest(law, reflection(law, contraction)) < arb.pi() / 2)
+        return bool(steepest(law, reflection(law, contraction, table)) < arb.pi() / 2)
 
 
 def least_gap(angle: Any, largest: arb) -> float:
@@ -290,7 +313,10 @@ def neighbourhoods(catalogue: Catalogue, problem: Problem) -> list[tuple[list[fl
         radius = 0.2
         while radius > 1e-7:
             centre = [arb(float(x)) for x in theta]
-            if krawczyk(problem, centre, [radius] * n, BITS).status is Status.UNIQUE:
+            if (
+                on_one_side(problem.law, [arb(x, radius) for x in centre])
+                and krawczyk(problem, centre, [radius] * n, BITS).status is Status.UNIQUE
+            ):
                 break
             radius /= 1.5
         else:
@@ -337,21 +363,23 @@ class Cover:
         for i in range(n):
             here, before, after = theta[i], theta[i - 1], theta[(i + 1) % n]
             out, into = self.angle(here, after), self.angle(here, before)
-            exit, sigma, drift = self.reflected(into[0], here)
-            value = out[0] - exit
-            if not value.is_finite():
+            sides = self.reflected(into[0], here)
+            values = [out[0] - exit for exit, _, _ in sides]
+            if not all(value.is_finite() for value in values):
                 return False
-            if not value.contains(0):
+            if not any(value.contains(0) for value in values):
                 return True
-            back = self.angle(exact[i], exact[i - 1])[0]
-            at = self.angle(exact[i], exact[(i + 1) % n])[0] - self.reflected(back, exact[i])[0]
+            if len(sides) > 1:
+                continue  # where the law jumps it has no derivative
+            (_, sigma, drift), back = sides[0], self.angle(exact[i], exact[i - 1])[0]
+            at = self.angle(exact[i], exact[(i + 1) % n])[0] - self.reflected(back, exact[i])[0][0]
             slope = {i: out[1] + sigma * into[1] - drift}
             for j, s in ((i - 1) % n, sigma * into[2]), ((i + 1) % n, out[2]):
                 slope[j] = slope.get(j, arb(0)) + s
             by_box = _by_gaps(slope, n)
             if not (at + sum((s * arb(0, box[k][1]) for k, s in enumerate(by_box)), arb(0))).contains(0):
                 return True
-        if max(half for _, half in box) > 0.15:
+        if max(half for _, half in box) > 0.15 or not on_one_side(self.problem.law, theta):
             return False
         return krawczyk(self.problem, exact, [float(t.rad()) for t in theta], BITS).status is Status.EMPTY
 

@@ -83,7 +83,6 @@ def test_without_attractors_nothing_is_said_of_them(monkeypatch):
     monkeypatch.setattr(on_basins, "found", lambda *_, **__: ())
 
     assert on_attractors.higher_periods(CLAIMS["egg.higher_period_attractors"]).verdict is Verdict.OPEN
-    assert on_basins.after_crisis(CLAIMS["egg.after_crisis"]).verdict is Verdict.OPEN
 
 
 def test_a_second_attractor_leaves_the_only_one_open(monkeypatch):

@@ -13,6 +13,7 @@ from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.scene import Scene
 from verification.named.locate import locate
 from verification.paper.claims.claim import Verdict
+from verification.paper.egg import barriers as on_barriers
 from verification.paper.egg import basins as on_basins
 from verification.paper.egg import crises as on_crises
 from verification.paper.egg import elastic as on_elastic
@@ -76,13 +77,23 @@ def test_a_cascade_with_a_rung_that_bears_no_stable_cycle_is_not_supported(monke
     assert judged.cascade_limit(CLAIMS["egg.cascade"]).verdict is Verdict.OPEN
 
 
-def test_beyond_the_crisis_a_third_attractor_leaves_it_open(monkeypatch):
+def test_beyond_the_crisis_a_third_attractor_corrects_it_and_without_one_it_stays_open(monkeypatch):
     claim = CLAIMS["egg.after_crisis"]
-    monkeypatch.setattr(on_basins, "BEYOND", ("0.67", "0.7"))
-    assert on_basins.after_crisis(claim).verdict is Verdict.SUPPORTED
+    assert on_barriers.beyond(claim).verdict is Verdict.CORRECTED
 
-    monkeypatch.setattr(on_basins, "BEYOND", ("0.83",))  # where two cycles of period 12 attract too
-    assert on_basins.after_crisis(claim).verdict is Verdict.OPEN
+    monkeypatch.setattr(on_barriers, "bounces", lambda *_: None)
+    on_barriers.window.cache_clear()
+    assert on_barriers.beyond(claim).verdict is Verdict.OPEN
+    on_barriers.window.cache_clear()
+
+
+@pytest.mark.parametrize("name", ["basins_above_below", "basins_separate", "crisis_below"])
+def test_the_basins_are_parted_by_a_barrier_that_is_there_at_066_and_soon_lost(name, monkeypatch):
+    judge = on_barriers.crisis_below if name == "crisis_below" else on_barriers.separated
+    assert judge(CLAIMS[f"egg.{name}"]).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_barriers, "divided", lambda: Finding(Outcome.UNKNOWN, ""))
+    assert judge(CLAIMS[f"egg.{name}"]).verdict is Verdict.OPEN
 
 
 def test_three_attractors_are_kept_apart_below_the_crisis_and_not_above(monkeypatch):

@@ -2,7 +2,6 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from symbolic.cycles.polygons import required_tilt
@@ -62,13 +61,3 @@ def test_noise_is_open_when_a_rung_is_not_certified(monkeypatch):
     monkeypatch.setattr(on_figures, "side_cascade", lambda _: (uncertain,))
 
     assert verdict("egg.noise") is Verdict.OPEN
-
-
-def test_the_basins_lie_above_and_below_and_one_stray_start_would_leave_it_open(monkeypatch):
-    monkeypatch.setattr(on_figures, "STARTS", 500)
-
-    assert verdict("egg.basins_above_below") is Verdict.SUPPORTED
-    monkeypatch.setattr(on_figures, "labels", lambda map, balls, found: np.zeros(balls.size, dtype=int))
-    monkeypatch.setattr(on_figures, "find", lambda *_: [SimpleNamespace(period=3, points=SimpleNamespace(phi=[0.4]))])
-
-    assert verdict("egg.basins_above_below") is Verdict.OPEN

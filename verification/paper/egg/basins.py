@@ -16,7 +16,7 @@ from numeric.dynamics.basins import Window, intermingling, labels, random_points
 from numeric.dynamics.phase_points import Array, phase_points
 from numeric.dynamics.recognition import Labels
 from numeric.dynamics.statistics import Uncertainty, uncertainty
-from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, egg_diameter, is_double_normal
+from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, is_double_normal
 from symbolic.cycles.polygons import near_flat, saddle_node
 from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
@@ -31,8 +31,6 @@ from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_point
 
 SEED = 1
 PAIRS = 4000
-MANY = 400
-BEYOND = ("0.664", "0.67", "0.68", "0.69", "0.7")  # contractions above the crisis at 0.6621
 EARLY = 400  # bounces before labels are read off
 
 
@@ -106,45 +104,6 @@ def two_basins(claim: Claim) -> Judgement:
     )
     return sampled(
         "two attractors", said, other == 0 and kinds == [("CHAOTIC", 0), ("CYCLE", 2)] and map.law == "pinball"
-    )
-
-
-@judges("egg.after_crisis")
-def after_crisis(claim: Claim) -> Judgement:
-    """Random starts, from just above the crisis to the contraction of the paper's figure.
-
-    "All" is meant of almost all: a ball on a diameter stays there, and the authors name these orbits themselves.
-    """
-    each = {x: found("egg", x, MANY, alpha=SHAPE) for x in BEYOND}
-    threes = all(unsettled(some, MANY) == 0 and all(a.period == 3 for a in some) for some in each.values())
-    stays = is_double_normal(egg_diameter())
-    said = (
-        f"at lam = {', '.join(BEYOND)} each of {MANY} random starts reaches one of the two period-3 orbits (a share "
-        f"below {3 / MANY:.1%} of others is not excluded)"
-    )
-    return sampled(
-        "almost all initial conditions, from the crisis to lam = 0.7 at least; not all, as the diameters are orbits of "
-        "period 2 for every lam; further up there are other attractors: two of period 12 from 0.8162 to 0.8714, six "
-        "more of period 3 from 0.9141 on",
-        said,
-        threes and stays,
-    )
-
-
-@judges("egg.basins_separate")
-def separate(claim: Claim) -> Judgement:
-    """One basin lies at positive angles, the other at negative ones, with a gap that the chaotic basin fills."""
-    _, attractors = scene("egg", "0.66")
-    height, label = fates("egg", "0.66")
-    ways = {np.sign(a.points.phi[0]): i for i, a in enumerate(attractors) if a.kind is Kind.CYCLE}
-    low, high = float(np.min(height[label == ways[1.0]])), float(np.max(height[label == ways[-1.0]]))
-    law = boundary("egg", "0.66", (0.01, 0.005, 0.002, 1e-3))
-    said = (
-        f"of {label.size} random starts those that reach the orbit with phi > 0 have sin(phi) >= {low:.3f}, those that "
-        f"reach the other sin(phi) <= {high:.3f}; the boundaries with the chaotic basin have the dimension {told(law)}"
-    )
-    return sampled(
-        "one basin above, one below, the chaotic one between them", said, high < 0 < low and not np.any(label < 0)
     )
 
 

@@ -23,10 +23,7 @@ from sympy import (
 )
 
 from numeric import PinballMap
-from numeric.dynamics.attractors import find, wilson
-from numeric.dynamics.basins import labels
-from numeric.dynamics.phase_points import PhasePoints
-from numeric.pinball.sampling import interior_starts, phase_starts
+from numeric.pinball.sampling import interior_starts
 from symbolic import tables
 from symbolic.cycles.cycle import egg_diameter
 from symbolic.cycles.polygons import (
@@ -265,23 +262,3 @@ def chaotic_share(lam_text: str) -> float:
     map = PinballMap("egg", lam=lam_text, alpha=str(SHAPE))
     starts = interior_starts(map, STARTS, SEED)
     return float(np.mean(map.exponents(starts.theta, starts.phi, 500, 4000).nu_plus > 0.02))
-
-
-@judges("egg.basins_above_below")
-def basins_above_below(claim: Claim) -> Judgement:
-    """Random starts over all of phase space: those that reach a triangle leave to the same side as it does."""
-    map, count = PinballMap("egg", lam="0.66", alpha=str(SHAPE)), 10 * STARTS
-    attractors = find(map, 100, SEED)
-    starts = phase_starts(map, count, SEED)
-    label = labels(map, PhasePoints(starts.component, starts.theta, starts.phi), attractors)
-    wrong = total = 0
-    for i, attractor in enumerate(attractors):
-        if attractor.period == 3:
-            wrong += int(np.sum(starts.phi[label == i] * attractor.points.phi[0] < 0))
-            total += int(np.sum(label == i))
-    most = wilson(wrong, total).high
-    said = (
-        f"of {count} starts uniform in s and sin(phi), {total} reach a triangle, {wrong} of them from angles of the "
-        f"other sign (at most {most:.1e} with 95 per cent confidence)"
-    )
-    return sampled("the upper basin lies in phi > 0, the lower in phi < 0", said, wrong == 0 and total > 0)

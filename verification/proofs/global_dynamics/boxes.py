@@ -307,6 +307,11 @@ class Boxes(NamedTuple):
             ends.append((np.maximum(cut[0] - 1e-15 * size, low), np.minimum(cut[1] + 1e-15 * size, high)))
         return Boxes(self.chart[source], *ends), source
 
+    def mirrored(self) -> "Boxes":
+        """The boxes of `(-theta, -phi)`."""
+        (left, right), (bottom, top) = self.x, self.y
+        return Boxes(self.chart, (-right, -left), (-top, -bottom))
+
 
 class Images(NamedTuple):
     """Rectangles: the box each belongs to, and where it lies; `lost` are boxes of which nothing is proved."""

@@ -135,11 +135,11 @@ class BoundaryCrisis:
         except (ValueError, ArithmeticError):
             return found
         below, throughout = (PinballImages(self.scene, pair) for pair in ((low, low), self.lam))
-        seed = _boxed([(arb(self.sink[0]), arb(self.sink[1]))])
+        seed = boxed([(arb(self.sink[0]), arb(self.sink[1]))])
         taken = None if seed is None else self._grown(throughout, seed)
         found["taken"] = _proved(taken is not None)
         ends = np.linspace(0, 1, PIECES + 1)
-        pieces = _boxed(self._turned(self._launched(branches[0], ends[:-1], ends[1:])))
+        pieces = boxed(self._turned(self._launched(branches[0], ends[:-1], ends[1:])))
         for _ in range(ROUNDS):
             pieces = None if pieces is None else _next(below, pieces)
         kept = None if pieces is None else self._grown(below, pieces)
@@ -216,17 +216,8 @@ class BoundaryCrisis:
     def _leaves(self, branch: Branch, taken: tuple[Grid, Mask]) -> bool:
         """Does the orbit from `start` enter the cells? Followed in balls, each landing a first hit."""
         at = np.array([self.start])
-        high = EnclosedMap(PinballMap(self.scene, lam=float(self.lam[1])), self.lam[1], MANY_BITS)
         ((theta, phi),) = self._launched(branch, at, at)
-        here = high.ball(0, theta, phi)
-        for _ in range(MOST_BOUNCES):
-            landed = high.bounce(here)
-            if isinstance(landed, Refusal) or landed.code:
-                return False
-            here, box = landed, _boxed([(landed.theta, landed.phi)])
-            if box is not None and _within(taken, box):
-                return True
-        return False
+        return enters(self.scene, self.lam[1], (theta, phi), taken)
 
     def _grown(self, map: PinballImages, start: Boxes) -> tuple[Grid, Mask] | None:
         return grown(map, (self.columns, self.rows, self.parts), start)
@@ -291,12 +282,26 @@ def bracket(
     return BoundaryCrisis(scene, orbit, side, lam, *grid, float(start[k]), sink)
 
 
+def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: tuple[Grid, Mask]) -> bool:
+    """Does the orbit of a phase point enter the cells? Followed in balls, each landing a first hit."""
+    map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, MANY_BITS)
+    here = map.ball(0, *start)
+    for _ in range(MOST_BOUNCES):
+        landed = map.bounce(here)
+        if isinstance(landed, Refusal) or landed.code:
+            return False
+        here, box = landed, boxed([(landed.theta, landed.phi)])
+        if box is not None and _within(cells, box):
+            return True
+    return False
+
+
 def grown(map: PinballImages, grid: tuple[int, int, int], start: Boxes) -> tuple[Grid, Mask] | None:
     """The cells that boxes meet, with all that their images meet, again and again; None where they have no end."""
     cells = Grid(map.charts, *grid[:2])
     member = new = _marked(cells, cells.met(_as_images(start)))
     while new.any():
-        met, lost = mapped(map, cells, _cells(new), grid[2])
+        met, lost = mapped(map, cells, marked_cells(new), grid[2])
         if lost.any() or met.out.any():
             return None
         new = _marked(cells, met) & ~member
@@ -309,7 +314,7 @@ def kept_apart(map: PinballImages, grid: tuple[int, int, int], points: Sequence[
 
     `grid` is columns, a multiple of three, rows and parts; the map is that of a table which turns by thirds.
     """
-    start = _boxed(points)
+    start = boxed(points)
     found = None if start is None or grid[0] % 3 or not map.closed else grown(map, grid, start)
     if found is None:
         return None
@@ -321,7 +326,7 @@ def kept_apart(map: PinballImages, grid: tuple[int, int, int], points: Sequence[
     return low + (high - low) * (np.flatnonzero(member.any(1)) + 0.5) / grid[0]
 
 
-def _boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
+def boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
     """Boxes about phase points of a table of one component; None where one is not finite."""
     (left, right), (bottom, top) = (
         [np.array([_outwards(x, up) for x in values]) for up in (False, True)] for values in zip(*points, strict=True)
@@ -359,7 +364,7 @@ def _as_images(boxes: Boxes) -> Images:
     return Images(np.arange(boxes.chart.size), boxes, np.zeros(0, dtype=np.int64))
 
 
-def _cells(member: Mask) -> Cells:
+def marked_cells(member: Mask) -> Cells:
     chart, column, row = np.nonzero(member)
     return Cells(chart, column, row, np.ones(chart.size, dtype=np.int64))
 
@@ -381,7 +386,7 @@ def _marked(grid: Grid, met: Rectangles) -> Mask:
 def _meets(kept: tuple[Grid, Mask], taken: tuple[Grid, Mask]) -> bool:
     """May cells of two grids have a common point?"""
     grid, member = taken
-    return bool(np.any(_marked(kept[0], kept[0].met(_as_images(grid.boxes(_cells(member))))) & kept[1]))
+    return bool(np.any(_marked(kept[0], kept[0].met(_as_images(grid.boxes(marked_cells(member))))) & kept[1]))
 
 
 def _within(cells: tuple[Grid, Mask], boxes: Boxes) -> bool:

@@ -1,0 +1,64 @@
+"""Curves that the map takes below themselves: that all below stays below, and what must not be proved."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from symbolic.tables.scene import Scene
+from verification.proofs.global_dynamics import crisis
+from verification.proofs.global_dynamics.barrier import Barrier, lost, point
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.manifolds.known import BOUNDARY, SHAPE
+
+EGG, AT = Scene("egg", alpha="0.08"), Fraction(66, 100)
+SINK, CROSSES, AFTER = (-3.0003, 0.4175), 0.7251, Fraction(6623, 10000)
+
+
+@pytest.fixture(scope="module")
+def barrier() -> Barrier:
+    return Barrier(EGG, (AT, AT), 4096)
+
+
+def test_no_orbit_that_begins_below_the_barrier_comes_above_it(barrier):
+    """Half a million bounces of the kernel, which shares no formula with boxes; the starts crowd below the curve."""
+    rng = np.random.default_rng(1)
+    columns = rng.integers(0, barrier.columns, 5000)
+    theta = (columns + 0.5) / (barrier.columns * barrier.turns) * 2 * np.pi - np.pi
+    phi = barrier.heights[columns] - rng.exponential(0.01, 5000)
+    orbit = PinballMap("egg", lam="0.66", alpha="0.08").orbit(theta, phi, 100)
+    ends = orbit.theta[1:].ravel(), orbit.phi[1:].ravel()
+
+    assert not np.any(barrier.above(Boxes(np.zeros(ends[0].size, dtype=np.int64), *((x, x) for x in ends))))
+    assert barrier.between(point(0.3, 0.0)).all()
+    assert barrier.above(point(*SINK)).all()
+
+
+def test_a_barrier_is_lost_where_the_tangency_of_manifolds_is(barrier):
+    """That was located, and proved, by other means."""
+    assert all(lost(barrier, AFTER, SINK, CROSSES).values())
+    assert barrier.lam[0] < Fraction(BOUNDARY[SHAPE][1]) < AFTER
+
+
+def test_beyond_the_crisis_no_barrier_is_below_the_triangle():
+    """The least one goes around above it."""
+    assert not Barrier(EGG, (AFTER, AFTER), 4096).above(point(*SINK)).any()
+
+
+def test_an_orbit_that_does_not_cross_proves_no_loss(barrier, monkeypatch):
+    monkeypatch.setattr(crisis, "MOST_BOUNCES", 4)
+    assert lost(barrier, AFTER, SINK, 0.0)["crossed"] is None  # the end of a diameter stays there
+
+
+def test_a_barrier_at_a_cycle_that_lies_below_it_is_not_apart(barrier):
+    assert lost(barrier, AFTER, (SINK[0], -SINK[1]), CROSSES)["apart"] is None
+
+
+@pytest.mark.parametrize(
+    ("scene", "lam"),
+    [(Scene("cuspless"), AT), (EGG, Fraction(0)), (Scene("egg", law="-lam*sin(eta)", alpha="0.08"), AT)],
+)
+def test_tables_with_joins_a_map_that_is_not_invertible_and_other_laws_are_refused(scene, lam):
+    with pytest.raises(ValueError, match="barrier: "):
+        _ = Barrier(scene, (lam, AT), 64).heights

@@ -1,0 +1,135 @@
+"""Claims on the egg's basins next to the boundary crisis, by barriers, and on what attracts beyond it. Section 6.7.
+
+At 0.66 a curve around phase space is mapped strictly below itself: what begins below it, which is all of `phi <= 0`
+and more, never reaches the triangle with `phi > 0`; with its mirror image it encloses a trapping region. A little
+further an orbit crosses. Beyond the crisis windows are left, in which other cycles attract.
+"""
+
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+from sympy import Rational
+
+from numeric import PinballMap
+from numeric.dynamics.phase_points import PhasePoints, phase_points
+from symbolic import tables
+from symbolic.expressions.signs import Finding
+from symbolic.tables.scene import Scene
+from symbolic.tables.table import lam
+from verification.arithmetic.balls import balls, working
+from verification.named.attractors import certificate
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import answer, by, counterexample, judges
+from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at
+from verification.proofs.global_dynamics.barrier import Barrier, lost
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.crisis import boxed
+from verification.proofs.manifolds.known import table
+
+AT, LOST = "0.66", "0.6623"
+SINK, CROSSES = (-3.0003, 0.4175), 0.7251  # near the upper triangle; where on `phi = 0` an orbit crosses at LOST
+WINDOW, STAYS = "0.6718", (-2.32324864, 0.26943288)  # a window of a cycle of 10 bounces, and a point near one of them
+LONG, BITS = 10, 160
+
+
+@cache
+def barrier(contraction: str = AT) -> Barrier:
+    """At one contraction."""
+    return Barrier(Scene("egg", alpha=SHAPE), (Fraction(contraction), Fraction(contraction)))
+
+
+@cache
+def triangles(contraction: str = AT) -> Finding:
+    """Of the two cycles of period 3, mirror images, one is above the barrier and one below the mirrored barrier."""
+    found, divides, sides = cycles(egg(contraction), 3), barrier(contraction), []
+    for cycle in found:
+        place = bounces(contraction, cycle.points)
+        sides.append([bool(np.all(divides.above(box))) for box in (place, place.mirrored())] if place else [False] * 2)
+    return by(
+        "two cycles of period 3 attract what is close to them",
+        proved_at(contraction, 3),
+        answer(sorted(sides) == [[False, True], [True, False]], "one above the barrier, one below its mirror image"),
+    )
+
+
+def bounces(contraction: str, near: PhasePoints) -> Boxes | None:
+    """The bounces of a cycle that is proved near some phase points, as boxes; None where none is proved."""
+    shape = Rational(SHAPE)
+    proof = certificate(tables.egg(3).at(alpha=SHAPE), Rational(contraction), near)
+    if not proof.proved:
+        return None
+    with working(BITS):
+        angle = table(shape).over(balls(BITS)).angle
+        ends = zip(proof.theta, (*proof.theta[1:], proof.theta[0]), strict=True)
+        return boxed([(here, angle(here, there)[0]) for here, there in ends])
+
+
+@cache
+def divided(contraction: str = AT) -> Finding:
+    """No orbit goes from below the barrier to above, nor, by the mirror, from above the lower one to below it."""
+    divides = barrier(contraction)
+    return by(
+        f"at lam = {contraction} a curve above phi = 0, in {divides.columns * divides.turns} steps, is mapped strictly "
+        "below itself, so that no orbit crosses it from below; its mirror image likewise from above; what lies between "
+        "the two is trapped",
+        answer(divides.heights is not None and divides.mirrored, "boxes along the curve"),
+        triangles(contraction),
+    )
+
+
+@judges("egg.basins_above_below", "egg.basins_separate")
+def separated(claim: Claim) -> Judgement:
+    """The basins lie beyond the barriers, what attracts in between lies between them."""
+    return Judgement(
+        divided(),
+        "the upper basin lies above a curve in phi > 0, the lower one below its mirror image, and all that lies "
+        "between the two curves stays there, so that it reaches neither triangle; that a single chaotic attractor "
+        "takes all of it is not part of this, and not proved",
+    )
+
+
+@judges("egg.crisis_below")
+def crisis_below(claim: Claim) -> Judgement:
+    """The barrier is there at 0.66 and is lost at 0.6623."""
+    checks = lost(barrier(), Fraction(LOST), SINK, CROSSES)
+    return Judgement(
+        by(
+            f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper "
+            "triangle",
+            divided(),
+            answer(all(checks.values()), f"at {LOST} an orbit from phi = 0 ends at the upper triangle"),
+        ),
+        f"what keeps orbits in between from the triangles is lost at a contraction above {AT}, and not above {LOST}; "
+        "the tangency at 0.66214 is there",
+    )
+
+
+@cache
+def window() -> Finding:
+    """A third kind of attractor beyond the crisis, in the region where orbits stayed below it."""
+    map = PinballMap("egg", lam=WINDOW, alpha=SHAPE)
+    orbit = map.orbit(*STAYS, 1000 + LONG)
+    near = phase_points(0, orbit.theta[-LONG:], orbit.phi[-LONG:])
+    place = bounces(WINDOW, near)
+    return by(
+        f"at lam = {WINDOW} a cycle of {LONG} bounces attracts, besides the two of period 3",
+        answer(place is not None, f"{LONG} bounces, proved with their least period"),
+        answer(place is not None and bool(np.all(barrier().between(place))), "between the barriers of lam = 0.66"),
+        proved_at(WINDOW, 3),
+    )
+
+
+@judges("egg.after_crisis", "egg.region_taken_over")
+def beyond(claim: Claim) -> Judgement:
+    """Windows: "all" is meant of almost all, and fails in each, since the basin of the cycle there is open."""
+    others = window()
+    return Judgement(
+        counterexample("an open set of starts goes elsewhere", others, at={lam: Rational(WINDOW)}),
+        f"not at every contraction beyond the crisis: at {WINDOW} cycles of 10 bounces attract too, six by symmetry, "
+        "from inside the region that was occupied by the basin of the chaotic attractor; samples show more such "
+        "windows, near 0.66346, 0.67738 and 0.69596",
+        others,
+        f"Beyond the crisis there are windows in which other cycles attract as well: at lambda = {WINDOW} cycles of "
+        "period 10, in the region that the chaotic attractor's basin occupied.",
+    )

@@ -6,6 +6,7 @@ import sys
 from urllib.request import urlopen
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
 from verification.app.live import serve
@@ -100,6 +101,16 @@ def test_a_click_in_phase_space_starts_there(table):
     table.mouse.click(space["x"] + space["width"] * 0.6, space["y"] + space["height"] * 0.4)
 
     command(table, r"pinball orbit egg --alpha 0.08 --lam 0.45 --start=(?!0\.3,)")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_is_accessible(table, scheme):
+    """Labels, landmarks, contrast and keyboard, as axe judges them."""
+    table.emulate_media(color_scheme=scheme)
+    table.locator("[role=main]").wait_for()
+
+    found = Axe().run(table)
+    assert found.violations_count == 0, found.generate_report()
 
 
 def test_it_is_served_on_loopback_only(monkeypatch):

@@ -140,7 +140,7 @@ def test_it_fits_its_window_and_is_accessible(page, report, size, scheme):
     assert found.violations_count == 0, found.generate_report()
 
 
-@pytest.mark.parametrize("name", ["flower", "limacon", "stadium"])
+@pytest.mark.parametrize("name", ["flower", "limacon", "stadium", "egg"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_the_reports_of_tables_are_accessible(page, name, scheme):
     page.emulate_media(color_scheme=scheme)

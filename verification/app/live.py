@@ -11,7 +11,7 @@ from urllib.parse import parse_qsl, urlencode
 import numpy as np
 import panel as pn
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, PointDrawTool, Range1d, Span
+from bokeh.models import ColumnDataSource, CustomJS, PointDrawTool, Range1d, Span
 from bokeh.plotting import figure
 
 from numeric import PinballMap
@@ -47,6 +47,17 @@ body { margin: 0; }
   html { background: #14161a; }
   body { background: #fff; filter: invert(0.92) hue-rotate(180deg); min-height: 100vh; }
 }
+"""
+READY = """
+function named(root) {  // what the widgets leave without a name, for those who listen to the page
+  for (const each of root.querySelectorAll("*")) {
+    if (each.shadowRoot) named(each.shadowRoot);
+    if (each.classList.contains("noUi-handle"))
+      each.setAttribute("aria-label", root.querySelector(".bk-slider-title").textContent.split(":")[0]);
+  }
+}
+named(document);
+document.body.firstElementChild.setAttribute("role", "main");
 """
 
 
@@ -126,7 +137,7 @@ class LiveTable:
     def view(self) -> Any:
         """The page."""
         controls = pn.Column(
-            "## Pinball billiards",
+            "# Pinball billiards",
             self.table,
             self.formula,
             self.shape,
@@ -334,6 +345,8 @@ def page() -> Any:
     """A visitor's own page, as its address says."""
     location = pn.state.location
     said = dict(parse_qsl(location.search.lstrip("?"))) if location is not None and location.search else {}
+    if pn.state.curdoc is not None:
+        pn.state.curdoc.js_on_event("document_ready", CustomJS(code=READY))
     return LiveTable(Choice.of_address(said)).view()
 
 

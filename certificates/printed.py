@@ -30,6 +30,8 @@ TOO_LONG = {  # cycles that the second reader does not follow: `pinball check` p
     "0.733045076874652845644": 48,
     "0.733048334966163011932": 96,
     "0.733049033237568648957": 192,
+    "0.733049182811774930329": 384,
+    "0.733049214847218347941": 768,
 }
 FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enough digits for the second reader
 

@@ -1,5 +1,6 @@
 # `make verify` judges the paper, `make test` tests the package; both make .venv first.
-# `make quick` leaves out the tests listed in tests/slow.txt, for the work in between.
+# `make test` runs lint and all tests but the dearest, in about five minutes on two cores once all is installed. Those are
+# `make slow`, half an hour; `make quick` runs what takes no tenth of a second. tests/slow.txt has the seconds of each.
 # On another machine: make PYTHON=python3.12, make test JOBS=8.
 
 PYTHON ?= python3
@@ -7,8 +8,10 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test quick browser check-all formal lint docs dist letter bench mutation torture clean
+.PHONY: verify test slow quick browser check-all formal lint docs dist letter bench mutation torture clean
 .DELETE_ON_ERROR:
+# Compiled modules are kept, whatever the environment says: otherwise each command that a test runs compiles all anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 # Open claims are a result (exit status 1); a run that wrote no report is a failure.
 verify: $(VENV)/main.stamp
@@ -20,10 +23,13 @@ verify: $(VENV)/main.stamp
 PYTEST := $(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile --no-loadscope-reorder
 
 test: lint
-	$(PYTEST)
+	$(PYTEST) -m "not slow"
+
+slow: $(VENV)/test.stamp
+	$(PYTEST) -m slow
 
 quick: $(VENV)/test.stamp
-	$(PYTEST) -m "not slow"
+	$(PYTEST) -m quick
 
 # The pages in a headless Chromium, which must be on the path or named by CHROMIUM.
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp

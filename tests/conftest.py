@@ -3,10 +3,12 @@
 The examples are the same in every run, so that more of them find nothing new on a second day: 25 unless a test says
 another number. `pytest --hypothesis-profile long` draws 500, other ones every time.
 
-`slow.txt` has the seconds of the tests that `make quick` leaves out; `make test` and CI run everything, file by file:
-what a file computes for several tests is computed once, and the dearest files begin.
+`slow.txt` has the seconds of each test that takes more than a tenth of one. A test that is not in it is `quick`; one
+that takes more than `DEAR` is `slow`. `make quick` runs what is quick, `make test` all but what is slow, and `make slow`
+the rest. They go file by file: what a file computes for several tests is computed once, and the dearest files begin.
 """
 
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -18,8 +20,27 @@ settings.register_profile("ci", derandomize=True, max_examples=25, **FOR_ALL)
 settings.register_profile("long", max_examples=500, **FOR_ALL)
 settings.load_profile("ci")
 
-LINES = (Path(__file__).parent / "slow.txt").read_text(encoding="utf-8").splitlines()
-SLOW = {name: float(seconds) for seconds, name in (line.split() for line in LINES)}
+HERE = Path(__file__).parent
+LINES = (HERE / "slow.txt").read_text(encoding="utf-8").splitlines()
+SECONDS = {name: float(seconds) for seconds, name in (line.split() for line in LINES)}
+DEAR = 1.2  # seconds of one processor: what takes less is five minutes of two
+
+
+def marks(name):
+    """The marks of a test: `quick`, `slow`, or none."""
+    if name not in SECONDS:
+        return ["quick"]
+    return ["slow"] if SECONDS[name] > DEAR else []
+
+
+def pytest_ignore_collect(collection_path, config):
+    """A file without a test of the level that is asked for is not even imported: that takes longer than what is quick."""
+    level, path = config.getoption("markexpr"), collection_path
+    if level not in ("quick", "slow") or not (path.name.startswith("test_") and path.suffix == ".py"):
+        return None
+    text, file = path.read_text(encoding="utf-8"), path.relative_to(HERE.parent).as_posix()
+    tests = [f"{file}::{name}" for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)]
+    return True if ">>>" not in text and not any(level in marks(name) for name in tests) else None
 
 
 @pytest.hookimpl(tryfirst=True)  # before what is marked is left out
@@ -27,8 +48,8 @@ def pytest_collection_modifyitems(items):
     names = {item: item.nodeid.partition("[")[0] for item in items}
     files = Counter()
     for name in dict.fromkeys(names.values()):  # in one order, so that workers agree
-        files[name.partition("::")[0]] += SLOW.get(name, 0.0)
+        files[name.partition("::")[0]] += SECONDS.get(name, 0.0)
     for item, name in names.items():
-        if name in SLOW:
-            item.add_marker(pytest.mark.slow)
+        for mark in marks(name):
+            item.add_marker(mark)
     items.sort(key=lambda item: -files[names[item].partition("::")[0]])

@@ -23,7 +23,8 @@ settings.load_profile("ci")
 HERE = Path(__file__).parent
 LINES = (HERE / "slow.txt").read_text(encoding="utf-8").splitlines()
 SECONDS = {name: float(seconds) for seconds, name in (line.split() for line in LINES)}
-DEAR = 1.2  # seconds of one processor: what takes less is five minutes of two
+DEAR = 1.2  # seconds of one processor: what takes no more is five minutes of two
+LEVELS = ("quick", "slow")
 
 
 def marks(name):
@@ -36,7 +37,7 @@ def marks(name):
 def pytest_ignore_collect(collection_path, config):
     """A file without a test of the level that is asked for is not even imported: that takes longer than what is quick."""
     level, path = config.getoption("markexpr"), collection_path
-    if level not in ("quick", "slow") or not (path.name.startswith("test_") and path.suffix == ".py"):
+    if level not in LEVELS or not (path.name.startswith("test_") and path.suffix == ".py"):
         return None
     text, file = path.read_text(encoding="utf-8"), path.relative_to(HERE.parent).as_posix()
     tests = [f"{file}::{name}" for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)]

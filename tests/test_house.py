@@ -99,18 +99,33 @@ def test_the_readme_is_true():
     assert result.failed == 0
 
 
-def test_what_is_listed_as_slow_is_there_and_only_make_quick_leaves_it_out():
+def test_every_test_is_run_by_make_test_or_by_make_slow_and_a_quick_one_by_make_quick_too(request):
     """`python benchmarks/slow_tests.py` writes the list; a few may have another name since."""
-    listed = [line.split()[1].split("::") for line in (ROOT / "tests" / "slow.txt").read_text().splitlines()]
+    levels = request.config.pluginmanager.get_plugin(str(ROOT / "tests" / "conftest.py"))
+    listed = [name.split("::") for name in levels.SECONDS]
     text = {path: (ROOT / path).read_text() for path, _ in listed if (ROOT / path).is_file()}
     there = [name for path, name in listed if name.rpartition(".")[2] in text.get(path, "")]
     assert len(there) > 0.8 * len(listed)
 
-    makefile, ci = (ROOT / "Makefile").read_text(), (ROOT / ".ci" / "run").read_text()
-    recipes = dict(re.findall(r"^(\w+):.*\n\t(.*)$", makefile, re.MULTILINE))
-    assert (recipes["quick"], recipes["test"]) == ('$(PYTEST) -m "not slow"', "$(PYTEST)")
-    assert makefile.count("slow") == 2  # once where make quick is explained
-    assert "make test" in ci
+    for name in [*levels.SECONDS, "tests/test_house.py::test_that_is_not_listed"]:
+        assert levels.marks(name) in (["quick"], [], ["slow"])
+
+    recipes = dict(re.findall(r"^(\w+):.*\n\t(.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    marked = {"quick": "quick", "test": '"not slow"', "slow": "slow"}
+    assert {name: recipes[name] for name in marked} == {name: f"$(PYTEST) -m {mark}" for name, mark in marked.items()}
+    assert {"make test", "make slow"} <= {*(ROOT / ".ci" / "run").read_text().splitlines()}
+
+
+def test_a_file_is_left_unread_only_where_no_test_of_it_is_asked_for(request):
+    levels = request.config.pluginmanager.get_plugin(str(ROOT / "tests" / "conftest.py"))
+    options = {level: type("Config", (), {"getoption": lambda self, _, level=level: level})() for level in levels.LEVELS}
+    for path in TESTS:
+        tree = ast.parse(path.read_text())
+        names = [node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")]
+        held = {mark for name in names for mark in levels.marks(f"{named(path)}::{name}")}
+        for level, options_of in options.items():
+            left = levels.pytest_ignore_collect(path, options_of)
+            assert not (left and level in held), f"{named(path)} holds a {level} test"
 
 
 def test_the_commands_of_the_readme_exist():

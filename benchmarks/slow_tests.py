@@ -1,5 +1,4 @@
-"""What each test takes: runs the whole suite and writes tests/slow.txt, by which `make quick`, `make test` and `make slow`
-share the tests out.
+"""What each test takes: runs the whole suite and writes tests/slow.txt, by which the levels of tests are told apart.
 
     python benchmarks/slow_tests.py              # half an hour
     python benchmarks/slow_tests.py tests/FILE   # of these files only; the other lines stay

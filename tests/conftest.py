@@ -4,7 +4,7 @@ The examples are the same in every run, so that more of them find nothing new on
 another number. `pytest --hypothesis-profile long` draws 500, other ones every time.
 
 `slow.txt` has the seconds of each test that takes more than a tenth of one. A test that is not in it is `quick`; one
-that takes more than `DEAR` is `slow`. `make quick` runs what is quick, `make test` all but what is slow, and `make slow`
+that takes more than `DEAR` is `slow`. `make quick` runs what is quick, `make test` all but what is slow, `make slow`
 the rest. They go file by file: what a file computes for several tests is computed once, and the dearest files begin.
 """
 
@@ -35,7 +35,7 @@ def marks(name):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """A file without a test of the level that is asked for is not even imported: that takes longer than what is quick."""
+    """A file without a test of the level that is asked for is not imported: that takes longer than what is quick."""
     level, path = config.getoption("markexpr"), collection_path
     if level not in LEVELS or not (path.name.startswith("test_") and path.suffix == ".py"):
         return None

@@ -9,6 +9,7 @@ import tokenize
 import tomllib
 from itertools import chain
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -118,7 +119,7 @@ def test_every_test_is_run_by_make_test_or_by_make_slow_and_a_quick_one_by_make_
 
 def test_a_file_is_left_unread_only_where_no_test_of_it_is_asked_for(request):
     levels = request.config.pluginmanager.get_plugin(str(ROOT / "tests" / "conftest.py"))
-    options = {level: type("Config", (), {"getoption": lambda self, _, level=level: level})() for level in levels.LEVELS}
+    options = {level: SimpleNamespace(getoption=lambda _, level=level: level) for level in levels.LEVELS}
     for path in TESTS:
         tree = ast.parse(path.read_text())
         names = [node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")]

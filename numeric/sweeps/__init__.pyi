@@ -6,11 +6,13 @@ from .orbits import written
 from .run import UnfinishedError, connected, on_threads
 from .store import Memory
 from .sweep import Array, Axis, Field, Measured, Part, Sweep, cores, floor_of, map_of, measured, text_of, versions
+from .workers import Lost, in_processes
 
 __all__ = [
     "Array",
     "Axis",
     "Field",
+    "Lost",
     "Measured",
     "Memory",
     "Part",
@@ -24,6 +26,7 @@ __all__ = [
     "egg",
     "fields",
     "floor_of",
+    "in_processes",
     "map_of",
     "measured",
     "on_threads",

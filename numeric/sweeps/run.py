@@ -1,8 +1,9 @@
-"""Who does the tasks: the threads of this machine, or the workers of a Dask cluster.
+"""Who does the tasks: threads or processes of this machine, or the workers of a Dask cluster.
 
-Both hand back results as they come, and hold no more tasks at a time than keeps everyone busy.
+All hand back results as they come. Threads do for kernels, which let others run beside them; a task in Python holds
+the interpreter, so its sweep asks for processes.
 
-Doing a sweep: what is missing, by threads or by a cluster, into memory or into a store.
+Doing a sweep: what is missing, by whoever does the tasks, into memory or into a store.
 """
 
 import errno
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from numeric.sweeps.store import Memory, Stored, opened
 from numeric.sweeps.sweep import Array, Sweep, cores
+from numeric.sweeps.workers import Lost, in_processes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,6 +52,15 @@ def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
                     yield running.pop(future), future.result()
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def on_processes(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
+    """The results of each part, by processes of this machine."""
+    tasks = ([sweep.part(index)] for index in indices)
+    for part, found in in_processes(sweep.task, tasks, workers, [type(sweep.task).__module__]):
+        if isinstance(found, Lost):
+            raise UnfinishedError(f"the part at {part.at}: {found}")
+        yield part.at, found
 
 
 def connected(address: str) -> Any:
@@ -173,7 +184,9 @@ def run(
         done = parts - len(missing)
         if tick is not None:
             tick(done, parts)
-        pool = on_cluster(sweep, missing, scheduler) if scheduler else on_threads(sweep, missing, workers or cores())
+        workers = min(workers or cores(), max(1, len(missing)))
+        local = on_processes if sweep.python and workers > 1 else on_threads
+        pool = on_cluster(sweep, missing, scheduler) if scheduler else local(sweep, missing, workers)
         try:
             for index, arrays in pool:
                 results.write(index, arrays)

@@ -79,7 +79,8 @@ class Sweep:
     """A grid of independent tasks. `task` can be sent to another machine; it sees nothing but its part.
 
     `settings` and `scene` are what else the results depend on; `collisions` is how many bounces it all takes,
-    and `map` makes the map on which their speed is measured.
+    and `map` makes the map on which their speed is measured. A task that is `python` for the most part, and no kernel,
+    is done in processes, since threads would wait for one another.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Sweep:
     settings: Mapping[str, Any]
     collisions: int
     map: Callable[[], PinballMap]
+    python: bool = False
 
     def __post_init__(self) -> None:
         cut = [axis.name for axis in self.axes if axis.length < axis.size]

@@ -12,12 +12,12 @@ from pathlib import Path
 
 import pytest
 
+from numeric.sweeps.workers import TRIES, Lost, in_processes
 from verification.app.cli import main
 from verification.app.commands.verify import Last, write_report
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import paper, recorded
 from verification.paper.report import changed, report
-from verification.paper.report.workers import TRIES, Lost, in_processes
 
 ROOT = Path(__file__).parents[3]
 
@@ -149,7 +149,7 @@ def test_ctrl_c_waits_while_processes_start_though_another_thread_hears_it():
     """A mask binds one thread; libraries of linear algebra start threads of their own."""
     program = """
 import os, signal, threading, time
-from verification.paper.report.workers import _undisturbed
+from numeric.sweeps.workers import _undisturbed
 signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Thread(target=time.sleep, args=(2,), daemon=True).start()
 try:

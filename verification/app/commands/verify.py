@@ -341,7 +341,7 @@ def drawn(
 
 
 def _images(wanted: "Sequence[Figure]", jobs: int | None) -> "Generator[tuple[Figure, bytes], None, None]":
-    from verification.paper.report.workers import Lost, in_processes
+    from numeric.sweeps.workers import Lost, in_processes
 
     if jobs == 1 or len(wanted) < 2:
         yield from ((picture, _image(picture)) for picture in wanted)

@@ -6,17 +6,14 @@ from .findings import letter
 from .mathml import formula, remark
 from .page import Picture, diagrams, markdown
 from .report import Result, escaped, tables, verify
-from .workers import Lost, in_processes
 
 __all__ = [
-    "Lost",
     "Picture",
     "Result",
     "codes",
     "diagrams",
     "escaped",
     "formula",
-    "in_processes",
     "letter",
     "markdown",
     "remark",

@@ -21,12 +21,12 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from numeric.sweeps.workers import Lost, in_processes
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict
 from verification.paper.claims.folder import OWN, Paper, home, judge_of, module, paper
 from verification.paper.figures.catalogue import Picture
-from verification.paper.report.workers import Lost, in_processes
 
 SMALL = 4.0  # seconds of judging that other processes would not save
 

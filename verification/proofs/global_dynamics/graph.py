@@ -188,7 +188,8 @@ class Transitions:
     @cached_property
     def components(self) -> Indices:
         """The strongly connected component of each vertex."""
-        return np.asarray(connected_components(self.edges, directed=True, connection="strong")[1], dtype=np.int64)
+        found = connected_components(walked(self.edges), directed=True, connection="strong")
+        return np.asarray(found[1], dtype=np.int64)
 
     @cached_property
     def recurrent(self) -> Mask:
@@ -203,8 +204,8 @@ class Transitions:
         labels = labels.astype(np.int32)
         source, target = np.repeat(labels, np.diff(self.edges.indptr)), labels[self.edges.indices]
         between = source != target
-        made = sparse(source[between], target[between], size)
-        return made, made.T.tocsr()
+        source, target = source[between], target[between]
+        return walked(sparse(source, target, size)), walked(sparse(target, source, size))
 
     def reached(self, start: Mask, backward: bool = False) -> Mask:
         """The vertices to which walks lead from `start`, itself included; or, backward, from which they lead there."""
@@ -213,10 +214,10 @@ class Transitions:
         first = np.unique(self.components[start])
         indptr = np.append(graph.indptr, graph.indptr[-1] + first.size)  # one vertex more, with an edge to each start
         indices = np.append(graph.indices, first.astype(graph.indices.dtype))
-        whole = csr_matrix((np.ones(indices.size, dtype=bool), indices, indptr), shape=(size + 1, size + 1))
-        walked = np.zeros(size + 1, dtype=bool)
-        walked[breadth_first_order(whole, size, return_predecessors=False)] = True
-        return walked[self.components]
+        whole = csr_matrix((np.ones(indices.size), indices, indptr), shape=(size + 1, size + 1))
+        met = np.zeros(size + 1, dtype=bool)
+        met[breadth_first_order(whole, size, return_predecessors=False)] = True
+        return met[self.components]
 
 
 Arrows = tuple[NDArray[np.int32], NDArray[np.int32]]  # sources and targets; OUTSIDE is the outside
@@ -244,25 +245,26 @@ def arrows(
     unit = int(some.size.min())  # of the smallest leaves; no finer cells are counted
     columns, rows = grid.columns // unit, grid.rows // unit
     coarse = Cells(cells.chart[leaves], *(field[leaves] // unit for field in cells[1:]))
-    names = Grid(grid.charts, columns, rows).painted(coarse, leaves, OUTSIDE).reshape(len(grid.charts), -1)
+    names = Grid(grid.charts, columns, rows).painted(coarse, leaves, OUTSIDE).ravel()
     left, right, bottom, top = (side // unit for side in met[2:6])
     across, high = right - left + 1, top - bottom + 1
     if int((across * high).sum()) > EDGES:
         raise ValueError(f"grid: {int((across * high).sum())} edges, at most {EDGES} fit; use fewer or smaller boxes")
     away = np.union1d(np.flatnonzero(lost), met.source[met.out])
-    sources, targets = [new[away]], [np.full(away.size, OUTSIDE)]
+    numbers = new.astype(np.int32)
+    sources, targets = [numbers[away]], [np.full(away.size, OUTSIDE, dtype=np.int32)]
     for start in range(0, met.source.size, BLOCK):
         piece = slice(start, start + BLOCK)
-        column = ranges(left[piece], right[piece] + 1)
         owner = np.repeat(np.arange(start, start + across[piece].size), across[piece])
-        first = (column % columns) * rows + bottom[owner]
-        cell = ranges(first, first + high[owner])
-        owner = np.repeat(owner, high[owner])
-        source, target = new[met.source[owner]], names[met.chart[owner], cell]
-        fresh = np.append(True, (source[1:] != source[:-1]) | (target[1:] != target[:-1]))
-        sources.append(source[fresh].astype(np.int32))
-        targets.append(target[fresh].astype(np.int32))
-    return np.concatenate(sources).astype(np.int32), np.concatenate(targets).astype(np.int32)
+        column = met.chart[owner] * columns + ranges(left[piece], right[piece] + 1) % columns
+        first = column * rows + bottom[owner]
+        target = names[ranges(first, first + high[owner])]
+        begin = np.cumsum(across[piece] * high[piece]) - across[piece] * high[piece]
+        fresh = np.append(True, target[1:] != target[:-1])  # a block of several cells is met once and again
+        fresh[begin] = True
+        sources.append(np.repeat(numbers[met.source[piece]], np.add.reduceat(fresh, begin, dtype=np.int64)))
+        targets.append(target[fresh])
+    return np.concatenate(sources), np.concatenate(targets)
 
 
 def joined(grid: Grid, cells: Cells, leaf: Mask, edges: Arrows) -> Transitions:
@@ -279,6 +281,11 @@ def sparse(source: NDArray[np.int32], target: NDArray[np.int32], size: int) -> c
     order = np.argsort(source, kind="stable")
     starts = np.concatenate([[0], np.cumsum(np.bincount(source, minlength=size))])
     return csr_matrix((np.ones(target.size, dtype=bool), target[order], starts), shape=(size, size))
+
+
+def walked(graph: csr_matrix) -> csr_matrix:
+    """The graph as SciPy walks it: of weights of another type it would make a copy, and first sort its rows."""
+    return csr_matrix((np.ones(graph.indices.size), graph.indices, graph.indptr), shape=graph.shape)
 
 
 def ranges(first: Indices, last: Indices) -> Indices:
@@ -331,14 +338,13 @@ def morse_graph(transitions: Transitions) -> MorseGraph:
     vertices = np.flatnonzero(recurrent)
     vertices = vertices[np.argsort(labels[vertices], kind="stable")]
     cuts = np.flatnonzero(np.diff(labels[vertices])) + 1
-    sets = sorted(np.split(vertices, cuts), key=len, reverse=True) if vertices.size else []
+    sets = sorted(np.split(vertices, cuts), key=lambda some: (-some.size, some[0])) if vertices.size else []
     if len(sets) > MOST:
         raise ValueError(f"{len(sets)} Morse sets, at most {MOST} are ordered; use smaller boxes or another lam")
     graph, first = transitions.condensed[0], [labels[members[0]] for members in sets]
     below = np.zeros((len(sets), len(sets)), dtype=bool)
     for i, label in enumerate(first):
-        walked = breadth_first_order(graph, label, return_predecessors=False)
-        below[i] = np.isin(first, walked)
+        below[i] = np.isin(first, breadth_first_order(graph, label, return_predecessors=False))
     return MorseGraph(transitions, tuple(sets), below)
 
 
@@ -348,19 +354,23 @@ def refined(map: BoxMap, grid: Grid, coarsest: int, parts: int = 1, told: Told |
         raise ValueError(f"grid: blocks of {coarsest} cells cannot be halved down to one; use a power of 2")
     cells = grid.whole(coarsest)
     leaf = np.ones(cells.chart.size, dtype=bool)
-    new = np.arange(leaf.size)
-    source, target = arrows(map, grid, cells, new, new, parts, told)
+    first, found, halves = 0, list[Arrows](), list[Arrows]()
     while True:
-        found = joined(grid, cells, leaf, (source, target))
-        cut = np.flatnonzero(found.recurrent[:-1] & leaf & (cells.size > 1))
+        new = np.arange(first, leaf.size)
+        found.append(arrows(map, grid, cells, new, np.flatnonzero(leaf), parts, told))
+        cut = new[cells.size[new] > 1]
+        if cut.size:  # only among these can orbits return: what led nowhere as a whole leads nowhere in parts
+            source, target = (ends[(found[-1][1] >= first) | (found[-1][1] == OUTSIDE)] for ends in found[-1])
+            inner = source - np.int32(first), np.maximum(target - np.int32(first), OUTSIDE)
+            cut = cut[joined(grid, Cells(*(field[new] for field in cells)), leaf[new], inner).recurrent[:-1]]
         if not cut.size:
-            return found
-        new = np.arange(leaf.size, leaf.size + 4 * cut.size)
+            break
+        first = leaf.size
         fine = halved(Cells(*(field[cut] for field in cells)))
         cells = Cells(*(np.concatenate(pair) for pair in zip(cells, fine, strict=True)))
-        leaf = np.concatenate([leaf, np.ones(new.size, dtype=bool)])
+        leaf = np.concatenate([leaf, np.ones(4 * cut.size, dtype=bool)])
         leaf[cut] = False
-        more = arrows(map, grid, cells, new, np.flatnonzero(leaf), parts, told)
-        kept = leaf[source] | ~np.isin(source, cut)  # what was cut leads to its parts instead
-        source = np.concatenate([source[kept], np.tile(cut, 4).astype(np.int32), more[0]])
-        target = np.concatenate([target[kept], new.astype(np.int32), more[1]])
+        halves.append((np.tile(cut, 4).astype(np.int32), np.arange(first, leaf.size, dtype=np.int32)))
+    kept = [(source[leaf[source]], target[leaf[source]]) for source, target in found]
+    source, target = (np.concatenate(ends) for ends in zip(*kept, *halves, strict=True))
+    return joined(grid, cells, leaf, (source, target))

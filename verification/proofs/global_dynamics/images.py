@@ -89,14 +89,12 @@ class PinballImages:
 
     def __init__(self, scene: Scene, lam: tuple[Fraction, Fraction] | None = None) -> None:
         self.scene = scene
-        low, high = lam or (Fraction(str(scene.lam)), Fraction(str(scene.lam)))
+        self.range = low, high = lam or (Fraction(str(scene.lam)),) * 2
         if not 0 <= low <= high < 1 or high == 0:
             raise ValueError(f"lam = {low}:{high} is no range; accepted: 0 <= LOW <= HIGH, with 0 < HIGH < 1")
-        self.range = low, high
         self.map = PinballMap(scene, lam=high)
         if convex(self.map.table) is not True:
             raise ValueError(f"{scene.name}: the table is not proved convex; accepted: convex tables")
-        self.lam = hull(exactly(low).lower(), exactly(high).upper())
         self.ops = ArrayOps()
         self.shape = [exactly(Fraction(x)) for x in self.map.exact_shape]
         self.closed = len(self.map.ir.parts) == 1
@@ -108,6 +106,11 @@ class PinballImages:
         self.law, self.placed = None if law.uniform else lower_law(law, lambda: self.map.table), law.placed
         if self.placed and self.closed and not is_periodic(law.phi):
             raise ValueError(f"law = {law}: a whole turn of theta is not seen to change nothing, as boxes need it")
+        self.contract()
+
+    def contract(self) -> None:
+        """What depends on the range of contractions."""
+        self.lam = hull(exactly(self.range[0]).lower(), exactly(self.range[1]).upper())
         self.top = float((self.lam * self.ops.pi / 2).upper()) if self.law is None else self._steepest()
 
     def _steepest(self) -> float:
@@ -159,8 +162,6 @@ class PinballImages:
         law = "" if self.law is None else f", phi = {self.scene.law}"
         return f"{self.scene.name}{shape}{law}, lam = {low}" + ("" if low == high else f" to {high}")
 
-    # ---- places on the boundary
-
     def place(self, chart: Indices, theta: BallArray) -> list[BallArray]:
         """Point, velocity and acceleration at parameters of components."""
         if self.closed:
@@ -180,19 +181,32 @@ class PinballImages:
     def images(self, boxes: Boxes) -> Images:
         with np.errstate(all="ignore"):  # what overflows or is no number counts as not known
             flights = self.flights(boxes)
-            rows = [flights.within(*piece) for piece in flights.pieces(*flights.arcs())]
+            rows = [self.row(*flights.landing(piece)) for piece in flights.pieces(*flights.arcs())]
         return collected(rows, np.arange(boxes.chart.size))
+
+    def row(self, piece: Piece, theta: BallArray, eta: BallArray, phi: BallArray | None) -> Row:
+        """One rectangle for each box of a piece."""
+        on, chart, low, high, smooth = piece
+        exit, top = self.exit(eta, theta), self.top
+        phi = exit if phi is None else common_part(phi, exit)
+        low_y, high_y = np.maximum(phi.lower(), -top), np.minimum(phi.upper(), top)
+        known = np.isfinite(phi.r) & (low_y <= high_y)
+        none = np.isfinite(phi.r) & (low_y > high_y) & (not smooth)  # no landing has such an angle
+        low_y, high_y = np.where(known, low_y, -top), np.where(known, high_y, top)
+        bad = np.isnan(low) | np.isnan(high)
+        left, right = np.where(bad, np.nan, theta.lower()), np.where(bad, np.nan, theta.upper())
+        return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
 
     def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
         """The derivative over whole boxes, for each piece of their arcs; entries of infinite radius are not known."""
         with np.errstate(all="ignore"):
-            flights = self.flights(boxes)
-            pieces = flights.pieces(*flights.arcs())
+            pieces = (flights := self.flights(boxes)).pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]
 
 
 End = tuple[Indices, Array]  # component and parameter of boundary points
 Places = dict[str, BallArray]
+Landing = tuple[Piece, BallArray, BallArray, BallArray | None]  # where, the incidence, the exit if place and law mix
 
 
 class Flights:
@@ -221,8 +235,6 @@ class Flights:
         along = all_of["v"] * (x - all_of["x"]) + all_of["w"] * (y - all_of["y"])
         by_theta = all_of["cos"] * all_of["speed"] - all_of["bend"] * along
         return value + by_theta * self.reach[0] + along * self.reach[1]
-
-    # ---- the arc of landings
 
     def arcs(self) -> tuple[End, End]:
         """An arc for each box that holds its landings; parameters are nan where none is proved."""
@@ -285,8 +297,6 @@ class Flights:
             chart = following
         return chart, np.clip(moved, low[chart], high[chart])
 
-    # ---- the image within the arc
-
     def pieces(self, low: End, high: End) -> list[Piece]:
         """The arcs of landings, cut where components meet."""
         if self.map.closed:
@@ -307,26 +317,18 @@ class Flights:
             found.append(Piece(on, chart, a, np.where(last, high[1][on], top), False))
         return found
 
-    def within(self, on: Indices, chart: Indices, low: Array, high: Array, smooth: bool) -> Row:
-        """One rectangle for each box of `on`, whose landings lie on one component between two parameters.
+    def landing(self, piece: Piece) -> Landing:
+        """For each box of a piece, whose landings lie on one component between two parameters.
 
         Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
         """
+        on, chart, low, high, smooth = piece
         arc = hull(low, high)
         eta = incidence(self.phis[on] + turn_between(self.tangent(on, self.thetas), self.map.place(chart, arc)[2:4]))
-        theta, phi = arc, None
-        if smooth:
-            theta, eta, phi = self.mean_value(on, chart, arc, eta)
-            theta = common_part(arc, theta)
-        exit, top = self.map.exit(eta, theta), self.map.top
-        phi = exit if phi is None else common_part(phi, exit)
-        low_y, high_y = np.maximum(phi.lower(), -top), np.minimum(phi.upper(), top)
-        known = np.isfinite(phi.r) & (low_y <= high_y)
-        none = np.isfinite(phi.r) & (low_y > high_y) & (not smooth)  # no landing has such an angle
-        low_y, high_y = np.where(known, low_y, -top), np.where(known, high_y, top)
-        bad = np.isnan(low) | np.isnan(high)
-        left, right = np.where(bad, np.nan, theta.lower()), np.where(bad, np.nan, theta.upper())
-        return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
+        if not smooth:
+            return piece, arc, eta, None
+        theta, eta, phi = self.mean_value(on, chart, arc, eta)
+        return piece, common_part(arc, theta), eta, phi
 
     def tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
         return self.map.place(self.chart[on], theta[on])[2:4]

@@ -2,17 +2,21 @@
 
 import json
 from fractions import Fraction
+from multiprocessing import active_children
 
 import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.sweeps.run import run
+from numeric.sweeps.run import UnfinishedError, run
+from numeric.sweeps.workers import Lost
 from symbolic import Scene
 from verification.app.cli import main
 from verification.maps.first_hit import convex
 from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.database import ParameterBox, common, continued, database, same_order
+from verification.proofs.global_dynamics.database import common, continued, database, same_order
+from verification.proofs.global_dynamics.graph import Cells, Grid
+from verification.proofs.global_dynamics.parameter_box import ParameterBox
 
 EGG = Scene("egg", alpha="1/20")
 FLOWER = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/90:0..1/30"}})
@@ -87,7 +91,7 @@ def test_graphs_continue_only_where_the_same_sets_lead_to_the_same(turned):
 @pytest.fixture(scope="module")
 def found():
     sweep = database(EGG, "alpha", [0.05, 0.0501, 0.0502], [0.3, 0.301, 0.302], 64, 64, 8)
-    return sweep, run(sweep)
+    return sweep, run(sweep, workers=1)
 
 
 def test_boxes_next_to_one_another_in_a_quiet_place_are_one_class_and_its_map_stays_with_the_sets(found):
@@ -104,10 +108,37 @@ def test_boxes_next_to_one_another_in_a_quiet_place_are_one_class_and_its_map_st
     assert np.all(cells[row, column] >= 0)  # where orbits end, there is a Morse set
 
 
-def test_what_is_computed_part_by_part_is_the_same_as_in_memory(found, tmp_path):
-    whole, stored = found[1], run(found[0], tmp_path / "graphs.zarr")
+def test_landings_that_are_shared_between_contractions_are_those_found_alone():
+    shape, lams = (Fraction(1, 20), Fraction(33, 640)), (LAM, (Fraction(7, 10), Fraction(5, 7)))
+    first = ParameterBox(EGG, lams[0], "alpha", shape)
+    grid = Grid(first.charts, 24, 16)
+    some = grid.boxes(Cells(*(field[:200] for field in grid.whole())))
+    first.images(grid.boxes(Cells(*(field[100:] for field in grid.whole()))))  # with others before them
+    for lam in lams:
+        shared, alone = (box.images(some) for box in (first.at(lam), ParameterBox(EGG, lam, "alpha", shape)))
+        assert np.array_equal(shared.source, alone.source)
+        assert all(map(np.array_equal, (*shared.boxes.x, *shared.boxes.y), (*alone.boxes.x, *alone.boxes.y)))
+
+
+def test_by_processes_interrupted_or_by_this_one_the_graphs_are_the_same(found, tmp_path):
+    def stop(done, parts):
+        if done:
+            raise KeyboardInterrupt
+
+    store = tmp_path / "graphs.zarr"
+    with pytest.raises(KeyboardInterrupt, match="1 of 2 parts are in"):
+        run(found[0], store, workers=2, tick=stop)
+    assert not active_children()
+    stored = run(found[0], store, workers=2)
     for name in ("sets", "attracting", "cells", "leads"):
-        assert np.array_equal(whole[name].values, stored[name].values)
+        assert np.array_equal(found[1][name].values, stored[name].values)
+
+
+def test_a_part_at_which_processes_die_is_named_and_what_is_done_is_kept(found, tmp_path, monkeypatch):
+    part = found[0].part((1, 0, 0, 0, 0, 0))
+    monkeypatch.setattr("numeric.sweeps.run.in_processes", lambda *_: iter([(part, Lost(-9))]))
+    with pytest.raises(UnfinishedError, match=r"part at \(1, 0.*signal 9.*0 of 2 parts are in"):
+        run(found[0], tmp_path / "graphs.zarr", workers=2)
 
 
 def test_a_set_that_meets_none_of_the_other_graph_stands_in_no_ones_way():

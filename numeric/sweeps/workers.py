@@ -1,7 +1,8 @@
-"""Independent work in worker processes: the claims of a report and its figures, over all cores.
+"""Independent work in worker processes, over all cores: the claims of a report, its figures, a sweep in Python.
 
-Balls and mpmath hold ambient state and SymPy its caches, so workers are processes, started afresh. Answers come as they
-are found, whatever became of the process: one that dies is replaced, and what it was at is tried once more.
+Threads of Python wait for one another, balls and mpmath hold ambient state and SymPy its caches, so workers are
+processes, started afresh. Answers come as they are found, whatever became of the process: one that
+dies is replaced, and what it was at is tried once more.
 """
 
 import signal

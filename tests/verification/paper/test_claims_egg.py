@@ -9,14 +9,17 @@ import pytest
 from flint import arb
 from sympy import Rational
 
+from numeric import PinballMap
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.scene import Scene
+from symbolic.tables.table import alpha as shape_letter
 from verification.named.locate import locate
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import barriers as on_barriers
 from verification.paper.egg import basins as on_basins
 from verification.paper.egg import crises as on_crises
 from verification.paper.egg import elastic as on_elastic
+from verification.paper.egg import nearly_round as on_round
 from verification.paper.egg import period2 as on_egg_period2
 from verification.paper.egg import period3 as on_egg_period3
 from verification.paper.egg import stability as judged
@@ -186,3 +189,28 @@ def test_the_vertices_that_an_attractor_comes_near_are_counted_modulo_a_turn():
     points = SimpleNamespace(theta=np.array([2 * np.pi / 3, -4 * np.pi / 3 + 0.1, np.pi / 3]))
 
     assert on_attractors.vertices(SimpleNamespace(points=points)) == {1}
+
+
+@pytest.mark.parametrize("name", ["egg.periodic_only_near_zero", "map.smooth_basin_boundaries"])
+def test_nearly_round_eggs_have_diameters_alone_and_smooth_basin_boundaries(name, monkeypatch):
+    judge = on_round.periodic_only if name.startswith("egg") else on_round.smooth_boundaries
+    assert judge(CLAIMS[name]).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_round, "settles", lambda: Finding(Outcome.UNKNOWN, ""))
+    assert judge(CLAIMS[name]).verdict is Verdict.OPEN
+
+
+def test_cones_that_are_too_wide_and_a_width_that_is_not_the_eggs_prove_nothing():
+    assert not on_round.invariant_curve((1 - on_round.MOST) / 2)
+    assert not on_round.double_normals(8 * shape_letter**2)
+
+
+@pytest.mark.parametrize("turn", [0.3, 1.7])
+def test_in_a_nearly_round_egg_every_orbit_comes_to_a_double_normal(turn):
+    """By the kernel, at `alpha = 0.02`, `lam = 1/2`: the chords that are left are normal at both ends."""
+    rng = np.random.default_rng(1)
+    theta, phi = turn + rng.uniform(-1, 1, 50), rng.uniform(-1.5, 1.5, 50)
+    end = PinballMap("egg", lam="1/2", alpha="0.02").exponents(theta, phi, 10, 20_000)
+
+    assert np.max(np.abs(end.phi)) < 1e-12
+    assert np.max(np.abs(np.sin(3 * end.theta))) < 1e-6  # the symmetric diameters

@@ -61,21 +61,6 @@ def fates(name: str, contraction: str, starts: int = 3000) -> tuple[Array, Label
     return height, labels(map, starts_at(map, s, height), attractors, EARLY, sure=True)
 
 
-@judges("map.smooth_basin_boundaries")
-def smooth_boundaries(claim: Claim) -> Judgement:
-    """Dimension 1 below the first loss of symmetry; above 1 at other contractions."""
-    smooth, rough = (
-        boundary("egg", "0.2", (0.02, 0.01, 0.005, 0.002)),
-        boundary("cuspless", "0.09", (0.01, 0.003, 1e-3, 3e-4)),
-    )
-    said = (
-        f"the boundaries between the three basins of the egg at alpha = {SHAPE}, lam = 0.2 have the dimension "
-        f"{told(smooth)}, as smooth curves have; those of the cuspless cardioid at 0.09, {told(rough)}"
-    )
-    good = abs(smooth.dimension - 1) < 3 * smooth.error < 0.4
-    return sampled("smooth curves in some cases, of dimension above 1 in others", said, good)
-
-
 @judges("cuspless.basins_intermingled")
 def cuspless_intermingled(claim: Claim) -> Judgement:
     """A boundary of dimension above 1: strips of both basins at every scale that was looked at."""

@@ -164,7 +164,6 @@ NEAR = 0.01  # between a printed end of an interval and a sampled one
 LONGEST = 256  # period that is looked for
 WITNESS = "1/20"  # a shape with a proof
 BELOW = (("0.056", "0.745"), ("0.05", "0.868"))  # shapes below 0.06, and contractions where chaos was found
-NEAR_ZERO = ("0.01", "0.02")
 CUT = np.round(np.arange(0.38, 0.6801, 0.0025), 6)  # through the tongue at alpha = 0.08
 CASCADES = (("0.08", "0.3716", 12, 2e-4, "0.374"), ("0.056", "0.741", 8, 3e-4, "0.745"))  # and where chaos is beyond
 
@@ -260,21 +259,6 @@ def chaos_beyond_cascade(claim: Claim) -> Judgement:
     )
     windows = all(found - {0, 3} for found in periods.values())
     return sampled("for lambda_oo < lam < 0.662, except in windows", said, windows and share > 0.9)
-
-
-@judges("egg.periodic_only_near_zero")
-def periodic_only_near_zero(claim: Claim) -> Judgement:
-    """Every random ball at two small shapes returns to where it was."""
-    lams = ("0.2", "0.4", "0.6", "0.8", "0.9")
-    found = {(a, lam): periods_at(a, lam, 60) for a in NEAR_ZERO for lam in lams}
-    seen = sorted({period for periods in found.values() for period in periods})
-    return sampled(
-        f"cycles of period {', '.join(map(str, seen))} at alpha = {' and '.join(NEAR_ZERO)}",
-        f"60 particles each at alpha = {', '.join(NEAR_ZERO)} and lam = {', '.join(lams)} end on cycles, of period "
-        f"{', '.join(str(p or '> 256') for p in seen)}; at lam closer to 1, and at smaller alpha, transients outlast "
-        "any sample",
-        0 not in seen,
-    )
 
 
 @judges("egg.isolated_regions")

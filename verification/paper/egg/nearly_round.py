@@ -1,0 +1,112 @@
+"""Claims on nearly round eggs: for `lam` below any bound under 1 every orbit converges to a diameter. Sections 6.5, 7.
+
+*An invariant curve.* The circle's map `(theta + pi - 2*phi, lam*phi)` has the derivative `[[1, -2], [0, lam]]`. Let
+`lam <= most < 1` and `K = (1 - most)/4`. The derivative takes slopes `abs(dphi/dtheta) <= K` to smaller ones, with
+`dtheta` growing by `1 - 2*K > 0` at least; so graphs of slope at most `K` over the whole circle go to such graphs. Two
+points above one another, `d` apart, are taken to points whose distances from a graph through either differ by
+`(lam + 2*K)*d` at most, which is less than `d`. These are strict inequalities on a compact set, `0 <= lam <= most` and
+`abs(phi) <= most*pi/2`, on which the egg's map and its derivative depend continuously on `alpha`, as the boundary is
+analytic, convex, and met at an angle. So they hold for `0 <= alpha <= alpha0(most)`, and there the egg has an invariant
+graph, to which every orbit converges, and on which the map is a homeomorphism of degree 1.
+
+*What happens on it.* For `lam < 1` an orbit of period 2 goes to and fro on a double normal of the boundary: the chord
+is left at the angle at which it is met, `lam` times itself. Double normals are the critical points of the width, which
+is `2 + 9*alpha^2*sin(3*psi)^2` up to `alpha^4`: for small `alpha > 0` there are twelve directions, six chords, none
+degenerate. All points that the square of a circle homeomorphism with fixed points leaves in place are these twelve;
+between two neighbours it moves one way, and the other way beyond (the width's minima attract, its maxima do not). So
+what is chain transitive is one fixed point, and every orbit converges to a double normal.
+
+*Basins.* With `P = (L/R - 1)*(L/R' - 1) = 1 + L*(L - R - R')/(R*R')` the width's second derivative is `R + R' - L`, the
+trace is `(1 + lam)^2*P - 2*lam` and the determinant `lam^2`: three diameters attract (`P < 1`), three are saddles
+(`P > 1`). For `lam > 0` the map is a diffeomorphism onto its image, so what goes to no attracting diameter is the
+stable manifolds of three saddles: analytic curves. They divide the three basins.
+"""
+
+from functools import cache
+
+from sympy import Expr, Interval, Matrix, Symbol, cos, expand_trig, factorial, pi, simplify, sin
+
+from symbolic.expressions.signs import Finding, positive
+from symbolic.motion.flight import flight
+from symbolic.tables import egg
+from symbolic.tables.table import alpha, lam, phi, s, theta
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import by, judges, zero
+
+MOST, PSI, SHIFT = Symbol("most"), Symbol("psi", real=True), Symbol("shift", real=True)
+
+
+def invariant_curve(cone: Expr = (1 - MOST) / 4) -> Finding:
+    """The circle's inequalities, with their margins, for every `most` in `[0, 1)`."""
+    range, slope = {MOST: Interval.Ropen(0, 1)}, Symbol("slope")
+    derivative = Matrix(flight()).jacobian([s, phi])
+    carried = derivative * Matrix([1, slope])
+    return by(
+        "for small alpha and lam <= most there is an invariant graph, to which every orbit converges",
+        zero("the circle's derivative is [[1, -2], [0, lam]]", *(derivative - Matrix([[1, -2], [0, lam]]))),
+        zero("a slope m becomes lam*m/(1 - 2*m)", carried[0] - 1 + 2 * slope, carried[1] - lam * slope),
+        positive(cone, range),
+        positive(1 - 2 * cone, range),
+        positive(cone * (1 - 2 * cone) - MOST * cone, range),
+        positive(1 - MOST - 2 * cone, range),
+    )
+
+
+def double_normals(sixth: Expr = 9 * alpha**2) -> Finding:
+    """The egg's width in the direction `psi`, to second order in `alpha`; it is even in `alpha`.
+
+    The boundary point farthest in that direction is `shift` away, and an error of `alpha^2` in `shift` is one of
+    `alpha^4` in how far it reaches, since that is greatest there.
+    """
+    x, y = egg(3).components[0].point
+    radius = simplify(x * cos(theta) + y * sin(theta))
+    reach = radius.subs(theta, PSI + SHIFT) * cos(SHIFT)
+    farthest = -3 * alpha * sin(3 * PSI)
+    support = _terms(reach.subs(SHIFT, farthest), 2)
+    width = support + support.subs(PSI, PSI + pi)
+    L, R, other = (Symbol(name, positive=True) for name in ("L", "R", "R1"))
+    return by(
+        "for small alpha > 0 there are six double normals, in turn minima and maxima of the width, none degenerate",
+        zero("the farthest point", simplify(_terms(reach.diff(SHIFT).subs(SHIFT, farthest), 1))),
+        zero("the width", simplify(expand_trig(width - 2 - sixth * sin(3 * PSI) ** 2))),
+        zero("even in alpha", expand_trig(radius.subs(alpha, -alpha) - radius.subs(theta, theta + pi))),
+        zero("P", (L / R - 1) * (L / other - 1) - 1 - L * (L - R - other) / (R * other)),
+    )
+
+
+def _terms(expression: Expr, order: int) -> Expr:
+    """Taylor's polynomial in `alpha`."""
+    return sum(expression.diff(alpha, k).subs(alpha, 0) * alpha**k / factorial(k) for k in range(order + 1))
+
+
+@cache
+def settles() -> Finding:
+    """Every orbit converges to a double normal."""
+    return by(
+        "for every most < 1 there is an alpha0 > 0 such that for 0 < alpha <= alpha0 and 0 <= lam <= most every orbit "
+        "converges to one of six orbits of period 2",
+        invariant_curve(),
+        double_normals(),
+    )
+
+
+@judges("egg.periodic_only_near_zero")
+def periodic_only(claim: Claim) -> Judgement:
+    """At every `lam < 1`, for all `alpha` close enough to 0; how close depends on `lam`."""
+    return Judgement(
+        settles(),
+        "at every lam < 1 for all small alpha > 0, and so for all lam up to any bound below 1 at once: every orbit "
+        "converges to a diameter, of which three attract. How small depends on the bound: at alpha = 0.03 there are "
+        "strange attractors next to lam = 0.9905, and at alpha = 0.01 samples end on period 3, too, at larger lam",
+    )
+
+
+@judges("map.smooth_basin_boundaries")
+def smooth_boundaries(claim: Claim) -> Judgement:
+    """For an open set of shapes and contractions; "often" says no more than that."""
+    return Judgement(
+        settles(),
+        "in the nearly round eggs, for 0 < lam <= most < 1 and 0 < alpha <= alpha0(most), three basins are divided by "
+        "the stable manifolds of three saddles of period 2, analytic curves; elsewhere boundaries have a dimension "
+        "above 1, sampled: 1.24 in the cuspless cardioid at 0.09",
+    )

@@ -18,11 +18,11 @@ from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images
 from verification.proofs.global_dynamics.crisis import (
     CHECKS,
     BoundaryCrisis,
-    _boxed,
     _marked,
     _meets,
     _next,
     _within,
+    boxed,
     bracket,
     grown,
     kept_apart,
@@ -191,7 +191,7 @@ def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wr
     where = (arb(0), arb(0))
     stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (2.0 if wrong == "seed" else 0.0, 0.0))
     monkeypatch.setattr(crisis, "PinballImages", lambda scene, lam: lam)
-    monkeypatch.setattr(crisis, "_boxed", lambda points: None if wrong == "seed" and points[0][0] > 1 else points)
+    monkeypatch.setattr(crisis, "boxed", lambda points: None if wrong == "seed" and points[0][0] > 1 else points)
     monkeypatch.setattr(crisis, "_next", lambda *_: None if wrong == "_next" else where)
     monkeypatch.setattr(crisis, "_meets", lambda *_: wrong == "_meets")
     steps = {
@@ -214,7 +214,7 @@ def test_boxes_about_phase_points_hold_them_up_to_whole_turns():
     random = np.random.default_rng(1)
     rows = random.uniform((-40, -1.5, 0), (40, 1.5, 0.1), (50, 3))
     points = [(arb(theta, radius), arb(phi, radius)) for theta, phi, radius in rows]
-    boxes = _boxed(points)
+    boxes = boxed(points)
     with working(200):
         for k, ball in enumerate(points):
             middle = (boxes.x[0][k] + boxes.x[1][k]) / 2
@@ -226,7 +226,7 @@ def test_boxes_about_phase_points_hold_them_up_to_whole_turns():
                 assert high - low < 2 * x.rad() + 1e-10
             assert abs(middle) <= np.pi + 1e-9
     for bad in ((arb("nan"), arb(0)), (arb(0), arb(0, "inf"))):
-        assert _boxed([(arb(0), arb(0)), bad]) is None
+        assert boxed([(arb(0), arb(0)), bad]) is None
 
 
 class Thirds:
@@ -247,7 +247,7 @@ class Thirds:
 
 
 def at(*thetas, width=0.01):
-    return _boxed([(arb(theta, width), arb(0, width)) for theta in thetas])
+    return boxed([(arb(theta, width), arb(0, width)) for theta in thetas])
 
 
 def test_boxes_are_followed_only_where_each_has_one_image_that_is_proved():

@@ -2,9 +2,10 @@
 
 import json
 
+import click
 import pytest
 
-from verification.app.cli import main
+from verification.app.cli import main, pinball
 
 CARDIOID = ("lyapunov", "cardioid", "--lam", "0.5", "--bounces", "200", "--orbits", "20", "--seed", "1")
 
@@ -107,3 +108,11 @@ def test_bad_input_is_one_sentence(capsys, wrong, words):
     assert (status, document) == (2, None)
     assert words in told
     assert told.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["lyapunov", "attractor", "orbit"])
+def test_numbers_of_bounces_and_orbits_and_the_seed_need_not_be_said(command):
+    asked = pinball.get_command(click.Context(pinball), command)
+    needed = {option.name for option in asked.params if option.required}
+
+    assert needed.isdisjoint({"bounces", "orbits", "seed"})

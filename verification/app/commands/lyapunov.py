@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Example: pinball attractor egg --alpha 0.08 --lam 0.43 --orbits 2000 --seed 1")
 @scene_options
-@click.option("--orbits", type=click.IntRange(1, 10_000_000), required=True, help="How many random starts.")
-@click.option("--seed", type=click.IntRange(0), required=True, help="Of the random starts.")
+@click.option(
+    "--orbits", type=click.IntRange(1, 10_000_000), default=100, show_default=True, help="How many random starts."
+)
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
 @click.option("--transient", type=click.IntRange(10, 10**8), default=1000, show_default=True, help="Bounces first.")
 @click.option("--bounces", type=click.IntRange(100, 10**8), default=4000, show_default=True, help="For exponents.")
 @click.option("--points", type=click.IntRange(0, 8192), default=256, show_default=True, help="Listed of each, in JSON.")
@@ -145,9 +147,13 @@ LONG = 10_000  # bounces of a transient, unless it is given
 
 @click.command(epilog="Example: pinball lyapunov cuspless --lam 0.8 --bounces 10000 --orbits 100 --seed 1")
 @scene_options
-@click.option("--bounces", type=click.IntRange(10, SIZE), required=True, help="Bounces that count, each.")
-@click.option("--orbits", type=click.IntRange(2, 10_000_000), required=True, help="How many random starts.")
-@click.option("--seed", type=click.IntRange(0), required=True, help="Of the random starts.")
+@click.option(
+    "--bounces", type=click.IntRange(10, SIZE), default=10_000, show_default=True, help="Bounces that count, each."
+)
+@click.option(
+    "--orbits", type=click.IntRange(2, 10_000_000), default=100, show_default=True, help="How many random starts."
+)
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
 @click.option("--transient", type=click.IntRange(0, SIZE), help="Bounces before; if left out --bounces, at most 10000.")
 @click.option(
     "--start-law", type=click.Choice(list(LAWS)), default="interior", show_default=True, help="Of the starts."

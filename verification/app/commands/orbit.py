@@ -33,7 +33,7 @@ KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
 @scene_options
 @click.option("--start", required=True, metavar="THETA,PHI", help="Boundary parameter and exit angle, in radians.")
 @click.option("--component", metavar="NAME", help="The component of the start; the first one if left out.")
-@click.option("--bounces", type=click.IntRange(1, 10_000_000), required=True, help="How many.")
+@click.option("--bounces", type=click.IntRange(1, 10_000_000), default=20, show_default=True, help="How many.")
 @click.option("--arithmetic", type=click.Choice(WAYS), default="float64", show_default=True)
 @click.option("--digits", type=click.IntRange(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
 @click.option("--tolerance", metavar="T", help="In place of --digits: so many that the error is below it.")
@@ -85,7 +85,7 @@ def command(
         from numeric.sweeps.orbits import written
 
         picked |= {"out": str(out), "last": written(map, (float(theta), float(phi), index), bounces, out)}
-        output.console.print(f"{bounces + 1} rows are in {out}")
+        output.console.print(f"{bounces + 1} rows are in {out}; the first:")
         bounces = min(bounces, MOST - 1)
     if arithmetic == "float64":
         entries = in_float64(map, index, float(theta), float(phi), bounces)

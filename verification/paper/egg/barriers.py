@@ -98,7 +98,7 @@ def crisis_below(claim: Claim) -> Judgement:
             f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper "
             "triangle",
             divided(),
-            answer(all(checks.values()), f"at {LOST} an orbit from phi = 0 ends at the upper triangle"),
+            answer(all(checks.values()), f"at {LOST} an orbit from phi = 0 enters trapped boxes about that triangle"),
         ),
         f"what keeps orbits in between from the triangles is lost at a contraction above {AT}, and not above {LOST}; "
         "the tangency at 0.66214 is there",

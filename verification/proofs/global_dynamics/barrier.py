@@ -41,7 +41,7 @@ class Barrier:
 
     It is a barrier for each contraction of the range `lam`; `heights` are None where none is proved.
 
-    >>> found = Barrier(Scene("egg", alpha="0.02"), (Fraction(1, 2), Fraction(1, 2)), 256)
+    >>> found = Barrier(Scene("egg", alpha="0.05"), (Fraction(1, 2), Fraction(1, 2)), 256)
     >>> bool(found.below(point(1.0, 0.0))), bool(found.above(point(1.0, 0.5)))
     (True, True)
     """

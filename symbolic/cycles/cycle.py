@@ -16,9 +16,12 @@ from functools import cache, cached_property, lru_cache
 
 from sympy import (
     Expr,
+    Function,
     Integer,
     Interval,
     Matrix,
+    NumberSymbol,
+    Pow,
     Rational,
     S,
     Symbol,
@@ -119,18 +122,24 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
     >>> frame(cardioid, 0, S.Zero, {}).curvature
     -3/4
     """
-    path = Matrix(table.components[index].point)
+    path = table.components[index].point
+    there = [[expand_trig(x.diff(theta, order).subs(theta, value)) for x in path] for order in (0, 1, 2)]
     point, first, second = (
-        path.diff(theta, order).subs(theta, value).applyfunc(lambda entry: simplify(expand_trig(entry)))
-        if order
-        else path.subs(theta, value).applyfunc(expand_trig)
-        for order in (0, 1, 2)
+        Matrix(there[0]),
+        Matrix(there[1]).applyfunc(_shortened),
+        Matrix(there[2]).applyfunc(_shortened),
     )
-    speed = root(simplify(first.dot(first)), box)
-    turning = simplify(first[0] * second[1] - first[1] * second[0])
+    speed = root(_shortened(first.dot(first)), box)
+    turning = _shortened(first[0] * second[1] - first[1] * second[0])
     tangent = (first / speed).applyfunc(cancel)
     normal = Matrix([-tangent[1], tangent[0]])
     return Frame(point, tangent, normal, cancel(-turning / speed**3))
+
+
+def _shortened(expression: Expr) -> Expr:
+    """As `simplify`; a quotient of polynomials with rational coefficients is cancelled, which says all there is."""
+    rational = not expression.atoms(Function, NumberSymbol) and all(p.exp.is_Integer for p in expression.atoms(Pow))
+    return cancel(expression) if rational else simplify(expression)
 
 
 @cache

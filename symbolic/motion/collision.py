@@ -36,9 +36,7 @@ at every bounce that is not along the normal; a limit point has `phi = 0` foreve
 from functools import cache
 
 from sympy import (
-    Derivative,
     Expr,
-    Function,
     Matrix,
     S,
     Symbol,
@@ -88,26 +86,30 @@ def implicit_derivative() -> Matrix:
     `Y' = sin psi`, `psi' = -kappa` are all that is used of the boundary. None of them changes when the plane is
     turned, so that the flight may run along the first axis.
     """
-    s0, s1, landing = symbols("s0 s1 landing", real=True)
-    ends = {}
-    for index, s in ((0, s0), (1, s1)):
-        ends[index] = [Function(f"{name}{index}", real=True)(s) for name in ("X", "Y", "psi")]
-    (X0, Y0, psi0), (X1, Y1, psi1) = ends[0], ends[1]
+    landing = Symbol("landing", real=True)
+    ends = [symbols(f"X{index} Y{index} psi{index}", real=True) for index in (0, 1)]
+    (X0, Y0, psi0), (X1, Y1, psi1) = ends
     direction = psi0 + pi / 2 - phi
     flight = (X1 - X0) * sin(direction) - (Y1 - Y0) * cos(direction)
     minus_eta = direction - psi1 + pi / 2
+    flown = {X1: X0 + t * cos(direction), Y1: Y0 + t * sin(direction)}
+    first_axis = {psi0: phi - pi / 2, psi1: landing + pi / 2}  # landing is eta1
 
-    frenet: dict[Expr, Expr] = {}
-    for (X, Y, psi), s, kappa in ((ends[0], s0, K0), (ends[1], s1, K1)):
-        frenet |= {Derivative(X, s): cos(psi), Derivative(Y, s): sin(psi), Derivative(psi, s): -kappa}
+    def at_flight(derivative: Expr) -> Expr:
+        return derivative.subs(flown).subs(first_axis)
 
-    def partial(expression: Expr, variable: Symbol) -> Expr:
-        flown = {X1: X0 + t * cos(direction), Y1: Y0 + t * sin(direction)}
-        found = diff(expression, variable).subs(frenet).subs(flown)
-        return found.subs({psi0: phi - pi / 2, psi1: landing + pi / 2})  # landing is eta1
+    def along(index: int, expression: Expr) -> Expr:
+        """The derivative along the boundary at an end, by the chain rule with the Frenet equations."""
+        (X, Y, psi), kappa = ends[index], (K0, K1)[index]
+        moved = diff(expression, X) * cos(psi) + diff(expression, Y) * sin(psi) - diff(expression, psi) * kappa
+        return at_flight(moved)
 
-    slope = [-partial(flight, x) / partial(flight, s1) for x in (s0, phi)]
-    angle = [partial(minus_eta, x) + partial(minus_eta, s1) * dx for x, dx in zip((s0, phi), slope, strict=True)]
+    def by_departure(expression: Expr) -> list[Expr]:
+        return [along(0, expression), at_flight(diff(expression, phi))]
+
+    slope = [-part / along(1, flight) for part in by_departure(flight)]
+    turned = along(1, minus_eta)
+    angle = [part + turned * moved for part, moved in zip(by_departure(minus_eta), slope, strict=True)]
     cosines = {cos(phi): cos_phi0, cos(landing): cos_eta1}
     matrix = Matrix([slope, angle]).subs(cosines)
     return Matrix([[factor(by_place), expand(by_angle)] for by_place, by_angle in matrix.tolist()])

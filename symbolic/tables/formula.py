@@ -268,8 +268,9 @@ def flaw(value: Expr) -> tuple[str, str] | None:
     return None
 
 
+@lru_cache(maxsize=4096)  # each operation that is read asks all below it again
 def _flaw_at(node: Expr) -> tuple[str, str] | None:
-    if node.is_finite is False:
+    if node.is_number and node.is_finite is False:  # letters are finite: what is not has a constant that is not
         return "the value is not finite", "a formula without a pole"
     if node is S.ImaginaryUnit:
         return "the value is not real", "a formula with real values"

@@ -99,9 +99,14 @@ def egg(K: int | Expr = 3) -> Table:
 
 @lru_cache(maxsize=64)
 def _egg(points: Expr) -> Table:
-    """The egg of a number of points that makes sense; shown to be a table once in a process."""
+    """The egg of a number of points that makes sense.
+
+    Its radius is at least `1 - alpha > 0`, so that it runs counterclockwise and does not cross itself.
+    """
     convex = Shape(alpha, Interval(0, 1 / (1 + points**2)), "makes the table non-convex")
-    return polar(1 + alpha * cos(points * theta), "egg", [convex])
+    rho = 1 + alpha * cos(points * theta)
+    whole = arc("egg", rho * cos(theta), rho * sin(theta), -pi, pi)
+    return closed_and_finite(Table("egg", (whole,), (convex,)))
 
 
 # What `validated` would prove of the paper's tables at every import, a test proves once.

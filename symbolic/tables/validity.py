@@ -204,7 +204,11 @@ def enclosed_area(table: Table) -> Expr | None:
         if size(x) + size(y) > LONG:
             return None
         swept = expand(x * y.diff(theta) - y * x.diff(theta))
-        if not swept.is_polynomial(theta) and coefficients(swept) is None:
+        harmonics = None if swept.is_polynomial(theta) else coefficients(swept)
+        if harmonics is not None and component.end - component.start == 2 * pi:
+            total += pi * harmonics.get(0, S.Zero)  # the others integrate to 0
+            continue
+        if harmonics is None and not swept.is_polynomial(theta):
             return None
         total += integrate(trigonometric(swept), (theta, component.start, component.end)) / 2
     return expand(total)

@@ -4,6 +4,7 @@ A command is imported when it is called, so `pinball --help` loads no mathematic
 programs read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
 """
 
+import gc
 import json
 import os
 import sys
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 
 LARGEST = 1 << 26  # bytes of a sweep's results that are written as JSON
+RARELY = 50_000, 20, 20  # objects between searches for unused cycles: SymPy makes many, and hardly any is unused
 PATIENCE = 2.0  # seconds before a progress bar appears
 
 
@@ -267,6 +269,7 @@ def pinball(context: click.Context) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The exit status of `pinball`: 0 done, 1 something is open or failed, 2 bad input."""
+    gc.set_threshold(*RARELY)
     try:
         status = run(sys.argv[1:] if arguments is None else arguments)
         sys.stdout.flush()

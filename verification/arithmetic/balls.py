@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, Generic, TypeVar
 
-import numpy as np
 from flint import acb, arb, ctx, fmpq
 from sympy import (
     Abs,
@@ -58,14 +57,22 @@ class Words(Generic[T]):
 
 
 Arithmetic = Words[Any]
-NUMPY = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
 FLOAT64: Words[float] = Words(
     pi=math.pi,
     q=lambda p, n: p / n,
     root=lambda x, n: math.pow(x, 1 / n),
     **{word: getattr(math, word) for word in FUNCTIONS},
 )
-ARRAYS: Arithmetic = replace(FLOAT64, root=lambda x, n: np.power(x, 1 / n), **NUMPY)
+ARRAYS: Arithmetic  # arrays of NumPy, which is loaded when they are asked for
+
+
+def __getattr__(name: str) -> Any:
+    if name != "ARRAYS":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import numpy as np
+
+    words = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
+    return globals().setdefault(name, replace(FLOAT64, root=lambda x, n: np.power(x, 1 / n), **words))
 
 
 def multiprecision(context: Any) -> Arithmetic:

@@ -11,8 +11,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.plots.sheet import FORMATS, image, styled
-
 if TYPE_CHECKING:
     from verification.plots.sheet import Panels
 
@@ -52,11 +50,15 @@ class Picture:
 
     def image(self, panels: "Panels", ending: str) -> bytes:
         """The drawn panels as a file of that kind; the same panels give the same bytes."""
+        from verification.plots.sheet import image, styled
+
         with styled():
             return image(self._pair[1](panels), ending)
 
     def small(self, panels: "Panels") -> bytes:
         """The drawn panels for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
+        from verification.plots.sheet import FORMATS
+
         count = sum(curve.x.size for panel in panels for curve in panel.curves.values())
         if count <= LINES and all(panel.raster is None for panel in panels):
             lines = self._saved(panels, {"format": "svg", **FORMATS[".svg"]})
@@ -65,6 +67,8 @@ class Picture:
         return self._saved(panels, {"format": "webp", "dpi": 140, "pil_kwargs": {"quality": 55}})
 
     def _saved(self, panels: "Panels", form: dict[str, Any]) -> bytes:
+        from verification.plots.sheet import styled
+
         buffer = BytesIO()
         with styled():
             self._pair[1](panels).savefig(buffer, transparent=True, **form)
@@ -114,6 +118,8 @@ def ending(path: Path) -> str:
     >>> ending(Path("slap.PDF"))
     '.pdf'
     """
+    from verification.plots.sheet import FORMATS
+
     if path.suffix.lower() not in FORMATS:
         known = ", ".join(FORMATS)
         raise ValueError(f"--out = {path} has the ending {path.suffix or 'none'!r}; accepted endings: {known}")

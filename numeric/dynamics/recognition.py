@@ -112,21 +112,15 @@ def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
     >>> axis.period, axis.points.theta.round(12).tolist()
     (2, [-1.570796326795, 1.570796326795])
     """
-    n, here = near.size, near
+    here = near
     for _ in range(STEPS):
         image = map.step(here.theta, here.phi, here.component)
         after = here.turned(1)
         if np.any(image.code) or np.any(image.component != after.component):
             return None
         miss = np.stack([gap(map, image.theta, after.theta), image.phi - after.phi], axis=1)
-        slope = by_parameter(map, here, after)
-        matrix = np.zeros((2 * n, 2 * n))
-        for i in range(n):
-            j = (i + 1) % n
-            matrix[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] += slope[i]
-            matrix[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] -= np.eye(2)
         try:
-            step = np.asarray(np.linalg.solve(matrix, miss.ravel()).reshape(n, 2), dtype=float)
+            step = round_the_cycle(by_parameter(map, here, after), miss)
         except np.linalg.LinAlgError:
             return None
         size = float(np.max(np.abs(step)))
@@ -137,6 +131,30 @@ def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
             return None if moved is None else shortest(map, moved)
         here = moved
     return None
+
+
+def round_the_cycle(slopes: Array, right: Array) -> Array:
+    """The `d` with `slopes[i] @ d[i] - d[i + 1] = right[i]`, where the last is followed by the first.
+
+    A ring that is folded flat has its neighbours within two places, so the system is a band: the work grows like the
+    period. `LinAlgError` where it is singular.
+
+    >>> round_the_cycle(np.array([[[3.0, 0.0], [0.0, 0.5]]] * 2), np.array([[1.0, 1.0], [5.0, 1.0]])).tolist()
+    [[1.0, -2.0], [2.0, -2.0]]
+    """
+    from scipy.linalg import solve_banded
+
+    n = len(slopes)
+    i = np.arange(n)
+    place = 2 * np.where(2 * i < n, 2 * i, 2 * (n - i) - 1)[:, None] + np.arange(2)  # of both unknowns of a bounce
+    after = np.roll(place, -1, axis=0)
+    band = np.zeros((11, 2 * n))
+    rows, columns = place[:, :, None], place[:, None, :]
+    band[5 + rows - columns, columns] += slopes
+    band[5 + place - after, after] -= 1
+    folded = np.empty(2 * n)
+    folded[place] = right
+    return np.asarray(solve_banded((5, 5), band, folded, check_finite=False)[place], dtype=float)
 
 
 def shortest(map: PinballMap, cycle: PhasePoints) -> Cycle:

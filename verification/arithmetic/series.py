@@ -5,6 +5,8 @@ Jets carry a few coefficients through the generated functions; Taylor models add
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import reduce
+from operator import add, mul, neg, sub
 from typing import Any
 
 from flint import arb, arb_series, ctx
@@ -22,27 +24,29 @@ class Jet:
 
     def __add__(self, other: Any) -> "Jet":
         if isinstance(other, Jet):
-            return Jet(*(a + b for a, b in zip(self.c, other.c, strict=True)))
+            return Jet(*map(add, self.c, other.c))
         return Jet(self.c[0] + other, *self.c[1:])
 
     __radd__ = __add__
 
     def __neg__(self) -> "Jet":
-        return Jet(*(-a for a in self.c))
+        return Jet(*map(neg, self.c))
 
     def __sub__(self, other: Any) -> "Jet":
-        total: Jet = self + (-other)
-        return total
+        if isinstance(other, Jet):
+            return Jet(*map(sub, self.c, other.c))
+        return Jet(self.c[0] - other, *self.c[1:])
 
     def __rsub__(self, other: Any) -> "Jet":
-        total: Jet = (-self) + other
-        return total
+        return Jet(other - self.c[0], *map(neg, self.c[1:]))
 
     def __mul__(self, other: Any) -> "Jet":
         if not isinstance(other, Jet):
-            return Jet(*(a * other for a in self.c))
+            return Jet(*[a * other for a in self.c])
         a, b = self.c, other.c
-        return Jet(*(_convolution(a, b, k, 0) for k in range(len(a))))
+        if len(a) == 2:
+            return Jet(a[0] * b[0], a[0] * b[1] + a[1] * b[0])
+        return Jet(*[_sum(map(mul, a[: k + 1], b[k::-1])) for k in range(len(a))])
 
     __rmul__ = __mul__
 
@@ -53,7 +57,7 @@ class Jet:
         (3.0, 1.0, 0.0)
         """
         if not isinstance(other, Jet):
-            return Jet(*(a / other for a in self.c))
+            return Jet(*[a / other for a in self.c])
         found: list[Any] = []
         for k, a in enumerate(self.c):
             for j, c in enumerate(found):
@@ -134,15 +138,8 @@ def hyperbolic(exp: Callable[[Any], Any]) -> dict[str, Callable[[Any], Any]]:
     return {"sinh": sinh, "cosh": cosh, "tanh": lambda x: sinh(x) / cosh(x)}
 
 
-def _convolution(a: Any, b: Any, k: int, start: int) -> Any:
-    return _sum(a[j] * b[k - j] for j in range(start, k + 1 - start))
-
-
 def _sum(terms: Any) -> Any:
-    total: Any = 0
-    for term in terms:
-        total = total + term
-    return total
+    return reduce(add, terms, 0)
 
 
 Function = Callable[[arb_series], arb_series]

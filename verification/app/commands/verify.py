@@ -196,6 +196,7 @@ def command(
     from verification.paper.claims.folder import OWN, paper
     from verification.paper.report.page import diagrams
 
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy is not loaded yet; it is the judges that share the cores
     about = paper(source or OWN)
     claims = chosen(only, section, about)
     directory = prepared(folder)

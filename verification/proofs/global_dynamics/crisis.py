@@ -365,8 +365,8 @@ def _as_images(boxes: Boxes) -> Images:
 
 
 def marked_cells(member: Mask) -> Cells:
-    chart, column, row = np.nonzero(member)
-    return Cells(chart, column, row, np.ones(chart.size, dtype=np.int64))
+    """The cells of a grid that are marked."""
+    return Cells._make((*np.nonzero(member), np.ones(np.count_nonzero(member), dtype=np.int64)))
 
 
 def _marked(grid: Grid, met: Rectangles) -> Mask:

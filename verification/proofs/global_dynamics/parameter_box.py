@@ -226,4 +226,5 @@ def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
 
 
 def turns_of(table: Table) -> int:
+    """How many turns keep a table that closes smoothly; 1 for others."""
     return rotations(table) if closes_smoothly(table) else 1

@@ -2,20 +2,25 @@
 
 import math
 
+import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Rational
 
-from symbolic.tables import cuspless, egg
+from symbolic.tables import cuspless, egg, ellipse, sinai
 from verification.arithmetic.balls import working
 from verification.cycles.cascade import attractor, cycle_at, doubled
 from verification.cycles.newton import floats
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
+from verification.cycles.search import Catalogue
+from verification.maps import first_hit
+from verification.proofs.corner import return_map
+from verification.proofs.periodic import interval_newton, triangles
 from verification.proofs.periodic.bifurcation import Stability, over_interval, stability
-from verification.proofs.periodic.interval_newton import Status, krawczyk
+from verification.proofs.periodic.interval_newton import Cover, Status, krawczyk, no_others
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 FLAT = [math.pi / 3, math.pi, 5 * math.pi / 3]
@@ -99,3 +104,105 @@ def test_at_039_the_attractor_has_period_16_and_not_8_as_the_papers_figure_says(
     assert len(sixteen) == 16
     assert over_interval(EGG, (0,) * 16, sixteen, (0.39, 0.39001), Stability.ATTRACTING).proved
     assert over_interval(EGG, (0,) * 8, eight, (0.39, 0.39001), Stability.SADDLE).proved
+
+
+class Asked:
+    """Boxes that a proof was asked about; those are settled that are small, and smaller about one place."""
+
+    def __init__(self, size, *fine):
+        self.size, self.fine, self.boxes = size, fine, []
+
+    def settles(self, *box):
+        near = all(abs(m - x) <= r for (m, r), x in zip(box, self.fine, strict=False))
+        good = max(r for _, r in box) <= self.size / (8 if near and self.fine else 1)
+        self.boxes += [box] if good else []
+        return good
+
+    def covers(self, *ranges, points=400):
+        random = np.random.default_rng(1)
+        places = random.uniform([low for low, _ in ranges], [high for _, high in ranges], (points, len(ranges)))
+        ends = np.array(np.meshgrid(*ranges)).reshape(len(ranges), -1).T
+        held = np.array(self.boxes)
+        return all(np.any(np.all(np.abs(held[:, :, 0] - x) <= held[:, :, 1] + 1e-12, axis=1)) for x in (*places, *ends))
+
+
+def of(ball):
+    return float(ball.mid()), float(ball.rad())
+
+
+def test_the_angles_and_contractions_asked_about_the_fourth_collision_are_all_of_them(monkeypatch):
+    for low, high, angle in ((0.0, 0.3, 0.5), (0.1, 0.6, 0.05), (0.2, 0.2, 0.4)):
+        asked = Asked(0.05, 0.2, 0.25)
+        monkeypatch.setattr(
+            return_map, "_lands_inside", lambda phi, lam, _, asked=asked: asked.settles(of(phi), of(lam))
+        )
+        shares = []
+        found = return_map.fourth_on_wall(angle, low, high, tick=shares.append)
+
+        assert found.on_wall is True
+        assert asked.covers((-angle, angle), (low, high))
+        assert sum(shares) == pytest.approx(1 if high > low else 0)
+
+
+def test_the_triangles_asked_are_all_that_a_box_holds():
+    start = ((1.0, 1.0), (2.0, 0.75), (3.0, 0.5))
+    asked = Asked(0.25, 0.3, 1.6, 3.1)
+    found = triangles._subdivided(lambda box: asked.settles(*box), start, 10**5, lambda share: None)
+
+    assert found.excluded is True
+    assert asked.covers(*((m - r, m + r) for m, r in start))
+    assert found.share == pytest.approx(1)
+    assert 0.01 < found.smallest < 0.25
+
+
+def test_the_tilts_asked_along_the_branch_of_triangles_are_all_of_them(monkeypatch):
+    asked = Asked(0.1, 0.77)
+    made = [lambda at: (arb(1 if asked.settles(of(at)) else -1),), lambda: (arb(1),)]
+    monkeypatch.setattr(triangles, "load", lambda *_: made.pop(0))
+
+    assert triangles.flips_nowhere(Rational(2, 25)) is True
+    assert asked.covers((0.0, 1.0))
+
+
+def test_the_places_where_a_curve_is_asked_to_bend_inwards_are_all_of_them(monkeypatch):
+    asked = Asked(0.2, 1.0)
+    monkeypatch.setattr(first_hit, "_exactly_nonnegative", lambda *_: False)
+    monkeypatch.setattr(
+        first_hit,
+        "load",
+        lambda made, words, load=first_hit.load: (
+            load(made, words) if made.results != ("bend",) else lambda at: (arb(1 if asked.settles(of(at)) else -1),)
+        ),
+    )
+    monkeypatch.setattr(first_hit, "turning", lambda component: Rational(2) + component.point[0])
+
+    assert first_hit._bends_inwards(EGG, 0, ())
+    assert asked.covers((-math.pi, math.pi))
+
+
+def test_the_pieces_asked_along_a_chord_are_all_of_every_component(monkeypatch):
+    table = sinai()
+    asked = [Asked(0.4, 0.3) for _ in range(5)]
+    boundary = first_hit._boundary(table, ())
+    places = list(boundary.places)
+    monkeypatch.setattr(first_hit, "_passes", lambda place, piece, *_: asked[places.index(place)].settles(of(piece)))
+    with working(96):
+        assert first_hit.free(boundary, (3, arb("0.5")), (4, arb.pi()))
+        ends = [tuple(float(end) for end in pair) for pair in boundary.ends]
+    for each, pair in zip(asked, ends, strict=True):
+        assert each.covers(pair)
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_the_chains_asked_are_all_that_a_period_may_have(monkeypatch, n):
+    """From the least to the largest gap, up to a half turn of the ellipse, for every number of turns."""
+    asked = {turns: Asked(0.5, 1.0, 2.0) for turns in range(1, n)}
+    monkeypatch.setattr(Cover, "settled", lambda self, box, turns: asked[turns].settles(*box))
+    found = no_others(Catalogue(ellipse.at(a="3/2"), 0.5), Rational(1, 2), n)
+    gap = interval_newton.start(2, n, 0.0)[1]
+
+    assert found.complete is True
+    for each in asked.values():
+        assert each.covers((-math.pi / 2, math.pi / 2), *[(1.0, 2 * math.pi - 1.0)] * (n - 1))
+    assert gap[0] + gap[1] >= 2 * math.pi
+    assert gap[0] - gap[1] <= 0

@@ -307,11 +307,14 @@ def test_the_twist_of_a_turn_that_grows_is_found_in_any_coordinates_that_keep_ar
         (0.7, 1.5, 0, 0, 1, 0),
         (1.9, -0.75, 0.5, 0.25, 2, 0.5),
         (2.6, 0.25, -1, 0.5, 0.5, -1),
+        (None, 2, 0, 0, 1, 0),  # a quarter turn, whose terms of order three are in one coordinate each
     ):
         with working(120):
-            c, s, minus = arb(angle).cos(), arb(angle).sin(), -arb(angle).sin()
+            quarter = angle is None
+            c, s = (arb(0), arb(1)) if quarter else (arb(angle).cos(), arb(angle).sin())
+            minus = -s
         cubes = {(3, 0): 1, (1, 2): 1}, {(2, 1): 1, (0, 3): 1}  # x*(x**2 + p**2), p*(x**2 + p**2)
-        turn = {(1, 0): c, (0, 1): s}, {(1, 0): minus, (0, 1): c}
+        turn = ({(0, 1): s}, {(1, 0): minus}) if quarter else ({(1, 0): c, (0, 1): s}, {(1, 0): minus, (0, 1): c})
         # (x - i*p)*i*twist*size = twist*size*(p + i*x): to x comes twist*p*size, to p comes -twist*x*size
         grown = (
             {(1, 0): ball(1), (0, 1): ball(0)} | {k: ball(twist) for k in cubes[1]},
@@ -324,7 +327,9 @@ def test_the_twist_of_a_turn_that_grows_is_found_in_any_coordinates_that_keep_ar
         there = {(1, 0): ball(q), (0, 1): ball(r)}, {(1, 0): ball(0), (0, 1): ball(1 / q)}
         back = {(1, 0): ball(1 / q), (0, 1): ball(-r)}, {(1, 0): ball(0), (0, 1): ball(q)}
         with working(120):
-            found = birkhoff_normal_form(composed([there, shear(1), grown, turn, shear(-1), back]))
+            found = birkhoff_normal_form(
+                composed([grown, turn] if quarter else [there, shear(1), grown, turn, shear(-1), back])
+            )
 
             assert found.trace.overlaps(2 * c)
             assert abs(found.twist - twist) < 1e-20

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from sympy import Rational
 
 from symbolic.tables import cuspless, egg, ellipse, sinai
+from symbolic.tables.law import Law
 from verification.arithmetic.balls import working
 from verification.cycles.cascade import attractor, cycle_at, doubled
 from verification.cycles.newton import floats
@@ -20,7 +21,7 @@ from verification.maps import first_hit
 from verification.proofs.corner import return_map
 from verification.proofs.periodic import interval_newton, triangles
 from verification.proofs.periodic.bifurcation import Stability, over_interval, stability
-from verification.proofs.periodic.interval_newton import Cover, Status, krawczyk, no_others
+from verification.proofs.periodic.interval_newton import Cover, Status, krawczyk, no_others, steepest
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 FLAT = [math.pi / 3, math.pi, 5 * math.pi / 3]
@@ -206,3 +207,28 @@ def test_the_chains_asked_are_all_that_a_period_may_have(monkeypatch, n):
         assert each.covers((-math.pi / 2, math.pi / 2), *[(1.0, 2 * math.pi - 1.0)] * (n - 1))
     assert gap[0] + gap[1] >= 2 * math.pi
     assert gap[0] - gap[1] <= 0
+
+
+@pytest.mark.parametrize("law", [Law("-lam*eta"), Law("-lam*eta + cos(theta)/20")], ids=str)
+def test_the_exit_angles_asked_for_their_largest_are_those_at_every_incidence_and_place(law):
+    asked = []
+
+    def reflected(eta, theta):
+        asked.append((of(eta), of(theta)))
+        return (abs(eta) + (theta.cos() if law.placed else 0),)
+
+    bound = steepest(law, reflected)
+    held = np.array(asked)
+    places = np.linspace(-math.pi, math.pi, 130) if law.placed else [0.0]
+    for eta in np.linspace(-math.pi / 2, math.pi / 2, 40):
+        near = held[np.abs(held[:, 0, 0] - eta) <= held[:, 0, 1] + 1e-12]
+        for theta in places:
+            turned = np.remainder(near[:, 1, 0] - theta + math.pi, 2 * math.pi) - math.pi
+            assert np.any(np.abs(turned) <= near[:, 1, 1] + 1e-12)
+    largest = math.pi / 2 + (1 if law.placed else 0)
+    assert largest <= bound < largest + 0.02
+
+
+def test_the_largest_tilt_is_an_arc_cosine():
+    for x in (Rational(0), Rational(2, 25), Rational(1, 2), Rational(-9, 10)):
+        assert float(triangles.acos_of(x)) == pytest.approx(math.acos(x))

@@ -367,7 +367,7 @@ def test_no_triangle_without_symmetry_is_excluded_and_one_that_breaks_a_rule_is(
     for _ in range(6):
         gap = chance.uniform(2.2, 2.6)
         held = chance.uniform(-1, 1), gap, chance.uniform(2 * math.pi - 2 * gap + 0.1, gap - 0.1)
-        at, phi = list(accumulate(held)), [total * chance.uniform(0.2, 0.3), total / 3]
+        at, phi = list(accumulate(held)), [total * chance.uniform(0.03, 0.2), total * chance.uniform(0.1, 0.5)]
         phi.append(total - sum(phi))
         for broken in (None, 0, 1, 2):
             eta = [-p / contraction * (1.05 if i == broken else 1) for i, p in enumerate(phi)]

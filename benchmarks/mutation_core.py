@@ -296,12 +296,14 @@ def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float
     for node in running:
         dearest[file_of(node)] = max(dearest.get(file_of(node), 0.0), seconds[node])
     beside = {node for node in seconds if file_of(node) in dearest} - running
-    chosen, total = {}, 0.0
-    for node in (*sorted(running, key=seconds.__getitem__), *sorted(beside, key=seconds.__getitem__)):
-        total += seconds[node]
-        if chosen and total > budget:
-            break
-        chosen[node] = seconds[node] if node in running else max(seconds[node], dearest[file_of(node)])
+    chosen: dict[str, float] = {}
+    for some in (running, beside):  # each as far as the budget goes
+        total = 0.0
+        for node in sorted(some, key=seconds.__getitem__):
+            total += seconds[node]
+            if chosen and total > budget:
+                break
+            chosen[node] = seconds[node] if some is running else max(seconds[node], dearest[file_of(node)])
     return chosen
 
 

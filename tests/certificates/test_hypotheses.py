@@ -152,7 +152,7 @@ def test_interval_newton_encloses_the_zero_of_any_three_equations_that_are_indep
 
 
 @pytest.mark.parametrize("spare", ["0", "1/50", "-1/50"])
-@pytest.mark.parametrize("turn", range(4))
+@pytest.mark.parametrize("turn", range(6))
 def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, spare):
     """Of `(x, y) -> (-x + a*x**2 + b*x*y + c*x**3, m*y + d*x**2)` it is `c + a**2 + b*d/(1 - m)`.
 
@@ -161,7 +161,8 @@ def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, 
     chance, p = random.Random(turn), 120
     a, b, d, m = (Fraction(chance.randint(1, 9), 10) * chance.choice([-1, 1]) for _ in range(4))
     c = Fraction(spare) - a * a - b * d / (1 - m)
-    (q, r), (s, t) = ((1, 0), (0, 1)) if turn == 0 else ((chance.randint(1, 3), 1), (-1, chance.randint(1, 3)))
+    known = {0: ((1, 0), (0, 1)), 4: ((1, 0), (2, 1)), 5: ((1, 2), (0, 1))}  # 4: the first entries of a row vanish
+    (q, r), (s, t) = known.get(turn) or ((chance.randint(1, 3), 1), (-1, chance.randint(1, 3)))
     det = Fraction(q * t - r * s)
     number = lambda x: check.I.of(Fraction(x), p).wide(check.I.of(Fraction(1, 2**100), p))  # noqa: E731
 
@@ -244,3 +245,54 @@ def test_what_is_no_document_is_refused_and_not_read_on(check, given, tmp_path, 
     if given != {"kind": ["cycle"]}:
         with pytest.raises(check.Wrong):
             check.checked(given)
+
+
+def test_sums_differences_and_products_of_intervals_and_jets_do_not_depend_on_the_order(check):
+    p = 80
+    x, jet = check.I.of(Fraction(1, 3), p), check.Jet.of(check.I.of(Fraction(2, 7), p), 1, 0)
+    for one, other in ((x + jet, jet + x), (x - jet, -(jet - x)), (x * jet, jet * x)):
+        assert [getattr(c, "lo", c) for c in one.c] == [getattr(c, "lo", c) for c in other.c]
+        assert [getattr(c, "hi", c) for c in one.c] == [getattr(c, "hi", c) for c in other.c]
+    assert check.value(x + jet).lo <= Fraction(13, 21) * 2**p <= check.value(x + jet).hi
+    assert check.value(x - jet).lo <= Fraction(1, 21) * 2**p <= check.value(x - jet).hi
+    assert check.value(x * jet).lo <= Fraction(2, 21) * 2**p <= check.value(x * jet).hi
+
+
+@pytest.mark.parametrize(
+    ("table", "what", "bounces", "sign", "name"),
+    [
+        ("egg", ("fold", "lam"), ["1/3", "1/3+2", "1/3+4"], 1, "saddle-node"),
+        ("egg", ("fold", "lam"), ["1/3", "2/3+2", "1/3+4"], 1, "fold of a cycle of period 3 in lam: title"),
+        (
+            "egg",
+            ("fold", "lam"),
+            ["1/3", "1/3+2", "1/3+4"],
+            -1,
+            "fold of half of a symmetric cycle, of period 3 in lam: title",
+        ),
+        ("egg", ("flip", "lam"), ["1/3", "1/3+2", "1/3+4"], 1, "flip of a cycle of period 3 in lam: title"),
+        ("cuspless", ("flip", "lam"), ["0", "0"], 1, "lambda-c"),
+        ("cuspless", ("flip", "lam"), ["0", "1/9"], 1, "flip of a cycle of period 2 in lam: title"),
+        ("cuspless", ("flip", "lam"), ["0", "0"], -1, "flip of half of a symmetric cycle, of period 2 in lam: title"),
+        ("egg", ("flip", "alpha"), ["0", "3"], 1, "alpha-tilde"),
+        ("egg", ("flip", "alpha"), ["1", "3"], 1, "flip of a cycle of period 2 in alpha: title"),
+        ("egg", ("focus", "alpha"), ["0", "3"], 1, "alpha-hat"),
+        ("ellipse", ("flip", "alpha"), ["0", "3"], 1, "flip of a cycle of period 2 in alpha: title"),
+        ("egg", ("cycle", ""), ["0", "3"], 1, "a cycle of period 2: title"),
+    ],
+)
+def test_a_value_has_its_name_by_symmetry_and_any_other_by_what_is_stated(check, table, what, bounces, sign, name):
+    """`+2` and `+4` are two and four thirds of pi more, `3` is pi."""
+    p = 100
+    third = lambda text: [part.strip() for part in (text + "+0").split("+")[:2]]  # noqa: E731
+    at = [check.I.of(Fraction(a), p) + check.pi(p) * Fraction(int(b), 3) for a, b in map(third, bounces)]
+    at = [check.pi(p) if text == "3" else x for text, x in zip(bounces, at, strict=True)]
+    boxes = [x.wide(check.I.of(Fraction(1, 2**20), p)) for x in at]
+    for scene, wanted in (
+        ({"table": table}, name),
+        ({"table": table, "law": "-lam*eta"}, None),
+        ({"table": table, "K": 5}, None),
+    ):
+        found = check.named(what[0], sign, [0] * len(at), at, boxes, scene, what[1], "title", p)
+        assert found == (wanted or found)
+        assert wanted is not None or found.endswith("title")

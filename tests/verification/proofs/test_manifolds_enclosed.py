@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import mpmath
+import numpy as np
 import pytest
 from flint import acb, arb
 from hypothesis import given, settings
@@ -12,6 +13,7 @@ from sympy import Rational
 
 from verification.arithmetic.balls import multiprecision, working
 from verification.cycles.recurrence import Closure
+from verification.proofs.manifolds import enclosed as enclosing
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
     bounds,
@@ -237,3 +239,35 @@ def test_what_no_ball_encloses_is_not_proved():
             at(MIRRORED, 0.4434, 0.001)
         with pytest.raises(TooWideError, match="complex"):
             enclosed_saddle(flat, EGG.over(complex_balls(100)), acb(0.66))
+
+
+@pytest.mark.parametrize(
+    ("trace", "determinant", "inside"),
+    [
+        (0.5, 0.5, True),
+        (-1.4, 0.5, True),
+        (1.6, 0.5, None),
+        (-1.6, 0.5, None),
+        (1.5, 0.5, None),
+        (0.0, 1.0, None),
+        (0.1, 1.2, None),
+        (0.2, -0.7, True),
+        (0.4, -0.7, None),
+        (0.0, -1.1, None),
+    ],
+)
+def test_a_cycle_attracts_when_both_multipliers_lie_inside_the_unit_circle(monkeypatch, trace, determinant, inside):
+    monkeypatch.setattr(enclosing, "enclosed_cycle", lambda *_: [])
+    monkeypatch.setattr(enclosing, "slopes", lambda *_: [])
+    monkeypatch.setattr(enclosing, "trace_and_determinant", lambda *_: (acb(trace), acb(determinant)))
+    orbit = Orbit("a cycle", (0.0,))
+    roots = [abs(x) for x in np.roots([1, -trace, determinant])]
+
+    assert enclosing.attracting(orbit, None, None) is inside
+    assert inside is None or max(roots) < 1
+
+    def too_wide(*_):
+        raise enclosing.TooWideError("saddle", "no")
+
+    monkeypatch.setattr(enclosing, "enclosed_cycle", too_wide)
+    assert enclosing.attracting(orbit, None, None) is None

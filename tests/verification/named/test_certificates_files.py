@@ -3,14 +3,16 @@
 import copy
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from sympy import Rational, sqrt
 
 from symbolic import Law, tables
+from verification.arithmetic.balls import working
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import Closure
-from verification.named.files import checked, claim_of, document, read
+from verification.named.files import checked, claim_of, document, name_of, read
 from verification.named.locate import certify, locate
 
 
@@ -253,3 +255,14 @@ def test_a_file_that_is_no_certificate_is_refused(tmp_path):
     for name, message in messages.items():
         with pytest.raises(ValueError, match=message):
             read(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["alpha-tilde", "alpha-hat", "saddle-node", "lambda-c", "lambda-star", "phi-star"])
+def test_a_value_that_is_known_has_its_name_and_beside_it_there_is_none(name):
+    given = read(Path(__file__).parents[3] / "certificates" / f"{name}.json")
+    claim = claim_of(given)
+
+    assert name_of(claim) == name
+    with working(200):
+        moved = replace(claim, centre=tuple((x + 1000 * claim.radius).mid() for x in claim.centre))
+    assert name_of(moved) != name or name.endswith("-star")

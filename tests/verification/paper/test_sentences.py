@@ -9,7 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from verification.paper.claims.claim import Claim, Sentence, caption, defects, differences, digest, split
+from verification.paper.claims.claim import (
+    Claim,
+    Sentence,
+    _misquoted,
+    caption,
+    defects,
+    differences,
+    digest,
+    split,
+)
 from verification.paper.claims.folder import paper
 from verification.paper.report.report import catalogue
 
@@ -147,3 +156,22 @@ if PAPER:
 
     def test_the_list_is_the_paper_s_sentences_in_order_and_every_quote_is_in_its_place():
         assert differences(Path(PAPER).read_text(encoding="utf-8"), paper().inventory(), catalogue()) == []
+
+
+@pytest.mark.parametrize(
+    ("quote", "complaint"),
+    [
+        ("Circles are round. ... have corners.", ""),
+        ("Circles are round. Squares have corners.", ""),
+        ("Circles are round.", "quotes nothing of 'Squares have corners.'"),
+        ("have corners. ... Circles", "'Circles' is not in the sentences"),
+        ("Circles are square. ... corners", "'Circles are square.' is not in the sentences"),
+        ("Ellipses", "'Ellipses' is not in the sentences"),
+    ],
+)
+def test_a_quote_is_in_its_sentences_in_their_order_and_has_a_piece_of_each(quote, complaint):
+    texts = ["Circles are round.", "Ellipses are not.", "Squares have corners."]
+    listed = [Sentence("1", text[:9], digest(text), claims=("one",) if k != 1 else ()) for k, text in enumerate(texts)]
+
+    assert complaint in _misquoted(Claim("one", "1", quote, "identity", "0"), texts, listed)
+    assert bool(complaint) is bool(_misquoted(Claim("one", "1", quote, "identity", "0"), texts, listed))

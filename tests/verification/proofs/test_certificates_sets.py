@@ -386,3 +386,8 @@ def test_no_triangle_without_symmetry_is_excluded_and_one_that_breaks_a_rule_is(
                     }
                     assert True not in excluded or broken is not None
                     assert False not in excluded or broken is None or size < 10
+
+
+def test_a_sign_is_told_only_of_what_is_finite_and_off_zero():
+    for text, sign in (("2 +/- 1", 1), ("-2 +/- 1", -1), ("0 +/- 1", 0), ("0", 0), ("nan", 0), ("1 +/- inf", 0)):
+        assert slap._sign(arb(text)) == sign

@@ -215,7 +215,7 @@ def test_the_exit_angles_asked_for_their_largest_are_those_at_every_incidence_an
 
     def reflected(eta, theta):
         asked.append((of(eta), of(theta)))
-        return (abs(eta) + (theta.cos() if law.placed else 0),)
+        return [(abs(eta) + (theta.cos() if law.placed else 0), arb(1), arb(0))]
 
     bound = steepest(law, reflected)
     held = np.array(asked)

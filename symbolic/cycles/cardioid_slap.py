@@ -5,9 +5,9 @@ Paper: section 4.2."""
 
 from functools import cache
 
-from sympy import Expr, I, Interval, Poly, Rational, Symbol, atan, cancel, cos, expand, pi, sin, sqrt, together
+from sympy import Expr, I, Interval, Poly, Rational, S, Symbol, atan, cancel, cos, expand, pi, sin, sqrt, together
 
-from symbolic.expressions.signs import Finding, Outcome, conjunction, nonnegative, positive
+from symbolic.expressions.signs import Finding, Outcome, conjunction, nonnegative, positive, vanishes
 from symbolic.expressions.text import Kernel, kernel
 
 q = Symbol("q", real=True)  # the landing point
@@ -58,11 +58,11 @@ _C, _R = Symbol("cos"), Symbol("r")
 def _on_circle(expression: Expr) -> Expr:
     """`expression` with `cos**2` and `r**2` as functions of `q`; it must hold even powers only."""
     terms = Poly(expand(expression), _C, _R).terms()
-    return cancel(sum(c * COS2 ** Rational(i, 2) * (8 / (1 + 7 * q**2)) ** Rational(j, 2) for (i, j), c in terms))
+    return sum((c * COS2 ** Rational(i, 2) * (8 / (1 + 7 * q**2)) ** Rational(j, 2) for (i, j), c in terms), S.Zero)
 
 
 def _zero(expression: Expr) -> Outcome:
-    return Outcome.PROVED if cancel(together(expression)) == 0 else Outcome.UNKNOWN
+    return Outcome.PROVED if vanishes(expression) else Outcome.UNKNOWN
 
 
 def forward_once() -> Finding:
@@ -277,7 +277,7 @@ def derived() -> Finding:
         "q^2 of the half angle": q**2 * (1 + 7 * COS2) - sin2,
         "its speed: d(sin(b)^2)/dq = 2*sin(b)*cos(b)*db/dq": sin2.diff(q) ** 2 * SPEED2 - 4 * sin2 * COS2,
     }
-    zero = {fact: Outcome.PROVED if cancel(together(e)) == 0 else Outcome.UNKNOWN for fact, e in facts.items()}
+    zero = {fact: _zero(e) for fact, e in facts.items()}
     return conjunction(*(Finding(outcome, fact) for fact, outcome in zero.items()))
 
 

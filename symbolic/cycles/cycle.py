@@ -123,21 +123,24 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
     -3/4
     """
     path = table.components[index].point
-    there = [[expand_trig(x.diff(theta, order).subs(theta, value)) for x in path] for order in (0, 1, 2)]
     point, first, second = (
-        Matrix(there[0]),
-        Matrix(there[1]).applyfunc(_shortened),
-        Matrix(there[2]).applyfunc(_shortened),
+        Matrix([expand_trig(coordinate.diff(theta, order).subs(theta, value)) for coordinate in path])
+        for order in (0, 1, 2)
     )
-    speed = root(_shortened(first.dot(first)), box)
-    turning = _shortened(first[0] * second[1] - first[1] * second[0])
+    first, second = first.applyfunc(shortened), second.applyfunc(shortened)
+    speed = root(shortened(first.dot(first)), box)
+    turning = shortened(first[0] * second[1] - first[1] * second[0])
     tangent = (first / speed).applyfunc(cancel)
     normal = Matrix([-tangent[1], tangent[0]])
     return Frame(point, tangent, normal, cancel(-turning / speed**3))
 
 
-def _shortened(expression: Expr) -> Expr:
-    """As `simplify`; a quotient of polynomials with rational coefficients is cancelled, which says all there is."""
+def shortened(expression: Expr) -> Expr:
+    """As `simplify`; a quotient of polynomials with rational coefficients is cancelled, which says all there is.
+
+    >>> shortened((alpha**2 - 1) / (alpha - 1)), shortened(sqrt(alpha**2))
+    (alpha + 1, Abs(alpha))
+    """
     rational = not expression.atoms(Function, NumberSymbol) and all(p.exp.is_Integer for p in expression.atoms(Pow))
     return cancel(expression) if rational else simplify(expression)
 

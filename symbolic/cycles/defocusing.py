@@ -67,14 +67,13 @@ from sympy import (
     log,
     oo,
     pi,
-    simplify,
     sin,
     sqrt,
     symbols,
     tan,
 )
 
-from symbolic.expressions.signs import Finding, Outcome, conjunction, nonnegative, positive, vanishes
+from symbolic.expressions.signs import Finding, Outcome, conjunction, defect, nonnegative, positive, vanishes
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import curvature, velocity
@@ -100,8 +99,8 @@ def beam_defects() -> list[Expr]:
     arriving, focal = u / (1 + t * u), -cos_eta1 / K1  # K1 < 0: d1 = cos(eta1)/|K1|
     widened = -(cos_phi1 / cos_eta1) * (1 + t * u) * q
     return [
-        simplify(q1 - widened),
-        simplify(omega1 / q1 - (cos_eta1 / cos_phi1) * (lam * arriving - (1 + lam) / focal)),
+        defect(q1 - widened),
+        defect(omega1 / q1 - (cos_eta1 / cos_phi1) * (lam * arriving - (1 + lam) / focal)),
     ]
 
 
@@ -120,7 +119,7 @@ def cone_defects() -> list[Expr]:
     width = (t / D0 - 1) / ratio * D0 / D1  # |q1/q0| in units of D, from |1 + t*u| and cos(phi1)/cos(eta1)
     stretched = derivative_matrix()[0, 0] + K0 * (t + cos_phi0 / K0) / cos_eta1  # K0 < 0: D0 = -cos(phi0)/K0
     edges = [leaving[0] + 1, leaving[1] + 1 + lam, width - (t - D0) / d1, stretched]
-    return [simplify(defect) for defect in edges]
+    return [defect(edge) for edge in edges]
 
 
 def ends() -> tuple[Expr, Expr]:
@@ -131,7 +130,7 @@ def ends() -> tuple[Expr, Expr]:
 def chord_defects() -> list[Expr]:
     """`t**2`, `t*cos(phi0)` and `t*cos(eta1)` of a chord, minus closed forms in `c0, c1, delta`: zeros.
 
-    >>> all(vanishes(defect) for defect in chord_defects())
+    >>> all(vanishes(each) for each in chord_defects())
     True
     """
     c0, c1 = ends()
@@ -154,7 +153,7 @@ def direction_defects() -> list[Expr]:
     In the frame of tangent and normal it is `2*sin(delta)*(c0*(cos, sin)(delta) + c1*(cos, sin)(2*delta))`; so its
     cross products with these two directions are `2*sin(delta)**2` times `c1` and `c0`, both positive.
 
-    >>> all(vanishes(defect) for defect in direction_defects())
+    >>> all(vanishes(each) for each in direction_defects())
     True
     """
     c0, c1 = ends()
@@ -179,7 +178,7 @@ def apart_defects() -> list[Expr]:
     In turn: `sin(delta)**2` in `c0`, `c1` and `C`; the sum of `t*cos(phi0)` and `t*cos(eta1)` over `2*sin(delta)**2`, a
     product with `1 + 2*C`, so that `C > -1/2`; and `3*c1**2 - sin(delta)**2`, not negative for `c1 >= c0`.
 
-    >>> all(vanishes(defect) for defect in apart_defects())
+    >>> all(vanishes(each) for each in apart_defects())
     True
     """
     (c0, c1), C = ends(), cos(delta)
@@ -197,7 +196,7 @@ def radius_defect() -> Expr:
     >>> radius_defect()
     0
     """
-    return simplify(curvature(BOUNDARY).subs(theta, 2 * half) ** 2 * (4 * cos(half) / 3) ** 2 - 1)
+    return defect(curvature(BOUNDARY).subs(theta, 2 * half) ** 2 * (4 * cos(half) / 3) ** 2 - 1)
 
 
 def turning_defect() -> Expr:
@@ -207,7 +206,7 @@ def turning_defect() -> Expr:
     0
     """
     speed = velocity(BOUNDARY)
-    return simplify(curvature(BOUNDARY) ** 2 * speed.dot(speed) - Rational(9, 4))
+    return defect(curvature(BOUNDARY) ** 2 * speed.dot(speed) - Rational(9, 4))
 
 
 def excess() -> Expr:
@@ -254,7 +253,7 @@ def square_defects() -> list[Expr]:
         (gain() - 1 - half_tangent / 2) * 2 * landing * (1 + C) ** 2,
         (gain() - Rational(3, 2)) * 2 * landing,
     ]
-    return [simplify(left - sum(parts)) for left, (_, parts) in zip(found, square_parts(), strict=True)]
+    return [defect(left - sum(parts)) for left, (_, parts) in zip(found, square_parts(), strict=True)]
 
 
 def signs() -> Finding:
@@ -280,7 +279,7 @@ def expands() -> Finding:
         "one of two successive bounces is away from the cusp": apart_defects(),
         "t - D0 - d1 and the gain as sums of squares": square_defects(),
     }
-    failed = [name for name, defects in steps.items() if not all(vanishes(defect) for defect in defects)]
+    failed = [name for name, defects in steps.items() if not all(map(vanishes, defects))]
     if failed:
         return Finding(Outcome.UNKNOWN, f"not reduced to 0: {', '.join(failed)}")
     found = signs()

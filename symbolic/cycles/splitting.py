@@ -57,7 +57,6 @@ from sympy import (
     S,
     Symbol,
     cos,
-    expand_trig,
     log,
     pi,
     simplify,
@@ -69,7 +68,7 @@ from sympy import (
 )
 
 from symbolic.cycles.defocusing import BOUNDARY, expands, half
-from symbolic.expressions.signs import Finding, Outcome, conjunction, vanishes
+from symbolic.expressions.signs import Finding, Outcome, conjunction, defect, vanishes
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cuspless
 from symbolic.tables.geometry import curvature
@@ -103,7 +102,7 @@ def wall_defect() -> Expr:
     inward = Matrix([-cos(3 * half), -sin(3 * half)])
     length, distance = (point[0] - WALL_X) / cos(angle), 4 * cos(half) / 3 * inward.dot(towards)
     closed = clear().subs(c, cos(half)) + 2 * cos(half) / 3 * (1 - cos(3 * half + 2 * angle))
-    return expand_trig(expand_trig(simplify((length - distance) * cos(angle) - closed)))
+    return defect((length - distance) * cos(angle) - closed)
 
 
 def angle_defect() -> Expr:
@@ -113,7 +112,7 @@ def angle_defect() -> Expr:
     0
     """
     inward, towards = Matrix([-cos(3 * half), -sin(3 * half)]), Matrix([-cos(angle), sin(angle)])
-    return simplify(expand_trig(inward.dot(towards) - cos(3 * half + angle)))
+    return defect(inward.dot(towards) - cos(3 * half + angle))
 
 
 def clear() -> Expr:
@@ -144,7 +143,7 @@ def radius_defects() -> list[Expr]:
     s = Symbol("s", real=True)
     radius = sqrt(16 - s**2) / 3
     squared = radius**2 - (1 / curvature(BOUNDARY) ** 2).subs(theta, 2 * half)
-    return [simplify(squared.subs(s, 4 * sin(half))), simplify(radius.diff(s, 2) + Rational(16, 27) / radius**3 / 3)]
+    return [defect(squared.subs(s, 4 * sin(half))), defect(radius.diff(s, 2) + Rational(16, 27) / radius**3 / 3)]
 
 
 def clearance(contraction: Expr = lam) -> Expr:
@@ -167,15 +166,15 @@ def passage_defects() -> list[Expr]:
     first = derivative_matrix()
 
     def leaving(out: Matrix, bend: Expr, exit: Expr) -> Expr:
-        return simplify(-(bend * out[0] + out[1]) / (exit * out[0]) * exit / -bend)
+        return -(bend * out[0] + out[1]) / (exit * out[0]) * exit / -bend
 
     straight = leaving(first * vector, K1, cos_phi1)
     second = first.subs({t: t1, cos_phi0: cos_phi1, cos_eta1: cos_eta2, K0: 0, K1: K2}, simultaneous=True)
     bent = leaving(second * first.subs(K1, 0) * vector, K2, cos_phi2)
     beyond = cos_phi1 / (lam * cos_eta1) * (t - D0 / y)
     return [
-        simplify(straight - (1 + lam - lam * (-cos_eta1 / K1) / (t - D0 / y))),
-        simplify(bent - (1 + lam - lam * (-cos_eta2 / K2) / (beyond + t1))),
+        defect(straight - (1 + lam - lam * (-cos_eta1 / K1) / (t - D0 / y))),
+        defect(bent - (1 + lam - lam * (-cos_eta2 / K2) / (beyond + t1))),
     ]
 
 
@@ -193,7 +192,7 @@ def width_defects() -> list[Expr]:
     grown = y * (cos_phi1 / cos_eta1 * (t - D0 / y) + lam * t1) / d
     sides = {t: D0 + Q0 / cos_eta1, t1: d + Q1 / cos_phi1}
     closed = 1 + ((cos_phi1 / cos_eta1) ** 2 * Q0 + Q1 - (1 - lam) * t1 * cos_phi1) / (cos_phi1 * d)
-    return [simplify(width - grown), simplify((grown.subs(y, 1) - closed).subs(sides))]
+    return [defect(width - grown), defect((grown.subs(y, 1) - closed).subs(sides))]
 
 
 def share_defects() -> list[Expr]:
@@ -208,8 +207,8 @@ def share_defects() -> list[Expr]:
     share = Rational(1, 3) + 2 / (3 * (2 * c + 1) ** 2)
     across = (2 * c - 1) ** 2 * (2 * c + 1) ** 2 / 4
     return [
-        simplify(expand_trig(X - across.subs(c, cos(half)))),
-        simplify(clear() - share * across) + share.subs(c, 1) - Rational(11, 27),
+        defect(X - across.subs(c, cos(half))),
+        defect(clear() - share * across) + share.subs(c, 1) - Rational(11, 27),
     ]
 
 
@@ -240,7 +239,7 @@ def spread_defect() -> Expr:
     far, near, d = symbols("far near d", positive=True)  # f + t at y = 1 + lam and at y = 1
     low, high = (1 + lam - lam * d / length for length in (near, far))
     ratio = (1 + lam - low) / (1 + lam - high) * (high - 1) / (low - 1)
-    return simplify(ratio - far / near * (1 - d / far) / (1 - d / near))
+    return defect(ratio - far / near * (1 - d / far) / (1 - d / near))
 
 
 def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
@@ -290,7 +289,7 @@ def splits() -> Finding:
         "t >= D on chords to the wall": [wall_defect(), angle_defect(), *clear_defects()],
         "widths by way of the wall": [*width_defects(), *share_defects()],
     }
-    failed = [name for name, defects in steps.items() if not all(vanishes(defect) for defect in defects)]
+    failed = [name for name, defects in steps.items() if not all(map(vanishes, defects))]
     if failed:
         return Finding(Outcome.UNKNOWN, f"not reduced to 0: {', '.join(failed)}")
     return conjunction(expands(), Finding(Outcome.PROVED, "; ".join(steps)))

@@ -33,7 +33,7 @@ from functools import lru_cache
 
 from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt
 
-from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter
+from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter, shortened
 from symbolic.cycles.polygons import half_turn
 from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive
 from symbolic.motion.collision import area_factor, derivative_matrix
@@ -52,7 +52,7 @@ def stability_number(cycle: Cycle) -> Expr:
     """
     start, end = cycle.frames
     length = cycle.length(0)
-    return factor(simplify((1 + length * start.curvature) * (1 + length * end.curvature)))
+    return factor(shortened((1 + length * start.curvature) * (1 + length * end.curvature)))
 
 
 def general_trace_and_determinant() -> tuple[Expr, Expr]:

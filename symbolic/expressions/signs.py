@@ -1,9 +1,6 @@
 """Proofs that an expression vanishes identically.
 
-An expression built from rational operations, square roots, and sines and cosines of multiples of
-a few angles is a rational function on an algebraic variety: `sin**2 + cos**2 = 1`, `r**2 = x` for
-each root. Reducing its numerator modulo these relations to 0 proves the identity. A failed
-reduction refutes nothing.
+`symbolic.expressions.identities` reduces it to 0; a failed reduction refutes nothing.
 
 Proofs of the sign of a polynomial over a whole box of parameters, in exact arithmetic.
 
@@ -25,27 +22,25 @@ from sympy import (
     Expr,
     Interval,
     Poly,
-    Pow,
     Rational,
     S,
     Symbol,
-    cos,
     expand,
-    expand_trig,
     factor_list,
     minimal_polynomial,
     oo,
-    sin,
-    tan,
+    simplify,
     together,
 )
-from sympy.polys.polyerrors import CoercionFailed, DomainError, PolynomialError
+from sympy.polys.polyerrors import CoercionFailed, DomainError
+
+from symbolic.expressions.identities import is_zero_in_ring, reduced_numerator
 
 
 def vanishes(expression: Expr) -> bool:
     """True when `expression` is proved to be 0 wherever it is defined; False when it is not proved.
 
-    >>> from sympy import Rational, sqrt
+    >>> from sympy import Rational, cos, sqrt
     >>> from symbolic.tables.table import theta
     >>> vanishes(4 * cos(theta) ** 3 - 3 * cos(theta) - cos(3 * theta))
     True
@@ -57,6 +52,9 @@ def vanishes(expression: Expr) -> bool:
     expression = S(expression)
     if expression.is_zero:
         return True
+    decided = is_zero_in_ring(expression)
+    if decided is not None:
+        return decided
     numerator = reduced_numerator(expression)
     if numerator == 0:
         return True
@@ -65,54 +63,15 @@ def vanishes(expression: Expr) -> bool:
     return False
 
 
-def reduced_numerator(expression: Expr) -> Expr:
-    """The numerator of `expression` in lowest powers of its sines and square roots.
+def defect(expression: Expr) -> Expr:
+    """0 for an expression that is proved to vanish; another as short as `simplify` makes it.
 
-    >>> from sympy import sqrt
-    >>> reduced_numerator(1 / sqrt(2) - sqrt(2) / 2)
-    0
+    >>> from sympy import cos, sin
+    >>> from symbolic.tables.table import theta
+    >>> defect(sin(theta) ** 2 + cos(theta) ** 2 - 1), defect(theta + theta)
+    (0, 2*theta)
     """
-    expression = expand_trig(expand(expression.replace(tan, lambda x: sin(x) / cos(x))))
-    expression = expression.replace(_is_root, _standard_root)
-    numerator = expand(together(expression).as_numer_denom()[0])
-    numerator = _without_squared_sines(numerator)
-    roots = {p for p in numerator.atoms(Pow) if _is_root(p)}
-    bases = sorted({p.base for p in roots}, key=lambda base: (-base.count_ops(), str(base)))
-    for base in bases:
-        root = Symbol("root", nonnegative=True)
-        named = numerator.xreplace({p: root ** (2 * p.exp) for p in roots if p.base == base})
-        named = expand(together(named).as_numer_denom()[0])
-        numerator = expand(_remainder(named, root, base).subs(root, base**S.Half))
-        numerator = expand(together(numerator).as_numer_denom()[0])
-    return _without_squared_sines(numerator)
-
-
-def _is_root(expression: Expr) -> bool:
-    return isinstance(expression, Pow) and expression.exp.is_Rational and expression.exp.q == 2
-
-
-def _standard_root(power: Expr) -> Expr:
-    """A half-integer power with its base reduced and freed of rational factors."""
-    content, base = _without_squared_sines(power.base).as_content_primitive()
-    return content**power.exp * base**power.exp
-
-
-def _without_squared_sines(expression: Expr) -> Expr:
-    expression = expand(expression)
-    for angle in sorted({f.args[0] for f in expression.atoms(sin)}, key=str):
-        expression = _remainder(expression, sin(angle), 1 - cos(angle) ** 2)
-    return expression
-
-
-def _remainder(expression: Expr, generator: Expr, square: Expr) -> Expr:
-    """`expression` with `generator**2` replaced by `square` until it is at most linear in it."""
-    try:
-        terms = Poly(expression, generator).all_coeffs()[::-1]
-    except PolynomialError:
-        return expression
-    even = sum((c * square ** (k // 2) for k, c in enumerate(terms) if k % 2 == 0), S.Zero)
-    odd = sum((c * square ** (k // 2) for k, c in enumerate(terms) if k % 2 == 1), S.Zero)
-    return expand(even + odd * generator)
+    return S.Zero if vanishes(expression) else simplify(expression)
 
 
 Box = Mapping[Symbol, Interval]

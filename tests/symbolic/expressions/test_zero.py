@@ -3,9 +3,10 @@
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import I, Rational, S, Symbol, cos, expand, nan, sin, sqrt, tan
+from sympy import I, Rational, S, Symbol, cos, expand, nan, pi, sin, sqrt, tan
 
-from symbolic.expressions.signs import reduced_numerator, vanishes
+from symbolic.expressions.identities import is_zero_in_ring, reduced_numerator
+from symbolic.expressions.signs import vanishes
 from symbolic.tables.geometry import trigonometric
 from symbolic.tables.table import a, theta
 
@@ -41,6 +42,22 @@ def test_radical_identities_are_recognised(p, q):
     assert vanishes(expand(p * q) - p * q)
     if expand(q) != 0:
         assert vanishes(p / q - p * q / expand(q**2))
+
+
+@settings(max_examples=5)
+@given(trigonometric_sums(), st.sampled_from([S.Zero, S.One]))
+@example(cos(theta) + sin(theta), S.One)
+def test_the_ring_of_polynomials_decides_what_reduction_proves(p, wrong):
+    difference = a * (p * sin(theta) - trigonometric(p * sin(theta)) + sin(2 * x) ** 2 + cos(2 * x) ** 2 - 1)
+    difference += wrong * tan(theta) / (2 + a)
+
+    assert is_zero_in_ring(difference) is (wrong == 0)
+    assert (reduced_numerator(difference) == 0) is (wrong == 0)
+
+
+@pytest.mark.parametrize("other", [sqrt(a) - sqrt(a + 1), nan, sin(theta + pi / 3), sin(theta**2), I * theta], ids=str)
+def test_the_ring_of_polynomials_decides_nothing_beyond_it(other):
+    assert is_zero_in_ring(other) is None
 
 
 @settings(max_examples=10)

@@ -1,0 +1,169 @@
+"""Normal forms in which an expression that vanishes is 0.
+
+An expression built from rational operations, square roots, and sines and cosines of multiples of a few angles is a
+rational function on an algebraic variety: `sin**2 + cos**2 = 1`, `r**2 = x` for each root. Without roots a ring of
+polynomials decides whether it is 0. With them, reducing its numerator modulo these relations to 0 proves the identity,
+and a failed reduction refutes nothing.
+"""
+
+from functools import cache
+from typing import Any
+
+from sympy import (
+    QQ,
+    Add,
+    Dummy,
+    Expr,
+    Mul,
+    Poly,
+    Pow,
+    Rational,
+    S,
+    Symbol,
+    cos,
+    expand,
+    expand_trig,
+    gcd_list,
+    preorder_traversal,
+    sin,
+    symbols,
+    tan,
+    together,
+)
+from sympy.polys.polyerrors import PolynomialError
+from sympy.polys.rings import PolyElement, ring
+
+
+def is_zero_in_ring(expression: Expr) -> bool | None:
+    """Is a rational function of letters, sines and cosines 0? None for one of another kind, such as one with roots.
+
+    A letter `x` in the angles enters by the sine and cosine of its smallest share `g*x`, of which every angle has whole
+    multiples; they and the letters obey no relation but `s**2 + c**2 = 1`, so the answer is right both ways.
+
+    >>> x, y = symbols("x y")
+    >>> is_zero_in_ring(sin(x + 2 * y) ** 2 + cos(2 * y + x) ** 2 - 1), is_zero_in_ring(tan(x) - sin(x))
+    (True, False)
+    """
+    angles = {f.args[0] for f in expression.atoms(sin, cos, tan)}
+    words = (Add, Mul, Pow, Rational, Symbol, sin, cos, tan)
+    nodes = list(preorder_traversal(expression))
+    if not all(isinstance(node, words) and (node.func is not Pow or node.exp.is_Integer) for node in nodes):
+        return None
+    parts = {angle: expand(angle).as_coefficients_dict() for angle in angles}
+    if not all(x.is_Symbol and q.is_Rational for part in parts.values() for x, q in part.items()):
+        return None
+    shares = {x: gcd_list([part[x] for part in parts.values() if x in part]) for part in parts.values() for x in part}
+    circle = {x: symbols(f"cos_{x} sin_{x}", cls=Dummy) for x in shares}
+    letters = sorted(expression.free_symbols, key=str)
+    names = [*letters, *(each for pair in circle.values() for each in pair)]
+    if not names:
+        return None
+    own = ring(names, QQ)[0]
+    generator = dict(zip(names, own.gens, strict=True))
+    sines = [own.gens.index(generator[s]) for _, s in circle.values()]
+    squares = [own.one - generator[c] ** 2 for c, _ in circle.values()]
+
+    def reduced(p: PolyElement) -> PolyElement:
+        """`p` at most linear in each sine."""
+        for place, square in zip(sines, squares, strict=True):
+            found: dict[int, dict[tuple[int, ...], Any]] = {}
+            for powers, coefficient in p.terms():
+                rest = (*powers[:place], powers[place] % 2, *powers[place + 1 :])
+                found.setdefault(powers[place] // 2, {})[rest] = coefficient
+            if found.keys() - {0}:
+                p = sum((own.from_dict(part) * square**k for k, part in found.items()), own.zero)
+        return p
+
+    def turned(angle: Expr) -> tuple[PolyElement, PolyElement]:
+        """Cosine and sine of an angle, by the addition theorem."""
+        c, s = own.one, own.zero
+        for x, q in parts[angle].items():
+            c1, s1 = (generator[each] for each in circle[x])
+            s1 = s1 if q > 0 else -s1
+            for _ in range(abs(q / shares[x])):
+                c, s = reduced(c * c1 - s * s1), reduced(c * s1 + s * c1)
+        return c, s
+
+    trigonometric = {angle: turned(angle) for angle in angles}
+
+    @cache
+    def quotient(node: Expr) -> tuple[PolyElement, PolyElement]:
+        if node.is_Rational:
+            return own(QQ(node.p, node.q)), own.one
+        if node.is_Symbol:
+            return generator[node], own.one
+        if isinstance(node, (sin, cos, tan)):
+            c, s = trigonometric[node.args[0]]
+            return {sin: (s, own.one), cos: (c, own.one), tan: (s, c)}[node.func]
+        if isinstance(node, Pow):
+            top, bottom = quotient(node.base)
+            power = int(node.exp)
+            top, bottom = (top, bottom) if power > 0 else (bottom, top)
+            return reduced(top ** abs(power)), reduced(bottom ** abs(power))
+        top, bottom = quotient(node.args[0])
+        for part in node.args[1:]:
+            p, q = quotient(part)
+            if isinstance(node, Mul):
+                top, bottom = reduced(top * p), reduced(bottom * q)
+            else:
+                common = bottom.gcd(q)
+                left, right = q.quo(common), bottom.quo(common)
+                top, bottom = reduced(top * left + p * right), reduced(bottom * left)
+            if not bottom:
+                raise ZeroDivisionError
+        return top, bottom
+
+    try:
+        return not quotient(expression)[0]
+    except ZeroDivisionError:
+        return None
+
+
+def reduced_numerator(expression: Expr) -> Expr:
+    """The numerator of `expression` in lowest powers of its sines and square roots.
+
+    >>> from sympy import sqrt
+    >>> reduced_numerator(1 / sqrt(2) - sqrt(2) / 2)
+    0
+    """
+    expression = expand_trig(expand(expression.replace(tan, lambda x: sin(x) / cos(x))))
+    expression = expression.replace(_is_root, _standard_root)
+    numerator = expand(together(expression).as_numer_denom()[0])
+    numerator = _without_squared_sines(numerator)
+    roots = {p for p in numerator.atoms(Pow) if _is_root(p)}
+    bases = sorted({p.base for p in roots}, key=lambda base: (-base.count_ops(), str(base)))
+    for base in bases:
+        root = Symbol("root", nonnegative=True)
+        named = numerator.xreplace({p: root ** (2 * p.exp) for p in roots if p.base == base})
+        named = expand(together(named).as_numer_denom()[0])
+        numerator = expand(_remainder(named, root, base).subs(root, base**S.Half))
+        numerator = expand(together(numerator).as_numer_denom()[0])
+    return _without_squared_sines(numerator)
+
+
+def _is_root(expression: Expr) -> bool:
+    return isinstance(expression, Pow) and expression.exp.is_Rational and expression.exp.q == 2
+
+
+def _standard_root(power: Expr) -> Expr:
+    """A half-integer power with its base reduced and freed of rational factors."""
+    content, base = _without_squared_sines(power.base).as_content_primitive()
+    return content**power.exp * base**power.exp
+
+
+def _without_squared_sines(expression: Expr) -> Expr:
+    expression = expand(expression)
+    for angle in sorted({f.args[0] for f in expression.atoms(sin)}, key=str):
+        expression = _remainder(expression, sin(angle), 1 - cos(angle) ** 2)
+    return expression
+
+
+def _remainder(expression: Expr, generator: Expr, square: Expr) -> Expr:
+    """`expression` with `generator**2` replaced by `square` until it is at most linear in it."""
+    try:
+        terms = Poly(expression, generator).all_coeffs()[::-1]
+    except PolynomialError:
+        return expression
+    even = sum((c * square ** (k // 2) for k, c in enumerate(terms) if k % 2 == 0), S.Zero)
+    odd = sum((c * square ** (k // 2) for k, c in enumerate(terms) if k % 2 == 1), S.Zero)
+    return expand(even + odd * generator)

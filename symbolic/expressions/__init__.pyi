@@ -3,7 +3,19 @@
 from . import text
 from .enclosures import UnboundedError, pole, root_integral, sign_in, sign_on
 from .numbers import Mask, NumberSystem, R, Real
-from .signs import Box, Finding, Outcome, bernstein, conjunction, interval_text, nonnegative, placed, positive, vanishes
+from .signs import (
+    Box,
+    Finding,
+    Outcome,
+    bernstein,
+    conjunction,
+    defect,
+    interval_text,
+    nonnegative,
+    placed,
+    positive,
+    vanishes,
+)
 from .text import FUNCTIONS, Kernel, checked, constant, kernel, load
 
 __all__ = [
@@ -21,6 +33,7 @@ __all__ = [
     "checked",
     "conjunction",
     "constant",
+    "defect",
     "interval_text",
     "kernel",
     "load",

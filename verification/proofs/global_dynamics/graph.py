@@ -284,7 +284,8 @@ def sparse(source: NDArray[np.int32], target: NDArray[np.int32], size: int) -> c
 
 
 def walked(graph: csr_matrix) -> csr_matrix:
-    """The graph as SciPy walks it: of weights of another type it would make a copy, and first sort its rows."""
+    """The graph as SciPy walks it, each edge once: with an edge that is there twice its components may never end."""
+    graph.sum_duplicates()
     return csr_matrix((np.ones(graph.indices.size), graph.indices, graph.indptr), shape=graph.shape)
 
 

@@ -1,10 +1,8 @@
 """A second reader of certificates: `python check.py FILE...`, with nothing but Python's standard library.
 
 It shares no line with the package that writes them. Numbers are intervals with integers over a power of two for ends;
-tables and laws are formulas; the map is a flight along a straight line and a law, in jets (Taylor polynomials). Sought
-is a zero of three equations in a bounce, the angle at which it is left and a letter, or (tangency.py) on two manifolds
-and lam. By the interval Newton theorem, where N = m - F'(X)^-1 F(m) is inside the box X with middle m, F has one zero
-in X, it is in N, and F' is regular there. What is meant: docs/certificate_format.md. Exit status 0: all proved.
+the map is formulas in jets (Taylor polynomials). By the interval Newton theorem, where N = m - F'(X)^-1 F(m) is inside
+the box X with middle m, F has one zero in X, it is in N, and F' is regular there: docs/certificate_format.md.
 """
 
 import ast
@@ -532,6 +530,8 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
 
 def checked(given):
     """The line that says what is proved of a document; `Wrong` or `Unproved` say why not."""
+    if isinstance(given, dict) and given.get("kind") == "trapping region":
+        return beside("region").trapping(given)
     need(isinstance(given, dict) and given.get("kind") in KINDS, f"kind must be one of {', '.join(KINDS)}", Wrong)
     keys = "schema name statement kind scene free bits digits centre radius checks".split()
     own = "unstable stable orbit meets contact" if given["kind"] == "tangency" else "components mirror"

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-READER = ("check", "boundaries", "corner", "formulas", "tangency")
-TESTS = ("test_hypotheses", "test_second_reader", "test_own_tables", "test_two_arithmetics")
+READER = ("check", "boundaries", "corner", "formulas", "region", "tangency")
+TESTS = ("test_hypotheses", "test_region", "test_second_reader", "test_own_tables", "test_two_arithmetics")
 SLOW = ("bytes", "again", "empty_folder", "bay", "line_of_the_package", "short", "generated", "written")
 
 

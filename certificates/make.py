@@ -7,11 +7,13 @@ package and its libraries write the same bytes, whatever the machine: a test mak
 import argparse
 import json
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 from sympy import Expr, Integer, Rational
 
 from symbolic import Law, Scene, tables
@@ -20,6 +22,11 @@ from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.files import document
 from verification.named.locate import certify, locate
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.crisis import grown
+from verification.proofs.global_dynamics.graph import Cells
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.global_dynamics.regions import Region
 
 Proof = Callable[[], Any]
 HERE = Path(__file__).parent
@@ -99,6 +106,20 @@ def family(radius: str, parameter: str, span: str) -> Table:
     return Scene.of({"polar": radius, "shape": {parameter: span}}).family
 
 
+def region(scene: Scene, start: tuple[float, float], lam: tuple[str, str], grid: tuple[int, int, int]) -> Proof:
+    """The cells of a grid to which a phase point leads, for all contractions of a range, one after the other or not."""
+
+    def proof() -> Any:
+        ends, (theta, phi) = (Fraction(lam[0]), Fraction(lam[1])), (np.array([x]) for x in start)
+        found = grown(PinballImages(scene, ends), grid, Boxes(np.array([0]), (theta, theta), (phi, phi)))
+        if found is None:
+            return None
+        chart, column, row = np.nonzero(found[1])
+        return Region(scene, ends, *grid, Cells(chart, column, row, np.ones(chart.size, dtype=np.int64)))
+
+    return proof
+
+
 CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
     {
         "lambda-star": value("lambda-star"),
@@ -130,6 +151,9 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         "moved-waves": cycle(tables.polar("1 + cos(3*theta + 1/2)/20"), [-0.16667, 2.97493], THIRD),
         "law-parameter": flip(tables.egg(3).at(alpha="3/50"), [0.0, pi, 0.41], "b", THIRD, law=BENT),
         "own-mirror": flip(tables.polar("1 + 2*cos(3*theta)/25"), [0.0845, -2.7749, 0.2878], "lam", mirror=True),
+        "triangle-region": region(
+            Scene(tables.egg(3), alpha=EGG, lam=HALF), (2.88671, -0.34907), ("49/100", "1/2"), (512, 256, 1)
+        ),
     }
 )
 
@@ -137,6 +161,8 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
 def text(name: str) -> str:
     """A certificate as it stands in its file."""
     proof = CERTIFICATES[name]()
+    if isinstance(proof, Region) and all(proof.checks.values()):
+        return json.dumps(proof.to_dict()) + "\n"
     if proof is None or not proof.certified:
         raise ArithmeticError(f"{name}: not proved")
     return json.dumps(document(proof), indent=1) + "\n"

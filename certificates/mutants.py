@@ -8,6 +8,7 @@ a second run goes on from there. Exit status 1 where something false was proved.
 """
 
 import argparse
+import ast
 import copy
 import json
 import random
@@ -30,6 +31,7 @@ SAMPLES = (
     *("marked-point", "law-in-all-words", "own-mirror", "law-parameter", "free-parameter"),  # of one's own
     *("phi-star", "alpha-tilde", "five-waves"),
 )
+REGION = "triangle-region"
 TOUCH = "boundary-crisis"  # of the kind of its own; the damage to manifolds and orbit stands for that to bounces
 Document = dict[str, Any]
 NAMES = (
@@ -166,9 +168,10 @@ def words(given: Document, dice: random.Random) -> None:
     if dice.random() < 0.5:
         given["name"] = dice.choice([name for name in NAMES if name != given["name"]])
     else:
-        said = given["statement"].split(" ")
+        key = "statement" if "statement" in given else "name"
+        said = given[key].split(" ")
         del said[dice.randrange(len(said))]
-        given["statement"] = " ".join(said)
+        given[key] = " ".join(said)
 
 
 def entry(given: Document, dice: random.Random) -> None:
@@ -207,6 +210,35 @@ def swapped(given: Document, dice: random.Random) -> None:
         given["meets"] += dice.choice((-40, -2, -1, 1, 2, 40))
 
 
+def cells(given: Document, dice: random.Random) -> None:
+    """A run moved, longer or shorter, left out, or there twice; a number of the grid."""
+    runs, what = given["runs"], dice.randrange(4)
+    if what == 0:
+        given[dice.choice(("columns", "rows", "parts"))] += dice.choice((-400, -2, -1, 1, 2, 400))
+    elif what == 1:
+        del runs[dice.randrange(len(runs))]
+    elif what == 2:
+        runs.append(dice.choice(runs))
+    else:
+        run = dice.choice(runs)
+        run[dice.randrange(5)] += dice.choice((-3, -1, 1, 3))
+
+
+def range_of_lam(given: Document, dice: random.Random) -> None:
+    """An end of the contractions, or what the scene says of them."""
+    place = dice.randrange(3)
+    text = dice.choice((*NUMBERS, "49/100", "99/200", "1/2", "51/100", "2/4", "24/49"))
+    if place == 2:
+        given["scene"]["lam"] = text
+    else:
+        given["lam"][place] = text
+
+
+def shape(given: Document, dice: random.Random) -> None:
+    """A shape near the one that is said."""
+    given["scene"]["shape"]["alpha"] = dice.choice(("2/25", "3/40", "9/100", "1/10", "1/9", "0", "0.08", "801/10000"))
+
+
 DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
     digit, digit, exponent, bound, bound, moved, moved, order, scene, scene, scene,
     about, about, about, item, words, entry,
@@ -214,6 +246,7 @@ DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
 
 
 OWN = (*DAMAGE, formula, formula, formula, formula)
+CELLS = (cells, cells, cells, cells, range_of_lam, range_of_lam, shape, scene, words, entry)
 TOUCHING = (digit, exponent, bound, moved, manifold, manifold, manifold, swapped, scene, item, words, entry)
 
 
@@ -221,9 +254,11 @@ def mutant(name: str, given: Document, k: int) -> Document:
     """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
     dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
     own = {"law", "polar", "component"} & {*given["scene"]}
-    damage = dice.choice(TOUCHING if given["kind"] == "tangency" else OWN if own and name != "five-waves" else DAMAGE)
+    kinds = {"tangency": TOUCHING, "trapping region": CELLS}
+    damage = dice.choice(kinds.get(given["kind"], OWN if own and name != "five-waves" else DAMAGE))
     damage(found, dice)
-    return repaired(found) if damage in (scene, formula, about) and dice.random() < 0.5 else found
+    again = damage in (scene, formula, about, cells, range_of_lam, shape)
+    return repaired(found) if again and dice.random() < 0.5 else found
 
 
 def repaired(given: Document) -> Document:
@@ -272,7 +307,11 @@ def undamaged(name: str) -> str:
 
 
 def is_true(given: Document, line: str, original: Document, first: str) -> bool:
-    """Is what is proved of a mutant true, by what is known of the undamaged file?"""
+    """Is what is proved of a mutant true, by what is known of the undamaged file? Of a region the package is asked."""
+    if given["kind"] == "trapping region":
+        same = all(given[key] == original[key] for key in ("name", "lam", "columns", "rows", "runs"))
+        same = same and given["scene"] | {"lam": ""} == original["scene"] | {"lam": ""}
+        return line == f"proved: {given['name']}" and (same or trapping(given))
     (name, value, error), (known, true, small) = told(line), told(first)
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
@@ -299,6 +338,39 @@ def proved_by_the_package(given: Document) -> bool:
         return False
 
 
+def trapping(given: Document) -> bool:
+    """What the boxes of the package say of a trapping region, each cut as finely as they allow."""
+    from verification.proofs.global_dynamics import Region
+
+    try:  # its name has each number in lowest terms
+        return all(Region.from_dict(given | {"parts": 8}).checks.values())
+    except ValueError:
+        return False
+
+
+def remember_images() -> None:
+    """Makes the reader keep where each cell lands: a thousand mutants of one region have most of them in common."""
+    inside, known = check.beside("region").Inside, dict[Any, Any]()
+    image = inside.image
+
+    def kept(self: Any, *square: Fraction) -> Any:
+        if not hasattr(self, "asked"):
+            numbers = [*self.table.letters.values(), self.lam, self.top]
+            formulas = [ast.dump(node) for part in self.table.parts for node in part]
+            self.asked = self.columns, self.rows, *formulas, *((x.lo, x.hi, x.p) for x in numbers)
+        key = self.asked, square
+        if key not in known:
+            try:
+                known[key] = image(self, *square)
+            except check.Unproved as why:
+                known[key] = why
+        if isinstance(known[key], check.Unproved):
+            raise known[key]
+        return known[key]
+
+    inside.image = kept
+
+
 def judged(name: str, k: int, original: Document, first: str) -> str:
     """`refused`, `not proved`, `true` or `FALSE`."""
     given = mutant(name, original, k)
@@ -316,7 +388,8 @@ def main() -> int:
     given = asked.parse_args()
     kept: dict[str, list[str]] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
     false = 0
-    for name in [given.only] if given.only else (*SAMPLES, TOUCH):
+    remember_images()
+    for name in [given.only] if given.only else (*SAMPLES, REGION, TOUCH):
         original = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
         first, found = check.checked(original).splitlines()[0], kept.setdefault(name, [])
         for k in range(len(found), given.each):

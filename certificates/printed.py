@@ -50,8 +50,9 @@ def holds(given: dict[str, Any], printed: str) -> bool:
 
 
 def committed() -> dict[str, dict[str, Any]]:
-    """The certificates of this folder."""
-    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(HERE.glob("*.json"))}
+    """The certificates of this folder that are of a number."""
+    found = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(HERE.glob("*.json"))}
+    return {name: given for name, given in found.items() if "centre" in given}
 
 
 def kept_reports() -> Iterator[tuple[str, list[dict[str, Any]], list[str]]]:

@@ -12,6 +12,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -42,6 +43,21 @@ def pytest_ignore_collect(collection_path, config):
     text, file = path.read_text(encoding="utf-8"), path.relative_to(HERE.parent).as_posix()
     tests = [f"{file}::{name}" for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)]
     return True if ">>>" not in text and not any(level in marks(name) for name in tests) else None
+
+
+WIDE = ("AVX512", "X86_V4")  # what begins the names of all that needs registers of 512 bits
+USED = {name: name.startswith(WIDE) for name in np._core._multiarray_umath.__cpu_dispatch__}  # other ones every year
+
+
+@pytest.fixture(scope="session")
+def fewer():
+    """Environments in which NumPy and OpenBLAS do without AVX-512, and without all that not every x86-64 has."""
+    return {
+        "AVX-512": {
+            "NPY_DISABLE_CPU_FEATURES": " ".join(name for name in USED if USED[name]), "OPENBLAS_CORETYPE": "Haswell"
+        },
+        "AVX2": {"NPY_DISABLE_CPU_FEATURES": " ".join(USED), "OPENBLAS_CORETYPE": "Prescott"},
+    }  # fmt: skip
 
 
 @pytest.hookimpl(tryfirst=True)  # before what is marked is left out

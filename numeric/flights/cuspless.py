@@ -135,7 +135,21 @@ class Cuspless(Cardioid):
         join = ops.select(
             to_wall, modulus(modulus(height) - ops.number(QUARTER) * root3), modulus(modulus(tangent) - root3 * base)
         )
-        code = ops.select(ops.number(NEAR) * base < join, nought, ops.number(float(Status.JOIN.code)))
+
+        def told() -> list[N]:
+            """JOIN where the line passes aside of one by less than rounding moves it, a share of the way to there.
+
+            Off the join the arc bends away from a line along it. From the wall all land on the arc, at the join or not.
+            """
+            way = modulus(root3 * p - ops.times_sign(q, ops.select(to_wall, height, tangent)))
+            least = (
+                ops.number(NEAR) * ops.select(from_wall, one, way) * ops.select(to_wall | from_wall, one, two * base)
+            )
+            rate = ops.select(from_wall, one, ops.select(to_wall, cosine, ops.maximum(cosine, join)))
+            return [ops.select(least < join * rate, nought, ops.number(float(Status.JOIN.code)))]
+
+        sure = ops.number(4 * NEAR) < join * cosine  # the way is at most 2, and base 1
+        (code,) = ops.when(ops.negated(sure), [nought], told)
         if law != SLAP:
             code = ops.select(grazing(ops, sine, cosine), ops.number(float(Status.GRAZING.code)), code)
         wall = ops.select(to_wall, one, nought)

@@ -296,3 +296,16 @@ def test_a_value_has_its_name_by_symmetry_and_any_other_by_what_is_stated(check,
         found = check.named(what[0], sign, [0] * len(at), at, boxes, scene, what[1], "title", p)
         assert found == (wanted or found)
         assert wanted is not None or found.endswith("title")
+
+
+@pytest.mark.parametrize("which", [1, 2])
+def test_a_cycle_is_proved_only_where_each_of_its_bounces_is_in_the_box(check, which):
+    """The landings of the one cycle there is lie four radii away from what the file says of one of them."""
+    given = json.loads((FOLDER / "egg-triangle.json").read_text())
+    (m, e), (r, s) = given["centre"][which], given["radius"]
+    assert check.checked(given)
+    given["centre"][which] = [str(int(m) * 2 ** max(0, int(e) - int(s)) + 4 * int(r) * 2 ** max(0, int(s) - int(e))),
+                              str(min(int(e), int(s)))]  # fmt: skip
+
+    with pytest.raises(check.Unproved, match="outside the box"):
+        check.checked(given)

@@ -90,7 +90,7 @@ def test_a_join_is_named_where_the_true_flight_passes_it_and_nowhere_else(case):
         for kernel in KERNELS:
             if kernel.runs(truth.map):
                 named = kernel.bounce(truth.map, state)[1] == Status.JOIN.name
-                assert not named or miss < 6  # 2^-50 is 4 units of the height, and the landing is off by two
+                assert not named or miss < 10  # 2^-50 is 4 units of a way of at most 2, and the landing is off by two
                 assert named or miss > 0.5
 
 

@@ -245,10 +245,13 @@ cycles` prints it. The verdicts of cycles below are read from there; a test hold
 that is a double comes no nearer to the triangle's fold than a few 1e-8 in the multiplier; nearer ones are reached
 by the shape, given exactly.
 
-**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes**: JOIN within 2^-50 of the tangent of half
-the parameter, or of the height times the start's `cos(theta/2)`, that is 2 or up to 4 units of position. The computed
-landing has the errors of any landing, so next to that border kernels may disagree, and the verdict column says how far
-off the true flight passes the join: both answers are right for data that are off by a rounding.
+**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** JOIN where the line passes a join so
+closely that rounding hides its side: the landing's distance from the join, times `cos(eta)`, is below 2^-50 of the way
+from the start to there, twice the sine of half the difference of the parameters. (On the arc the distance itself
+serves where it is the larger factor: the arc bends away from the line. A flight from the wall, which lands on the arc
+wherever it goes, has to land within 4 units of tan(theta/2).) A computed line is off by 1.2 units of 2^-52. Next to
+that border kernels may disagree, and the verdict column says how far off the true flight passes the join: both answers
+are right for data that are off by a rounding.
 
 **80 bits.** The step on 80-bit floats used to be called unstable at 24 cases. Which of its operations were to blame
 was found by exchanging them one by one: 20 were due to sines and arctangents that are polynomials for 53 bits, 3 to

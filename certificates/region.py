@@ -1,0 +1,153 @@
+"""Trapping regions, for `check.py`: cells of phase space that the map takes into their interior, image by image.
+
+Why each step proves it: docs/certificate_format.md.
+"""
+
+from bisect import bisect
+from fractions import Fraction
+from math import cos, sin
+
+from check import I, Jet, Unproved, Wrong, need, pi, read_scene, value
+
+ENTRIES = {"schema", "name", "kind", "scene", "lam", "columns", "rows", "parts", "runs"}
+BITS, HALVINGS, POINTS = 64, 4, 512  # of numbers; of a cell; of the boundary, at which guesses begin
+TURN = 6.283185307179586  # of guesses alone
+
+
+def trapping(given):
+    """What is proved of a document: for each lam of its range the map takes its cells into their interior.
+
+    First what is cheap to ask; then cell by cell, each halved both ways where its image is not seen to lie inside."""
+    need(set(given) == ENTRIES, f"the entries must be {', '.join(sorted(ENTRIES))}", Wrong)
+    need(given["schema"] == 1, "this reader knows trapping regions of schema 1", Wrong)
+    cells, count = blocks(given)
+    table, words, low, high = placed(given)
+    true = f"trapping region of {words}: {count} box{'es'[: 2 * (count > 1)]} on a grid of "
+    true += f"{given['columns']} by {given['rows']}"
+    need(given["name"] == true, f"the name must be: {true!a}", Wrong)
+    convex(table)
+    inside = Inside(table, low.hull(high), high, (given["columns"], given["rows"]), cells)
+    for column, row in sorted(cells):
+        inside.cell(Fraction(column), Fraction(row), Fraction(1), HALVINGS)
+    return f"proved: {true}\n  For every such lam the image of each of its points lies in its interior."
+
+
+def blocks(given):
+    """The cells of a document, column by row, and how many blocks it tells them in; none twice or beyond the grid."""
+    columns, rows, found, count = given["columns"], given["rows"], set(), 0
+    sides = all(type(n) is int and 2 <= n <= 8192 for n in (columns, rows))
+    need(sides and type(given["parts"]) is int and 1 <= given["parts"] <= 16, "a count is out of range", Wrong)
+    for run in given["runs"]:
+        need(len(run) == 5 and all(type(n) is int for n in run), "runs is no list of five whole numbers each", Wrong)
+        chart, size, column, row, high = run
+        within = chart == 0 and 0 <= column < column + size <= columns and 0 <= row < row + size * high <= rows
+        need(within and high > 0, "a run is beyond the grid", Wrong)
+        block = {(column + i, row + j) for i in range(size) for j in range(size * high)}
+        need(not block & found, "a cell stands twice in runs", Wrong)
+        found, count = found | block, count + high
+    need(found, "runs has no cell", Wrong)
+    return found, count
+
+
+def placed(given):
+    """The table, one closed curve under the paper's law; what is said of it in words; the ends of lam."""
+    scene, ends = given["scene"], given["lam"]
+    need(isinstance(scene, dict) and "law" not in scene, "scene: of laws this reader knows -lam*eta alone", Wrong)
+    need(isinstance(ends, list) and len(ends) == 2, "lam must be a list of two numbers", Wrong)
+    need(all(str(Fraction(x)) == x for x in ends), "lam: an end is no fraction in lowest terms", Wrong)
+    need(0 <= Fraction(ends[0]) <= Fraction(ends[1]) < 1 and ends[1] != "0", "lam is out of range", Wrong)
+    low, high = (I.of(Fraction(x), BITS) for x in ends)
+    table, _, words = read_scene({key: x for key, x in scene.items() if key != "lam"}, "lam", BITS)
+    need("table" in scene or "polar" in scene, "scene: this reader knows the paper's tables and radii alone", Wrong)
+    need(table.closed == [True] and not table.marks, "convex_table: not one smooth closed curve", Unproved)
+    return table, f"{words}, lam = {ends[0]}" + ("" if ends[0] == ends[1] else f" to {ends[1]}"), low, high
+
+
+def convex(table):
+    """Proves that a curve which runs once round a point, seen at growing angles, turns to one side everywhere.
+
+    So a line that leaves inwards meets it at just one other point, ahead, and is inside on the way there."""
+    p, queue, spent = table.p, [(Fraction(-1), Fraction(1))], 0
+    while queue:
+        (a, b), spent = queue.pop(), spent + 1
+        try:
+            turn = bend(table, pi(p) * I.of(a, p).hull(I.of(b, p)))
+            need(turn.hi > 0, "convex_table: the boundary bends outwards", Wrong)
+        except Unproved:  # the speed is not seen to be positive on a wide piece
+            turn = I(0, 0, p)
+        need(spent < 2000, "convex_table: the boundary may bend outwards")
+        queue += [] if turn > 0 else [(a, (a + b) / 2), ((a + b) / 2, b)]
+
+
+def bend(table, theta):
+    """How fast the tangent turns with the parameter."""
+    p = table.p
+    tx, ty = table.at(0, Jet.of(theta, 1, 0), table.letters, p)[2:]
+    (x, y), (fast_x, *_), (fast_y, *_) = (I.of(value(t), p) for t in (tx, ty)), tx.gradient(p), ty.gradient(p)
+    return (x * fast_y - y * fast_x) / (x * x + y * y)
+
+
+class Inside:
+    """Images of rectangles of a grid, and whether the cells cover them, borders included.
+
+    Column `i` is `-pi + 2*pi*[i, i + 1]/columns`; row `j` is as much of the strip in which all particles are."""
+
+    def __init__(self, table, lam, high, grid, cells):
+        self.table, self.lam, self.cells, self.p = table, lam, cells, table.p
+        self.columns, self.rows = grid
+        self.top = pi(self.p) / 2 * high  # above the angle at which any particle leaves
+        at = (table.at(0, I.of(Fraction(TURN * k / POINTS), self.p), table.letters, self.p)[:2] for k in range(POINTS))
+        self.points = [(x.real(), y.real()) for x, y in at]
+
+    def cell(self, column, row, size, more):
+        """Proves that the image of a square of cells, or of a part of one, lies in the interior of all cells."""
+        try:
+            if self.covered(*self.image(column, row, size)):
+                return
+        except Unproved as why:  # as far as this square goes
+            need(more, why)
+        need(more, f"images_inside: that of column {int(column)}, row {int(row)} may not lie in the interior")
+        for x in (column, column + size / 2):
+            for y in (row, row + size / 2):
+                self.cell(x, y, size / 2, more - 1)
+
+    def image(self, column, row, size):
+        """Where a square lands, and the angles at which it is left then, for every lam: by the mean-value theorem.
+
+        The angle of arrival is `-(phi + tau(landing) - tau(theta) - pi)`, where the tangent has the angle `tau`."""
+        part = lambda k, n: I.of(k / n * 2 - 1, self.p).hull(I.of((k + size) / n * 2 - 1, self.p))  # noqa: E731
+        theta, phi = pi(self.p) * part(column, self.columns), self.top * part(row, self.rows)
+        there = I.of(Fraction(self.guess(theta.real(), phi.real())), self.p)
+        near, names = there.wide(I.of(Fraction(TURN / POINTS), self.p)), self.table.letters | {"lam": I.of(1, self.p)}
+        middle, ends = (
+            self.table.flight(0, (0, near), [Jet.of(x, d, k) for k, x in enumerate(at)], names)
+            for d, at in enumerate([(theta.mid(), phi.mid()), (theta, phi)])
+        )
+        (x, psi), (a, b, _), (u, v) = (
+            map(value, middle),
+            ends[0].gradient(self.p),
+            (theta - theta.mid(), phi - phi.mid()),
+        )
+        landing = value(ends[0]).meet(a * u + b * v + x)
+        need(landing.lo <= landing.hi, "images_enclosed: the middle does not land where the square does")
+        turn = bend(self.table, landing)
+        psi = psi - (turn * a - bend(self.table, theta)) * u - (turn * b + 1) * v
+        return landing, psi * self.lam
+
+    def covered(self, theta, phi):
+        """Do the cells hold a rectangle and all that is next to it? No particle leaves the strip."""
+        u = (theta / pi(self.p) + 1) * self.columns / 2
+        v = (phi / self.top + 1) * self.rows / 2
+        (a, b), (c, d) = (((x.lo - 1) >> x.p, (x.hi + 1) >> x.p) for x in (u, v))
+        c, d = max(c, 0), min(d, self.rows - 1)
+        need(a <= b and c <= d, "images_enclosed: an image lies outside the strip")
+        across = range(a, min(b, a + self.columns - 1) + 1)
+        return all((i % self.columns, j) in self.cells for i in across for j in range(c, d + 1))
+
+    def guess(self, theta, psi):
+        """A landing in floating point: counterclockwise from the start the line has points to its right, then left."""
+        x, y, tx, ty = (z.real() for z in self.table.at(0, I.of(Fraction(theta), self.p), self.table.letters, self.p))
+        ux, uy, first = tx * sin(psi) - ty * cos(psi), ty * sin(psi) + tx * cos(psi), int(theta % TURN * POINTS / TURN)
+        ahead = [self.points[(first + k) % POINTS] for k in range(1, POINTS)]
+        k = bisect(ahead, False, key=lambda z: ux * (z[1] - y) > uy * (z[0] - x))
+        return (first + k + 0.5) * TURN / POINTS

@@ -284,7 +284,11 @@ def sparse(source: NDArray[np.int32], target: NDArray[np.int32], size: int) -> c
 
 
 def walked(graph: csr_matrix) -> csr_matrix:
-    """The graph as SciPy walks it, each edge once: with an edge that is there twice its components may never end."""
+    """The graph as SciPy walks it, each edge once: with an edge that is there twice its components may never end.
+
+    >>> walked(sparse(np.array([0, 0, 1]), np.array([1, 1, 0]), 2)).nnz
+    2
+    """
     graph.sum_duplicates()
     return csr_matrix((np.ones(graph.indices.size), graph.indices, graph.indptr), shape=graph.shape)
 

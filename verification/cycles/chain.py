@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 from verification.arithmetic.iteration import Vector
 
+SMALL_PIVOT = 1 << 10  # times which it is below what stands beside it
+
 
 @dataclass(frozen=True)
 class Chain:
@@ -154,6 +156,26 @@ class Elimination:
         last, new = (gap * d - b * other) / determinant, (a * other - gap * c) / determinant
         found = [p - new * m + last * v for p, m, v in zip(plain, with_new, kernel, strict=False)]
         return [*found, last, new]
+
+
+def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vector | None:
+    """The solution of two rows whose first pivot is small, or may be 0; None of any other chain.
+
+    So it is at a diameter each of whose ends is the centre of curvature of the other, as the ellipse's minor axis at
+    `a = sqrt(2)`: the linearised rules are regular there, though no bounce moves its own.
+
+    >>> by_cramer(Chain([1, 2], [0, 0], [1, 2]), [4, 6]), by_cramer(Chain([1, 2], [3, 0], [1, 2]), [4, 6])
+    ([1.5, 2.0], None)
+    """
+    if len(chain.diagonal) > 2:
+        return None
+    (a, d), s = chain.diagonal, chain.sign
+    b, c = chain.upper[0] + s * chain.lower[0], chain.lower[1] + s * chain.upper[1]
+    if not abs(a) * SMALL_PIVOT < abs(b):
+        return None
+    b, c = (c, b) if transposed else (b, c)
+    determinant = a * d - b * c
+    return [(r[0] * d - b * r[1]) / determinant, (a * r[1] - c * r[0]) / determinant]
 
 
 class _Sides(NamedTuple):

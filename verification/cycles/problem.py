@@ -29,7 +29,7 @@ from symbolic.tables.table import Component, Table, eta, theta
 from verification.arithmetic.balls import Arithmetic
 from verification.arithmetic.iteration import Vector
 from verification.arithmetic.series import Jet, jets
-from verification.cycles.chain import Chain, Elimination, dot, trace_and_determinant
+from verification.cycles.chain import Chain, Elimination, by_cramer, dot, trace_and_determinant
 from verification.cycles.chords import Chords
 from verification.cycles.newton import Solve
 from verification.cycles.recurrence import IDENTITY, BifurcationKind, Closure, Recurrence, Terms
@@ -200,13 +200,13 @@ class Linearised:
     def solve(self, r: Vector) -> Vector:
         """The matrix of first derivatives, inverted on `r`."""
         if self.problem.kind is None:
-            return self.cycle.solve(r)
+            return by_cramer(self.plain, r) or self.cycle.solve(r)
         return self.cycle.bordered(self.column, self.row, [self.corner], r)
 
     def solve_transposed(self, r: Vector) -> Vector:
         """The transposed matrix, inverted on `r`."""
         if self.problem.kind is None:
-            return self.cycle.transposed([], [], [], r)
+            return by_cramer(self.plain, r, transposed=True) or self.cycle.transposed([], [], [], r)
         return self.cycle.transposed(self.column, self.row, [self.corner], r)
 
     def normal_form(self, arithmetic: Arithmetic) -> "NormalForm":

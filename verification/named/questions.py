@@ -284,6 +284,8 @@ def certify(event: BranchEvent, *, digits: int = 30) -> "Located":
     from verification.named.events import proof_of
     from verification.named.locate import Located
 
+    if not isinstance(event, BranchEvent):
+        raise TypeError(f"certify: {type(event).__name__} given; it takes an event of a branch, as in branch.folds[0]")
     started = time.perf_counter()
     lam = None if event.parameter == "lam" else event.orbit.scene.lam
     proof = proof_of(event.event, digits, event.parameter, lam)

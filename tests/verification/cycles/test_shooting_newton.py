@@ -4,16 +4,20 @@ from itertools import pairwise
 
 import mpmath
 import pytest
-from sympy import Rational
+from flint import arb
+from sympy import Rational, pi, sqrt
 
 from symbolic.cycles.thresholds import alpha_tilde
-from symbolic.tables import egg
+from symbolic.tables import egg, ellipse
 from symbolic.tables.table import lam
+from verification.arithmetic.balls import working
 from verification.cycles.cascade import attractor, characteristic, next_critical
+from verification.cycles.chain import Chain, by_cramer
 from verification.cycles.critical import corner
 from verification.cycles.newton import floats, levels, refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
+from verification.named.locate import certify
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 
@@ -79,3 +83,25 @@ def test_a_followed_cycle_has_the_multiplier_it_was_followed_to():
 
     assert abs(lam_3 - 0.371235502528) < 1e-11
     assert abs(characteristic(EGG, cycle, lam_3, BifurcationKind.FLIP)) < 1e-9
+
+
+@pytest.mark.parametrize("lam", ["1/3", "1"])
+def test_a_diameter_whose_ends_are_the_centres_of_curvature_of_each_other_is_proved(lam):
+    """The ellipse's minor axis at a = sqrt(2): its linearised rules are regular, and no bounce moves its own."""
+    axis = Problem(ellipse.at(a=sqrt(2)), (0, 0), lam=Rational(lam))
+    proof = certify(axis, [float(pi) / 2, -float(pi) / 2], 20)
+
+    assert all(proof.checks.values())
+    with working(100):
+        assert abs(proof.enclosure.zero[0] - arb.pi() / 2) < 1e-20
+
+
+def test_two_rows_with_a_small_pivot_are_solved_from_both_sides():
+    """Exactly, as the matrix and its transpose say: [[0, 3], [4, 5]], with signs of vectors that come back negated."""
+    for sign in (1, -1):
+        chain = Chain([Rational(1), Rational(3)], [Rational(0), Rational(5)], [Rational(2), Rational(1)], sign)
+        x = [Rational(7), Rational(11)]
+        rows = [chain.times(one) for one in ([1, 0], [0, 1])]  # the columns
+
+        assert by_cramer(chain, chain.times(x)) == x
+        assert by_cramer(chain, [sum(a * b for a, b in zip(row, x, strict=True)) for row in rows], True) == x

@@ -35,6 +35,11 @@ def test_cycles_are_chosen_by_what_they_are():
     assert len(orbits.of(2)) == 0
 
 
+def test_what_is_no_event_of_a_branch_is_refused_in_a_sentence():
+    with pytest.raises(TypeError, match=r"PeriodicOrbit given; it takes an event of a branch, as in branch.folds\[0\]"):
+        certify(triangles().stable[0])
+
+
 def test_a_branch_is_followed_to_its_fold_and_the_fold_is_certified():
     branch = follow(triangles().stable[0], lam=("0.37", "1"))
     (fold,) = branch.folds

@@ -135,8 +135,10 @@ def test_transients_resemble_the_attractor_and_decay():
     assert verdict(on_egg_growth.transient, "egg.transient") is Verdict.SUPPORTED
 
 
-def test_two_orbits_are_left_at_07_and_not_at_083(monkeypatch: pytest.MonkeyPatch):
-    assert verdict(on_egg_growth.just_two, "egg.just_two") is Verdict.SUPPORTED
+@pytest.mark.parametrize("name", ["egg.just_two", "egg.region_taken_over"])
+def test_two_orbits_are_left_at_07_and_not_at_083(name: str, monkeypatch: pytest.MonkeyPatch):
+    """The contraction of the figure that both sentences speak of."""
+    assert verdict(on_egg_growth.just_two, name) is Verdict.SUPPORTED
     monkeypatch.setattr(on_egg_growth, "LEFT", "0.83")
 
-    assert verdict(on_egg_growth.just_two, "egg.just_two") is Verdict.OPEN
+    assert verdict(on_egg_growth.just_two, name) is Verdict.OPEN

@@ -3,6 +3,9 @@
 At 0.66 a curve around phase space is mapped strictly below itself: what begins below it, which is all of `phi <= 0`
 and more, never reaches the triangle with `phi > 0`; with its mirror image it encloses a trapping region. A little
 further an orbit crosses. Beyond the crisis windows are left, in which other cycles attract.
+
+What the barriers do not say: that what attracts in between is one chaotic attractor, and that it vanishes where they
+are lost. An attractor may stay there with a smaller basin, when an orbit from `phi = 0` goes up.
 """
 
 from fractions import Fraction
@@ -20,14 +23,14 @@ from symbolic.tables.table import lam
 from verification.arithmetic.balls import balls, working
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, judges
-from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
+from verification.paper.judges.attractors import SHAPE, chaotic, cycles, egg, proved_at, unsettled
 from verification.proofs.global_dynamics.barrier import Barrier, lost
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.crisis import boxed
 from verification.proofs.manifolds.known import table
 
-AT, LOST = "0.66", "0.6623"
+AT, LOST, GONE = "0.66", "0.6623", "0.7"  # where barriers are, are no more, and where nothing is left in between
 SINK, CROSSES = (-3.0003, 0.4175), 0.7251  # near the upper triangle; where on `phi = 0` an orbit crosses at LOST
 WINDOW, STAYS = "0.6718", (-2.32324864, 0.26943288)  # a window of a cycle of 10 bounces, and a point near one of them
 LONG, BITS = 10, 160
@@ -78,30 +81,50 @@ def divided(contraction: str = AT) -> Finding:
     )
 
 
-@judges("egg.basins_above_below", "egg.basins_separate")
-def separated(claim: Claim) -> Judgement:
-    """The basins lie beyond the barriers, what attracts in between lies between them."""
+@judges("egg.basins_above_below")
+def above_below(claim: Claim) -> Judgement:
+    """The basins lie beyond the barriers. An attractor that is its own mirror image lies between them.
+
+    Its dense orbit comes below the upper barrier, since the mirror image of a point above it is below the lower one,
+    and above the lower barrier likewise; there it stays.
+    """
     return Judgement(
         divided(),
         "the upper basin lies above a curve in phi > 0, the lower one below its mirror image, and all that lies "
-        "between the two curves stays there, so that it reaches neither triangle; that a single chaotic attractor "
-        "takes all of it is not part of this, and not proved",
+        "between the two curves stays there, so that it reaches neither triangle. An attractor with a dense orbit that "
+        "is its own mirror image, as the only chaotic one is, lies between; that there is one is not part of this",
+    )
+
+
+@judges("egg.basins_separate")
+def separate(claim: Claim) -> Judgement:
+    """The basins are apart, proved; that the basin of one chaotic attractor is between them is sampled."""
+    attractors = egg(AT)
+    inner = chaotic(attractors)
+    shares = ", ".join(str(a.share.count) for a in attractors if a.share)
+    return sampled(
+        "no orbit goes from between two curves to a triangle, nor from one basin to the other: proved; that what lies "
+        "between is the basin of one chaotic attractor is sampled",
+        f"proved: {divided().reason}; sampled: of random starts {shares} reach one chaotic attractor and the triangles",
+        bool(divided()) and len(inner) == 1 and len(attractors) == 3 and unsettled(attractors) == 0,
     )
 
 
 @judges("egg.crisis_below")
 def crisis_below(claim: Claim) -> Judgement:
-    """The barrier is there at 0.66 and is lost at 0.6623."""
+    """The barrier is there at 0.66 and is lost at 0.6623; that an attractor vanishes with it is sampled."""
     checks = lost(barrier(), Fraction(LOST), SINK, CROSSES)
-    return Judgement(
-        by(
-            f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper "
-            "triangle",
-            divided(),
-            answer(all(checks.values()), f"at {LOST} an orbit from phi = 0 enters trapped boxes about that triangle"),
-        ),
-        f"what keeps orbits in between from the triangles is lost at a contraction above {AT}, and not above {LOST}; "
-        "the tangency at 0.66214 is there",
+    bracket = by(
+        f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper triangle",
+        divided(),
+        answer(all(checks.values()), f"at {LOST} an orbit from phi = 0 enters trapped boxes about that triangle"),
+    )
+    before, after = (len(chaotic(egg(x))) for x in (AT, GONE))
+    return sampled(
+        f"what keeps orbits from phi = 0 from the triangles is lost at a contraction above {AT}, and not above {LOST}: "
+        "proved, and the tangency at 0.66214 is there; that a chaotic attractor vanishes with it is sampled",
+        f"proved: {bracket.reason}; sampled: random starts find {before} chaotic attractor at {AT}, {after} at {GONE}",
+        bool(bracket) and before == 1 and after == 0,
     )
 
 
@@ -120,16 +143,16 @@ def window() -> Finding:
     )
 
 
-@judges("egg.after_crisis", "egg.region_taken_over")
+@judges("egg.after_crisis")
 def beyond(claim: Claim) -> Judgement:
     """Windows: "all" is meant of almost all, and fails in each, since the basin of the cycle there is open."""
     others = window()
     return Judgement(
         counterexample("an open set of starts goes elsewhere", others, at={lam: Rational(WINDOW)}),
-        f"not at every contraction beyond the crisis: at {WINDOW} cycles of 10 bounces attract too, six by symmetry, "
-        "from inside the region that was occupied by the basin of the chaotic attractor; samples show more such "
+        f"not at every contraction beyond the crisis: at {WINDOW} cycles of 10 bounces attract too, one and its copies "
+        f"turned by thirds, from inside the region that at {AT} no orbit leaves for a triangle; samples show more such "
         "windows, near 0.66346, 0.67738 and 0.69596",
         others,
         f"Beyond the crisis there are windows in which other cycles attract as well: at lambda = {WINDOW} cycles of "
-        "period 10, in the region that the chaotic attractor's basin occupied.",
+        f"period 10, inside the region from which at {AT} no orbit reaches the period-3 orbits.",
     )

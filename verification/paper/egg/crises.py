@@ -283,7 +283,7 @@ def transient(claim: Claim) -> Judgement:
     )
 
 
-@judges("egg.just_two")
+@judges("egg.just_two", "egg.region_taken_over")
 def just_two(claim: Claim) -> Judgement:
     """Both orbits are proved to attract; every random start reaches one of them."""
     found = egg(LEFT)

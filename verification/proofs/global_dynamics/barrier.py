@@ -1,10 +1,10 @@
 """Barriers: closed curves around phase space that the map takes strictly below themselves.
 
 On one smooth closed convex curve, with a law that is invertible, the map is a homeomorphism of the strip onto its
-image. Its determinant is positive and it turns `theta` once around, so it keeps what is above and what is below. If it
-takes a closed curve `phi = height(theta)` below itself, then also *all* that lies below: that is held by the images of
-two curves, the lower end of the strip and the barrier, and both lie below the barrier. So no orbit ever comes from
-below to above; only boxes along the curve are mapped, and none of the area.
+image. Its determinant is positive and it turns `theta` once around, so what is below a closed curve around the strip
+goes below that curve's image. If it takes a closed curve `phi = height(theta)` below itself, then also *all* that lies
+below: what is below the image is below the curve. So no orbit ever comes from below to above; only boxes along the
+curve are mapped, and none of the area.
 
 The curve is a staircase, one step to each column of a grid. It starts as `phi = 0`, and a step is raised as long as the
 image of another one may reach it: what is found is the least staircase, or none. Where the map commutes with
@@ -162,6 +162,7 @@ def lost(barrier: Barrier, high: Fraction, sink: tuple[float, float], start: flo
     `taken` are boxes grown from near the cycle, trapping for each contraction from the barrier's to `high`. At the
     first the barrier lies below them, at `high` the orbit of `(start, 0)` enters them: no barrier is in between.
     Contractions with a barrier above `phi = 0` and below `taken` are an open set, so there is a first one without.
+    That an attractor ends there does not follow: one may stay, with a basin that has lost the orbit from `(start, 0)`.
     """
     low, grid = barrier.lam[0], (1024, 512, 1)
     taken = grown(PinballImages(barrier.scene, (low, high)), grid, point(*sink))

@@ -35,6 +35,19 @@ def test_no_orbit_that_begins_below_the_barrier_comes_above_it(barrier):
     assert barrier.above(point(*SINK)).all()
 
 
+def test_points_of_every_step_and_of_every_border_between_two_are_mapped_below_the_staircase_all_around(barrier):
+    """By the kernel, also over the seam; steps that are not asked about again after a neighbour rose would show."""
+    count, rng = barrier.columns * barrier.turns, np.random.default_rng(2)
+    column = np.repeat(np.arange(count), 8)
+    share, width = rng.random(column.size), 2 * np.pi / count
+    left, (own, before) = column * width - np.pi, (barrier.heights[(column - k) % barrier.columns] for k in (0, 1))
+    theta, phi = np.append(left + share * width, left), np.append(own, own + (before - own) * share)
+    step = PinballMap("egg", lam="0.66", alpha="0.08").step(theta, phi, np.zeros(theta.size, dtype=int))
+    landed = np.floor((step.theta + np.pi) / width).astype(int) % barrier.columns
+
+    assert np.all(step.phi < barrier.heights[landed])
+
+
 def test_a_barrier_is_lost_where_the_tangency_of_manifolds_is(barrier):
     """That was located, and proved, by other means."""
     assert all(lost(barrier, AFTER, SINK, CROSSES).values())

@@ -102,12 +102,17 @@ def written(map: PinballMap, start: tuple[float, float, int], bounces: int, path
     if path.suffix == ".zarr":
         code = record(map, path, theta, phi, bounces, component, fields=COLUMNS).code.values[-1, 0]
     elif path.suffix in (".npz", ".parquet"):
+        if not path.parent.is_dir():
+            raise ValueError(f"--out {path}: there is no directory {str(path.parent)!r}; create it first")
         arrow: Any = import_module("pyarrow") if path.suffix == ".parquet" else None
         columns: dict[str, Any] = map.orbit(theta, phi, bounces, component, fields=COLUMNS)
-        if path.suffix == ".npz":
-            np.savez(path, **columns)
-        else:
-            import_module("pyarrow.parquet").write_table(arrow.table(columns), path)
+        try:
+            if path.suffix == ".npz":
+                np.savez(path, **columns)
+            else:
+                import_module("pyarrow.parquet").write_table(arrow.table(columns), path)
+        except OSError as error:
+            raise ValueError(f"--out {path} cannot be written ({error.strerror or error})") from None
         code = columns["code"][-1]
     else:
         raise ValueError(f"--out {path}: accepted: a name that ends in .npz, .parquet or .zarr")

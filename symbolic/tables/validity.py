@@ -214,8 +214,8 @@ def enclosed_area(table: Table) -> Expr | None:
     return expand(total)
 
 
-def simple(table: Table) -> None:
-    """Refuses a boundary that crosses itself.
+def simple(table: Table) -> bool:
+    """True when a boundary is proved not to cross itself; `ValueError` when it does.
 
     A positive radius or the exclusion of chords of length 0 proves that it does not, and so do the boxes round the
     pieces of one curve of rational polynomials; a boundary too hard for any (other pieces, high harmonics, no finite
@@ -223,25 +223,26 @@ def simple(table: Table) -> None:
     """
     whole = table.components[0]
     if any(c.free_symbols - {theta} for component in table.components for c in component.point):
-        return
+        return False
     if len(table.components) == 1 and not table.undefined:
         scale = (whole.end - whole.start) / (2 * pi)
         x, y = whole.point
         if scale == 1 and _is_polar(x, y) and radius_sign(_radius(x, y)) is Outcome.PROVED:
-            return
+            return True
         c = boundary_coefficients(replace(whole, point=(x.subs(theta, scale * theta), y.subs(theta, scale * theta))))
         if c is not None and max(abs(k) for k in c) <= HIGHEST_HARMONIC:
             crossing = chord_of_length_zero(c, scale)
             if crossing:
                 raise ValueError(f"{table.name}: {crossing}")
-            return
+            return True
     pieces = [as_bezier(component) for component in table.components]
     known = [piece for piece in pieces if piece is not None]
     if len(known) == len(pieces) and len(curves(table)) == 1 and meets([known]) is None:
-        return
+        return True
     crossing = polygon_crossing(table)
     if crossing:
         raise ValueError(f"{table.name}: {crossing}")
+    return False
 
 
 def _is_polar(x: Expr, y: Expr) -> bool:

@@ -10,7 +10,7 @@ between the ends, or next to an end, where `d x q'` keeps its sign so that the l
 itself.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
@@ -125,15 +125,23 @@ def _over(range: Interval) -> arb:
 
 @cache
 def _joined(table: Table) -> bool:
-    """Do the joins bend in? A curve of one formula that a whole turn does not change has none."""
+    """Do the joins bend in, by less than a right angle?"""
+    return all(across.is_nonnegative and along.is_positive for across, along in _joins(table))
+
+
+@cache
+def _turned(table: Table) -> bool:
+    """Do the joins bend in, by less than half a turn?"""
+    return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in _joins(table))
+
+
+def _joins(table: Table) -> Iterator[tuple[Expr, Expr]]:
+    """Vector and scalar product of the tangents at each join; a curve that a whole turn does not change has none."""
     if len(table.components) == 1 and _whole(table.components[0]):
-        return True
-    ring = (*table.components, table.components[0])
-    for before, after in pairwise(ring):
+        return
+    for before, after in pairwise((*table.components, table.components[0])):
         p, q = velocity(before).subs(theta, before.end), velocity(after).subs(theta, after.start)
-        if not simplify(Matrix([p.T, q.T]).det()).is_nonnegative or not simplify(p.dot(q)).is_positive:
-            return False
-    return True
+        yield simplify(Matrix([p.T, q.T]).det()), simplify(p.dot(q))
 
 
 @cache
@@ -258,6 +266,52 @@ def _places(table: Table, index: int) -> Any:
     (x, y), (vx, vy) = component.point, velocity(component)
     letters = [theta, *(p.symbol for p in table.shapes)]
     return load(kernel("place", letters, {"x": x, "y": y, "vx": vx, "vy": vy}), balls(BITS_OF_HIT))
+
+
+def turns_once(table: Table) -> bool | None:
+    """True when a boundary without free shape parameters is proved to bend inwards and to turn once.
+
+    The tangent of such a closed curve, corners included, turns through a whole number of turns; with one turn the curve
+    is simple and bounds a convex set (Fenchel's theorem). The angle is summed in balls, over arcs on which no tangent
+    is as far as a right angle from the first. None: nothing proved.
+
+    >>> from symbolic.tables import cardioid, cuspless, square
+    >>> turns_once(cuspless), turns_once(square()), turns_once(cardioid)
+    (True, True, None)
+    """
+    inwards = not (table.shapes or table.undefined) and _turned(table)
+    if not inwards or not all(_bends_inwards(table, index, ()) for index in range(len(table.components))):
+        return None
+    with working(BITS_OF_HIT):
+        boundary, total, spent = _boundary(table, ()), arb(0), 0
+        last = boundary.places[-1](boundary.ends[-1][1])
+        for place, (low, high) in zip(boundary.places, boundary.ends, strict=True):
+            total += _angle(last, place(low))
+            queue = [(0.5, 0.5)]
+            while queue:
+                middle, half = queue.pop()
+                first, last = (place(low + (high - low) * end) for end in (middle - half, middle + half))
+                if _products(first, place(low + (high - low) * arb(middle, half)))[1] > 0:
+                    total += _angle(first, last)
+                    continue
+                spent += 1
+                if spent > PIECES:
+                    return None
+                queue += [(middle + half / 2, half / 2), (middle - half / 2, half / 2)]
+        return True if (total / (2 * arb.pi())).unique_fmpz() == 1 else None
+
+
+def _products(p: Frame, q: Frame) -> Frame:
+    """Vector and scalar product of two velocities."""
+    return arb(p[2] * q[3] - p[3] * q[2]), arb(p[2] * q[2] + p[3] * q[3])
+
+
+def _angle(p: Frame, q: Frame) -> arb:
+    """From one velocity to another, to the left where it is a right angle or more."""
+    across, along = _products(p, q)
+    if along > 0:
+        return (across / along).atan()
+    return arb.pi() / 2 - (along / across).atan() if across > 0 else arb("nan")
 
 
 def free(boundary: Boundary, start: tuple[int, arb], end: tuple[int, arb]) -> bool:

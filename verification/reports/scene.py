@@ -15,11 +15,11 @@ from symbolic.tables.curves import LONG, size
 from symbolic.tables.geometry import Symmetry, arc_length, curvature, group, perimeter, turning
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table, eta, latex, theta
-from symbolic.tables.validity import enclosed_area, radius_sign
+from symbolic.tables.validity import enclosed_area, radius_sign, simple
 from verification.arithmetic.balls import ARRAYS, FLOAT64, decimal
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.enclosed import perimeter as enclosed_perimeter
-from verification.maps.first_hit import convex
+from verification.maps.first_hit import convex, turns_once
 from verification.reports.asked import Asked
 from verification.reports.blocks import Block, Cell, Formula, Known, Listing, Number, Words
 
@@ -83,9 +83,13 @@ def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
     rho = table.components[0].radius if len(table.components) == 1 else None
     if rho is not None and radius_sign(rho) is Outcome.PROVED:
         yield "simple", "yes: the radius is positive for every angle", Known.PROVED
+    elif turns_once(table):
+        yield "simple", "yes: it bends inwards everywhere, and its tangent turns once", Known.PROVED
+    elif simple(table):
+        yield "simple", "yes: no two parts of the boundary meet", Known.PROVED
     else:
-        yield "simple", "no crossing was found; how far that is proved depends on its pieces", Known.SAMPLED
-    if convex(table):
+        yield "simple", "no crossing was found on a polygon along the boundary", Known.SAMPLED
+    if convex(table) or turns_once(table):
         yield "convex", "yes", Known.PROVED
         return
     where = inflections(table)

@@ -220,6 +220,7 @@ def test_an_orbit_goes_into_a_table_whole_and_the_answer_holds_its_beginning(cap
             ["--out", "orbit.npz", "--arithmetic", "arb"],
             "--out orbit.npz holds float64 columns; accepted: --arith",
         ),
+        (["--out", "nowhere/o.npz"], "--out nowhere/o.npz: there is no directory 'nowhere'; create it first"),
     ],
 )
 def test_a_table_of_an_orbit_that_cannot_be_written_is_refused_in_a_sentence(capsys, words, reason):

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from flint import arb
-from sympy import Interval, Rational, Symbol, cos, oo, pi, sin, sqrt
+from sympy import Interval, Rational, S, Symbol, cos, oo, pi, sin, sqrt
 
 from symbolic.tables import cardioid, cuspless, egg, polar, sinai
 from symbolic.tables.law import Law
@@ -16,7 +16,7 @@ from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.maps import first_hit
-from verification.maps.first_hit import closes_smoothly, convex, first_hits, inside, minimal
+from verification.maps.first_hit import closes_smoothly, convex, first_hits, inside, minimal, turns_once
 from verification.proofs.periodic.bifurcation import Claim, proved
 
 WAISTED = polar(1 + cos(2 * theta) / 2)  # the waist at theta = +-pi/2 has radius 1/2
@@ -70,6 +70,37 @@ def test_a_curve_of_one_formula_that_dents_where_it_closes_is_not_convex():
     """Both bend inwards everywhere else; at theta = pi the radius is least in the one and largest in the other."""
     assert convex(polar(1 + cos(theta / 2) / 4)) is None
     assert convex(polar(1 - cos(theta / 2) / 4)) is True
+
+
+def ring(points: list[tuple[int, int]]) -> Table:
+    """A closed polygon, whatever it does to itself."""
+    sides = pairwise([*points, points[0]])
+    return Table("ring", tuple(Component(f"s{i}", along(p, q), S(0), S(1)) for i, (p, q) in enumerate(sides)))
+
+
+def along(p, q):
+    return tuple(a + (b - a) * theta for a, b in zip(p, q, strict=True))
+
+
+PENTAGON = [(3, 0), (1, 3), (-2, 2), (-2, -2), (1, -3)]
+
+
+def test_a_curve_that_bends_inwards_is_simple_where_it_turns_once_and_not_where_it_turns_twice():
+    """A limacon with a loop, a pentagram and a circle run through twice bend inwards all along."""
+    limacon = Component("whole", ((S.Half + cos(theta)) * cos(theta), (S.Half + cos(theta)) * sin(theta)), -pi, pi)
+    circle = [Component(f"half {i}", (cos(theta), sin(theta)), i * pi, (i + 1) * pi) for i in range(4)]
+
+    assert turns_once(ring(PENTAGON)) is turns_once(Table("circle", tuple(circle[:2]))) is True
+    for twice in (Table("limacon", (limacon,)), ring(PENTAGON[::2] + PENTAGON[1::2]), Table("circle", tuple(circle))):
+        assert turns_once(twice) is None
+    assert convex(Table("limacon", (limacon,))) is True  # of the bending alone; what a table is, validation decides
+
+
+def test_corners_that_turn_right_or_all_the_way_round_are_not_those_of_a_convex_table():
+    dented, folded = [*PENTAGON[:2], (0, 0), *PENTAGON[3:]], [(0, 0), (2, 0), (1, 0), (1, 1)]
+
+    assert turns_once(ring(dented)) is turns_once(ring(folded)) is None
+    assert turns_once(cardioid) is turns_once(egg(3)) is None  # a cusp; a free parameter
 
 
 def test_what_a_formula_draws_beyond_the_ends_of_its_parameter_is_no_boundary():

@@ -10,11 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sympy import cos, sin
 
 from numeric.sweeps.run import on_threads
-from symbolic import Scene
+from symbolic import Scene, tables
 from symbolic.cycles.thresholds import flip_contraction, stability_number
 from symbolic.tables.gallery import GALLERY
+from symbolic.tables.table import theta
 from verification.app.cli import main
 from verification.named import events
 from verification.named.files import checked
@@ -27,7 +29,7 @@ from verification.reports.crises import ASKED, crises
 from verification.reports.dynamics import diagram
 from verification.reports.page import again
 from verification.reports.report import FIRST, composed, report
-from verification.reports.scene import double_normals, inflections
+from verification.reports.scene import double_normals, inflections, properties
 
 ROOT = Path(__file__).parents[3]
 ELLIPSE = Scene("ellipse", a="3/2")
@@ -108,6 +110,26 @@ def test_every_number_is_exact_or_has_an_error_or_says_that_it_is_sampled_or_not
     assert {number.known for number in numbers} >= {Known.SAMPLED, Known.PROVED, Known.FLOAT}
     for number in numbers:
         assert number.known is not Known.PROVED or number.error or not re.match(r"[-\d]", number.value), number
+
+
+@pytest.mark.parametrize(
+    ("table", "simple", "convex"),
+    [
+        (tables.square(), "bends inwards everywhere", "yes"),
+        (tables.reuleaux(), "bends inwards everywhere", "yes"),
+        (
+            tables.parametric(cos(theta) + cos(2 * theta) / 10, 2 * sin(theta) + sin(3 * theta) / 3),
+            "no two parts",
+            "no",
+        ),
+    ],
+)
+def test_a_boundary_is_said_to_be_simple_by_proof_where_there_is_one(table, simple, convex):
+    said = {what: (words, known) for what, words, known in properties(table)}
+
+    assert simple in said["simple"][0]
+    assert said["simple"][1] is Known.PROVED
+    assert said["convex"][0].startswith(convex)
 
 
 def test_the_article_holds_every_section_and_balances_its_braces(made):

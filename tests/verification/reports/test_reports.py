@@ -123,6 +123,7 @@ def test_every_number_is_exact_or_has_an_error_or_says_that_it_is_sampled_or_not
             "no",
         ),
     ],
+    ids=["square", "reuleaux", "dented"],
 )
 def test_a_boundary_is_said_to_be_simple_by_proof_where_there_is_one(table, simple, convex):
     said = {what: (words, known) for what, words, known in properties(table)}

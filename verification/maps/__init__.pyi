@@ -3,7 +3,7 @@
 from . import laws, strategies
 from .enclosed import EnclosedMap, Refusal, in_balls, in_multiprecision, perimeter
 from .exact import Ball, ExactMap, errors, exact_ball
-from .first_hit import closes_smoothly, convex, first_hits, inside, minimal
+from .first_hit import closes_smoothly, convex, first_hits, inside, minimal, turns_once
 
 __all__ = [
     "Ball",
@@ -22,4 +22,5 @@ __all__ = [
     "minimal",
     "perimeter",
     "strategies",
+    "turns_once",
 ]

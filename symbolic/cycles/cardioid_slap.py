@@ -346,6 +346,7 @@ def gentle_elsewhere() -> Finding:
     return positive(STEEP**2 - (RATE.diff(q) / RATE) ** 2 * SPEED2, {q: Interval(CUSP, UPPER.end)})
 
 
+@cache
 def branch(above: bool) -> Kernel:
     """`(launch, rate)` of the landing half angle `b`, without cancellation at the cusp.
 

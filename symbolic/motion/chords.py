@@ -187,6 +187,32 @@ def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) ->
 
 
 @cache
+def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
+    """`chord_angle` along each side of a polygon, as a generated function of the parameters at its corners.
+
+    First all sides to the next corner, then all to the one before, of each the values of `chord_angle`. What belongs
+    to a corner is computed once. The table is one component, of a given shape.
+
+    >>> from symbolic.tables import circle
+    >>> polygon_kernel(circle, 3, 0).results
+    ('angle_from0to1', 'angle_from1to2', 'angle_from2to0', 'angle_from0to2', 'angle_from1to0', 'angle_from2to1')
+    """
+    staged, at = chord_angle(table, order=order), [Symbol(f"theta{i}", real=True) for i in range(corners)]
+    definitions: dict[Symbol, Expr] = {}
+    values: dict[str, Expr] = {}
+    for here, there in [(i, (i + step) % corners) for step in (1, -1) for i in range(corners)]:
+        side, own = f"from{here}to{there}", {theta0: at[here], theta1: at[there]}
+        for symbol in staged.definitions:
+            axis, end, rest = symbol.name[0], symbol.name[1], symbol.name[2:]  # x0_t, or dx of the chord
+            named = f"{axis}{(here, there)[int(end)]}{rest}" if end.isdigit() else f"{symbol.name}_{side}"
+            own[symbol] = Symbol(named, real=True)
+        definitions |= {own[symbol]: e.xreplace(own) for symbol, e in staged.definitions.items()}
+        values |= {f"{name}_{side}": e.xreplace(own) for name, e in staged.values.items()}
+    about = f"Angles from the inward normals to the sides at {corners} corners, with derivatives to order {order}."
+    return kernel(f"polygon_{corners}_{order}", at, values, definitions, about)
+
+
+@cache
 def collision_kernel(table: Table, components: tuple[int, int, int] = (0, 0, 0), law: Law = PAPERS_LAW) -> Kernel:
     """`collision_rule` as a generated function of `(theta_previous, theta, theta_next, lam, *shape, *own)`."""
     staged = collision_rule(table, components, law=law)

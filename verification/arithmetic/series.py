@@ -17,10 +17,11 @@ from verification.arithmetic.balls import FUNCTIONS, Arithmetic, Words, balls
 class Jet:
     """`c[0] + c[1]*e + ... + c[n]*e**n`, higher powers dropped."""
 
-    __slots__ = ("c",)
+    __slots__ = ("c", "turned")
 
     def __init__(self, *c: Any) -> None:
         self.c = c
+        self.turned: tuple[Any, int, Jet, Jet] | None = None  # its sine and cosine over some numbers, once known
 
     def __add__(self, other: Any) -> "Jet":
         if isinstance(other, Jet):
@@ -46,7 +47,9 @@ class Jet:
         a, b = self.c, other.c
         if len(a) == 2:
             return Jet(a[0] * b[0], a[0] * b[1] + a[1] * b[0])
-        return Jet(*[_sum(map(mul, a[: k + 1], b[k::-1])) for k in range(len(a))])
+        if len(a) == 3:
+            return Jet(a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[1] * b[1] + a[2] * b[0])
+        return Jet(*[reduce(add, map(mul, a, b[k::-1])) for k in range(len(a))])
 
     __rmul__ = __mul__
 
@@ -77,13 +80,15 @@ def jets(base: Arithmetic) -> Arithmetic:
     -1.0
     """
 
-    def sine_and_cosine(x: Jet) -> tuple[list[Any], list[Any]]:
-        s, c = [base.sin(x.c[0])], [base.cos(x.c[0])]
-        for k in range(1, len(x.c)):
-            terms = [(j, j * x.c[j]) for j in range(1, k + 1)]
-            s.append(_sum(d * c[k - j] for j, d in terms) / k)
-            c.append(-_sum(d * s[k - j] for j, d in terms) / k)
-        return s, c
+    def sine_and_cosine(x: Jet) -> tuple[Jet, Jet]:
+        bits = getattr(x.c[0], "context", ctx).prec  # of a number of mpmath, or of balls
+        if x.turned is None or x.turned[0] is not base or x.turned[1] != bits:
+            s, c = [base.sin(x.c[0])], [base.cos(x.c[0])]
+            slope = [j * d for j, d in enumerate(x.c[1:], 1)]
+            for k in range(1, len(x.c)):
+                s, c = [*s, reduce(add, map(mul, slope, c[::-1])) / k], [*c, -reduce(add, map(mul, slope, s[::-1])) / k]
+            x.turned = base, bits, Jet(*s), Jet(*c)
+        return x.turned[2:]
 
     def integrated(word: str, slope: Callable[[Jet], Jet]) -> Callable[[Any], Any]:
         def function(x: Any) -> Any:
@@ -117,8 +122,8 @@ def jets(base: Arithmetic) -> Arithmetic:
         q=base.q,
         root=lambda x, n: exponential(log(x) / n) if isinstance(x, Jet) else base.root(x, n),
         sqrt=square_root,
-        sin=lambda x: Jet(*sine_and_cosine(x)[0]) if isinstance(x, Jet) else base.sin(x),
-        cos=lambda x: Jet(*sine_and_cosine(x)[1]) if isinstance(x, Jet) else base.cos(x),
+        sin=lambda x: sine_and_cosine(x)[0] if isinstance(x, Jet) else base.sin(x),
+        cos=lambda x: sine_and_cosine(x)[1] if isinstance(x, Jet) else base.cos(x),
         exp=exponential,
         log=log,
         atan=integrated("atan", lambda x: 1 / (x * x + 1)),

@@ -21,7 +21,7 @@ from symbolic.cycles.cycle import (
 )
 from symbolic.expressions.signs import vanishes
 from symbolic.expressions.text import load
-from symbolic.motion.chords import chord_angle, chord_kernel, collision_kernel, collision_rule
+from symbolic.motion.chords import chord_angle, chord_kernel, collision_kernel, collision_rule, polygon_kernel
 from symbolic.motion.chords import theta0 as t0
 from symbolic.motion.chords import theta1 as t1
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
@@ -142,6 +142,22 @@ def test_balls_contain_the_values_of_mpmath_and_the_wider_contain_the_finer(here
             assert wide.contains(narrow)
             assert not narrow.contains(wide)
             assert wide.contains(arb(context.nstr(value, 75)))
+
+
+@pytest.mark.parametrize("table", [egg(3).at(alpha=Rational(2, 25)), cardioid], ids=lambda table: table.name)
+@pytest.mark.parametrize("order", [0, 1])
+def test_the_sides_of_a_polygon_have_the_angles_of_their_chords(table, order):
+    """In the order that is promised: to the next corner, then to the one before; in balls that wider ones contain."""
+    with working(100):
+        one, at = load(chord_kernel(table, 0, 0, order), balls(100)), [arb(x) for x in ("0.3", "1.9", "2.8", "5.1")]
+        polygon = load(polygon_kernel(table, 4, order), balls(100))
+        wide = polygon(*(x + arb(0, 1e-9) for x in at))
+        expected = [x for step in (1, -1) for i in range(4) for x in one(at[i], at[(i + step) % 4])]
+
+        for found, around, value in zip(polygon(*at), wide, expected, strict=True):
+            assert (found - value).contains(0)
+            assert abs(found - value) < 1e-25
+            assert around.contains(value)
 
 
 def test_one_third_goes_in_exactly():

@@ -113,6 +113,26 @@ def test_a_jet_has_the_taylor_coefficients_that_differentiation_gives(expression
             assert c.rad() < 1e-35
 
 
+def test_a_jet_that_keeps_its_sine_gives_it_in_the_bits_and_numbers_that_are_asked_for():
+    context, turn = mpmath.MPContext(), Jet(arb(1) / 4, arb(1), arb(0))
+    over = jets(balls(200))
+    for bits in (60, 200):
+        with working(bits):
+            sine, cosine = over.sin(turn), over.cos(turn)
+            one = sine * sine + cosine * cosine
+            assert (one.c[0] - 1).contains(0)
+            assert 2.0 ** (-bits - 10) < float(one.c[0].rad()) < 2.0 ** (10 - bits)
+            assert (cosine.c[0] - sine.c[1]).contains(0)
+    exact = Jet(context.mpf(0.25), context.mpf(1))
+    finer = jets(multiprecision(context))
+    for digits in (20, 60):
+        context.dps = digits
+        assert finer.sin(exact).c[0] == context.sin(context.mpf(0.25))
+    single = Jet(0.25, 1.0)
+    assert jets(FLOAT64).sin(single).c[0] == math.sin(0.25)
+    assert isinstance(jets(ARRAYS).sin(single).c[0], np.floating)
+
+
 def test_an_expansion_bounds_the_function_its_slope_and_its_integral():
     """Of polynomials, whose coefficients are known; the last coefficient may be any of a ball."""
     random = np.random.default_rng(1)

@@ -27,7 +27,7 @@ from verification.proofs.corner.border_collision import (
 from verification.proofs.corner.corner import ARC, BITS, WALL, at_corner, enclosed
 from verification.proofs.corner.evidence import border, measured, saddles
 from verification.proofs.corner.half_return import limit, pieces, trapping_region
-from verification.proofs.corner.return_map import exit_angle, kink, kink_falls, minimum_at_kink
+from verification.proofs.corner.return_map import Flights, _falling_root, exit_angle, kink, kink_falls, minimum_at_kink
 
 THETA1, STAR = (float(x.mid()) for x in enclosed())
 CORNER = 2 * math.pi / 3
@@ -268,3 +268,11 @@ def test_the_least_fourth_position_agrees_with_orbits():
     assert np.all(orbit.component[4] == WALL)
     with working(BITS):
         assert abs(kink(arb(below)).value - least) < 1e-4  # 2e-5 between angles, slope 4.5
+
+
+def test_the_guess_of_a_landing_is_right_up_to_the_rounding_of_the_angle():
+    near, random = Flights().floats[ARC, ARC], np.random.default_rng(3)
+    for _ in range(100):
+        start, phi = random.uniform(-1, 1), random.uniform(-1.2, 1.2)
+        root = _falling_root(near, start, phi, start, start + 2 * math.pi)
+        assert near(start, root - 1e-13)[0] > phi > near(start, root + 1e-13)[0]

@@ -15,7 +15,7 @@ from numeric import PinballMap
 from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Outcome
 from symbolic.expressions.text import load
-from symbolic.motion.chords import chord_kernel
+from symbolic.motion.chords import chord_kernel, polygon_kernel
 from symbolic.tables import egg
 from symbolic.tables.law import PAPERS_LAW
 from symbolic.tables.table import alpha as letter
@@ -240,6 +240,12 @@ def triangle(lam):
     return (z[first] + math.pi) % (2 * math.pi) - math.pi, gaps[first], gaps[(first + 1) % 3]
 
 
+def sides(angle):
+    """What `polygon_kernel` generates for a triangle, without slopes and with them, of any angle of a chord."""
+    ends = [(i, (i + step) % 3) for step in (1, -1) for i in range(3)]
+    return [lambda *at, n=n: [x for i, j in ends for x in angle(at[i], at[j])[:n]] for n in (1, 3)]
+
+
 def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():
     """Of the egg's triangle, in boxes of all sizes, by both proofs that there are no others."""
     lam, chance = Rational(1, 2), random.Random(1)
@@ -248,16 +254,17 @@ def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():
     with working(64):
         angle, half = load(chord_kernel(table, 0, 0, 1), balls(64)), arb("0.5")
         gap = least_gap(angle, half * arb.pi() / 2)
+        both = [load(polygon_kernel(table, 3, order), balls(64)) for order in (0, 1)]
         cover = Cover(Problem(table, (0, 0, 0), lam=half), angle, reflection(PAPERS_LAW, half, table), gap, [])
         largest = half * arb.pi() / (1 + half)
         for size in range(4, 28):
             box = around(held, size, chance)
             assert not cover.settled(box, 1)
-            assert not triangles._impossible(angle, largest, half, gap, box)
+            assert not triangles._impossible(*both, largest, half, gap, box)
         for size in range(9, 20):
             box = around(beside, size, chance)
             assert cover.settled(box, 1)
-            assert triangles._impossible(angle, largest, half, gap, box)
+            assert triangles._impossible(*both, largest, half, gap, box)
 
 
 @pytest.mark.parametrize("n", [2, 3, 5])
@@ -339,7 +346,7 @@ def test_a_triangle_is_asked_from_its_largest_gap_on(gaps, asked):
     normal = lambda here, there: (arb(0), arb(0), arb(0))  # noqa: E731
     box = ((0.0, 2.0**-8), *((gap, 2.0**-8) for gap in gaps))
 
-    assert triangles._impossible(normal, arb(1), arb("0.5"), 0.25, box) is not asked
+    assert triangles._impossible(*sides(normal), arb(1), arb("0.5"), 0.25, box) is not asked
 
 
 def made_up(values):
@@ -381,7 +388,7 @@ def test_no_triangle_without_symmetry_is_excluded_and_one_that_breaks_a_rule_is(
                     box = around(held, size, chance)
                     exact, wide = accumulate(arb(m) for m, _ in box), accumulate(arb(m, r) for m, r in box)
                     excluded = {
-                        triangles._impossible(angle, largest, ratio, 0.5, box),
+                        triangles._impossible(*sides(angle), largest, ratio, 0.5, box),
                         cover._impossible(box, list(exact), list(wide)),
                     }
                     assert True not in excluded or broken is not None

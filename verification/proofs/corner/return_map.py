@@ -61,14 +61,15 @@ class Piece:
 
 
 @cache
-def _loaded() -> tuple[Angles, Angles, dict[int, arb]]:
+def _loaded() -> tuple[Angles, Angles, Angles, dict[int, arb]]:
     pairs = ((ARC, ARC), (ARC, WALL), (WALL, ARC))
     kernels = {pair: chord_kernel(cuspless, *pair, 1) for pair in pairs}
     enclosing = {pair: load(made, balls(BITS)) for pair, made in kernels.items()}
     guessing = {pair: load(made, FLOAT64) for pair, made in kernels.items()}
+    alone = {pair: load(chord_kernel(cuspless, *pair, 0), balls(BITS)) for pair in pairs}  # without slopes
     with working(BITS):
         ends = load(ends_kernel(cuspless), balls(BITS))()
-    return enclosing, guessing, {component: ends[2 * component + 1] + arb(0) for component in (ARC, WALL)}
+    return enclosing, alone, guessing, {component: ends[2 * component + 1] + arb(0) for component in (ARC, WALL)}
 
 
 class Flights:
@@ -76,7 +77,7 @@ class Flights:
 
     def __init__(self, lam: arb | int = 0) -> None:
         self.lam = lam
-        self.balls, self.floats, self.ends = _loaded()
+        self.balls, self.values, self.floats, self.ends = _loaded()
 
     @property
     def odd(self) -> bool:
@@ -137,19 +138,24 @@ class Flights:
 
     def _root(self, piece: Piece, target: int, low: float, high: float) -> Piece | None:
         """The landing on a component, enclosed by an interval Newton step from a guess in floats."""
-        angle, near = self.balls[piece.component, target], self.floats[piece.component, target]
+        pair = piece.component, target
+        angle, value, near = self.balls[pair], self.values[pair], self.floats[pair]
         root = _falling_root(near, float(piece.theta.mid()), float(piece.phi.mid()), low, high)
         guess = root - (TURN if high > TURN / 2 else 0)
         radius = 4 * float(piece.theta.rad() + piece.phi.rad()) + 1e-12
+        missed = value(piece.theta, arb(guess))[0] - piece.phi
         for _ in range(6):
             box = arb(guess, radius)
-            image = guess - (angle(piece.theta, arb(guess))[0] - piece.phi) / angle(piece.theta, box)[2]
+            image = guess - missed / angle(piece.theta, box)[2]
             if image.is_finite() and box.contains_interior(image):
                 over = angle(piece.theta, image)
-                phi_1 = -self.lam * self.balls[target, piece.component](image, piece.theta)[0] + arb(0)
+                phi_1 = -self.lam * self.values[target, piece.component](image, piece.theta)[0] + arb(0)
                 return Piece(target, image, -piece.slope * over[1] / over[2], phi_1)
             radius *= 2
         return None
+
+
+SETTLED, HALVED = 1e-8, 1e-15  # a last correction: by Newton's method, the next being about its square; by halving
 
 
 def _falling_root(near: Angle, start: float, phi: float, low: float, high: float) -> float:
@@ -158,10 +164,10 @@ def _falling_root(near: Angle, start: float, phi: float, low: float, high: float
     for _ in range(60):
         value, _, slope = near(start, here)
         low, high = (here, high) if value > phi else (low, here)
-        following = here - (value - phi) / slope if slope else low
+        following, enough = here - (value - phi) / slope if slope else low, SETTLED
         if not low < following < high:  # NaN among others
-            following = (low + high) / 2
-        if abs(following - here) <= 1e-15:
+            following, enough = (low + high) / 2, HALVED
+        if abs(following - here) <= enough:
             return following
         here = following
     return here

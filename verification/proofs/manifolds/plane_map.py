@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from sympy import Expr
@@ -57,8 +57,8 @@ class PlaneMap(Protocol):
     def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         """The derivatives of the rule by its three points."""
 
-    def varied(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
-        """The rule, and its derivative by the parameter."""
+    def linear(self, near: Sequence[Any], parameter: Any) -> tuple[Any, tuple[Any, Any, Any], Any]:
+        """The rule, its derivatives by the three points, and the one by the parameter."""
 
     def following(self, previous: Any, here: Any, parameter: Any) -> Any:
         """The map: what comes after `previous, here`."""
@@ -75,6 +75,7 @@ class _Bound(ABC):
     """The one rule of a recurrence of period 1, bound to a kind of number, at a value of its parameter."""
 
     words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
+    free: ClassVar = "lam"  # the name of the parameter in the recurrence
 
     def over(self, words: Arithmetic) -> Self:
         return replace(self, words=words)
@@ -102,11 +103,9 @@ class _Bound(ABC):
     def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         return self._rule(0, near, self.at(parameter)).slope
 
-    def varied(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
-        zero = parameter * 0
-        plain = self.rule(near, zero)
-        moving = self.rule(near, zero + 1) - plain  # affine in the parameter
-        return plain + parameter * moving, moving
+    def linear(self, near: Sequence[Any], parameter: Any) -> tuple[Any, tuple[Any, Any, Any], Any]:
+        terms = self._rule(0, near, self.at(parameter))
+        return terms.value, terms.slope, terms.by[self.free]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +120,8 @@ class Henon(_Bound):
     b: Expr
     label: str = "Henon"
     turn: int = 0
+
+    free: ClassVar = "a"
 
     @property
     def ring(self) -> Recurrence:
@@ -164,12 +165,6 @@ class Pinball(_Bound):
     @property
     def ring(self) -> Recurrence:
         return Chords(self.table, (0,), law=self.law)
-
-    def varied(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
-        if self.law.uniform:
-            return super().varied(near, parameter)
-        terms = self._rule(0, near, self.at(parameter))
-        return terms.value, terms.by["lam"]
 
     @cached_property
     def exit(self) -> Callable[..., Any]:

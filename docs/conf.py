@@ -4,6 +4,7 @@ import re
 import sys
 from pathlib import Path
 
+from docutils import nodes
 from pybtex.plugin import register_plugin
 from pybtex.style.formatting.plain import Style
 from pybtex.style.labels import BaseLabelStyle
@@ -13,6 +14,7 @@ author = "The pinball-billiards authors"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinxcontrib.bibtex"]
 source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb"}
 nb_execution_mode = "off"  # they are kept with what they show; the tests execute them
+html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = "Pinball billiards"
 html_static_path = ["static"]
@@ -67,6 +69,16 @@ def pictures(app):
     make([])
 
 
+def typeset(visitor, node):
+    """A formula as the reports typeset it, in MathML: no script and no network is needed to read it."""
+    from verification.paper.report.mathml import mathml
+
+    display = isinstance(node, nodes.math_block)
+    formula = str(mathml(node.astext(), display))
+    visitor.body.append(f'<div class="math" tabindex="0">{formula}</div>' if display else formula)
+    raise nodes.SkipNode
+
+
 NAMED = {  # what the theme leaves without a level, a name or a landmark, and code that scrolls by keyboard
     '<p class="caption" role="heading">': '<p class="caption" role="heading" aria-level="2">',
     '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="All pages">',
@@ -88,6 +100,7 @@ def accessible(app, exception):
 
 def setup(app):
     """Called by Sphinx."""
+    app.add_html_math_renderer("mathml", (typeset, None), (typeset, None))
     app.connect("builder-inited", notebooks)
     app.connect("builder-inited", pictures)
     app.connect("autodoc-process-docstring", plain)

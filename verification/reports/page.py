@@ -130,7 +130,9 @@ def _certificate(block: Certificate) -> Markup:
 
 HEAD = r"""\documentclass{article}
 \usepackage[a4paper,margin=2.2cm]{geometry}
-\usepackage{amsmath,graphicx,longtable,xurl}
+\PassOptionsToPackage{obeyspaces,spaces}{url}
+\usepackage{amsmath,array,graphicx,longtable,xurl}
+\setlength{\LTleft}{0pt}
 \usepackage[T1]{fontenc}
 \usepackage{textcomp}
 \setlength{\parindent}{0pt}\setlength{\parskip}{4pt}
@@ -167,9 +169,10 @@ def typeset(given: Block, parts: Parts) -> str:
     if isinstance(given, Formula):
         return rf"\emph{{{tex(given.name)}}} ({given.known.value})" + f"\n\\[ {given.latex} \\]"
     if isinstance(given, Listing):
-        width = rf"p{{{0.92 / len(given.columns):.3f}\linewidth}}" * len(given.columns)
-        rows = " \\\\\n".join(" & ".join(_tex_cell(cell) for cell in row) for row in (given.columns, *given.rows))
-        table = rf"{{\small\begin{{longtable}}{{{width}}}" + "\n" + rows + "\n" + r"\end{longtable}}"
+        share = rf"\dimexpr(\linewidth-{2 * len(given.columns)}\tabcolsep)/{len(given.columns)}\relax"
+        width = rf">{{\raggedright\arraybackslash}}p{{{share}}}" * len(given.columns)
+        head, *rows = (" & ".join(_tex_cell(cell) for cell in row) + r" \\" for row in (given.columns, *given.rows))
+        table = "\n".join([rf"{{\small\begin{{longtable}}{{{width}}}", head, r"\hline", *rows, r"\end{longtable}}"])
         return f"{tex(given.caption)}\n\n{table}{_tex_command(given.command)}"
     if isinstance(given, Picture):
         path = (parts.folder / f"{given.name}.pdf").resolve()

@@ -84,6 +84,7 @@ NAMED = {  # what the theme leaves without a level, a name or a landmark, and co
     '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="All pages">',
     '<aside class="toc-drawer">': '<aside class="toc-drawer" aria-label="On this page">',
     '<div class="content-icon-container">': '<div class="content-icon-container" role="region" aria-label="Page">',
+    '<div class="table-wrapper ': '<div tabindex="0" class="table-wrapper ',
     "<pre>": '<pre tabindex="0">',
 }
 

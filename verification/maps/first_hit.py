@@ -11,6 +11,7 @@ itself.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
@@ -27,6 +28,7 @@ from symbolic.motion.chords import ends_kernel
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.geometry import coefficients, turning, velocity
 from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.validity import radius_over
 from verification.arithmetic.balls import balls, working
 
 BITS = 64
@@ -56,7 +58,31 @@ def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
     if table.undefined:
         return None
     parts = all(_bends_inwards(table, index, shape) for index in range(len(table.components)))
-    return True if parts and _joined(table) else None
+    return True if parts and _joined(table) and _once(table, shape) else None
+
+
+def _once(table: Table, shape: tuple[arb, ...]) -> bool:
+    """Does a boundary that bends inwards turn once? A curve of two turns bends inwards as well, and meets itself.
+
+    It does where its radius is positive, and where the angle in balls says so. A curve that bends everywhere stops
+    nowhere, so its turns cannot change with its shape parameters: one value of them is asked.
+    """
+    if not table.shapes:
+        return _turns(table, ()) is True
+    if shape and _turns(table, shape) is True:
+        return True
+    with suppress(ValueError):  # a radius that is not positive somewhere
+        if len(table.components) == 1 and radius_over(table):
+            return True
+    bent = all(turning(component).is_positive for component in table.components)
+    return bent and _turns(table, tuple(_some(p.range) for p in table.shapes)) is True
+
+
+def _some(range: Interval) -> arb:
+    """A number inside a range."""
+    low, high = range.start, range.end
+    inside = (low + high) / 2 if high.is_finite and low.is_finite else low + 1 if low.is_finite else high - 1
+    return _exact(Fraction(str(inside))) if inside.is_Rational else arb(float(inside))
 
 
 def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
@@ -280,10 +306,14 @@ def turns_once(table: Table) -> bool | None:
     (True, True, None)
     """
     inwards = not (table.shapes or table.undefined) and _turned(table)
-    if not inwards or not all(_bends_inwards(table, index, ()) for index in range(len(table.components))):
-        return None
+    bends = inwards and all(_bends_inwards(table, index, ()) for index in range(len(table.components)))
+    return _turns(table, ()) if bends else None
+
+
+def _turns(table: Table, shape: tuple[arb, ...]) -> bool | None:
+    """True when the tangent, corners included, is proved to turn once, summed over arcs; None: nothing proved."""
     with working(BITS_OF_HIT):
-        boundary, total, spent = _boundary(table, ()), arb(0), 0
+        boundary, total, spent = _boundary(table, shape), arb(0), 0
         last = boundary.places[-1](boundary.ends[-1][1])
         for place, (low, high) in zip(boundary.places, boundary.ends, strict=True):
             total += _angle(last, place(low))

@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from flint import arb
-from sympy import Interval, Rational, S, Symbol, cos, oo, pi, sin, sqrt
+from sympy import Interval, Rational, S, Symbol, cos, exp, oo, pi, sin, sqrt
 
-from symbolic.tables import cardioid, cuspless, egg, polar, sinai
+from symbolic.tables import cardioid, cuspless, egg, ellipse, parametric, polar, sinai
 from symbolic.tables.law import Law
-from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.table import Component, Shape, Table, theta
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
@@ -93,7 +93,28 @@ def test_a_curve_that_bends_inwards_is_simple_where_it_turns_once_and_not_where_
     assert turns_once(ring(PENTAGON)) is turns_once(Table("circle", tuple(circle[:2]))) is True
     for twice in (Table("limacon", (limacon,)), ring(PENTAGON[::2] + PENTAGON[1::2]), Table("circle", tuple(circle))):
         assert turns_once(twice) is None
-    assert convex(Table("limacon", (limacon,))) is True  # of the bending alone; what a table is, validation decides
+    assert convex(Table("limacon", (limacon,))) is None
+
+
+def test_a_loop_that_an_inscribed_polygon_does_not_see_is_in_no_convex_table():
+    """It bends inwards all along, is 0.001 long and no Fourier sum, so that validation knows its polygon alone."""
+    size = (Rational(999, 1000) + cos(theta)) * (1 + exp(cos(theta)) / 10**4)
+
+    assert convex(parametric(size * cos(theta), size * sin(theta))) is None
+    assert convex(polar(exp(cos(2 * theta) / 20))) is True  # and a formula of such words is not to blame
+
+
+def test_whether_a_boundary_with_free_parameters_turns_once_is_asked_for_all_of_them():
+    assert convex(egg(3)) is convex(egg(4)) is convex(ellipse) is True
+    b = Symbol("b", real=True)
+    looped = ((b + cos(theta)) * cos(theta), (b + cos(theta)) * sin(theta))
+    family = Table(
+        "limacons",
+        (Component("whole", looped, -pi, pi),),
+        shapes=(Shape(b, Interval(S(1) / 4, S(1) / 2), "is no limacon with a loop"),),
+    )
+    assert convex(family) is None
+    assert convex(family, (arb("0.3"),)) is None
 
 
 def test_corners_that_turn_right_or_all_the_way_round_are_not_those_of_a_convex_table():

@@ -26,12 +26,9 @@ def bound(low: Low[N]) -> N:
     return low() if callable(low) else low
 
 
-class Backend(NumberSystem[N], Protocol[N, M]):
-    """A number system on which flights run; masks select, number by number."""
+class Words(Protocol[N]):
+    """The words of formulas besides those of every number system."""
 
-    doubles: bool  # are its numbers doubles? Then known numbers may be kept as such; else they may have more digits
-
-    # the words of formulas besides sine and cosine
     def exp(self, x: N, /) -> N: ...
     def log(self, x: N, /) -> N: ...
     def atan(self, x: N, /) -> N: ...
@@ -39,6 +36,12 @@ class Backend(NumberSystem[N], Protocol[N, M]):
     def cosh(self, x: N, /) -> N: ...
     def tanh(self, x: N, /) -> N: ...
     def root(self, x: N, n: int, /) -> N: ...
+
+
+class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
+    """A number system on which flights run; masks select, number by number."""
+
+    doubles: bool  # are its numbers doubles? Then known numbers may be kept as such; else they may have more digits
 
     @property
     def pi_low(self) -> N:

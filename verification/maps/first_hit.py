@@ -36,7 +36,7 @@ PIECES = 2**12  # boxes that a proof of convexity may use up
 
 
 def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
-    """True when every part is proved to bend inwards, or to be straight, and the joins to bend in too.
+    """True when all parts bend inwards or are straight, the joins bend in, and the whole turns once: proved.
 
     `shape` encloses the free shape parameters; without it every value of their ranges is meant. None: nothing proved.
 

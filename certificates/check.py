@@ -487,10 +487,10 @@ def within(name, x, table=None):
 def read_scene(scene, free, p):
     """The table and the contraction that a scene says, and how it is called in words."""
     known = isinstance(scene, dict) and set(scene) <= {*WAYS, "undefined", "origin", "K", "shape", "law", "lam"}
-    way = [key for key in WAYS if known and key in scene]
+    way = [key for key in WAYS if known and isinstance(scene.get("shape", {}), dict) and key in scene]
     need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
-    fit = isinstance(shape, dict) and not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
+    fit = not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
     fit = fit and type(K) is int and 2 <= K <= 1000 and ("K" not in scene or title == "egg")
     letter, parts = PAPER.get(title) or ("", beside("boundaries").pieces(way[0], scene[way[0]]))
     ends = {name: text.partition("..") for name, text in shape.items()}

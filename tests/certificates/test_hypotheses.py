@@ -223,6 +223,7 @@ def test_a_flight_runs_forwards_from_the_inward_side_and_its_angle_is_named_once
     [
         {"mirror": 1}, {"mirror": None}, {"components": [0]}, {"components": [0] * 1025}, {"components": "00"},
         {"components": [0, 1]}, {"components": [0, -1]}, {"components": [0, True]}, {"bits": 15}, {"bits": True},
+        {"bits": 160.0}, {"digits": 10.0}, {"digits": "10"},
         {"digits": 0}, {"bits": 10**6}, {"digits": 10**6}, {"radius": ["0", "0"]}, {"radius": ["-1", "-9"]},
         {"radius": ["3", "0"]}, {"centre": [["1", "30"], ["0", "0"]]}, {"free": "lam"}, {"free": 3}, {"schema": 3},
         {"kind": "tangency"}, {"kind": "orbit"}, {"checks": {}}, {"name": "lambda-c"}, {"statement": ""}, {"more": 1},

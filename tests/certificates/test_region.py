@@ -107,6 +107,7 @@ def test_a_table_that_is_not_convex_smooth_and_under_the_papers_law_is_refused(c
         ({"runs": [[0, 1, 0, 0, 0]]}, "beyond the grid"),
         ({"runs": [[0, 1, 0, 0, 2], [0, 2, 0, 1, 1]]}, "stands twice"),
         ({"runs": [[0, 1, 0, 0]]}, "five whole numbers"),
+        *(({"runs": [[0, 1, 0, 0, 1], run]}, "five whole numbers") for run in ([0, 1, 0, 5.0, 1], [0, 1, 0, 5, True])),
         ({"name": "an attractor"}, "name must be"),
         ({"schema": 2}, "schema 1"),
         ({"proved_by": "me"}, "entries"),
@@ -115,6 +116,14 @@ def test_a_table_that_is_not_convex_smooth_and_under_the_papers_law_is_refused(c
 def test_every_entry_is_looked_at(check, change, why):
     with pytest.raises(check.Wrong, match=why):
         check.checked(GIVEN | change)
+
+
+def test_blocks_reach_to_the_last_column_and_row_and_each_is_counted(region):
+    given = {"columns": 4, "rows": 6, "parts": 1, "runs": [[0, 2, 2, 0, 3], [0, 1, 0, 5, 1]]}
+    cells, count = region.blocks(given)
+
+    assert cells == {(column, row) for column in (2, 3) for row in range(6)} | {(0, 5)}
+    assert count == 4
 
 
 def test_an_image_beyond_the_cells_by_less_than_a_rounding_is_not_covered(check, region):

@@ -13,6 +13,7 @@ from verification.proofs.global_dynamics.boxes import (
     UNIT_ERROR,
     ArrayOps,
     BallArray,
+    common_part,
     direction,
     exactly,
     hull,
@@ -110,6 +111,22 @@ def test_a_hull_holds_all_between_its_ends(ends, share):
     low, high = ends
     with working(400):
         assert holds(hull(np.array(low), np.array(high)), arb(low) + (arb(high) - arb(low)) * share / 16)
+
+
+@given(true=st.floats(-10, 10), offs=st.tuples(*[st.floats(-5, 5)] * 2), mores=st.tuples(*[st.floats(0, 5)] * 2))
+def test_a_number_in_two_balls_is_in_their_common_part_which_is_no_wider_than_either(true, offs, mores):
+    x, y = (BallArray(np.array(true + off), np.array((abs(off) + more) * 1.001 + 1e-12))
+            for off, more in zip(offs, mores, strict=True))  # fmt: skip
+    unknown = [BallArray(np.array(m), np.array(r)) for m, r in ((3.0, np.inf), (np.nan, np.inf), (np.nan, np.nan))]
+    with working(200):
+        assert holds(common_part(x, y), arb(true))
+        assert common_part(x, y).r <= min(x.r, y.r) + 1e-13
+        for nothing in unknown:
+            for found in (common_part(x, nothing), common_part(nothing, x)):  # one where the other knows nothing
+                assert holds(found, arb(true))
+                assert found.r <= x.r + 1e-13
+    for one in unknown:
+        assert not any(np.isfinite(common_part(one, nothing).r) for nothing in unknown)
 
 
 FUNCTIONS = {"exp": arb.exp, "log": arb.log, "atan": arb.atan, "sinh": arb.sinh, "cosh": arb.cosh, "tanh": arb.tanh}

@@ -7,6 +7,7 @@ import pytest
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
+from verification.proofs.global_dynamics import barrier as barriers
 from verification.proofs.global_dynamics import crisis
 from verification.proofs.global_dynamics.barrier import Barrier, lost, point
 from verification.proofs.global_dynamics.boxes import Boxes
@@ -75,3 +76,14 @@ def test_a_barrier_at_a_cycle_that_lies_below_it_is_not_apart(barrier):
 def test_tables_with_joins_a_map_that_is_not_invertible_and_other_laws_are_refused(scene, lam):
     with pytest.raises(ValueError, match="barrier: "):
         _ = Barrier(scene, (lam, AT), 64).heights
+
+
+@pytest.mark.parametrize("missing", ["heights", "taken"])
+def test_without_a_barrier_or_a_region_beyond_it_nothing_is_said_of_either(monkeypatch, missing):
+    stated = Barrier(EGG, (AT, AT), 64)
+    stated.__dict__["heights"] = None if missing == "heights" else np.zeros(64)
+    monkeypatch.setattr(barriers, "PinballImages", lambda *_: None)
+    monkeypatch.setattr(barriers, "grown", lambda *_: None if missing == "taken" else (None, None))
+    monkeypatch.setattr(barriers, "enters", lambda *_: True)
+
+    assert lost(stated, AFTER, SINK, CROSSES) == dict.fromkeys(("barrier", "taken", "apart", "crossed"))

@@ -1,18 +1,19 @@
 """A crisis between two contractions: what keeps below, what leaves above, and what must not be proved."""
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import arb
+from flint import acb, arb
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app import cli
 from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.recurrence import Closure
+from verification.maps.enclosed import Refusal
 from verification.proofs.global_dynamics import crisis
 from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images
 from verification.proofs.global_dynamics.crisis import (
@@ -24,10 +25,12 @@ from verification.proofs.global_dynamics.crisis import (
     _within,
     boxed,
     bracket,
+    enters,
     grown,
     kept_apart,
 )
 from verification.proofs.global_dynamics.graph import Grid, Rectangles
+from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.known import BOUNDARY, CONTACTS, SHAPE
 from verification.proofs.manifolds.saddle import saddle
 
@@ -151,6 +154,7 @@ def test_each_hypothesis_of_the_statement_is_asked_when_it_is_made(changed):
     stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (0.0, 0.0))
     with pytest.raises(ValueError, match="crisis: "):
         replace(stated, **changed)
+    assert {replace(stated, side=side, start=end).start for side, end in ((1, 0.0), (-1, 1.0))} == {0.0, 1.0}
 
 
 def test_the_cells_of_rectangles_are_marked_and_no_others():
@@ -163,6 +167,68 @@ def test_the_cells_of_rectangles_are_marked_and_no_others():
         wanted[number, [column % 6 for column in range(left, right + 1)], bottom : top + 1] = True
 
     assert np.array_equal(_marked(grid, Rectangles(np.arange(4), chart, *sides, np.zeros(4, dtype=bool))), wanted)
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """In the place of an enclosed saddle."""
+
+    orbit: object
+    points: tuple[acb, ...]
+
+
+@pytest.mark.parametrize("wrong", [None, *range(6)])
+def test_a_saddle_is_continued_only_while_every_two_that_overlap_are_proved_to_be_one_cycle(monkeypatch, wrong):
+    """Of three parts of the range each is compared with the saddle at its lower and at its upper end."""
+    asked = []
+    monkeypatch.setattr(crisis, "CUTS", 3)
+    monkeypatch.setattr(crisis, "complex_balls", lambda _: None)
+    monkeypatch.setattr(crisis, "enclosed_saddle", lambda orbit, map, lam: Cycle(orbit, (acb(orbit.start[0]),)))
+    monkeypatch.setattr(crisis, "one_cycle", lambda *pair: asked.append(pair) or len(asked) - 1 != wrong)
+    monkeypatch.setattr(BoundaryCrisis, "map", type("", (), {"over": lambda *_: None})())
+    stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (0.0, 0.0))
+
+    if wrong is None:
+        first, last = stated._continued()
+        assert first.points[0].real.contains(arb(TRIANGLE.start[0]))
+        assert len(asked) == 6
+        assert first is not last
+    else:
+        with pytest.raises(TooWideError, match="the cycle at an end may be another"):
+            stated._continued()
+
+
+@pytest.mark.parametrize(
+    ("bounces", "held"),
+    [((0.5,), True), ((0.1, 0.1, 0.5), True), ((0.1,) * 400, False), ((Refusal.WIDE, 0.5), False), ((None, 0.5), False),
+     ((0.1, Refusal.UNPROVED, 0.5), False), ((float("inf"), 0.5), True)],
+)  # fmt: skip
+def test_an_orbit_enters_cells_where_each_landing_on_its_way_is_proved(monkeypatch, bounces, held):
+    """Cells about `theta = 1/2`; None lands on a join."""
+
+    @dataclass
+    class Ball:
+        theta: arb
+        phi: arb
+        code: int = 0
+
+    class Map:
+        def __init__(self, map, lam, bits):
+            self.left = [x if isinstance(x, Refusal) else Ball(arb(x or 0), arb(0), int(x is None)) for x in bounces]
+
+        def ball(self, component, theta, phi):
+            return Ball(theta, phi)
+
+        def bounce(self, here):
+            return self.left.pop(0)
+
+    grid = Grid((Chart("turning", (-np.pi, np.pi), (-1.0, 1.0), True, True),), 64, 8)
+    x = (np.arange(64) + 0.5) / 64 * 2 * np.pi - np.pi
+    monkeypatch.setattr(crisis, "EnclosedMap", Map)
+    monkeypatch.setattr(crisis, "PinballMap", lambda *_, **__: None)
+    cells = grid, np.broadcast_to((np.abs(x - 0.5) < 0.25)[None, :, None], (1, 64, 8))
+
+    assert enters(EGG, ABOVE, (arb(0), arb(0)), cells) is held
 
 
 MISSING = {  # what goes wrong, and the items of the list that are open then

@@ -1,0 +1,120 @@
+"""What a scene may say to the second reader: letters, ranges, marks; and which documents may speak of mirror images."""
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "certificates"
+EGG = {"table": "egg"}
+WAVES = {"polar": "1 + b*cos(3*theta)/40"}
+SQUARE = [
+    {"x": x, "y": y, "from": "0", "to": "1"}
+    for x, y in (("theta", "0"), ("1", "theta"), ("1 - theta", "1"), ("0", "1 - theta"))
+]
+
+
+@pytest.mark.parametrize(
+    ("scene", "free", "title"),
+    [
+        ({"table": "circle", "lam": "1/3"}, "", "circle, lam = 1/3"),
+        ({"table": "circle"}, "lam", "circle"),
+        ({"table": "ellipse", "shape": {"a": "3/2"}, "lam": "0"}, "", "ellipse, a = 3/2, lam = 0"),
+        (EGG | {"lam": "1"}, "alpha", "egg, lam = 1"),
+        (EGG | {"shape": {"alpha": "1/9"}}, "lam", "egg, alpha = 1/9"),
+        (EGG | {"K": 5, "lam": "1"}, "alpha", "egg of 5 points, lam = 1"),
+        (EGG | {"K": 2, "lam": "1"}, "alpha", "egg of 2 points, lam = 1"),
+        (EGG | {"K": 1000, "lam": "1"}, "alpha", "egg of 1000 points, lam = 1"),
+        (EGG | {"K": 3, "lam": "1"}, "alpha", "egg, lam = 1"),
+        (
+            {"table": "circle", "law": "-b*eta", "shape": {"b": "1/7"}, "lam": "0"},
+            "",
+            "circle, phi = -b*eta, b = 1/7, lam = 0",
+        ),
+        ({"table": "circle", "law": "-b*eta", "lam": "1"}, "b", "circle, phi = -b*eta, lam = 1"),
+        (WAVES | {"shape": {"b": "1/2"}, "lam": "1/2"}, "", "polar 1 + b*cos(3*theta)/40, b = 1/2, lam = 1/2"),
+        (WAVES | {"shape": {"b": "0..1/2"}, "lam": "1/2"}, "b", "polar 1 + b*cos(3*theta)/40, lam = 1/2"),
+        ({"component": SQUARE}, "lam", "boundary of 4 pieces"),
+        ({"parametric": ["cos(theta)", "sin(theta)"], "lam": "1"}, "", "parametric cos(theta); sin(theta), lam = 1"),
+    ],
+)  # fmt: skip
+def test_a_scene_is_called_by_all_that_is_told_of_it_and_by_nothing_that_is_free(check, scene, free, title):
+    table, lam, words = check.read_scene(scene, free, 80)
+
+    assert words == title
+    assert (lam is None) == (free == "lam")
+    assert lam is None or lam.lo <= Fraction(scene["lam"]) * 2**80 <= lam.hi
+    for name, text in scene.get("shape", {}).items():
+        low, high = (Fraction(x) for x in (text.split("..") * 2)[:2])
+        assert table.letters[name].lo <= low * 2**80 < high * 2**80 + 1
+        assert high * 2**80 <= table.letters[name].hi
+        assert table.letters[name].width() <= (high - low) * 2**80 + 2
+
+
+@pytest.mark.parametrize(
+    ("scene", "free", "why"),
+    [
+        ([], "", "the entries are one of"),
+        ({"lam": "1"}, "", "the entries are one of"),
+        ({"table": "circle", "polar": "1", "lam": "1"}, "", "the entries are one of"),
+        ({"table": "circle", "lam": "1", "more": 1}, "", "the entries are one of"),
+        ({"table": "square", "lam": "1"}, "", "other letters"),
+        ({"table": "circle", "shape": [], "lam": "1"}, "", "the entries are one of"),
+        (EGG | {"K": 1, "lam": "1"}, "alpha", "other letters"),
+        (EGG | {"K": 1001, "lam": "1"}, "alpha", "other letters"),
+        (EGG | {"K": True, "lam": "1"}, "alpha", "other letters"),
+        ({"table": "circle", "K": 3, "lam": "1"}, "", "other letters"),
+        (WAVES | {"K": 3, "shape": {"b": "1"}, "lam": "1"}, "", "other letters"),
+        (EGG | {"lam": "1"}, "", "other letters"),  # a shape that nobody tells
+        (EGG, "lam", "other letters"),
+        (EGG | {"shape": {"alpha": "1/9"}, "lam": "1"}, "alpha", "other letters"),  # and one that is told and free
+        (EGG | {"shape": {"alpha": "1/9..1/8"}, "lam": "1"}, "alpha", "other letters"),
+        (EGG | {"shape": {"a": "1/9"}, "lam": "1"}, "alpha", "other letters"),
+        ({"table": "circle", "shape": {"b": "1"}, "lam": "1"}, "", "other letters"),  # that nothing has
+        ({"table": "circle", "lam": "1"}, "b", "other letters"),
+        ({"table": "circle", "law": "-lam*eta", "shape": {"b": "1"}, "lam": "1"}, "", "other letters"),
+        ({"table": "circle", "law": "-b*eta", "shape": {"b": "0..1"}, "lam": "1"}, "b", "other letters"),
+        (WAVES | {"lam": "1"}, "b", "other letters"),  # free without a range
+        (WAVES | {"shape": {"b": "0..1"}, "lam": "1"}, "", "other letters"),  # a range, and not free
+        (WAVES | {"shape": {"b": "0..1"}}, "lam", "other letters"),
+        (WAVES | {"shape": {"b": "0..1", "c": "0..1"}, "lam": "1"}, "b", "other letters"),
+        *((WAVES | {"shape": {"b": "1", name: "1"}, "lam": "1"}, "", "other letters")
+          for name in ("theta", "eta", "lam", "pi", "E")),
+        ({"table": "circle"}, "", "lam is told where it is not the free letter"),
+        ({"table": "circle", "lam": "1"}, "lam", "lam is told where it is not the free letter"),
+        ({"table": "circle", "lam": "-1/9"}, "", "lam is out of range"),
+        ({"table": "circle", "lam": "10/9"}, "", "lam is out of range"),
+        ({"table": "ellipse", "shape": {"a": "9/10"}, "lam": "1"}, "", "a is out of range"),
+        ({"table": "ellipse", "shape": {"a": "1000001"}, "lam": "1"}, "", "a is out of range"),
+        (EGG | {"shape": {"alpha": "-1/9"}, "lam": "1"}, "", "alpha is out of range"),
+        (EGG | {"shape": {"alpha": "5/9"}, "lam": "1"}, "", "alpha is out of range"),
+        (WAVES | {"shape": {"b": "1000001"}, "lam": "1"}, "", "b is out of range"),
+    ],
+)  # fmt: skip
+def test_a_scene_with_a_letter_too_many_too_few_or_out_of_its_range_is_refused(check, scene, free, why):
+    """What is stated of `b` would be stated of a table that has none, or of every `b`."""
+    with pytest.raises(check.Wrong, match=why):
+        check.read_scene(scene, free, 80)
+
+
+@pytest.mark.parametrize(
+    ("entries", "fits"),
+    [
+        ({}, True),
+        ({"law": "-lam*eta**3"}, True),
+        ({"law": "-lam*eta + eta**2/10**40"}, False),
+        ({"law": "-lam*eta + theta**2/10**40"}, False),
+        ({"table": None, "polar": "1 + cos(3*theta)/25"}, True),
+        ({"table": None, "polar": "1 + cos(3*theta)/25 + sin(theta)/10**40"}, False),
+    ],
+)
+def test_half_of_a_cycle_is_spoken_of_only_where_table_and_law_have_the_mirror_symmetry(check, entries, fits):
+    """Without it the second half is none: what is closed by the mirror is no cycle, by 40 digits."""
+    given = json.loads((FOLDER / "own-mirror.json").read_text())
+    scene = {"table": "egg", "shape": {"alpha": "1/25"}} | entries
+    given |= {"scene": {key: x for key, x in scene.items() if x and (key != "shape" or scene["table"])}}
+
+    with pytest.raises((check.Wrong, check.Unproved)) as why:
+        check.checked(given)
+    assert ("do not fit" in str(why.value)) is not fits

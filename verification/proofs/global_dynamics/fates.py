@@ -77,6 +77,8 @@ def clusters(map: PinballImages, graph: Transitions, near: int = NEAR) -> list[C
     if recurrent[-1] and np.any(graph.edges.indices[: graph.edges.indptr[-2]] == graph.count):
         return None  # some box is lost, and orbits may do anything
     cells = graph.chosen(recurrent)
+    if not cells.chart.size:
+        return []  # no orbit stays for ever
     names = _named(graph, cells, near)
     chosen = recurrent[:-1] & graph.leaf
     inner = graph.edges[:-1, :-1][chosen][:, chosen].tocoo()

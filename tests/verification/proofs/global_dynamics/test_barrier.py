@@ -87,3 +87,18 @@ def test_without_a_barrier_or_a_region_beyond_it_nothing_is_said_of_either(monke
     monkeypatch.setattr(barriers, "enters", lambda *_: True)
 
     assert lost(stated, AFTER, SINK, CROSSES) == dict.fromkeys(("barrier", "taken", "apart", "crossed"))
+
+
+@pytest.mark.parametrize(
+    ("radius", "turns", "mirrored"),
+    [
+        ("1 + cos(3*theta)/40", 3, True),
+        ("1 + cos(3*theta)/40 + sin(6*theta)/200", 3, False),
+        ("1 + cos(theta)/9", 1, True),
+    ],
+)
+def test_turns_and_mirror_images_of_a_table_are_counted_apart(radius, turns, mirrored):
+    found = Barrier(Scene.of({"polar": radius, "lam": "1/2"}), (AT, AT), 64)
+
+    assert (found.turns, found.mirrored) == (turns, mirrored)
+    assert (found.grid.columns, found.grid.rows) == (64 * turns, 1)

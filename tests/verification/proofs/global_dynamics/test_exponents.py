@@ -1,6 +1,7 @@
 """A lower bound for the larger exponent: below what orbits show, and never positive where a cycle attracts."""
 
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +10,8 @@ from scipy.sparse import csr_matrix
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics import regions as statements
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
-from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Chart
+from verification.proofs.global_dynamics.graph import Grid, Transitions, morse_graph, refined
 from verification.proofs.global_dynamics.images import PinballImages, Slopes
 from verification.proofs.global_dynamics.regions import (
     Derivatives,
@@ -217,3 +218,44 @@ def test_a_bound_holds_for_every_vector_of_a_cone_along_every_walk(monkeypatch, 
             assert np.all(image.upper() <= high[inner.indices])
             assert bound.low > rate - 1.0
     assert found > 10 or turned
+
+
+def walks(*edges):
+    """The Morse graph of edges between the eight boxes of two charts, of which the first is three times as large."""
+    grid = Grid((Chart("a", (0, 3), (0, 2)), Chart("b", (0, 2), (0, 1))), 2, 2)
+    edges = csr_matrix((np.ones(len(edges), dtype=bool), tuple(zip(*edges, strict=True))), shape=(9, 9))
+    return morse_graph(Transitions(grid, grid.whole(), np.ones(8, dtype=bool), edges))
+
+
+def test_a_region_is_made_of_the_leaves_of_its_walks_and_of_none_that_leads_outside():
+    map = SimpleNamespace(scene=Scene("circle"), range=(Fraction(1, 2), Fraction(1, 2)))
+    inward, outward = (walks((0, 1), (1, 0), (1, 2), (2, 2), (5, end), (5, 5)) for end in (2, 8))
+    found = {tuple(some): statements.region(map, inward, k) for k, some in enumerate(inward.sets)}
+
+    assert {some: None if block is None else block.cells.chart.size for some, block in found.items()} == {
+        (0, 1): 3,
+        (2,): 1,
+        (5,): 2,
+    }
+    (box,) = (k for k, some in enumerate(outward.sets) if tuple(some) == (5,))
+    assert statements.region(map, outward, box) is None  # 8 is the outside
+
+
+@pytest.mark.parametrize(("kept", "share"), [({0, 1, 2, 3}, 0.75), ({4, 5, 6, 7}, 0.25), ({0}, 0.1875), ({7}, 0.0625)])
+def test_a_sampled_share_is_that_of_the_area_within_its_standard_error(kept, share):
+    """Particles stay where they are; the boxes of the first chart have three times the area of the others."""
+    stays = lambda theta, phi, *_: SimpleNamespace(theta=theta, phi=phi, component=_[-1])  # noqa: E731
+    map = SimpleNamespace(range=(Fraction(1, 2),) * 2, map=SimpleNamespace(exponents=stays))
+    graph = walks(*((box, min(kept)) for box in kept), *((min(kept), box) for box in kept))
+    found, error = statements.sampled_share(map, graph, 0)
+
+    assert abs(found - share) < 4 * error
+    assert error == pytest.approx(np.sqrt(found * (1 - found) / statements.STARTS))
+    nowhere = SimpleNamespace(
+        exponents=lambda theta, phi, *_: SimpleNamespace(theta=theta * np.nan, phi=phi, component=_[-1])
+    )
+    assert statements.sampled_share(SimpleNamespace(range=map.range, map=nowhere), graph, 0) == (
+        0,
+        1 / statements.STARTS,
+    )
+    assert statements.sampled_share(SimpleNamespace(range=(0, 1)), graph, 0) is None

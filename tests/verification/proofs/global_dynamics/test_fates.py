@@ -65,10 +65,10 @@ def test_what_is_not_so_or_not_seen_is_not_proved(wrong):
     assert not wrong.proved
 
 
-def slopes(*rows):
-    """Derivatives that take `(dtheta, dphi)` to `(a*dtheta + b*dphi, 0)`."""
+def slopes(*rows, radius=0.0):
+    """Derivatives that take `(dtheta, dphi)` to `(a*dtheta + b*dphi, 0)`, with `a` known but for `radius`."""
     a, b = np.array(rows, dtype=float).T
-    return Slopes(*(BallArray(x, 0 * x) for x in (a, b, 0 * a, 0 * a, 0 * a)))
+    return Slopes(BallArray(a, 0 * a + radius), *(BallArray(x, 0 * x) for x in (b, 0 * a, 0 * a, 0 * a)))
 
 
 def graph(size, *edges):
@@ -84,6 +84,12 @@ def test_factors_of_linear_maps_are_those_worked_out_by_hand():
     assert _contraction(slopes((4, 0), (0.3, 0)), each, round) > 1
     assert _staying(slopes((2, 0), (2, 0)), each, round) == pytest.approx(2.0**-64, rel=1e-6)
     assert _staying(slopes((4, 0), (0.2, 0)), each, round) > 1
+    for sign in (1, -1):  # of all derivatives in the balls the least favourable one
+        wide = slopes((2 * sign, 0), (2 * sign, 0), radius=0.5)
+        assert _staying(wide, each, round) == pytest.approx(1.5**-64, rel=1e-6)
+        assert _contraction(slopes((0.5 * sign, 0), (0.5 * sign, 0), radius=0.25), each, round) == pytest.approx(
+            0.75, abs=1e-6
+        )
     assert _staying(slopes((1, 0), (-1, 0)), np.zeros(2, dtype=np.int64), graph(1, (0, 0))) is None  # it folds
 
 
@@ -148,6 +154,7 @@ class Landings:
 @pytest.mark.parametrize(
     ("map", "edges", "sinks"),
     [
+        (Landings(), [(9, 10), (32, 0)], []),  # no box returns
         (Landings(), [(9, 9)], [True]),
         (Landings(), [(9, 9), (27, 27)], [True, True]),
         (Landings(), [(9, 27), (27, 9), (1, 9)], [True]),  # box 1 is passed once

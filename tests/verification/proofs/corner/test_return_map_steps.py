@@ -1,0 +1,171 @@
+"""Where the fourth collision falls, step by step: what is decided of courses and landings that are given."""
+
+import pytest
+from flint import arb
+
+from verification.proofs.corner import corner, return_map
+from verification.proofs.corner.corner import ARC, WALL, Quantity
+from verification.proofs.corner.return_map import Course, Fourth, Kink
+
+OPEN = arb(0, 1)
+
+
+def course(second: float | arb, component: int, *fourth: float | arb, whole: float | arb = 0) -> Course:
+    ball = lambda x: x if isinstance(x, arb) else arb(x)  # noqa: E731
+    slopes = tuple(map(ball, fourth)) or (arb(1), arb(0))
+    return Course(component, Quantity(arb(0), (ball(second), arb(1)), ball(whole)), Quantity(arb(0), slopes, arb(0)))
+
+
+@pytest.mark.parametrize(
+    ("given", "turns"),
+    [
+        (course(-1, WALL, -1), True), (course(-1, ARC, 1), True), (course(-1, WALL, 1), False),
+        (course(-1, ARC, -1), False), (course(1, WALL, -1), False), (course(1, ARC, 1), False),
+        (course(OPEN, ARC, 1), False), (course(-1, ARC, OPEN), False), (course(-1, WALL, OPEN), False),
+        (course(0, WALL, -1), False), (course(-1, WALL, 0), False), (course(-1, ARC, 0), False),
+    ],
+)  # fmt: skip
+def test_a_course_turns_where_the_second_bounce_moves_to_the_arc_and_s4_falls_before_and_grows_behind(given, turns):
+    assert return_map._turns(given) is turns
+
+
+RIGHT = {"strips": [course(-1, WALL, -1), course(-1, ARC, 1)], "ends": [[WALL], [ARC]]}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "answer"),
+    [
+        ({}, True), ({"strips": [course(-1, WALL, -1), course(-1, ARC, -1)]}, None),
+        ({"strips": [course(-1, WALL, 1)]}, None), ({"ends": [[ARC], [ARC]]}, None), ({"ends": [[WALL], [WALL]]}, None),
+        ({"ends": [[WALL, ARC], [ARC]]}, None), ({"ends": [[ARC], [WALL]]}, None), ({"ends": None}, None),
+    ],
+)  # fmt: skip
+def test_s4_has_its_minimum_at_the_kink_where_every_box_turns_and_the_kink_is_within_the_angles(
+    monkeypatch, wrong, answer
+):
+    given = RIGHT | wrong
+    ends = []
+
+    def courses(theta1, lam):
+        if given["ends"] is None:
+            raise ArithmeticError
+        ends.append(float(theta1))
+        return [course(-1, part) for part in given["ends"][float(theta1) > 0.25]]
+
+    monkeypatch.setattr(return_map, "_followed", lambda *_: given["strips"])
+    monkeypatch.setattr(return_map, "courses", courses)
+    assert return_map.minimum_at_kink(0.03, 0.0712, 0.0713) is answer
+    if answer:  # at angles just within those that are asked for
+        angles = [float(return_map.exit_angle(arb(end)).mid()) for end in sorted(set(ends))]
+        assert all(0.03 * (1 - 1e-5) < abs(x) < 0.03 for x in angles)
+        assert angles[0] > 0 > angles[1]
+
+
+def crossing(first: float, last: float):
+    """The second bounce passes the corner at `first` on the left of the box, at `last` on its right."""
+
+    def courses(theta1, lam):
+        whole = arb(0, 1e-12) if theta1.rad() > 0 or abs(float(theta1.mid()) - 0.25) < 1e-15 else None
+        whole = whole or arb(first if theta1 < 0.25 else last)
+        return [course(-2, component, -3, slope, whole=whole) for component, slope in ((WALL, 4), (ARC, 5))]
+
+    return courses
+
+
+@pytest.mark.parametrize(("first", "last", "held"), [(1, -1, True), (-1, -1, False), (1, 1, False), (0, -1, False),
+                                                     (1, 0, False)])  # fmt: skip
+def test_the_kink_is_in_a_box_at_whose_ends_the_second_bounce_is_on_either_side_of_the_corner(
+    monkeypatch, first, last, held
+):
+    """`s4 = -3*theta1 + (4 or 5)*lam` and `s2 = -2*theta1 + lam`: at the kink it moves by `4 - 3/2` or `5 - 3/2`."""
+    monkeypatch.setattr(return_map, "courses", crossing(first, last))
+    monkeypatch.setattr(return_map, "_near", lambda _: 0.25)
+    lam = arb(0.0712, 1e-4)
+    if not held:
+        with pytest.raises(ArithmeticError, match="the kink is not enclosed"):
+            return_map.kink(lam)
+        return
+    found = return_map.kink(lam)
+    assert found.speed.contains(arb("2.5"))
+    assert found.speed.contains(arb("3.5"))
+    assert found.theta1.contains(arb(0.25))
+    assert found.value.contains(arb(3.5) * 1e-4)
+    assert found.value.contains(arb(-3.5) * 1e-4)
+    assert found.value.rad() < 4e-4
+
+
+def kinks(theta1=None, star=None, speed=-1.0, apart=False) -> list[Kink]:
+    at, lam = corner.enclosed()
+    places = [at if theta1 is None else arb(theta1)] * 2
+    places[1] = places[1] + (1 if apart else 0)
+    return [Kink(lam if star is None else arb(star), place, arb(0), arb(speed)) for place in places]
+
+
+@pytest.mark.parametrize(
+    ("found", "answer"),
+    [
+        (kinks(), True), (kinks(speed=0.0), None), (kinks(speed=1.0), None), (kinks(apart=True), None),
+        (kinks(theta1=0.3), None), (kinks(star=0.08), None),
+    ],
+)  # fmt: skip
+def test_s4_falls_at_one_kink_that_is_the_corner_orbit_at_lambda_star(monkeypatch, found, answer):
+    left = list(found)
+    monkeypatch.setattr(return_map, "cuts", lambda *_: found)
+    monkeypatch.setattr(return_map, "kink", lambda _: left.pop(0))
+    assert return_map.kink_falls(0.071, 0.0713) is answer
+
+
+def test_s4_is_not_said_to_fall_where_a_kink_is_not_enclosed(monkeypatch):
+    def kink(_):
+        raise ArithmeticError
+
+    monkeypatch.setattr(return_map, "kink", kink)
+    assert return_map.kink_falls(0.071, 0.0713) is None
+
+
+def landed(component: int, theta: float | arb) -> return_map.Piece:
+    return return_map.Piece(component, theta if isinstance(theta, arb) else arb(theta), arb(1), arb(0))
+
+
+@pytest.mark.parametrize(
+    ("images", "on_wall", "beyond"),
+    [
+        (None, False, False), ([landed(WALL, 0.4)], True, True), ([landed(WALL, -0.4)], True, True),
+        ([landed(WALL, 0.44)], False, True), ([landed(WALL, -0.44)], False, False), ([landed(ARC, -1)], False, True),
+        ([landed(ARC, 1)], False, False), ([landed(ARC, arb(0, 1))], False, False), ([landed(ARC, 0)], False, False),
+        ([landed(WALL, 0.4), landed(ARC, -2)], False, True), ([landed(WALL, 0.4), landed(ARC, 2)], False, False),
+        ([landed(WALL, arb(0, 0.5))], False, False),
+    ],
+)  # fmt: skip
+def test_the_fourth_collision_is_on_the_wall_or_on_its_lower_side_where_all_pieces_are(
+    monkeypatch, images, on_wall, beyond
+):
+    asked = []
+    monkeypatch.setattr(return_map.Flights, "iterated", lambda self, pieces, n: asked.append((pieces, n)) or images)
+    assert return_map._lands_inside(arb(0.01), arb(0.02), False) is on_wall
+    assert return_map._lands_inside(arb(0.01), arb(0.02), True) is beyond
+    ((piece,), count), _ = asked
+    assert (piece.component, count) == (ARC, 4)
+    assert piece.theta.overlaps(2 * arb.pi() / 3)
+    assert abs(piece.theta - 2 * arb.pi() / 3) < 1e-12
+    assert piece.phi == arb(0.01)
+
+
+@pytest.mark.parametrize(("wide", "answer"), [(0.3, True), (1e-13, None)])
+def test_boxes_are_halved_until_each_is_settled_and_together_they_are_all_that_was_asked(monkeypatch, wide, answer):
+    settled, shares = [], []
+
+    def lands(phi, lam, or_lower):
+        small = float(phi.rad()) < wide and float(lam.rad()) < wide
+        return small and not settled.append((phi, lam))
+
+    monkeypatch.setattr(return_map, "_lands_inside", lands)
+    found = return_map.fourth_on_wall(1.0, 0.25, 0.75, 200, False, shares.append)
+    assert found.on_wall is answer
+    if answer:
+        assert abs(sum(shares) - 1) < 1e-12
+        for k in range(21):
+            for i in range(11):
+                phi, lam = arb(-1 + k / 10), arb(0.25 + i / 20)
+                assert any(a.contains(phi) and b.contains(lam) for a, b in settled)
+    assert return_map.fourth_on_wall(1.0, 0.25, 0.75, 3) == Fourth(None, 4)

@@ -2,13 +2,18 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
+from flint import arb
 
 from verification.app.cli import main
 from verification.named.files import checked, document
+from verification.proofs.manifolds import enclosed, proof, tangency
+from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.known import CONTACTS, SHAPE
-from verification.proofs.manifolds.proof import TangencyClaim, claim_of, worked_through
+from verification.proofs.manifolds.proof import ITEMS, Proof, TangencyClaim, claim_of, tangency_proved, worked_through
+from verification.proofs.periodic.interval_newton import Enclosure, Status
 
 VALUE = "0.662144273358224419482534547746"  # by a cycle that shadows the tangency: docs/crises.md
 CLAIM = TangencyClaim(CONTACTS["boundary"], SHAPE, VALUE, 20)
@@ -64,3 +69,162 @@ def test_a_claim_survives_the_way_through_a_file():
 def test_senseless_entries_are_one_sentence(changed, why):
     with pytest.raises(ValueError, match=why):
         checked({"schema": 1} | CLAIM.to_dict() | changed)
+
+
+def entry(name, value):
+    """The document with one entry of the claim, of its contact or of a saddle of it changed."""
+    given = json.loads(json.dumps(CLAIM.to_dict()))
+    *places, last = name.split(".")
+    at = given
+    for place in places:
+        at = at[place]
+    at[last] = value
+    return given
+
+
+@pytest.mark.parametrize(
+    ("name", "accepted", "refused"),
+    [
+        ("points", [3], [4]),
+        ("digits", [10, 600], [9, 601]),
+        ("value", ["0.5", "0." + "1" * 1000], ["0.", ".5", "-0.5", "0." + "1" * 1001, "0.5\n"]),
+        ("contact.bounces", [0, 1000], [-1, 1001]),
+        ("contact.sign", [1, -1], [0, 2]),
+        ("contact.z", [1e-9, -999.0], [0.0, 1000.0, -1000.0]),
+        ("contact.end", [1e-9, -999.0], [0.0, 1000.0, -1000.0]),
+        ("contact.letter", [1e-9, 0.999], [0.0, 1.0, -0.5]),
+        ("contact.unstable.start", [[0.5], [0.5] * 64], [[], [0.5] * 65]),
+        ("contact.stable.sign", [1, -1], [0, 3]),
+        ("contact.stable.shift", [[1, 1], [-2, 3]], [[1, 2], [1, 0]]),
+    ],
+)
+def test_an_entry_is_accepted_up_to_the_end_of_its_range_and_refused_beyond(name, accepted, refused):
+    for value in accepted:
+        claim = claim_of(entry(name, value))
+        assert claim_of(json.loads(json.dumps(claim.to_dict()))) == claim
+    for value in refused:
+        with pytest.raises(ValueError, match="certificate: "):
+            claim_of(entry(name, value))
+
+
+@pytest.mark.parametrize("open_", [None, *ITEMS])
+def test_a_tangency_is_one_by_five_items_and_holds_by_all(open_):
+    for answer in (None, False):
+        found = Proof(arb(0), {item: answer if item == open_ else True for item in ITEMS})
+
+        assert found.holds is (open_ is None)
+        assert found.touches is (open_ not in ("saddle", "remainder", "exists", "unique", "admissible"))
+
+
+@pytest.mark.parametrize("why", [*(TooWideError(item, "") for item in ITEMS), ValueError(), ArithmeticError()],
+                         ids=lambda why: getattr(why, "item", type(why).__name__))  # fmt: skip
+def test_a_proof_that_stops_says_which_items_came_before(monkeypatch, why):
+    def stops(*_):
+        raise why
+
+    monkeypatch.setattr(proof, "Touching", stops)
+    found = tangency_proved(CLAIM.contact, CLAIM.map, VALUE, 20)
+    known = ITEMS[: ITEMS.index(getattr(why, "item", "saddle"))]
+
+    assert {item for item, value in found.checks.items() if value is True} == set(known)
+    assert {item for item, value in found.checks.items() if value is None} == set(ITEMS) - set(known)
+
+
+BALL, OPEN = arb(1, 0.1), arb(0, 1)
+
+
+@pytest.mark.parametrize(
+    ("status", "convex", "objects", "bend", "speed", "missing"),
+    [
+        (Status.UNIQUE, True, "", BALL, -BALL, {}),
+        (Status.UNKNOWN, True, "", BALL, BALL, dict.fromkeys(("exists", "unique", "quadratic", "transversal"))),
+        (Status.EMPTY, True, "", BALL, BALL, dict.fromkeys(("exists", "unique"), False)
+         | dict.fromkeys(("quadratic", "transversal"))),
+        (Status.UNIQUE, None, "", BALL, BALL, {"admissible": None}),
+        (Status.UNIQUE, True, "no law", BALL, BALL, {"admissible": None}),
+        (Status.UNIQUE, True, "", OPEN, BALL, {"quadratic": None}),
+        (Status.UNIQUE, True, "", BALL, OPEN, {"transversal": None}),
+        (Status.UNIQUE, True, "", arb(0), -BALL, {"quadratic": None}),
+    ],
+)  # fmt: skip
+def test_each_item_of_a_tangency_is_what_its_own_step_proves(
+    monkeypatch, status, convex, objects, bend, speed, missing
+):
+    linear = SimpleNamespace(values=[arb(0)] * 3, along=[arb(0)] * 2, step=lambda values, how: [arb(0)] * len(values))
+    real = [SimpleNamespace(real=arb(k)) for k in range(7, 11)]  # complex balls have a real part
+    pairs = [SimpleNamespace(saddle=SimpleNamespace(stable=real[k], unstable=real[k + 1])) for k in (0, 2)]
+    system = SimpleNamespace(linear=lambda at: linear, parameter=arb("0.6"), contact=CLAIM.contact, pairs=pairs)
+    zero = [arb(0.1), arb(0.2), arb(0.3), arb(0.4), arb(0.6)]
+    monkeypatch.setattr(proof, "settled", lambda *_: SimpleNamespace(unknowns=zero))
+    monkeypatch.setattr(proof, "stepped", lambda *_: Enclosure(status, zero))
+    monkeypatch.setattr(proof, "admissible", lambda _: convex)
+    monkeypatch.setattr(proof, "objection", lambda *_: objects)
+    monkeypatch.setattr(proof, "generic", lambda *_: (bend, speed))
+    found = proof._proved(system, CLAIM.map, tangency.Precision(20))
+
+    assert found.checks == dict.fromkeys(ITEMS, True) | missing
+    if status is Status.UNIQUE:
+        assert found.parameter is zero[-1]
+        assert [float(x) for x in found.multipliers] == [7, 8]  # of the saddle that the orbit leaves
+    else:
+        assert found.parameter.overlaps(arb("0.6"))
+        assert 0 < found.parameter.rad() < 1e-15
+        assert not found.multipliers
+
+
+@pytest.mark.parametrize(
+    ("least", "found", "bound"),
+    [
+        (["1e-9", "3e-9"], ["1.9e-9", "5.9e-9"], "6e-9"),
+        (["3e-9", "1e-9"], ["1e-9", "1e-9"], "6e-9"),
+        (["1e-9", "3e-9"], ["2.1e-9", "1e-9"], None),  # one round takes the first to more than it may be
+        (["1e-9", "3e-9"], ["1e-9", "7e-9"], None),
+        (["6e-7", "1e-9"], ["1e-7", "1e-9"], None),  # beyond the tube on which slopes are bounded
+        (["1e-9", "5.1e-7"], ["1e-9", "1e-9"], None),
+    ],
+)
+def test_a_remainder_is_bounded_where_a_round_takes_its_bounds_into_themselves_within_the_tube(
+    monkeypatch, least, found, bound
+):
+    asked = []
+
+    def bounds(made, slopes, errors):
+        asked.append(errors)
+        return [arb(x) for x in (found if len(asked) > 1 else least)]
+
+    monkeypatch.setattr(enclosed, "vanishing", lambda _: True)
+    monkeypatch.setattr(enclosed, "round_outwards", lambda *_: [None, None])
+    monkeypatch.setattr(enclosed, "bounds", bounds)
+    if bound is None:
+        with pytest.raises(TooWideError, match="not bounded"):
+            enclosed.remainder(None, 1000)
+    else:
+        assert enclosed.remainder(None, 1000).overlaps(arb(bound))
+    assert [float(x) for x in asked[0]] == [0, 0]
+    assert [float(x) for x in asked[1]] == pytest.approx([2 * float(x) for x in least])
+
+
+@pytest.mark.parametrize(
+    ("item", "fails", "count"),
+    [("remainder", 0, 1), ("remainder", 2, 3), ("remainder", 3, 4), ("remainder", 4, None), ("saddle", 1, None)],
+)
+def test_smaller_units_are_tried_where_a_remainder_is_not_bounded_and_for_no_other_reason(
+    monkeypatch, item, fails, count
+):
+    tried = []
+
+    def pair(orbit, map, parameter, scale, precision):
+        tried.append((scale.unit, scale.more))
+        if len(tried) <= fails:
+            raise TooWideError(item, "")
+        return scale
+
+    monkeypatch.setattr(tangency, "pair", pair)
+    start = tangency.Scale(True, 1.0, 0, None)
+    if count is None:
+        with pytest.raises(TooWideError):
+            tangency.smaller(None, None, None, start, None)
+        assert len(tried) == (4 if item == "remainder" else 1)
+    else:
+        assert tangency.smaller(None, None, None, start, None).unit == 10.0 ** -(count - 1)
+        assert tried == [(pytest.approx(10.0**-k), 10 * k) for k in range(count)]

@@ -3,7 +3,7 @@
 import pytest
 from flint import arb
 
-from verification.proofs.corner import corner, return_map
+from verification.proofs.corner import corner, half_return, return_map
 from verification.proofs.corner.corner import ARC, WALL, Quantity
 from verification.proofs.corner.return_map import Course, Fourth, Kink
 
@@ -169,3 +169,76 @@ def test_boxes_are_halved_until_each_is_settled_and_together_they_are_all_that_w
                 phi, lam = arb(-1 + k / 10), arb(0.25 + i / 20)
                 assert any(a.contains(phi) and b.contains(lam) for a, b in settled)
     assert return_map.fourth_on_wall(1.0, 0.25, 0.75, 3) == Fourth(None, 4)
+
+
+@pytest.mark.parametrize(
+    ("at", "there"),
+    [(arb(2), True), (arb(-2), True), (arb(2.2), False), (arb(-2.2), False), (arb(2, 0.2), False), (None, False)],
+)
+def test_a_particle_from_the_wall_lands_on_the_arc_where_its_root_is_proved_to_lie_between_the_ends(
+    monkeypatch, at, there
+):
+    flights, asked = return_map.Flights(), []
+    monkeypatch.setattr(
+        flights, "_root", lambda *given: asked.append(given) or (None if at is None else landed(ARC, at))
+    )
+    found = flights.landing(landed(WALL, 0.1))
+
+    assert (found is not None) is there
+    assert found is None or [piece.theta for piece in found] == [at]
+    assert [given[1] for given in asked] == [ARC]
+
+
+def test_where_one_of_several_pieces_does_not_land_nothing_is_told(monkeypatch):
+    flights = return_map.Flights()
+    ways = {1: [landed(ARC, 2), landed(WALL, 3)], 2: [landed(ARC, 4)], 3: None, 4: [landed(ARC, 5)]}
+    monkeypatch.setattr(flights, "landing", lambda piece: ways[int(float(piece.theta))])
+
+    assert [float(piece.theta) for piece in flights.iterated([landed(ARC, 1)], 1)] == [2, 3]
+    assert [float(piece.theta) for piece in flights.iterated([landed(ARC, 2)], 2)] == [5]
+    assert flights.iterated([landed(ARC, 1)], 2) is None
+    assert flights.iterated([landed(ARC, 1)], 0)[0].theta == 1
+
+
+@pytest.mark.parametrize(("size", "told"), [(1.0, True), (0.4, True), (0.07, True), (0.06, False)])
+def test_strips_are_halved_up_to_four_times_and_cover_all_that_was_asked(monkeypatch, size, told):
+    done = []
+
+    def courses(theta1, lam):
+        if theta1.rad() > size:
+            raise ArithmeticError
+        done.append(theta1)
+        return [theta1]
+
+    monkeypatch.setattr(return_map, "courses", courses)
+    if not told:
+        with pytest.raises(ArithmeticError):
+            return_map._followed(arb(0, 1), arb(0))
+        return
+    assert return_map._followed(arb(0, 1), arb(0)) == done
+    assert all(any(part.contains(arb(k) / 16) for part in done) for k in range(-16, 17))
+
+
+SIZES = [(1, 1, True), (0.3, 1, True), (1, 0.3, True), (0.13, 0.13, True), (0.07, 0.13, False), (0.13, 0.07, False)]
+
+
+@pytest.mark.parametrize(("wide", "late", "told"), SIZES)
+def test_boxes_of_a_half_return_are_halved_along_the_longer_of_two_sides_up_to_six_times(monkeypatch, wide, late, told):
+    done = []
+
+    def images(component, u, v, e):
+        if v.rad() > wide or e.rad() > late:
+            raise ArithmeticError
+        done.append((u, v, e))
+        return [(component, v)]
+
+    monkeypatch.setattr(half_return, "_images", images)
+    box = arb(5), arb(0, 1), arb(0, 1)
+    if not told:
+        with pytest.raises(ArithmeticError):
+            half_return._followed(WALL, *box)
+        return
+    assert half_return._followed(WALL, *box) == [(WALL, v) for _, v, _ in done]
+    for v, e in [(arb(i) / 8, arb(k) / 8) for i in range(-8, 9) for k in range(-8, 9)]:
+        assert any(a.contains(v) and b.contains(e) for _, a, b in done)
+    assert all(u == 5 for u, _, _ in done)

@@ -9,7 +9,8 @@ from IPython.display import Math, display
 from sympy import simplify, symbols
 
 from symbolic.motion import collision
-from symbolic.tables.table import cos_eta1, cos_phi0, lam, latex
+from symbolic.tables.formula import latex
+from symbolic.tables.table import cos_eta1, cos_phi0, lam
 
 
 def show(left, right):

@@ -13,7 +13,8 @@ from symbolic.cycles import thresholds
 from symbolic.cycles import thresholds as double_normal
 from symbolic.cycles.cycle import major_axis, minor_axis
 from symbolic.tables import geometry
-from symbolic.tables.table import a, lam, latex
+from symbolic.tables.formula import latex
+from symbolic.tables.table import a, lam
 
 
 def show(left, right):

@@ -12,7 +12,7 @@ from symbolic import tables
 from symbolic.cycles import cardioid_slap as slap_cardioid
 from symbolic.tables import geometry
 from symbolic.tables import geometry as length
-from symbolic.tables.table import latex
+from symbolic.tables.formula import latex
 
 
 def show(left, right):

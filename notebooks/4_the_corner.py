@@ -10,7 +10,7 @@ from IPython.display import Math, display
 from symbolic.cycles import cycle as cycles
 from symbolic.cycles import thresholds
 from symbolic.cycles.cycle import cuspless_horizontal
-from symbolic.tables.table import latex
+from symbolic.tables.formula import latex
 from verification.named.locate import locate
 
 

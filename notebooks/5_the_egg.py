@@ -11,7 +11,8 @@ from sympy import N, Rational, S
 from symbolic.cycles import polygons, thresholds
 from symbolic.cycles import thresholds as double_normal
 from symbolic.cycles.cycle import egg_diameter
-from symbolic.tables.table import alpha, lam, latex
+from symbolic.tables.formula import latex
+from symbolic.tables.table import alpha, lam
 from verification.named.locate import locate
 
 

@@ -13,7 +13,8 @@ from symbolic.cycles import thresholds as double_normal
 from symbolic.cycles.cycle import Cycle
 from symbolic.motion.chords import convexity
 from symbolic.tables import geometry
-from symbolic.tables.table import latex, theta
+from symbolic.tables.formula import latex
+from symbolic.tables.table import theta
 
 
 def show(left, right):

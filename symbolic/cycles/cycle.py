@@ -109,7 +109,7 @@ class Cycle:
         return simplify(leaving), simplify(arriving)
 
     def _repr_latex_(self) -> str:
-        from symbolic.tables.table import equation  # a notebook asks for it, nothing else does
+        from symbolic.tables.formula import equation  # a notebook asks for it, nothing else does
 
         return equation(rf"\text{{{self.table.name}, {self.name}:}}\quad D T^{{{len(self.bounces)}}}", monodromy(self))
 

@@ -1,4 +1,4 @@
-"""Formulas typed by a user, read by a parser that can only build exact expressions.
+"""Formulas: typed by a user and read by a parser that can only build exact expressions, or set in LaTeX.
 
     sum     = product { ("+" | "-") product }
     product = signed { ("*" | "/") signed }
@@ -6,12 +6,9 @@
     power   = atom [ ("**" | "^") signed ]
     atom    = number | name | function "(" sum ")" | "(" sum ")"
 
-Nothing typed is ever executed, and a decimal is the decimal it shows: `0.08` is 2/25.
-
-What an expression read from a formula may be, so that everything done with it stays cheap.
-
-SymPy's numerical tests take twice as long for each level of an irrational constant, and its
-roots factor the number under them; a short formula can otherwise ask for a day of work.
+Nothing typed is ever executed, and a decimal is the decimal it shows: `0.08` is 2/25. What may be read is bounded
+(`flaw`), so that everything done with it stays cheap: SymPy's numerical tests take twice as long for each level of an
+irrational constant, and its roots factor the number under them; a short formula can otherwise ask for a day of work.
 """
 
 import re
@@ -24,8 +21,10 @@ from typing import NamedTuple
 from sympy import (
     Abs,
     Add,
+    Basic,
     E,
     Expr,
+    Matrix,
     Mul,
     Pow,
     Rational,
@@ -39,10 +38,11 @@ from sympy import (
     sinh,
     tan,
 )
+from sympy import latex as sympy_latex
 from sympy.core.traversal import preorder_traversal
 
 from symbolic.expressions import text as vocabulary
-from symbolic.tables.table import theta
+from symbolic.tables.table import K0, K1, Component, Table, cos_eta1, cos_phi0, eta, lam, phi, theta
 
 LENGTH, DIGITS = 2000, 400
 TOKEN = re.compile(
@@ -328,3 +328,61 @@ def levels(value: Expr) -> int:
     2
     """
     return 1 + max(levels(part) for part in value.args) if value.args else 0
+
+
+SPECIAL = {
+    lam: r"\lambda",
+    phi: r"\varphi",
+    eta: r"\eta",
+    K0: "K_{0}",
+    K1: "K_{1}",
+    cos_phi0: r"\cos \varphi_{0}",
+    cos_eta1: r"\cos \eta_{1}",
+}
+
+
+def latex(expression: Expr | Matrix | Component | Table) -> str:
+    """`expression` in LaTeX, in the paper's letters; a component is its parametrisation.
+
+    >>> from symbolic.tables.table import alpha
+    >>> latex(lam * alpha)
+    '\\\\alpha \\\\lambda'
+    >>> from symbolic.tables import cuspless
+    >>> latex(cuspless.component("wall").point[0])
+    '- \\\\frac{1}{4}'
+    """
+    if isinstance(expression, Table):
+        return r" \\ ".join(latex(component) for component in expression.components)
+    if isinstance(expression, Component):
+        x, y = (latex(coordinate) for coordinate in expression.point)
+        return rf"\left({x}, {y}\right), \quad {latex(expression.start)} \leq \theta \leq {latex(expression.end)}"
+    return str(sympy_latex(expression, symbol_names=_names(expression)))
+
+
+def equation(left: str, right: Expr | Matrix) -> str:
+    """A displayed equation for a notebook cell; `left` is LaTeX already.
+
+    >>> equation(r"\\varphi", -lam * eta)
+    '$\\\\displaystyle \\\\varphi = - \\\\eta \\\\lambda$'
+    """
+    return rf"$\displaystyle {left} = {latex(right)}$"
+
+
+def letter(name: str) -> str:
+    """A name of the code as the paper's letter, with what follows as a subscript.
+
+    >>> letter("theta_next"), letter("lam"), letter("mu0")
+    ('\\\\theta_{\\\\mathrm{next}}', '\\\\lambda', '\\\\mu_{0}')
+    """
+    stem, _, tail = name.partition("_")
+    digits = stem[len(stem.rstrip("0123456789")) :]
+    stem = stem[: len(stem) - len(digits)]
+    base = {"lam": r"\lambda", "phi": r"\varphi"}.get(stem) or str(sympy_latex(Symbol(stem)))
+    parts = [digits] if digits else []
+    parts += [rf"\mathrm{{{tail}}}"] if tail else []
+    return base + (f"_{{{','.join(parts)}}}" if parts else "")
+
+
+def _names(expression: Expr | Matrix) -> dict[Basic, str]:
+    symbols = sorted(expression.free_symbols, key=str)
+    return {s: SPECIAL.get(s) or letter(s.name) for s in symbols}

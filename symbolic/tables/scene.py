@@ -287,7 +287,7 @@ class Scene:
         return f"Scene({', '.join([*first, *(f'{key}={said[key]!r}' for key in ('law', 'lam') if key in said)])})"
 
     def _repr_latex_(self) -> str:
-        from symbolic.tables.table import latex
+        from symbolic.tables.formula import latex
 
         return rf"$\displaystyle {latex(self.table)}, \quad \varphi = {latex(self.law.phi)}$"
 

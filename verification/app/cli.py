@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verification.arithmetic.progress import heard
+from verification.arithmetic.iteration import heard
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,7 +88,7 @@ class Output:
 
         A bar shows on a terminal after two seconds.
 
-        What a long proof tells of itself within a step (`verification.arithmetic.progress`) moves the bar as well.
+        What a long proof tells of itself within a step (`verification.arithmetic.iteration`) moves the bar as well.
         """
         from rich.console import Console
         from rich.progress import Progress

@@ -19,8 +19,7 @@ from .balls import (
     real_ball,
     working,
 )
-from .iteration import Iteration, Stop, Vector, in_rows, iterated, largest
-from .progress import Tick, heard, silent, telling
+from .iteration import Iteration, Stop, Tick, Vector, heard, in_rows, iterated, largest, silent, telling
 from .series import Function, Jet, expanded, jets
 
 __all__ = [

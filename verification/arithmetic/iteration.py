@@ -1,20 +1,32 @@
-"""Newton's method, and every other iteration that ends in rounding: one loop and one rule for its end.
+"""Work that goes on in steps: iterations that end in rounding, and how far a long proof has come.
 
-The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square
-of the one before, until rounding takes over. So an iteration has settled when a correction is as small as is wanted,
-or when corrections that were small shrink no more. At a double zero they halve, which is still shrinking.
+Newton's method and every other iteration have one loop and one rule for its end. The unknowns are a list of numbers of
+any kind, or of arrays. Near a simple zero each correction is about the square of the one before, until rounding takes
+over. So an iteration has settled when a correction is as small as is wanted, or when corrections that were small shrink
+no more. At a double zero they halve, which is still shrinking.
+
+A proof calls its `tick` with each share of its work that is done and knows of no progress bar; `telling` makes such a
+function.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 SHRINKS = 0.75  # of the correction before: what is larger no longer shrinks
 Vector = list[Any]
+
+Tick = Callable[[float], None]
+Hearer = Callable[[str, float], None]
+_hearer: ContextVar[Hearer | None] = ContextVar("hearer", default=None)
+STEP = 1e-3  # a bar shows no smaller share
 
 
 @dataclass(frozen=True)
@@ -81,14 +93,17 @@ def iterated(
 
 
 def in_rows(
-    correction: Callable[[NDArray[np.float64]], NDArray[np.float64]], start: NDArray[np.float64], stop: Stop
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    correction: "Callable[[NDArray[np.float64]], NDArray[np.float64]]", start: "NDArray[np.float64]", stop: Stop
+) -> "tuple[NDArray[np.float64], NDArray[np.bool_]]":
     """The same in float64 for each row of `start` by itself, and which rows settled by a correction that was `enough`.
 
+    >>> import numpy as np
     >>> x, settled = in_rows(lambda x: (x * x - 2) / (2 * x), np.array([[1.0], [0.0]]), Stop(enough=1e-11))
     >>> round(float(x[0, 0]), 12), settled.tolist()
     (1.414213562373, [True, False])
     """
+    import numpy as np  # which most iterations do without
+
     x, settled = start.copy(), np.zeros(len(start), dtype=bool)
     with np.errstate(all="ignore"):
         for _ in range(stop.steps):
@@ -104,6 +119,8 @@ def in_rows(
 
 def largest(parts: Sequence[Any]) -> float:
     """The largest finite entry of numbers, arrays and Taylor series of either, in absolute value."""
+    import numpy as np
+
     sizes = [0.0]
     for part in parts:
         for number in getattr(part, "c", (part,)):
@@ -112,3 +129,40 @@ def largest(parts: Sequence[Any]) -> float:
             else:
                 sizes.append(float(abs(number)))
     return max(sizes)
+
+
+@contextmanager
+def heard(by: Hearer) -> Iterator[None]:
+    """Within, `by` is called with what is being worked at and the share of it that is done.
+
+    >>> heard_of = []
+    >>> with heard(lambda about, share: heard_of.append((about, share))):
+    ...     tick = telling("boxes")
+    ...     tick(0.25)
+    ...     tick(0.5)
+    >>> heard_of
+    [('boxes', 0.25), ('boxes', 0.75)]
+    """
+    before = _hearer.set(by)
+    try:
+        yield
+    finally:
+        _hearer.reset(before)
+
+
+def silent(share: float) -> None:
+    """The tick of a proof that nobody asked to tell."""
+
+
+def telling(about: str) -> Tick:
+    """A verb to call with each share that is done; it does nothing while nobody listens."""
+    hear, done, told = _hearer.get(), 0.0, 0.0
+
+    def tick(share: float) -> None:
+        nonlocal done, told
+        done += share
+        if hear is not None and done - told >= STEP:
+            told = done
+            hear(about, min(done, 1.0))
+
+    return tick

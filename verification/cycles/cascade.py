@@ -18,7 +18,7 @@ from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import Table
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import FLOAT64
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.cycles.chords import chord_angles, landing
 from verification.cycles.newton import floats
 from verification.cycles.problem import Linearised, Problem

@@ -22,7 +22,7 @@ from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
 from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.cycles.cascade import HIGHEST, critical_cycle
 from verification.cycles.cascade import symmetry_breaking as first_symmetry_breaking
 from verification.cycles.critical import corner, focus

@@ -12,8 +12,8 @@ from importlib.resources import files
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
+from verification.paper.report.findings import escaped
 from verification.paper.report.mathml import formula, mathml, remark
-from verification.paper.report.report import escaped
 from verification.reports.asked import FILE, Parts
 from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Number, Picture, Words
 from verification.reports.report import Report

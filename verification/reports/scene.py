@@ -12,9 +12,10 @@ from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import convexity
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.curves import LONG, size
+from symbolic.tables.formula import latex
 from symbolic.tables.geometry import Symmetry, arc_length, curvature, group, perimeter, turning
 from symbolic.tables.scene import Scene
-from symbolic.tables.table import Table, eta, latex, theta
+from symbolic.tables.table import Table, eta, theta
 from symbolic.tables.validity import enclosed_area, radius_sign, simple
 from verification.arithmetic.balls import ARRAYS, FLOAT64, decimal
 from verification.maps.enclosed import EnclosedMap

@@ -6,7 +6,8 @@ from sympy import Matrix, Rational, cos
 from symbolic.motion.chords import collision_rule
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cuspless, egg
-from symbolic.tables.table import alpha, equation, eta, lam, latex, letter, phi, theta
+from symbolic.tables.formula import equation, latex, letter
+from symbolic.tables.table import alpha, eta, lam, phi, theta
 
 
 @pytest.mark.parametrize(

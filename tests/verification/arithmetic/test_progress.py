@@ -6,7 +6,7 @@ import pytest
 
 from verification.app import cli as output
 from verification.app.cli import Output
-from verification.arithmetic.progress import heard, silent, telling
+from verification.arithmetic.iteration import heard, silent, telling
 
 
 def test_nobody_listening_is_no_error():

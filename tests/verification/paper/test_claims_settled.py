@@ -3,7 +3,7 @@
 import pytest
 from sympy import Rational
 
-from verification.arithmetic.progress import heard
+from verification.arithmetic.iteration import heard
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg.basins import without_triangles
 from verification.paper.judges import hyperbolicity as on_border

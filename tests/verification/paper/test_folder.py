@@ -11,7 +11,7 @@ from verification.app.cli import BAD_INPUT, main
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import OWN, ROOT, SHIPPED, begin, judge_of, paper
 from verification.paper.report import report
-from verification.paper.report.changed import codes
+from verification.paper.report.report import codes
 
 OTHERS = sorted(path.parent.name for path in SHIPPED.glob("*/paper.toml") if path.parent.name != OWN)
 

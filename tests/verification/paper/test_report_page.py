@@ -14,10 +14,9 @@ from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import paper
 from verification.paper.figures.catalogue import pictures
 from verification.paper.report import report as claims
-from verification.paper.report.findings import GRADES, compared, findings, graded, letter
+from verification.paper.report.findings import GRADES, compared, escaped, findings, graded, letter, tables
 from verification.paper.report.mathml import formula, formulas, mathml, prose, remark
 from verification.paper.report.page import FOLD, Picture, diagrams, page
-from verification.paper.report.report import escaped, tables
 
 VOID = {"meta", "input", "br", "img"}
 

@@ -17,7 +17,7 @@ from verification.app.cli import main
 from verification.app.commands.verify import Last, write_report
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import paper, recorded
-from verification.paper.report import changed, report
+from verification.paper.report import report
 
 ROOT = Path(__file__).parents[3]
 
@@ -174,31 +174,31 @@ def test_a_judge_loads_no_module_that_its_digest_leaves_out(name):
         f"list(report.verify({name!r})); print(*(set(sys.modules) - before))"
     )
     run = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
-    loaded = {module for module in run.stdout.split() if module.partition(".")[0] in changed.STOREYS}
+    loaded = {module for module in run.stdout.split() if module.partition(".")[0] in report.STOREYS}
 
     assert loaded
-    assert loaded <= changed.closure(next(claim.home for claim in report.catalogue() if claim.id == name))
+    assert loaded <= report.closure(next(claim.home for claim in report.catalogue() if claim.id == name))
 
 
 def test_a_digest_changes_with_every_module_that_a_judge_can_load_and_with_no_other(monkeypatch):
     claims = [claim for claim in report.catalogue() if claim.id in ("ellipse.P1", "cuspless.corner_orbit")]
-    before = changed.codes(claims, 15)
-    texts = dict(changed.sources())
+    before = report.codes(claims, 15)
+    texts = dict(report.sources())
     texts["verification.proofs.corner.corner"] += "\n# another text\n"
-    monkeypatch.setattr(changed, "sources", lambda: texts)
-    changed.digest.cache_clear()
-    after = changed.codes(claims, 15)
-    changed.digest.cache_clear()
+    monkeypatch.setattr(report, "sources", lambda: texts)
+    report.digest.cache_clear()
+    after = report.codes(claims, 15)
+    report.digest.cache_clear()
 
     assert after["ellipse.P1"] == before["ellipse.P1"]
     assert after["cuspless.corner_orbit"] != before["cuspless.corner_orbit"]
-    assert changed.codes(claims, 16)["ellipse.P1"] != before["ellipse.P1"]
+    assert report.codes(claims, 16)["ellipse.P1"] != before["ellipse.P1"]
 
 
 def test_only_what_changed_is_judged_again(tmp_path, monkeypatch, capsys):
     claims = [claim for claim in report.catalogue() if claim.id in ("ellipse.P1", "ellipse.P2")]
     results = [replace(report.judge(claim), seconds=0.5) for claim in claims]
-    code = changed.codes(claims, 15)
+    code = report.codes(claims, 15)
     write_report(tmp_path, results, (), {**code, "ellipse.P2": "another"})
 
     assert list(Last.read(tmp_path, claims, 15).results.values()) == [r for r in results if r.id != "ellipse.P2"]

@@ -21,7 +21,7 @@ import click
 
 from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
 from verification.paper.report import report
-from verification.paper.report.changed import codes
+from verification.paper.report.report import codes
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
@@ -371,9 +371,8 @@ def write_report(
     `code` has digests of the code that the results depend on, kept for `--changed`.
     """
     from verification.paper.claims.folder import paper
-    from verification.paper.report.findings import letter
+    from verification.paper.report.findings import letter, tables
     from verification.paper.report.page import markdown, page
-    from verification.paper.report.report import tables
 
     versions, about = report.made_with(), about or paper()
     whole = report.document(results, about.about) | {"made_with": versions, "code": dict(code or {})}

@@ -21,7 +21,7 @@ from symbolic.cycles.polygons import near_flat, saddle_node
 from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, sampled, shown

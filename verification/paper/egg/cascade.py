@@ -13,7 +13,7 @@ from symbolic.cycles.thresholds import tilt
 from symbolic.expressions.signs import Finding, Outcome, positive
 from symbolic.tables import egg as table_of
 from symbolic.tables.table import alpha
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.cycles.cascade import attractor
 from verification.named.branches import cascade
 from verification.paper.claims.claim import Claim, Judgement

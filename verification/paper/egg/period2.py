@@ -28,7 +28,7 @@ from symbolic.cycles.thresholds import alpha_hat, alpha_tilde, complex_up_to, st
 from symbolic.expressions.signs import Finding, conjunction, nonnegative, positive
 from symbolic.motion.collision import slap_derivative
 from symbolic.tables.table import alpha, lam
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import (
     answer,

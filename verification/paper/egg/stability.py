@@ -24,7 +24,7 @@ from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.cycles.cascade import attractor, cycle_at, doubled, doubling
 from verification.named.attractors import certificate
 from verification.named.branches import cascade

@@ -25,7 +25,7 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, cos_eta1, cos_phi0, lam
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import enclose
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled

@@ -1,4 +1,6 @@
-"""What the report says first: what holds, what is new, how grave each erratum is, and the letter to the authors.
+r"""What the report says first: what holds, what is new, how grave each erratum is, and the letter to the authors.
+
+The LaTeX tables are brought into a document by `\input`.
 
 `findings.toml` in a paper's folder, if there is one, has the sentences and the grades. A finding is shown when each of
 its claims was judged and none is open.
@@ -22,7 +24,7 @@ from verification.arithmetic.balls import enclose
 from verification.paper.claims.claim import LETTERS
 from verification.paper.claims.folder import Paper
 from verification.paper.report.mathml import formula, formulas, pieces, remark
-from verification.paper.report.report import Result, errata, escaped, place
+from verification.paper.report.report import Result, counts, errata, place
 
 GRADES = {
     "substantial": "what is said is not so, and something else is true",
@@ -261,3 +263,82 @@ def _symbol(name: str) -> str:
     stem, _, below = name.rstrip("*").partition("_")
     base = {"lam": r"\lambda", "phi": r"\varphi"}.get(stem, stem if len(stem) == 1 else rf"\{stem}")
     return f"${base}{f'_{{{below}}}' if below else ''}{'^*' if name.endswith('*') else ''}$"
+
+
+SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "_": r"\_",
+    "%": r"\%",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+}
+BREAKS = "*/+,=_"  # a long formula may be broken after these
+
+
+def tables(results: Sequence[Result], sections: Iterable[str] = ()) -> str:
+    """Three tables: the counts, the errata, and every claim; they need the packages longtable and booktabs."""
+    parts = [
+        "% \\usepackage{booktabs,longtable}",
+        _table("lr", ("verdict", "claims"), [[name, str(number)] for name, number in counts(results).items()]),
+        _table(
+            r"p{.24\linewidth}p{.68\linewidth}", ("claim", "erratum"), [_erratum(r) for r in errata(results, sections)]
+        ),
+        _table(
+            r"p{.28\linewidth}p{.13\linewidth}p{.49\linewidth}",
+            ("claim", "verdict", "what is true"),
+            [[_code(r.id), r.verdict.value, _words(r.value or r.derived or "--")] for r in results],
+        ),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def escaped(text: str) -> str:
+    """`text` with every character that LaTeX would act on made plain.
+
+    >>> print(escaped("50 % of a_1"))
+    50 \\% of a\\_1
+    """
+    return "".join(SPECIAL.get(letter, letter) for letter in text)
+
+
+def _erratum(result: Result) -> list[str]:
+    return [_code(result.id), _words(result.erratum)]
+
+
+def _code(text: str) -> str:
+    return rf"\texttt{{{_breakable(text, '._')}}}"
+
+
+def _words(text: str) -> str:
+    words = " ".join(text.split()).split(" ")
+    return " ".join(_breakable(word, BREAKS) if len(word) > 24 else escaped(word) for word in words)
+
+
+def _breakable(text: str, where: str) -> str:
+    digits = text.replace(".", "").replace("-", "").isdigit()
+    return "".join(
+        escaped(letter) + (r"\allowbreak{}" if letter in where or (digits and i % 10 == 9) else "")
+        for i, letter in enumerate(text)
+    )
+
+
+def _table(columns: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    body = "\n".join(" & ".join(row) + r" \\" for row in rows)
+    head = " & ".join(heads)
+    return "\n".join(
+        [
+            rf"\begin{{longtable}}{{{columns}}}",
+            rf"\toprule {head} \\ \midrule \endhead",
+            *([body] if rows else []),
+            r"\bottomrule",
+            r"\end{longtable}",
+        ]
+    )

@@ -12,7 +12,7 @@ from functools import lru_cache
 from latex2mathml.converter import convert
 from markupsafe import Markup, escape
 
-from symbolic.tables.table import letter
+from symbolic.tables.formula import letter
 
 PAPER = {  # the paper's own macros
     r"\defeq": ":=",

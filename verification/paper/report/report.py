@@ -1,22 +1,28 @@
-r"""The claims of a paper judged, and told: as a page, Markdown, JSON and LaTeX tables.
+"""The claims of a paper judged, and told: as a page, Markdown, JSON and LaTeX tables.
 
 `catalogue()` lists the claims, `verify()` judges them. What is printed lies in the paper's folder, what is true is
 derived in `symbolic`, and the judges stand between the two; so a misprint cannot leak into the mathematics.
 
 The page is one file that needs no network; a result is shown in each form from the same `Result`.
 
-The LaTeX tables are brought into a document by `\input`.
+Which claims depend on code that changed is known by a digest of every module that a judge can load, read off the
+imports. Nothing is run for it: the source text names what it imports, at the top or inside a function, and a module
+that names another depends on it. So the set is never too small, and it is larger than what one claim needs.
 """
 
 import platform
+import re
 import time
 from collections import Counter, deque
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from functools import partial
+from functools import cache, partial
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -29,6 +35,14 @@ from verification.paper.claims.folder import OWN, Paper, home, judge_of, module,
 from verification.paper.figures.catalogue import Picture
 
 SMALL = 4.0  # seconds of judging that other processes would not save
+STOREYS = ("symbolic", "numeric", "verification")
+OURS = rf"(?:{'|'.join(STOREYS)})"
+FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n(]*)", re.MULTILINE)
+IMPORT = re.compile(rf"^[ \t]*import[ \t]+({OURS}[\w.]*)", re.MULTILINE)
+LEFT_OUT = re.compile(
+    r'"""[\s\S]*?"""|^if TYPE_CHECKING:\n(?:[ \t].*\n|\n)*', re.MULTILINE
+)  # words, and what runs nothing
+QUOTED = re.compile(rf"[\"']({OURS}(?:\.\w+)+)[\"'.]")  # a module named by text, or the room of one
 
 
 @dataclass(frozen=True)
@@ -234,80 +248,105 @@ def section_order(section: str) -> tuple[int, ...]:
     return (2, *(int(part) for part in label[1:] if part.isdigit())) if len(label[0]) == 1 else (0,)
 
 
-SPECIAL = {
-    "\\": r"\textbackslash{}",
-    "{": r"\{",
-    "}": r"\}",
-    "$": r"\$",
-    "&": r"\&",
-    "#": r"\#",
-    "_": r"\_",
-    "%": r"\%",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "|": r"\textbar{}",
-}
-BREAKS = "*/+,=_"  # a long formula may be broken after these
+@cache
+def sources() -> Mapping[str, str]:
+    """The text of every module of the package by its dotted name; of a room's stub, by the room's and `.pyi`."""
+    found: dict[str, str] = {}
+    for storey in STOREYS:
+        _gather(files(storey), storey, found)
+    return found
 
 
-def tables(results: Sequence["Result"], sections: Iterable[str] = ()) -> str:
-    """Three tables: the counts, the errata, and every claim; they need the packages longtable and booktabs."""
-    parts = [
-        "% \\usepackage{booktabs,longtable}",
-        _table("lr", ("verdict", "claims"), [[name, str(number)] for name, number in counts(results).items()]),
-        _table(
-            r"p{.24\linewidth}p{.68\linewidth}", ("claim", "erratum"), [_erratum(r) for r in errata(results, sections)]
-        ),
-        _table(
-            r"p{.28\linewidth}p{.13\linewidth}p{.49\linewidth}",
-            ("claim", "verdict", "what is true"),
-            [[_code(r.id), r.verdict.value, _words(r.value or r.derived or "--")] for r in results],
-        ),
-    ]
-    return "\n\n".join(parts) + "\n"
+def _gather(folder: Traversable, name: str, found: dict[str, str]) -> None:
+    for path in folder.iterdir():
+        if path.is_dir() and (path / "__init__.py").is_file():
+            _gather(path, f"{name}.{path.name}", found)
+        elif path.name.endswith((".py", ".pyi")):
+            stem, ending = path.name.split(".")
+            dotted = name if stem == "__init__" else f"{name}.{stem}"
+            found[f"{dotted}.pyi" if ending == "pyi" else dotted] = path.read_text(encoding="utf-8")
 
 
-def escaped(text: str) -> str:
-    """`text` with every character that LaTeX would act on made plain.
+@cache
+def exports(room: str) -> Mapping[str, str]:
+    """Where the names come from that a room hands out when asked for them.
 
-    >>> print(escaped("50 % of a_1"))
-    50 \\% of a\\_1
+    >>> exports("verification")["verify"]
+    'verification.paper.report.report'
     """
-    return "".join(SPECIAL.get(letter, letter) for letter in text)
+    pairs = FROM.findall(sources().get(f"{room}.pyi", ""))
+    return {name: f"{room}{origin}".rstrip(".") for origin, names in pairs for name in _names(names)}
 
 
-def _erratum(result: "Result") -> list[str]:
-    return [_code(result.id), _words(result.erratum)]
+def _names(listed: str) -> list[str]:
+    return [name.split(" as ")[0].strip() for name in listed.strip("()").split(",") if name.strip()]
 
 
-def _code(text: str) -> str:
-    return rf"\texttt{{{_breakable(text, '._')}}}"
+@cache
+def imports(module: str) -> frozenset[str]:
+    """The modules of the package that the text of one names.
+
+    >>> "symbolic.expressions.signs" in imports("verification.paper.claims.judges")
+    True
+    """
+    found = named(LEFT_OUT.sub("", sources()[module]))
+    # Packages run first.
+    above = {each.rsplit(".", n)[0] for each in {*found, module} for n in range(1, each.count(".") + 1)}
+    return frozenset((found | above) & sources().keys())
 
 
-def _words(text: str) -> str:
-    words = " ".join(text.split()).split(" ")
-    return " ".join(_breakable(word, BREAKS) if len(word) > 24 else escaped(word) for word in words)
+def named(text: str) -> set[str]:
+    """The modules of the package that a text imports or quotes, and the names that it takes from them."""
+    known, found = sources(), set(IMPORT.findall(text))
+    for origin, names in FROM.findall(text):
+        found.add(origin)
+        if origin in known:
+            for name in _names(names):
+                found |= {f"{origin}.{name}", *([exports(origin)[name]] if name in exports(origin) else [])}
+    for quoted in QUOTED.findall(text):
+        found |= {quoted, *(each for each in known if each.rpartition(".")[0] == quoted)}
+    return found
 
 
-def _breakable(text: str, where: str) -> str:
-    digits = text.replace(".", "").replace("-", "").isdigit()
-    return "".join(
-        escaped(letter) + (r"\allowbreak{}" if letter in where or (digits and i % 10 == 9) else "")
-        for i, letter in enumerate(text)
-    )
+def closure(module: str) -> frozenset[str]:
+    """The module and all that it can load, directly or through others."""
+    found, waiting = {module}, [module]
+    while waiting:
+        new = imports(waiting.pop()) - found
+        found |= new
+        waiting += new
+    return frozenset(found)
 
 
-def _table(columns: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    body = "\n".join(" & ".join(row) + r" \\" for row in rows)
-    head = " & ".join(heads)
-    return "\n".join(
-        [
-            rf"\begin{{longtable}}{{{columns}}}",
-            rf"\toprule {head} \\ \midrule \endhead",
-            *([body] if rows else []),
-            r"\bottomrule",
-            r"\end{longtable}",
-        ]
-    )
+@cache
+def digest(module: str) -> str:
+    """A digest of the text of a module and of all that it can load, and of the versions of what they rest on."""
+    whole = sha256(repr(sorted(made_with().items())).encode())
+    for name in sorted(closure(module)):
+        whole.update(f"\n{name}\n".encode() + sources()[name].encode())
+    return whole.hexdigest()
+
+
+def codes(claims: Iterable[Claim], digits: int, figures: Iterable[Picture] = ()) -> dict[str, str]:
+    """A digest for each claim, by its id, and for each figure of their sections, by `figure NAME`.
+
+    It changes with the claim's words, its judge, all that this can load, and how many digits are asked for.
+    """
+    claims = list(claims)
+    judged = {claim.id: _digest(claim.home, claim, digits) for claim in claims}
+    sections = {claim.section for claim in claims}
+    return judged | {f"figure {each.name}": _digest(each.module, each) for each in figures if each.section in sections}
+
+
+def _digest(module: str, *words: object) -> str:
+    code = outside(module) if module.endswith(".py") else digest(module)
+    return sha256(repr((code, words)).encode()).hexdigest()
+
+
+def outside(path: str) -> str:
+    """A digest of a module that is no part of the package, with all that it can load of the package."""
+    text = Path(path).read_text(encoding="utf-8")
+    whole = sha256(text.encode())
+    for name in sorted(named(text) & sources().keys()):
+        whole.update(digest(name).encode())
+    return whole.hexdigest()

@@ -33,7 +33,7 @@ from dataclasses import dataclass
 from flint import arb
 
 from verification.arithmetic.balls import cuts, halves, joined, working
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, silent
 from verification.proofs.corner.border_collision import (
     Expansion,
     Piece,

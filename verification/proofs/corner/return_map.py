@@ -27,7 +27,7 @@ from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel, ends_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, silent
 from verification.cycles.problem import mirrored
 from verification.proofs.corner.corner import (
     ARC,

@@ -48,7 +48,7 @@ from sympy import Expr, Rational
 from symbolic.tables import egg
 from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import FLOAT64
-from verification.arithmetic.progress import telling
+from verification.arithmetic.iteration import telling
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure

@@ -45,7 +45,7 @@ from symbolic.tables.curves import is_periodic
 from symbolic.tables.table import Table, theta
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, real_ball, working
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, silent
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.newton import floats

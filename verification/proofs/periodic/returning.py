@@ -31,7 +31,7 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import FLOAT64, balls, working
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, silent
 from verification.maps.first_hit import convex
 
 BITS = 64

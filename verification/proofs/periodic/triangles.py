@@ -38,8 +38,7 @@ from symbolic.motion.chords import chord_kernel, polygon_kernel
 from symbolic.tables import egg
 from symbolic.tables.table import alpha as letter
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
-from verification.arithmetic.iteration import Vector
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, Vector, silent
 from verification.cycles.critical import Small
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex

@@ -60,7 +60,7 @@ from symbolic.cycles.polygons import COSINE, centre_beyond_boundary, centre_far_
 from symbolic.expressions.text import kernel, load
 from symbolic.tables.table import alpha
 from verification.arithmetic.balls import balls, bits_of, working
-from verification.arithmetic.progress import Tick, silent
+from verification.arithmetic.iteration import Tick, silent
 from verification.proofs.corner.corner import ARC, BITS, WALL
 from verification.proofs.corner.return_map import Flights, Piece
 from verification.proofs.periodic.bifurcation import Checks

@@ -1,17 +1,20 @@
-"""Which files of the package three questions pass through: `python benchmarks/walks.py`.
+"""Which files of the package three questions pass through: `python benchmarks/walks.py [--files]`.
 
-A file counts when one of its functions runs; what runs while a module is imported does not.
+A file counts when one of its functions runs; what runs while a module is imported does not. Each walk is walked twice, by
+a process of its own each time: first with nothing kept on disk, then with what the first has kept. `--files` names the
+files in the order in which they are entered.
 """
 
 import contextlib
 import io
+import json
+import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import click
-
-from verification.app import cli
 
 ROOT = Path(__file__).resolve().parents[1]
 STOREYS = tuple(str(ROOT / name) for name in ("symbolic", "numeric", "verification"))
@@ -24,10 +27,12 @@ WALKS = {
 }
 
 
-def walked(command: str) -> list[str]:
-    """The files whose functions run, in the order in which they are entered."""
+def entered(command: str) -> tuple[list[str], int]:
+    """The files whose functions run, in the order in which they are entered, and the exit status of the command."""
+    from verification.app import cli
+
     found: dict[str, None] = {}
-    importing = 0
+    importing = status = 0
 
     def seen(frame, event, _):
         nonlocal importing
@@ -36,17 +41,43 @@ def walked(command: str) -> list[str]:
         elif event == "call" and not importing and frame.f_code.co_filename.startswith(STOREYS):
             found.setdefault(str(Path(frame.f_code.co_filename).relative_to(ROOT)))
 
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+    with contextlib.redirect_stdout(io.StringIO()):
         sys.setprofile(seen)
         try:
-            with contextlib.suppress(SystemExit):
-                cli.main(command.format(folder=folder).split())
+            status = cli.main(command.split())
         finally:
             sys.setprofile(None)
-    return list(found)
+    return list(found), status
+
+
+def walked(command: str) -> tuple[list[str], list[str]]:
+    """The files on the way with nothing kept, and with what is kept then."""
+    with tempfile.TemporaryDirectory() as folder:
+        call = [sys.executable, __file__, "--walk", command.format(folder=folder)]
+        kept = os.environ | {"PINBALL_CACHE": folder}
+        cold, warm = (
+            json.loads(subprocess.run(call, cwd=ROOT, env=kept, capture_output=True, text=True, check=True).stdout)
+            for _ in range(2)
+        )
+    return cold, warm
+
+
+@click.command()
+@click.option("--files", is_flag=True, help="Name the files.")
+@click.option("--walk", "command", help="The files of one command, as JSON, with what is kept now.")
+def main(files: bool, command: str | None) -> None:
+    """Which files three questions pass through."""
+    if command is not None:
+        found, status = entered(command)
+        click.echo(json.dumps(found))
+        sys.exit(status)
+    for name, words in WALKS.items():
+        cold, warm = walked(words)
+        click.echo(f"{name}: {len(cold)} files with nothing kept, {len(warm)} then")
+        if files:
+            more = [f"{each} (with nothing kept)" for each in cold if each not in warm]
+            click.echo("  " + "\n  ".join([*warm, *more]))
 
 
 if __name__ == "__main__":
-    for name, command in WALKS.items():
-        files = walked(command)
-        click.echo(f"{name}: {len(files)} files\n  " + "\n  ".join(files))
+    main()

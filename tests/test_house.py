@@ -2,6 +2,7 @@
 
 import ast
 import doctest
+import importlib.util
 import re
 import subprocess
 import sys
@@ -84,6 +85,19 @@ def test_imports_only_go_down():
     done = subprocess.run([linter], cwd=ROOT, capture_output=True, text=True, check=False, timeout=600)
 
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("question", [0, 1, 2])
+def test_a_question_is_answered_by_twenty_files(question):
+    """A reader who follows one from the command line to its answer opens no more; a table of one's own is kept by then."""
+    spec = importlib.util.spec_from_file_location("walks", ROOT / "benchmarks" / "walks.py")
+    assert spec and spec.loader
+    walks = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(walks)
+    cold, warm = walks.walked([*walks.WALKS.values()][question])
+
+    assert 0 < len(warm) <= 20
+    assert {*warm} <= {*cold}
 
 
 def test_dependencies_have_lower_bounds_only():

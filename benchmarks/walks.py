@@ -1,8 +1,8 @@
 """Which files of the package three questions pass through: `python benchmarks/walks.py [--files]`.
 
-A file counts when one of its functions runs; what runs while a module is imported does not. Each walk is walked twice, by
-a process of its own each time: first with nothing kept on disk, then with what the first has kept. `--files` names the
-files in the order in which they are entered.
+A file counts when one of its functions runs; what runs while a module is imported does not. Each walk is walked twice,
+by a process of its own each time: first with nothing kept on disk, then with what the first has kept. `--files` names
+the files in the order in which they are entered.
 """
 
 import contextlib

@@ -89,9 +89,10 @@ def test_imports_only_go_down():
 
 @pytest.mark.parametrize("question", [0, 1, 2])
 def test_a_question_is_answered_by_twenty_files(question):
-    """A reader who follows one from the command line to its answer opens no more; a table of one's own is kept by then."""
+    """A reader who follows one from the command line to its answer opens no more, once a table of one's own is kept."""
     spec = importlib.util.spec_from_file_location("walks", ROOT / "benchmarks" / "walks.py")
-    assert spec and spec.loader
+    assert spec
+    assert spec.loader
     walks = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(walks)
     cold, warm = walks.walked([*walks.WALKS.values()][question])

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from numeric import PinballMap, Status
+from numeric import PinballMap
 from numeric.dynamics.phase_points import Array, PhasePoints, gathered, phase_points, together
 from numeric.dynamics.recognition import (
     UNSETTLED,
@@ -29,6 +29,7 @@ from numeric.dynamics.recognition import (
     wilson,
 )
 from numeric.pinball.sampling import interior_starts
+from numeric.pinball.states import STATUSES
 
 PART = 0.1  # of an image's points
 
@@ -220,7 +221,7 @@ class _Sorting:
             rows[self.going] = new
         for code in np.unique(end.code[end.code > 0]):
             at = end.code == code
-            status = list(Status)[code]
+            status = STATUSES[code]
             index = self._entered(Attractor(Kind.STOPPED, 0, here.only(at).only(slice(0, 1)), status=status))
             self.label[self.going[at]] = index
         self._keep(end.code == 0, end.nu_plus)

@@ -105,7 +105,7 @@ def counted(name: str, given: object, least: int = 1) -> int:
     return int(given)
 
 
-STATUSES = np.array(sorted(Status, key=lambda status: status.code), dtype=object)
+STATUSES = np.array(sorted(Status, key=lambda status: status.code), dtype=object)  # by their codes
 UNITS = {"theta": "1", "phi": "rad", "eta": "rad", "x": "1", "y": "1", "nu_plus": "1/bounce", "nu_minus": "1/bounce"}
 MEANINGS = {
     "component": "component of the boundary",

@@ -17,8 +17,9 @@ from typing import Any
 
 from flint import acb, arb, fmpq
 
-from numeric import PinballMap, Status
+from numeric import PinballMap
 from numeric.backends.scalars import ScalarBackend
+from numeric.pinball.states import STATUSES
 from verification.arithmetic.balls import as_ball, bits_of, enclose, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.maps.exact import Ball, ExactMap, closed_length
@@ -243,7 +244,7 @@ def in_multiprecision(
         if i:
             following = exact.bounce(ball)
             if following.code:
-                entries.append(entries[-1] | {"eta": None, "status": list(Status)[following.code].name.lower()})
+                entries.append(entries[-1] | {"eta": None, "status": STATUSES[following.code].name.lower()})
                 break
             ball = following
             step(str(i))
@@ -279,7 +280,7 @@ def _attempt(
             if following is Refusal.WIDE:
                 return None
             if isinstance(following, Refusal) or following.code:
-                status = "unproved" if isinstance(following, Refusal) else list(Status)[following.code].name.lower()
+                status = "unproved" if isinstance(following, Refusal) else STATUSES[following.code].name.lower()
                 entries.append(entries[-1] | {"eta": None, "status": status})
                 break
             ball = following

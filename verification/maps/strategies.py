@@ -24,7 +24,6 @@ from symbolic.tables.definition import UNIFORM
 from symbolic.tables.scene import Scene
 
 STEEPEST = 1.57  # radians; |phi| stays below
-SMOOTH = ("circle", "ellipse", "egg")
 
 
 @dataclass(frozen=True)

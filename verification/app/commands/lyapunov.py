@@ -67,7 +67,9 @@ def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, 
     """An attractor as JSON has it."""
     import numpy as np
 
-    spread = attractor.kind.name == "CHAOTIC"
+    from numeric.dynamics.recognition import Kind
+
+    spread = attractor.kind is Kind.CHAOTIC
     x, y = map.states.point(attractor.points.component, attractor.points.theta)
     names = [part.name for part in map.ir.parts]
     rows = zip(*attractor.points, x, y, strict=True)
@@ -101,9 +103,10 @@ def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, 
 
 def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
     """The checklist of a cycle's proof; empty for what is no cycle."""
+    from numeric.dynamics.recognition import Kind
     from verification.named.attractors import certificate
 
-    if attractor.kind.name != "CYCLE":
+    if attractor.kind is not Kind.CYCLE:
         return {}
     from sympy import S
 

@@ -31,6 +31,7 @@ from numeric.flights.family import Family, Status
 from numeric.flights.harmonic import Ellipse
 from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import GENERIC, Growth
+from numeric.pinball.states import STATUSES
 from symbolic.cycles.cycle import minor_axis, trace_and_determinant
 from symbolic.expressions.text import kernel, load
 from symbolic.motion.collision import derivative_matrix
@@ -208,7 +209,7 @@ def _compiled(map: PinballMap, state: list[Any], kernels: bool) -> tuple[list[An
 
 
 def _status(code: Any) -> str:
-    return GOES_ON if code is None else list(Status)[int(np.max(np.asarray(code, dtype=float)))].name
+    return GOES_ON if code is None else STATUSES[int(np.max(np.asarray(code, dtype=float)))].name
 
 
 DIGITS, ROUGH, DRAWS, SEED = 100, 1e-7, 8, 7

@@ -90,7 +90,7 @@ torture: $(VENV)/test.stamp
 	$(BIN)/python benchmarks/torture.py
 
 clean:
-	rm -rf $(VENV) report dist docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) report dist docs/_build docs/jupyter_execute .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is a finished installation; it is made again when pyproject.toml changes.

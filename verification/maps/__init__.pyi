@@ -3,7 +3,7 @@
 from . import laws, strategies
 from .enclosed import EnclosedMap, Refusal, in_balls, in_multiprecision, perimeter
 from .exact import Ball, ExactMap, errors, exact_ball
-from .first_hit import closes_smoothly, convex, first_hits, inside, minimal, turns_once
+from .first_hit import closes_smoothly, convex, first_hits, inside, minimal, turns_once, unobstructed
 
 __all__ = [
     "Ball",
@@ -23,4 +23,5 @@ __all__ = [
     "perimeter",
     "strategies",
     "turns_once",
+    "unobstructed",
 ]

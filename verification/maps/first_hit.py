@@ -270,11 +270,15 @@ def first_hits(table: Table, components: tuple[int, ...], zero: list[arb], shape
     >>> first_hits(cardioid, (0, 0), [third, -third])
     True
     """
+    bounces = list(zip(components, zero, strict=False))
+    return True if unobstructed(table, bounces + bounces[:1], shape) else None
+
+
+def unobstructed(table: Table, bounces: Sequence[tuple[int, arb]], shape: tuple[arb, ...] = ()) -> bool:
+    """The same of the flights between successive bounces, which need not close."""
     with working(BITS_OF_HIT):
         boundary = _boundary(table, shape)
-        bounces = list(zip(components, zero, strict=False))
-        chords = zip(bounces, bounces[1:] + bounces[:1], strict=True)
-        return True if all(free(boundary, start, end) for start, end in chords) else None
+        return all(free(boundary, start, end) for start, end in pairwise(bounces))
 
 
 def _boundary(table: Table, shape: tuple[arb, ...]) -> Boundary:

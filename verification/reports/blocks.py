@@ -138,6 +138,16 @@ class Section:
         return cls(given["name"], given["title"], blocks, tuple(Effort(**each) for each in given["efforts"]))
 
 
+def costs(efforts: tuple[Effort, ...]) -> Listing:
+    """What each question took in this run, and the error that its answer was left with."""
+    rows = tuple((each.question, each.size, f"{each.seconds:.2f}", each.error or "-") for each in efforts)
+    caption = (
+        "What each question cost on this machine, and the error that its answer is left with; later rows of a question "
+        "are its refinements."
+    )
+    return Listing(caption, ("question", "size", "seconds", "error left"), rows)
+
+
 def _said(block: Block) -> dict[str, Any]:
     kind = next(name for name, each in KINDS.items() if type(block) is each)
     said = {"kind": kind, **block.__dict__}

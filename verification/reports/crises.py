@@ -1,11 +1,13 @@
 """Where the sampled attractor changes at once: homoclinic tangencies near by, of the saddles that a search finds there.
 
-A crisis is such a tangency. That the attractor changes at the one that was located, and not beside it, is what sampling
-shows, and no proof; so a tangency is not called a crisis here. The boundary has to be a convex curve of one formula.
+A crisis is such a tangency. Each is sought in float64 and then proved in balls. That the attractor changes at the one
+that was located, and not beside it, is what sampling shows, and no proof; so a tangency is not called a crisis here.
+The boundary has to be one smooth formula; where it is not convex each flight is proved to meet nothing on its way.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,50 +19,102 @@ from numeric.sweeps.fields import bifurcation
 from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
 from symbolic.tables.geometry import group
+from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table
+from verification.arithmetic.balls import decimal
 from verification.cycles.recurrence import Closure
-from verification.maps.first_hit import closes_smoothly, convex
+from verification.maps.first_hit import closes_smoothly
 from verification.named.questions import PeriodicOrbit, Tick, find_cycles
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.plane_map import Pinball
+from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened, tangency_proved
 from verification.proofs.manifolds.saddle import Orbit
-from verification.proofs.manifolds.tangency import Touch
+from verification.proofs.manifolds.tangency import Contact, Touch
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Block, Effort, Known, Listing, Number, Words
 from verification.reports.dynamics import density
 from verification.reports.lives import mark
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
+Document = dict[str, Any]
 GROWN = 0.15  # part of the cells that an attractor meets, gained or lost from one contraction to the next
 MOST = 3  # changes that are looked into
 COLUMNS, ORBITS, POINTS, LONG = 25, 16, 512, 20_000  # of the closer look: contractions, particles, bounces, transient
 NEAR = 4  # steps of that look within which a tangency belongs to a change
-BOUNCES, TRIED = 6, 6  # that an unstable manifold is followed, and the places on it from which a tangency is sought
+BOUNCES, ROUNDS = 6, 6  # that an unstable manifold is followed: so many at least, and so many rounds
+TRIED = 6  # places on it from which a tangency is sought
+LEAST, SHOWN = 1e-12, 5e-6  # of an error in float64; of a multiplier, half a unit of its last digit
+DIGITS = 10  # of a multiplier
 SAME = 1e-6  # parameters of bounces that a symmetry exchanges, found in float64
-ASKED = "Tangencies are looked for on convex tables of one formula under the law phi = -lam*eta."
+ASKED = (
+    "Tangencies are looked for on tables of one smooth formula, under laws that say nothing of arc length: manifolds "
+    "that cross a join, a cusp or a corner are not followed here."
+)
+
+
+def askable(scene: Scene) -> bool:
+    """Is the boundary one closed formula without cusps, and the exit angle a formula of angles and place?"""
+    table = scene.table
+    return len(table.components) == 1 and not table.undefined and closes_smoothly(table) and not scene.law.measured
 
 
 def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found:
-    """A table of the tangencies near the changes that the diagram shows."""
-    table = asked.scene.table
-    whole = len(table.components) == 1 and not table.undefined and closes_smoothly(table)
-    if not (whole and asked.scene.law.uniform and convex(table)):
+    """The tangencies near the changes that the diagram shows, sought in float64; nothing of them is proved yet."""
+    if not askable(asked.scene):
         return [Words(ASKED)], [], {}
     arrays = parts.arrays("diagram-0")
     changes = changed(arrays["counts"], arrays["chaotic"])
-    rows, found = list[tuple[Any, ...]](), list[Touch]()
+    found: list[Document] = []
     for j in changes:
         low, high = closer(asked, parts, arrays["values"], j)
-        for touch, orbit in near(asked, (low + high) / 2, NEAR * (high - low), heard):
-            if all(abs(touch.parameter - other.parameter) > SAME for other in found):
-                found.append(touch)
-                rows.append(_row(touch, orbit, (low, high)))
-    rows.sort(key=lambda row: float(row[0].value))
+        for touch, cycle in near(asked, (low + high) / 2, NEAR * (high - low), heard):
+            if all(abs(touch.parameter - other["value"]) > SAME for other in found):
+                found.append(_touched(touch, cycle, (low, high)))
+    found.sort(key=lambda said: float(said["value"]))
     size = f"{len(changes)} changes, {len(found)} tangencies"
-    events = [[float(row[0].value), "tangency"] for row in rows]
-    located = [_document(row) for row in rows]
-    blocks: list[Block] = [_told(asked, len(changes), rows)]
-    return blocks, [Effort("tangencies", size, 0.0)], {"events": events, "located": located}
+    return [], [Effort("tangencies", size, 0.0)], {"touches": found, "changes": len(changes)}
+
+
+def proved(asked: Asked, said: Document, number: int) -> Found:
+    """The proof of a tangency that was found: an enclosure of the contraction, and the checklist."""
+    map, contact = plane_map(asked.scene), contact_of(said["contact"])
+    digits = max(asked.digits, LEAST_DIGITS)
+    effort = Effort(f"tangency {number}", f"{digits} digits", 0.0)
+    if why := objection(contact, map, contact.parameter):
+        return [], [effort], {"open": why}
+    try:
+        proof = tangency_proved(contact, map, sharpened(contact, map, repr(contact.parameter), digits), digits)
+    except (ValueError, ArithmeticError) as why:
+        return [], [effort], {"open": str(why)}
+    unknown = [item for item, holds in proof.checks.items() if holds is not True]
+    if unknown:
+        return [], [effort], {"open": ", ".join(unknown)}
+    ball = dict(zip(("value", "radius"), decimal(proof.parameter, asked.digits + 1), strict=True))
+    multipliers = [decimal(x, DIGITS) for x in (proof.multipliers[1], proof.multipliers[0])]
+    return [], [replace(effort, error=ball["radius"])], ball | {"multipliers": multipliers, "items": len(proof.checks)}
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is said of tangencies: a table, lines of the diagram, and events for JSON."""
+
+    blocks: list[Block]
+    lines: list[list[Any]]
+    events: list[Document]
+
+
+NOTHING = Told([], [], [])
+
+
+def told(asked: Asked, made: Mapping[str, Document]) -> Told:
+    """What is said of the tangencies that were found, each with its proof where that is among the parts."""
+    said = made["crises"]["data"]
+    if "touches" not in said:
+        return NOTHING
+    proofs = [made.get(f"tangency-{i}", {"data": {}})["data"] for i in range(len(said["touches"]))]
+    pairs = list(zip(said["touches"], proofs, strict=True))
+    lines = [[float(touch["value"]), "tangency"] for touch, _ in pairs]
+    return Told([_table(asked, said["changes"], pairs)], lines, [_document(*pair) for pair in pairs])
 
 
 def changed(counts: NDArray[Any], chaotic: NDArray[Any]) -> list[int]:
@@ -91,11 +145,11 @@ def closer(asked: Asked, parts: Parts, values: NDArray[Any], j: int) -> tuple[fl
     return float(finer[k]), float(finer[k + 1])
 
 
-def near(asked: Asked, lam: float, reach: float, heard: Tick) -> list[tuple[Touch, PeriodicOrbit]]:
+def near(asked: Asked, lam: float, reach: float, heard: Tick) -> Iterator[tuple[Touch, PeriodicOrbit]]:
     """The tangencies within reach of a contraction, each with the saddle whose manifolds touch."""
     here = asked.scene.at(lam=repr(round(lam, 9)))
-    turn, mirrored = rotations(here.table)
-    map, known, found = Pinball(here.table, turn=turn), list[list[float]](), list[tuple[Touch, PeriodicOrbit]]()
+    mirrored = rotations(here.table)[1] and here.law.odd
+    map, known = plane_map(here), list[list[float]]()
     for cycle in find_cycles(here, up_to=asked.period, seed=asked.seed, tick=heard):
         one, two = cycle.multipliers
         look = mark(cycle.period, (one + two).real, (one * two).real)
@@ -104,12 +158,16 @@ def near(asked: Asked, lam: float, reach: float, heard: Tick) -> list[tuple[Touc
             continue
         known.append(look)
         heard("tangencies")
-        orbit = round_of(cycle, turn, mirrored)
-        rounds = max(2, BOUNCES // len(orbit.start))
+        orbit = round_of(cycle, map.turn, mirrored)
+        rounds = max(ROUNDS, BOUNCES // len(orbit.start))
         for touch in touches(orbit, map, lam, rounds, TRIED, any_bounce=mirrored):
             if abs(touch.parameter - lam) <= reach:
-                found.append((touch, cycle))
-    return found
+                yield touch, cycle
+
+
+def plane_map(scene: Scene) -> Pinball:
+    """The map of a scene, with the rotations that its table and its law have."""
+    return Pinball(scene.table, turn=1 if scene.law.placed else rotations(scene.table)[0], law=scene.law)
 
 
 def rotations(table: Table) -> tuple[int, bool]:
@@ -142,38 +200,72 @@ def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:
     for k in range(1, cycle.period):
         for sign in (1, -1) if mirrored else (1,):
             moved = [(twice[i + k] - sign * twice[i]) / unit for i in range(cycle.period)]
-            if all(abs(y - round(moved[0])) < SAME for y in moved):
+            if all(abs(math.remainder(y - round(moved[0]), turn)) < SAME for y in moved):  # whole turns change nothing
                 return Orbit(name, tuple(x[:k]), Closure(sign, (round(moved[0]), turn)))
     return Orbit(name, tuple(x[:-1]), Closure(1, (round(once / (2 * math.pi)), 1)))
 
 
-def _row(touch: Touch, cycle: PeriodicOrbit, change: tuple[float, float]) -> tuple[Any, ...]:
-    stable, unstable = touch.multipliers[:2]
-    size = f"{unstable:.5g}, {stable:.3g}"
-    return (
-        Number(f"{float(touch.parameter):.12f}", f"{max(touch.error, 1e-12):.0e}", Known.FLOAT),
-        str(cycle.period),
-        Number(size, known=Known.FLOAT),
-        str(touch.contact.bounces),
-        Number(f"{change[0]:.4f} to {change[1]:.4f}", known=Known.SAMPLED),
+def contact_of(said: Mapping[str, Any]) -> Contact:
+    """The contact that was written down.
+
+    >>> orbit = Orbit("triangle", (-0.16,), Closure(1, (1, 3)))
+    >>> contact = Contact(orbit, orbit, 5, 1, 0.03, -0.02, 0.66)
+    >>> contact_of(asdict(contact)) == contact
+    True
+    """
+    unstable, stable = (
+        Orbit(each["name"], tuple(each["start"]), Closure(each["closure"]["turn"], tuple(each["closure"]["shift"])))
+        for each in (said["unstable"], said["stable"])
     )
+    return Contact(**{**said, "unstable": unstable, "stable": stable})
 
 
-def _document(row: Sequence[Any]) -> dict[str, Any]:
+def _touched(touch: Touch, cycle: PeriodicOrbit, change: tuple[float, float]) -> Document:
+    """A tangency in float64 as plain data."""
+    parameter, error = float(touch.parameter), max(touch.error, LEAST)
     return {
-        "kind": "homoclinic_tangency",
-        "period": int(row[1]),
-        "parameter": "lam",
-        "value": row[0].value,
-        "radius": row[0].error,
-        "certified": False,
+        "value": parameter,
+        "error": error,
+        "period": cycle.period,
+        "multipliers": [touch.multipliers[1], touch.multipliers[0]],
+        "change": list(change),
+        "contact": asdict(replace(touch.contact, parameter=parameter)),
     }
 
 
-def _told(asked: Asked, changes: int, rows: list[tuple[Any, ...]]) -> Block:
+def _row(said: Document, proof: Document) -> tuple[Any, ...]:
+    low, high = said["change"]
+    if "value" in proof:
+        where = Number(proof["value"], proof["radius"], Known.PROVED)
+        stretch = [Number(value, radius, Known.PROVED) for value, radius in proof["multipliers"]]
+        checks = f"all {proof['items']} items hold"
+    else:
+        where = Number(f"{said['value']:.12f}", f"{said['error']:.0e}", Known.FLOAT)
+        stretch = [Number(f"{x:.6g}", f"{SHOWN * abs(x):.0e}", Known.FLOAT) for x in said["multipliers"]]
+        checks = f"open: {proof['open']}" if "open" in proof else "left for more time"
+    middle = Number(f"{(low + high) / 2:.4f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
+    return where, str(said["period"]), *stretch, str(said["contact"]["bounces"]), checks, middle
+
+
+def _document(said: Document, proof: Document) -> Document:
+    exact = "value" in proof
+    return {
+        "kind": "homoclinic_tangency",
+        "period": said["period"],
+        "parameter": "lam",
+        "value": proof["value"] if exact else f"{said['value']:.12f}",
+        "radius": proof["radius"] if exact else f"{said['error']:.0e}",
+        "certified": exact,
+    }
+
+
+COLUMN = "lam", "period", "multiplier of a round, out", "in", "bounces", "checklist", "the attractor changes"
+
+
+def _table(asked: Asked, changes: int, pairs: list[tuple[Document, Document]]) -> Block:
     if not changes:
         return Words("The diagram shows no contraction at which a chaotic attractor gains or loses much at once.")
-    if not rows:
+    if not pairs:
         where = "one contraction" if changes == 1 else f"{changes} contractions"
         return Words(
             f"At {where} of the diagram a chaotic attractor gains or loses much at once; no tangency of the manifolds "
@@ -182,8 +274,8 @@ def _told(asked: Asked, changes: int, rows: list[tuple[Any, ...]]) -> Block:
     caption = (
         "Homoclinic tangencies near the contractions at which the diagram shows a chaotic attractor to gain or lose "
         f"much at once: the manifolds of a saddle touch, among cycles up to period {asked.period}. A crisis is such a "
-        "tangency. Solved for in float64, each by Newton's method and secants; that the attractor changes there is "
-        "sampled: the last column."
+        "tangency. Each was sought in float64; one that is proved is quadratic, alone within its radius, and passes "
+        "with a speed that is not 0. That the attractor changes there is sampled: the last column."
     )
-    columns = ("lam", "period", "multipliers of a round", "bounces", "the attractor changes")
-    return Listing(caption, columns, tuple(rows), asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:150"))
+    rows = tuple(_row(*pair) for pair in pairs)
+    return Listing(caption, COLUMN, rows, asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:150"))

@@ -19,7 +19,7 @@ from verification.reports import crises as tangencies
 from verification.reports import lives
 from verification.reports import scene as exactly
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Section
+from verification.reports.blocks import Block, Effort, Picture, Section, costs
 
 Clock = Callable[[], float]
 Tick = Callable[[str], None]
@@ -44,6 +44,7 @@ FIRST = {  # seconds, not measured yet
     "curves": 5.0,
     "cascade": 4.0,
     "crises": 10.0,
+    "tangency": 6.0,
 }
 GROWTH = 3.5  # of the seconds of a question from one level to the next
 LEVELS = 4
@@ -251,6 +252,7 @@ def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterato
         yield from _curves(asked, parts, heard)
     if asked.parameter == "lam":
         yield Step("crises", "cycles", FIRST["crises"], partial(tangencies.crises, asked, parts, heard))
+        yield from _tangencies(asked, parts)
     yield from _cascades(asked, parts, 0)
     for level in range(1, LEVELS):
         finer: list[tuple[str, Callable[..., Made], tuple[int, ...]]] = [("diagram", dynamics.diagram, ())]
@@ -305,6 +307,13 @@ def _curves(asked: Asked, parts: Parts, heard: Tick) -> Iterator[Step]:
         number += 1
 
 
+def _tangencies(asked: Asked, parts: Parts) -> Iterator[Step]:
+    """A step for each tangency that was found: its proof."""
+    found = parts.read("crises")
+    for i, said in enumerate(found["data"].get("touches", []) if found else []):
+        yield Step(f"tangency-{i}", "cycles", FIRST["tangency"], partial(tangencies.proved, asked, said, i))
+
+
 def _cascades(asked: Asked, parts: Parts, level: int) -> Iterator[Step]:
     """A step for each life with a flip: its doublings, two more at each level."""
     number = 0
@@ -327,7 +336,8 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
 
     made = {name: found for name in _names(parts) if (found := parts.read(name)) is not None}
     best = _finest(made)
-    pairs = [pair for found in best.values() for pair in found["data"].get("events", [])]
+    touching = tangencies.told(asked, best) if "crises" in best else tangencies.NOTHING
+    pairs = [pair for found in best.values() for pair in found["data"].get("events", [])] + touching.lines
     events = sorted({(round(value, 9), label) for value, label in pairs})
     searches = [found["data"] for name, found in best.items() if name.startswith("search")]
     blocks: dict[str, list[Block]] = {name: [] for name in TITLES}
@@ -340,16 +350,17 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
             blocks["plane"] += dynamics.plane_blocks(asked, parts, found["data"], curves)
         else:
             blocks[found["name"]] += Section.read(found).blocks
+    blocks["cycles"] += touching.blocks
     if asked.second and any(name.startswith("curves") for name in best):
         blocks["plane"] += lives.curve_blocks(asked, curves)
     efforts = tuple(effort for found in made.values() for effort in Section.read(found).efforts)
     sections = [Section(name, TITLES[name], tuple(blocks[name])) for name in TITLES if blocks[name]]
     if efforts:
-        sections.append(Section("cost", TITLES["cost"], (_costs(efforts),), efforts))
+        sections.append(Section("cost", TITLES["cost"], (costs(efforts),), efforts))
     seconds = sum(float(found["seconds"]) for found in made.values())
     findings = (
-        _once(row for found in best.values() for row in found["data"].get(name, []))
-        for name in ("located", "attractors", "exponents")
+        _once([row for found in best.values() for row in found["data"].get(name, [])] + more)
+        for name, more in (("located", touching.events), ("attractors", []), ("exponents", []))
     )
     return Report(asked, tuple(sections), versions(), seconds, left, *findings)
 
@@ -362,7 +373,7 @@ def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
 def _names(parts: Parts) -> list[str]:
     """The steps whose files are there, in the order in which they are told."""
     order = ["scene", "derivation", "slap", "portrait", "diagram", "plane", "census", "search", "life", "cascade"]
-    order += ["crises", "curves"]
+    order += ["crises", "tangency", "curves"]
     found = [path.stem for path in parts.folder.glob("*.json")]
 
     def place(name: str) -> tuple[int, list[int]]:
@@ -380,15 +391,3 @@ def _finest(made: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
         question = name.rpartition("-")[0] if kind in LEVELLED else name
         best[question] = found
     return best
-
-
-def _costs(efforts: tuple[Effort, ...]) -> Block:
-    rows = tuple(
-        (effort.question, effort.size, Number(f"{effort.seconds:.2f}", known=Known.SAMPLED), effort.error or "-")
-        for effort in efforts
-    )
-    caption = (
-        "What each question cost on this machine, and the error that its answer is left with; later rows of a question "
-        "are its refinements."
-    )
-    return Listing(caption, ("question", "size", "seconds", "error left"), rows)

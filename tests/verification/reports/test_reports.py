@@ -24,8 +24,7 @@ from verification.named.questions import PeriodicOrbit
 from verification.paper.report.mathml import remark
 from verification.reports import lives
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Certificate, Known, Listing, Number, Picture, Section, Words
-from verification.reports.crises import ASKED, crises
+from verification.reports.blocks import Certificate, Known, Listing, Number, Picture, Section
 from verification.reports.dynamics import diagram
 from verification.reports.page import again
 from verification.reports.report import FIRST, composed, report
@@ -246,30 +245,6 @@ def test_the_grids_of_a_report_are_done_where_its_scheduler_says_with_the_same_p
 
     assert asked_of == [("bifurcation", "tcp://cluster:8786")]
     assert all(np.array_equal(a, b) for a, b in zip(*(each.values() for each in found.values()), strict=True))
-
-
-def test_the_boundary_crisis_of_the_egg_is_found_by_a_report_that_knows_no_name_of_it(tmp_path):
-    """Its table is a radius, its diagram is made up; the certificate of the named crisis comes from other methods."""
-    egg = Scene.parse('scene = { polar = "1 + 2*cos(3*theta)/25", lam = "1/2" }')
-    asked, counts = Asked(egg, at=("1/2",)), np.ones((240, 7), int)
-    counts[50:, 3:] = 0  # the chaotic attractor is gone from the fourth contraction on
-    parts = Parts(tmp_path, asked.digest)
-    parts.made(asked)
-    parts.keep("diagram-0", {"values": np.linspace(0.64, 0.69, 7), "counts": counts, "chaotic": np.ones(7)})
-
-    (table,), _, data = crises(asked, parts)
-    certificate = json.loads((ROOT / "certificates" / "boundary-crisis.json").read_text())
-    (found,) = data["located"]
-    mantissa, exponent = map(int, certificate["centre"][-1])
-    assert abs(Fraction(found["value"]) - mantissa * Fraction(2) ** exponent) <= Fraction(found["radius"])
-    assert (found["kind"], found["period"], found["certified"]) == ("homoclinic_tangency", 3, False)
-    assert table.rows[0][0].known is Known.FLOAT
-
-
-def test_where_no_crisis_is_looked_for_the_report_says_so(tmp_path):
-    asked = Asked(Scene("cardioid"))
-
-    assert crises(asked, Parts(tmp_path, asked.digest)) == ([Words(ASKED)], [], {})
 
 
 def test_a_package_that_a_report_needs_is_asked_for_before_any_work(tmp_path, capsys, monkeypatch):

@@ -5,15 +5,26 @@ from .enclosed import Enclosed, TooWideError, attracting, complex_balls, enclose
 from .grow import branch, touches
 from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis, decimals, table
 from .plane_map import Pinball
-from .proof import TangencyClaim, TangencyProof, orbit_of, orbit_said
+from .proof import (
+    LEAST_DIGITS,
+    TangencyClaim,
+    TangencyProof,
+    objection,
+    orbit_of,
+    orbit_said,
+    sharpened,
+    tangency_proved,
+)
 from .saddle import Orbit, Saddle, horner, local
-from .tangency import Gap, Touch, one_cycle, scale
+from .tangency import Contact, Gap, Touch, one_cycle, scale
 from .touching import bounce
 
 __all__ = [
     "CONTACTS",
+    "LEAST_DIGITS",
     "SHAPE",
     "TRIANGLE",
+    "Contact",
     "Crisis",
     "Enclosed",
     "Gap",
@@ -36,12 +47,15 @@ __all__ = [
     "enclosed_saddle",
     "horner",
     "local",
+    "objection",
     "one_cycle",
     "orbit_of",
     "orbit_said",
     "proof",
     "remainder",
     "scale",
+    "sharpened",
     "table",
+    "tangency_proved",
     "touches",
 ]

@@ -9,12 +9,13 @@ kind of number: floats, arrays, mpmath or balls, or jets of these.
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from sympy import Expr
 
+from numeric import PinballMap
 from symbolic.expressions.text import load
 from symbolic.motion.chords import law_kernel
 from symbolic.tables.law import PAPERS_LAW, Law
@@ -24,6 +25,7 @@ from verification.arithmetic.iteration import Stop, Vector, iterated, largest
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chords import Chords, chord_angles, landing
 from verification.cycles.recurrence import Recurrence, Rule, henon
+from verification.maps.first_hit import convex
 
 NEWTON = Stop(small=1e-13, steps=60)  # after a landing in float64, in other numbers and order by order in jets
 HALVINGS = 54  # of the incidence angles
@@ -146,11 +148,12 @@ class Henon(_Bound):
 
 @dataclass(frozen=True, eq=False)
 class Pinball(_Bound):
-    """The pinball map of a convex table of one component, with `lam` for its parameter, on angles that count turns.
+    """The pinball map of a table of one component, with `lam` for its parameter, on angles that count turns.
 
-    Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal, or what another law says;
-    backwards it came from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`,
-    or the angle that another law, one that falls, takes to `phi`; in float64.
+    Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal, or what another law says; in a
+    table that is not convex there may be several such places, and it is the first, in float64. Backwards it came
+    from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`, or the angle that
+    another law, one that falls, takes to `phi`; in float64.
 
     >>> from symbolic.tables import circle
     >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)
@@ -201,7 +204,8 @@ class Pinball(_Bound):
 
     def _other_end(self, here: Any, phi: Any, turns: int) -> Any:
         """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`."""
-        start = landing(self.table, floating(here), floating(phi), turns)
+        arrive = landing if convex(self.table) else first_landing
+        start = arrive(self.table, floating(here), floating(phi), turns)
         if self.words is ARRAYS:
             return start
 
@@ -217,6 +221,27 @@ class Pinball(_Bound):
             return largest([share(parts[0], reached)])
 
         return iterated(correction, [here * 0 + (start if np.ndim(start) else float(start))], NEWTON, size).x[0]
+
+
+@cache
+def _elastic(table: Table) -> PinballMap:
+    return PinballMap(table, lam=1)
+
+
+def first_landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
+    """As `landing`, in any table of one component: the first hit as the kernels have it; `nan` where there is none.
+
+    >>> from symbolic.tables import circle
+    >>> round(first_landing(circle, 0.0, 0.5), 12)
+    2.14159265359
+    """
+    low, angle = np.broadcast_arrays(np.asarray(here) + 2 * np.pi * turns, phi)
+    flies = np.isfinite(low) & (np.abs(angle) < np.pi / 2)
+    start = np.where(flies, np.remainder(low + np.pi, 2 * np.pi) - np.pi, 0.0)
+    hit = _elastic(table).step(np.atleast_1d(start), np.atleast_1d(np.where(flies, angle, 0.0)))
+    landed = np.where(hit.code == 0, hit.theta, np.nan).reshape(low.shape)
+    found = np.where(flies, low + np.remainder(landed - low, 2 * np.pi), np.nan)
+    return found if found.ndim else float(found)
 
 
 def share(step: Any, x: Any) -> Any:

@@ -111,15 +111,18 @@ def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
         step = over.step([*at.values, *at.along], "precond")
     proof = stepped(centre.unknowns, box.unknowns, lambda: step)
     image, found = proof.zero, {Status.UNIQUE: True, Status.EMPTY: False, Status.UNKNOWN: None}[proof.status]
+    lawful = not objection(system.contact, map, float(system.parameter))
     checks: dict[str, bool | None] = {
         "saddle": True,
         "remainder": True,
         "exists": found,
         "unique": found,
-        "admissible": admissible(map) if not objection(system.contact, map, float(system.parameter)) else None,
+        "admissible": admissible(map) if lawful else None,
     }
     if not found:
         return Proof(box.parameter, checks | {"quadratic": None, "transversal": None})
+    if lawful:
+        checks["admissible"] = checks["admissible"] or system.clear(Point.of(image)) or None
     bend, speed = generic(system.linear(Point.of(image)), Point.of(image).along)
     checks |= {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}
     left = system.pairs[0].saddle
@@ -127,7 +130,7 @@ def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
 
 
 def admissible(map: PlaneMap) -> bool | None:
-    """True where each chord between two bounces meets the boundary nowhere on its way: in a convex table."""
+    """True where any chord between two bounces meets the boundary nowhere on its way: in a convex table."""
     if not isinstance(map, Pinball):
         return True
     seamless = len(map.table.components) > 1 or closes_smoothly(

@@ -104,7 +104,8 @@ class Pair:
     """Coefficients of the two: `places` at the parameter itself, `slopes` by it up to two steps away.
 
     The bounces are -1 and 0 of the unstable manifold, 0 and 1 of the stable one. `error` bounds the
-    remainder for all parameters at most `margin` from those; `saddle` is enclosed for the same parameters.
+    remainder for all parameters at most `margin` from those; `saddle` is enclosed for the same parameters. `tube` are
+    the bounces of a round and their neighbours, for all `z` of at most 1/2.
     """
 
     saddle: Saddle
@@ -113,6 +114,7 @@ class Pair:
     slopes: Polynomials
     error: arb
     margin: arb
+    tube: list[arb]
 
     def at(self, i: int, z: arb, away: arb) -> Near:
         """Bounce `i` of the two over a ball of parameters, for parameters `away` from the one of the places."""
@@ -199,7 +201,8 @@ def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: P
     bounces = list(zip(*(made.pair() for made in (here, beside, around)), strict=True))
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]
-    return Pair(around.saddle, scale, places, slopes, error, disc - 2 * step)
+    tube = [around.over(i, arb(0.5)).real + _around(error) for i in range(-1, len(orbit.start) + 1)]
+    return Pair(around.saddle, scale, places, slopes, error, disc - 2 * step, tube)
 
 
 STEPS = 30

@@ -23,6 +23,7 @@ from flint import arb, arb_mat
 
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision
 from verification.arithmetic.series import Jet
+from verification.maps.first_hit import unobstructed
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Local, direction, horner, saddle, slopes
@@ -182,6 +183,12 @@ class Touching:
         for i, near in enumerate(into):
             _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns * unit, near)
         return made
+
+    def clear(self, at: Point) -> bool:
+        """Does every flight of the orbit, and of those from and to the saddles, provably meet nothing on its way?"""
+        turn, runs = 2 * self.map.words.pi, [at.orbit[1:-1], *(made.tube for made in self.pairs)]
+        placed = [[(0, x - turn * round(float(x.mid()) / (2 * math.pi))) for x in run] for run in runs]
+        return isinstance(self.map, Pinball) and all(unobstructed(self.map.table, run) for run in placed)
 
     def _ends(self, at: Point) -> list[tuple[Pair, arb]]:
         return [(self.pairs[0], at.orbit[0]), (self.pairs[1], at.orbit[-1])]

@@ -1,0 +1,101 @@
+"""The tangencies of a report: found near the changes of its diagram, and then proved."""
+
+import json
+from dataclasses import asdict, replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from flint import arb
+
+from symbolic import Scene
+from verification.arithmetic.balls import working
+from verification.cycles.newton import refined
+from verification.maps.first_hit import convex, unobstructed
+from verification.named.questions import PeriodicOrbit
+from verification.proofs.manifolds.grow import touches
+from verification.proofs.manifolds.known import shadow
+from verification.reports.asked import Asked, Parts
+from verification.reports.blocks import Known, Number, Words
+from verification.reports.crises import ASKED, crises, plane_map, proved, round_of, told
+
+ROOT = Path(__file__).parents[3]
+
+
+def tangencies(tmp_path, text, lost, **more):
+    """What a report says of tangencies where a made-up diagram loses chaos between two contractions, then proved."""
+    asked, counts = Asked(Scene.parse(text), at=("1/2",), **more), np.ones((240, 7), int)
+    counts[50:, 3:] = 0  # the chaotic attractor is gone from the fourth contraction on
+    parts = Parts(tmp_path, asked.digest)
+    parts.made(asked)
+    parts.keep("diagram-0", {"values": np.linspace(*lost, 7), "counts": counts, "chaotic": np.ones(7)})
+    _, _, data = crises(asked, parts)
+    made = {"crises": {"data": data}}
+    before = told(asked, made)
+    for i, said in enumerate(data["touches"]):
+        made[f"tangency-{i}"] = {"data": json.loads(json.dumps(proved(asked, said, i)[2]))}
+    return before, told(asked, made)
+
+
+def test_the_boundary_crisis_of_the_egg_is_found_and_proved_by_a_report_that_knows_no_name_of_it(tmp_path):
+    """Its table is a radius, its diagram is made up; the certificate of the named crisis comes from other methods."""
+    egg = 'scene = { polar = "1 + 2*cos(3*theta)/25", lam = "1/2" }'
+    certificate = json.loads((ROOT / "certificates" / "boundary-crisis.json").read_text())
+    mantissa, exponent = map(int, certificate["centre"][-1])
+    exact = mantissa * Fraction(2) ** exponent
+
+    for told_of, known in zip(tangencies(tmp_path, egg, (0.64, 0.69)), (Known.FLOAT, Known.PROVED), strict=True):
+        ((table,), (found,)) = told_of.blocks, told_of.events
+        assert (found["kind"], found["period"]) == ("homoclinic_tangency", 3)
+        assert found["certified"] is (known is Known.PROVED)
+        assert abs(Fraction(found["value"]) - exact) <= Fraction(found["radius"])
+        assert table.rows[0][0].known is known
+        assert all(cell.error for row in table.rows for cell in row if isinstance(cell, Number))
+    assert Fraction(found["radius"]) < Fraction(1, 10**20)
+
+
+def test_a_tangency_of_a_table_that_is_not_convex_is_proved_with_every_flight_on_the_way():
+    """In the limacon; folds of long cycles, found by other equations, come near it as the multiplier says."""
+    scene = Scene.of({"polar": "1 + 3*cos(theta)/5", "lam": "1/2"})
+    bounces = (-2.3414388, -0.1354213, 2.3414388, 0.1354213)
+    orbit = round_of(PeriodicOrbit(scene, (0,) * 4, bounces, (0.0,) * 4, (2j, 0j)), 1, True)
+    map = plane_map(scene)
+    touch = next(t for t in touches(orbit, map, 0.4336, 8, 4, True) if abs(t.parameter - 0.433637) < 1e-5)
+    contact = replace(touch.contact, parameter=float(touch.parameter))
+    said = {"contact": json.loads(json.dumps(asdict(contact)))}
+    _, _, proof = proved(Asked(scene), said, 0)
+    cycles = [shadow(contact, map, contact.parameter, rounds) for rounds in (24, 32)]
+    folds = [refined(cycle.problem, cycle.start, 15).z[-1] for cycle in cycles]
+    first, second = (float(Fraction(str(fold)) - Fraction(proof["value"])) for fold in folds)
+
+    assert convex(scene.table) is None
+    assert len(orbit.start) == 2  # of four bounces the last two are mirror images
+    assert orbit.closure.turn == -1
+    assert proof["items"] == 7
+    assert abs(first) < 1e-6
+    assert first / second == pytest.approx(float(proof["multipliers"][0][0]) ** 8, rel=0.05)
+
+
+def test_a_flight_that_the_boundary_cuts_is_no_proof():
+    """Of the limacon's tangency with a bounce where its boundary bends outwards: the chord leaves the table."""
+    limacon = Scene.of({"polar": "1 + 3*cos(theta)/5", "lam": "1/2"}).table
+    with working(96):
+        straight, cut = ([(0, arb(at)) for at in places] for places in ((0.0, 2.0), (2.6, 3.6)))
+        assert unobstructed(limacon, straight)
+        assert not unobstructed(limacon, cut)
+
+
+def test_tangencies_are_proved_under_another_law(tmp_path):
+    """That of tests/verification/proofs/test_manifolds_proof.py, where the cycles that shadow it fold as well."""
+    bent = 'scene = { polar = "1 + 2*cos(3*theta)/25", lam = "1/2", law = "-lam*eta*(1 - eta**2/40)" }'
+    _, after = tangencies(tmp_path, bent, (0.645, 0.69))
+
+    (found,) = (event for event in after.events if event["value"].startswith("0.66481"))
+    assert found["certified"]
+
+
+def test_where_no_crisis_is_looked_for_the_report_says_so(tmp_path):
+    asked = Asked(Scene("cardioid"))
+
+    assert crises(asked, Parts(tmp_path, asked.digest)) == ([Words(ASKED)], [], {})

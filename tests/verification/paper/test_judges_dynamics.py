@@ -54,8 +54,8 @@ ON_THE_CONE = {
     "cardioid.lyapunov_exist": (on_defocusing.existence, Verdict.SUPPORTED),
     "cardioid.lyapunov_signs": (on_defocusing.signs, Verdict.CONFIRMED),
     "cardioid.exponents_bounded_away": (on_defocusing.bounded_away, Verdict.SUPPORTED),
-    "cardioid.nonuniformly_hyperbolic": (on_defocusing.nonuniformly_hyperbolic, Verdict.SUPPORTED),
-    "cardioid.chaotic_attractor": (on_defocusing.chaotic_attractor, Verdict.SUPPORTED),
+    "cardioid.nonuniformly_hyperbolic": (on_defocusing.nonuniformly_hyperbolic, Verdict.CONFIRMED),
+    "cardioid.chaotic_attractor": (on_defocusing.chaotic_attractor, Verdict.CONFIRMED),
     "cardioid.attractor_near_cusp": (on_defocusing.near_cusp, Verdict.CONFIRMED),
 }
 

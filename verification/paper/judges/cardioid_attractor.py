@@ -1,10 +1,10 @@
 """Claims on the attractors and exponents of both cardioids, proved or sampled. Paper: sections 4.1 to 5.3.
 
 `symbolic.cycles.defocusing` shows, with `g = 1 + tan((1 - lam)*pi/8)**2/2`, for every `lam < 1` of the cardioid: on
-every orbit off the cusp the lower limit of `log|D(T**n) (1, 0)|/n` is at least `log(g)`; for almost every start the
-upper limit of the rate of the smallest singular value is at most `-log(g)`. Not shown for `0 < lam < 1`: that the
-limits exist, a negative exponent for every invariant measure, a natural (SRB) measure, transitivity. At `lam = 1` the
-exponents exist for almost every start; at `lam = 0` the natural measure and its exponent are proved.
+every orbit off the cusp the lower limit of `log|D(T**n) (1, 0)|/n` is at least `log(g)`.
+`symbolic.cycles.almost_every` shows for almost every start that its upper limit is at most `log(2)`, and that vectors
+of one direction shrink. Not shown for `0 < lam < 1`: that the limits exist, a natural (SRB) measure, transitivity. At
+`lam = 1` the exponents exist for almost every start; at `lam = 0` the natural measure and its exponent are proved.
 """
 
 from functools import cache
@@ -15,6 +15,7 @@ from sympy import Rational, S, log, simplify, sin
 
 from numeric import PinballMap
 from numeric.pinball.sampling import Growth, interior_starts
+from symbolic.cycles.almost_every import largest_exponent, two_rates
 from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
 from symbolic.cycles.defocusing import expands, least_exponent
 from symbolic.cycles.normal_forms import a, coefficient, least_bend, return_map
@@ -134,10 +135,7 @@ def nearing() -> str:
     )
 
 
-NOT_SHOWN = (
-    "not shown for 0 < lam < 1: that the limits exist, nu_- < 0 for every invariant measure, a natural (SRB) measure, "
-    "transitivity"
-)
+NOT_SHOWN = "not shown for 0 < lam < 1: that the limits exist, a natural (SRB) measure, transitivity"
 
 
 def stretching() -> Finding:
@@ -165,11 +163,14 @@ def elastic() -> Finding:
 
 
 def both_signs() -> Finding:
-    """The largest singular value grows on every orbit, and the smallest falls for almost every start."""
+    """On every orbit off the cusp one direction stretches and one shrinks, at rates that keep off 0."""
     return by(
-        "the smallest singular value is |det| over the largest, and log|det D(T^n)|/n has an upper limit <= 0 for "
-        "almost every start",
+        "the direction that no bounce takes into the cone shrinks by the gain of the chord run backwards, by g at "
+        "least from the second bounce on, and keeps apart from the cone, on every orbit off the cusp; a horizontal "
+        "line is in at most 2^n pieces after n bounces, none longer than the wall, so almost every start has "
+        "nu_+ <= log(2)",
         stretching(),
+        two_rates(),
         at_most_zero(),
         elastic(),
     )
@@ -216,7 +217,7 @@ def signs(claim: Claim) -> Judgement:
         both_signs(),
         f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "
         f"{least_exponent()} on every orbit off the cusp, and that of the smallest an upper limit of at most minus "
-        f"that for almost every start; at lam = 1 nu_+ = -nu_- > 0 for almost every start; {NOT_SHOWN}; {measured()}",
+        f"that; at lam = 1 nu_+ = -nu_- > 0 for almost every start; {NOT_SHOWN}; {measured()}",
     )
 
 
@@ -234,30 +235,31 @@ def bounded_away(claim: Claim) -> Judgement:
 
 @judges("cardioid.nonuniformly_hyperbolic")
 def nonuniformly_hyperbolic(claim: Claim) -> Judgement:
-    """The rates keep off 0; that they converge is proved at `lam = 1` alone."""
-    ratio, said = settling()
-    return sampled(
-        "for almost every start no rate of growth has the limit 0: one has a lower limit above 0, the other an upper "
-        f"limit below 0; {NOT_SHOWN}",
-        f"proved for almost every start: the rates of both singular values keep off 0, from above and from below; at "
-        f"lam = 1 the limits exist; {said}",
-        bool(both_signs()) and ratio < 0.8,
+    """More than that: every orbit that misses the cusp is hyperbolic, with bounds that depend on `lam < 1` alone."""
+    return Judgement(
+        both_signs(),
+        "for every lam < 1 every orbit off the cusp is hyperbolic, and uniformly so in |K|*ds and dphi: the rate of "
+        f"one direction has a lower limit of at least {least_exponent()}, that of the other an upper limit of at most "
+        f"minus that and at most log(2*lam); at lam = 1 limits exist for almost every start; {NOT_SHOWN}",
     )
 
 
 @judges("cardioid.chaotic_attractor")
 def chaotic_attractor(claim: Claim) -> Judgement:
-    """No cycle attracts and every orbit stretches; one transitive attractor is proved at `lam = 0` alone."""
-    (least, _), _ = ranges()
+    """The likely limit set [Milnor1985]: no finite union of cycles, and almost every orbit towards it is unstable."""
     proof = slap_proof()
-    natural = "at lam = 0 one natural measure, whose exponent is proved" if proof.certified else "nothing at lam = 0"
-    return sampled(
-        f"every orbit off the cusp stretches at a rate of at least {least_exponent()}: no cycle attracts, and none "
-        f"converges to the cusp; {natural}; {NOT_SHOWN}",
-        f"proved for lam < 1: every orbit off the cusp stretches exponentially, so no cycle attracts; proved: "
-        f"{natural}; that there is one attractor with a natural measure for lam > 0 is sampled: every orbit at "
-        f"lam = 0.1, ..., 1 has nu_+ >= {least:.3f}",
-        bool(stretching()) and proof.certified and least > 0.2,
+    return Judgement(
+        by(
+            "phase space is taken into the strip abs(phi) <= lam*pi/2, and the smallest closed set that holds the "
+            "limit points of almost every orbit is an attractor [Milnor1985]. Two points of a horizontal line whose "
+            "orbits pass the cusp on the same sides are one, so almost every orbit converges to no cycle, and none to "
+            "the cusp: the attractor is no finite union of cycles. Every orbit off the cusp stretches",
+            both_signs(),
+            answer(proof.certified, "at lam = 0 one natural measure, with its exponent"),
+        ),
+        "for every lam < 1 an attractor in Milnor's sense that is no finite union of cycles; almost every orbit "
+        f"converges to no cycle and stretches at a rate from {least_exponent()} to {largest_exponent()} a bounce; for "
+        f"lam < 1/4 it has no area. {NOT_SHOWN[0].upper()}{NOT_SHOWN[1:]}; {measured()}",
     )
 
 

@@ -208,8 +208,8 @@ def weak_chaos(claim: Claim) -> Judgement:
         ),
         "cardioid, lam < 1, and cuspless cardioid, 16/27 < lam < 1: what attracts is no cycle off the joins, and every "
         f"orbit off cusp and joins is unstable, at a rate of at least {least_exponent()} and {least_rate()}; that it "
-        f"has one dense orbit is not shown (sampled: {STARTS} starts at lam = {', '.join(NEAR_ELASTIC)} of the cuspless "
-        f"table {'all reach one chaotic set' if alone else 'do not all reach one set'})",
+        f"has one dense orbit is not shown (sampled: {STARTS} starts at lam = {', '.join(NEAR_ELASTIC)} of the latter "
+        f"{'all reach one chaotic set' if alone else 'do not all reach one set'})",
     )
 
 

@@ -486,18 +486,20 @@ def within(name, x, table=None):
 
 def read_scene(scene, free, p):
     """The table and the contraction that a scene says, and how it is called in words."""
-    known = isinstance(scene, dict) and set(scene) <= {*WAYS, "undefined", "origin", "K", "shape", "law", "lam"}
-    way = [key for key in WAYS if known and isinstance(scene.get("shape", {}), dict) and key in scene]
+    known = isinstance(scene, dict) and isinstance(scene.get("shape", {}), dict)
+    more = {"K"} if known and "table" in scene else {"undefined", "origin"}  # marks are of tables of one's own
+    way = [key for key in WAYS if known and key in scene and {*scene} <= {*WAYS, *more, "shape", "law", "lam"}]
     need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
     fit = not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
     fit = fit and type(K) is int and 2 <= K <= 1000 and ("K" not in scene or title == "egg")
     letter, parts = PAPER.get(title) or ("", beside("boundaries").pieces(way[0], scene[way[0]]))
-    ends = {name: text.partition("..") for name, text in shape.items()}
-    ranges = {name for name in ends if ends[name][1]}
+    ends, ranges = ({name: text.partition("..") for name, text in shape.items() if end in text} for end in ("", ".."))
     given, own = {*shape, free} - {"", "lam"}, {*re.findall(r"\w+", scene.get("law", ""))} - {"theta", "eta", "pi", "E"}
     fit = fit and letter in ("", *given) and (title is None or not given - {letter} - own)
-    fit = fit and free in ("", "lam", letter, *ranges, *own) and ranges == {free} & {*shape} and not (title and ranges)
+    fit = (
+        fit and free in ("", "lam", letter, *ranges, *own) and {*ranges} == {free} & {*shape} and not (title and ranges)
+    )
     need(fit, "scene: the table has other letters, or one with a range that is not free, or no such name", Wrong)
     number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p), title)
     letters = {name: number(name, at[0]).hull(number(name, at[2] or at[0])) for name, at in ends.items()}

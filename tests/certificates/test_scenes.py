@@ -9,6 +9,7 @@ import pytest
 FOLDER = Path(__file__).parents[2] / "certificates"
 EGG = {"table": "egg"}
 WAVES = {"polar": "1 + b*cos(3*theta)/40"}
+MARK = {"name": "m", "component": 0, "theta": "1"}  # with a mark a radius need not be positive
 SQUARE = [
     {"x": x, "y": y, "from": "0", "to": "1"}
     for x, y in (("theta", "0"), ("1", "theta"), ("1 - theta", "1"), ("0", "1 - theta"))
@@ -35,6 +36,12 @@ SQUARE = [
         ({"table": "circle", "law": "-b*eta", "lam": "1"}, "b", "circle, phi = -b*eta, lam = 1"),
         (WAVES | {"shape": {"b": "1/2"}, "lam": "1/2"}, "", "polar 1 + b*cos(3*theta)/40, b = 1/2, lam = 1/2"),
         (WAVES | {"shape": {"b": "0..1/2"}, "lam": "1/2"}, "b", "polar 1 + b*cos(3*theta)/40, lam = 1/2"),
+        (WAVES | {"shape": {"b": "-1000000..1000000"}, "lam": "1/2", "undefined": [MARK]}, "b",
+         "polar 1 + b*cos(3*theta)/40, lam = 1/2"),
+        ({"table": "ellipse", "shape": {"a": "1000000"}}, "lam", "ellipse, a = 1000000"),
+        ({"table": "ellipse", "shape": {"a": "1"}}, "lam", "ellipse, a = 1"),
+        (EGG | {"shape": {"alpha": "1/2"}}, "lam", "egg, alpha = 1/2"),
+        (EGG | {"shape": {"alpha": "0"}}, "lam", "egg, alpha = 0"),
         ({"component": SQUARE}, "lam", "boundary of 4 pieces"),
         ({"parametric": ["cos(theta)", "sin(theta)"], "lam": "1"}, "", "parametric cos(theta); sin(theta), lam = 1"),
     ],
@@ -64,8 +71,9 @@ def test_a_scene_is_called_by_all_that_is_told_of_it_and_by_nothing_that_is_free
         (EGG | {"K": 1, "lam": "1"}, "alpha", "other letters"),
         (EGG | {"K": 1001, "lam": "1"}, "alpha", "other letters"),
         (EGG | {"K": True, "lam": "1"}, "alpha", "other letters"),
+        (EGG | {"K": 3.0, "lam": "1"}, "alpha", "other letters"),
         ({"table": "circle", "K": 3, "lam": "1"}, "", "other letters"),
-        (WAVES | {"K": 3, "shape": {"b": "1"}, "lam": "1"}, "", "other letters"),
+        (WAVES | {"K": 3, "shape": {"b": "1"}, "lam": "1"}, "", "the entries are one of"),
         (EGG | {"lam": "1"}, "", "other letters"),  # a shape that nobody tells
         (EGG, "lam", "other letters"),
         (EGG | {"shape": {"alpha": "1/9"}, "lam": "1"}, "alpha", "other letters"),  # and one that is told and free
@@ -90,12 +98,45 @@ def test_a_scene_is_called_by_all_that_is_told_of_it_and_by_nothing_that_is_free
         (EGG | {"shape": {"alpha": "-1/9"}, "lam": "1"}, "", "alpha is out of range"),
         (EGG | {"shape": {"alpha": "5/9"}, "lam": "1"}, "", "alpha is out of range"),
         (WAVES | {"shape": {"b": "1000001"}, "lam": "1"}, "", "b is out of range"),
+        (WAVES | {"shape": {"b": "-1000001"}, "lam": "1"}, "", "b is out of range"),
+        ({"component": SQUARE[:3], "lam": "1"}, "", "the boundary is not closed"),
+        ({"polar": "cos(theta)", "lam": "1"}, "", "the radius may not be positive"),
+        *(({"table": "circle", "lam": "1"} | more, "", "the entries are one of")
+          for more in ({"undefined": [MARK]}, {"origin": {"component": 0, "theta": "1"}})),
+        (WAVES | {"shape": {"b": "1"}, "lam": "1", "undefined": [MARK | {"component": 1}]}, "", "an undefined point"),
     ],
 )  # fmt: skip
 def test_a_scene_with_a_letter_too_many_too_few_or_out_of_its_range_is_refused(check, scene, free, why):
     """What is stated of `b` would be stated of a table that has none, or of every `b`."""
     with pytest.raises(check.Wrong, match=why):
         check.read_scene(scene, free, 80)
+
+
+@pytest.mark.parametrize(
+    ("scene", "free", "closed"),
+    [
+        ({"table": "circle", "lam": "1"}, "", [True]),
+        ({"table": "cuspless", "lam": "1"}, "", [False, False]),
+        ({"table": "circle", "law": "-lam*eta*cos(theta)", "lam": "1"}, "", [True]),
+        ({"table": "circle", "law": "-lam*eta*(1 + theta/99)", "lam": "1"}, "", [False]),
+        ({"polar": "2 + cos(theta)", "lam": "1"}, "", [True]),
+        ({"parametric": ["cos(theta)", "sin(theta)*(1 + sin(theta/2)**2/9)"], "lam": "1"}, "", [False]),
+        ({"component": SQUARE, "lam": "1"}, "", [False] * 4),
+    ],
+)
+def test_a_bounce_may_run_on_over_the_end_of_a_parameter_where_curve_and_law_have_its_period(
+    check, scene, free, closed
+):
+    assert check.read_scene(scene, free, 80)[0].closed == closed
+
+
+@pytest.mark.parametrize("points", [2, 3, 7])
+def test_an_egg_has_as_many_points_as_are_told(check, points):
+    """Where `cos(K*theta)` is 1, and where it is -1."""
+    table, *_ = check.read_scene(EGG | {"K": points, "shape": {"alpha": "1/9"}, "lam": "1"}, "", 80)
+    for k in range(2 * points):
+        x, y, *_ = table.at(0, check.pi(80) * Fraction(k, points), table.letters, 80)
+        assert abs(x.real() ** 2 + y.real() ** 2 - (1 + (-1) ** k / 9) ** 2) < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -214,9 +214,12 @@ def test_two_h_sets_are_apart_only_when_one_lies_beyond_an_end_of_the_expanded_s
             assert _apart(first, Edge(0, 0, sign, turns), other, map.over(balls(BITS))) is apart
     assert seen == {True, False}
     far = HSet((7.0, 0.0), (0.1, 0.0), (0.0, 0.1))  # on angles the same place may come again a turn further
-    near = HSet((0.0, 0.0), (0.1, 0.0), (0.0, 0.1))
+    near, small = HSet((0.0, 0.0), (0.1, 0.0), (0.0, 0.1)), ((0.1, 0.0), (0.0, 0.1))
     assert _apart(near, Edge(0, 0), far, HENON.over(balls(BITS)))
     assert not _apart(near, Edge(0, 0), far, table(SHAPE).over(balls(BITS)))
+    for turned in (HSet((2 * math.pi + 0.1, 0.0), *small), HSet((-2 * math.pi, 0.0), *small)):
+        assert not _apart(near, Edge(0, 0), turned, table(SHAPE).over(balls(BITS)))
+    assert _apart(near, Edge(0, 0), HSet((5.7, 0.0), *small), table(SHAPE).over(balls(BITS)))
 
 
 @pytest.mark.parametrize(("map", "parameter", "size"), [(HENON, 1.4, 0.05), (None, 0.7, 0.002)], ids=["henon", "egg"])

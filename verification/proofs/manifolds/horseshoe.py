@@ -185,7 +185,7 @@ def _crosses(off: tuple[arb, arb], m: Matrix) -> bool:
     """Do the ends of the expanded side leave on different sides, and does nothing reach the contracted ends?"""
     a, b, c, d = m
     slack = 1 + abs(b) + abs(off[0])
-    return bool(abs(a) > slack and (a > 0 or a < 0) and abs(off[1]) + abs(c) + abs(d) < 1)
+    return bool(abs(a) > slack and abs(off[1]) + abs(c) + abs(d) < 1)
 
 
 def _expands(m: Matrix) -> bool:

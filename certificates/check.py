@@ -494,12 +494,10 @@ def read_scene(scene, free, p):
     fit = not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
     fit = fit and type(K) is int and 2 <= K <= 1000 and ("K" not in scene or title == "egg")
     letter, parts = PAPER.get(title) or ("", beside("boundaries").pieces(way[0], scene[way[0]]))
-    ends, ranges = ({name: text.partition("..") for name, text in shape.items() if end in text} for end in ("", ".."))
+    ends, spans = ({name: text.partition("..") for name, text in shape.items() if end in text} for end in ("", ".."))
     given, own = {*shape, free} - {"", "lam"}, {*re.findall(r"\w+", scene.get("law", ""))} - {"theta", "eta", "pi", "E"}
     fit = fit and letter in ("", *given) and (title is None or not given - {letter} - own)
-    fit = (
-        fit and free in ("", "lam", letter, *ranges, *own) and {*ranges} == {free} & {*shape} and not (title and ranges)
-    )
+    fit = fit and free in ("", "lam", letter, *spans, *own) and {*spans} == {free} & {*shape} and not (title and spans)
     need(fit, "scene: the table has other letters, or one with a range that is not free, or no such name", Wrong)
     number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p), title)
     letters = {name: number(name, at[0]).hull(number(name, at[2] or at[0])) for name, at in ends.items()}
@@ -510,7 +508,7 @@ def read_scene(scene, free, p):
     need((free == "lam") == (lam is None), "scene: lam is told where it is not the free letter, and only there", Wrong)
     said = [("phi", scene.get("law")), *shape.items(), ("lam", lam)]
     title = (title or beside("boundaries").called_by(way[0], scene[way[0]])) + f" of {K} points" * (K != 3)
-    return table, lam and number("lam", lam), title + "".join(f", {k} = {v}" for k, v in said if v and k not in ranges)
+    return table, lam and number("lam", lam), title + "".join(f", {k} = {v}" for k, v in said if v and k not in spans)
 
 
 def named(kind, sign, parts, bounces, boxes, scene, free, title, p):

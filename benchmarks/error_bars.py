@@ -41,7 +41,7 @@ def chaotic(map, count):
     phi = start.phi if map.law != "slap" else 0 * start.phi
     end = map.exponents(start.theta, phi, EARLY, EARLY, start.component)
     stay = np.nonzero((end.nu_plus > CATCHES) & (end.code == 0))[0][:count]
-    growth = Growth(map, end.component[stay], end.theta[stay], end.phi[stay])
+    growth = Growth(map, end.theta[stay], end.phi[stay], end.component[stay])
     growth.advance(100)
     return growth
 

@@ -48,7 +48,7 @@ peak = int(status.read_text().split("VmHWM:")[1].split()[0]) if status.exists() 
 print(json.dumps({{"tops": tops, "own": own, "peak": peak, "spent": time.process_time() - began}}))
 """
 ASKED = {
-    "end": "growth = Growth(map, 0, 0.3, 0.0); growth.skip(10)",
+    "end": "growth = Growth(map, 0.3, 0.0); growth.skip(10)",
     "orbit": "map.orbit(0.3, 0.0, 10)",
     "exponents": "map.exponents(0.3, 0.0, 10)",
 }

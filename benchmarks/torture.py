@@ -302,7 +302,7 @@ def intervals(seeds: int, seed: int = 1) -> Outcome:
     said, failed = [], 0
     for bounces in (256, 1024, 4096):
         starts = interior_starts(map, 4 * seeds, seed=seed + bounces)
-        growth = Growth(map, starts.component, starts.theta, 0 * starts.phi)
+        growth = Growth(map, starts.theta, 0 * starts.phi, starts.component)
         growth.skip(1000)
         count = Count(growth)
         for _ in count.until(bounces):

@@ -101,6 +101,17 @@ def test_a_question_is_answered_by_twenty_files(question):
     assert {*warm} <= {*cold}
 
 
+def test_a_phase_point_is_given_in_one_order():
+    """`theta, phi, component`, as `PinballMap` takes them; where states are made, a place `component, theta` is first."""
+    states = ROOT / "numeric" / "pinball" / "coordinates.py"
+    for path in CODE:
+        functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
+        for node in functions if path != states else ():
+            names = [each.arg for each in node.args.args if each.arg in ("theta", "phi", "component")]
+            if {"theta", "phi"} <= {*names}:
+                assert names == ["theta", "phi", "component"][: len(names)], f"{path}: {node.name}"
+
+
 def test_dependencies_have_lower_bounds_only():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     own = re.compile(rf"{project['name']}\[[a-z,]+\]")  # extras that bring other extras

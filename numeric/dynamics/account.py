@@ -183,7 +183,7 @@ def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> Check:
     >>> bool(checked(table, PhasePoints(*phase_starts(table, 8, seed=1)[:3]), 200).difference < 1e-11)
     True
     """
-    growth = Growth(map, particles.component, particles.theta, particles.phi)
+    growth = Growth(map, particles.theta, particles.phi, particles.component)
     growth.advance(bounces)
     difference = np.abs(volume(map, particles, bounces) - growth.volume)[growth.code == 0]
     return Check(float(np.max(difference, initial=0.0)), bounces, int(difference.size))

@@ -44,7 +44,7 @@ def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
     >>> from symbolic.tables.geometry import group
     >>> from symbolic.tables import cuspless
     >>> from numeric.dynamics.phase_points import phase_points
-    >>> image = moved(group(cuspless)[1], phase_points([0, 1], [1.0, 0.25], 0.5))
+    >>> image = moved(group(cuspless)[1], phase_points([1.0, 0.25], 0.5, [0, 1]))
     >>> image.component.tolist(), image.theta.tolist(), image.phi.tolist()
     ([0, 1], [-1.0, -0.25], [-0.5, -0.5])
     """
@@ -161,9 +161,9 @@ class Classified(NamedTuple):
 
 def classify(
     map: PinballMap,
-    component: ArrayLike,
     theta: ArrayLike,
     phi: ArrayLike,
+    component: ArrayLike = 0,
     transient: int = 1000,
     known: Sequence[Attractor] = (),
     rounds: int = ROUNDS,
@@ -171,11 +171,11 @@ def classify(
     """The attractor that each particle reaches. Attractors already `known` keep their index; new ones follow.
 
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
-    >>> found = classify(ellipse, 0, [0.1, 1.0, 2.0], 0.2)
+    >>> found = classify(ellipse, [0.1, 1.0, 2.0], 0.2)
     >>> found.label.tolist(), [(a.kind.name, a.period) for a in found.attractors]
     ([0, 0, 0], [('CYCLE', 2)])
     """
-    return _Sorting(map, phase_points(component, theta, phi), list(known)).sorted(transient, rounds)
+    return _Sorting(map, phase_points(theta, phi, component), list(known)).sorted(transient, rounds)
 
 
 @dataclass
@@ -309,7 +309,7 @@ def find(
     """
     starts = interior_starts(map, orbits, seed)
     phi = np.zeros(orbits) if map.law == "slap" else starts.phi  # then every exit is along the normal
-    label, attractors = classify(map, starts.component, starts.theta, phi, transient, known)
+    label, attractors = classify(map, starts.theta, phi, starts.component, transient, known)
     found = [
         replace(measured(map, attractor, bounces), share=wilson(int(np.sum(label == i)), orbits))
         for i, attractor in enumerate(attractors)

@@ -55,7 +55,7 @@ def starts_at(map: PinballMap, s: ArrayLike, sin_phi: ArrayLike) -> PhasePoints:
     along, height = np.broadcast_arrays(np.asarray(s, dtype=float), np.asarray(sin_phi, dtype=float))
     height = np.where(np.abs(height) > 1, np.sign(height) * 2 - height, height) * (1 - 1e-12)
     component, theta = boundary(map, along.ravel())
-    return phase_points(component, theta, np.arcsin(height.ravel()))
+    return phase_points(theta, np.arcsin(height.ravel()), component)
 
 
 def labels(
@@ -73,7 +73,7 @@ def labels(
     >>> from numeric.dynamics.attractors import find
     >>> map = PinballMap("cuspless", lam="0.09")
     >>> found = find(map, 100, seed=1)
-    >>> label = labels(map, phase_points([1, 0], [0.0, 0.2], [0.0, -0.03]), found)
+    >>> label = labels(map, phase_points([0.0, 0.2], [0.0, -0.03], [1, 0]), found)
     >>> [found[i].kind.name for i in label]
     ['CYCLE', 'CHAOTIC']
     """
@@ -97,7 +97,7 @@ def _settled(
         going = np.nonzero((found == UNSETTLED) & (end.code == 0))[0]
     if going.size:
         here = there.only(going)
-        late = classify(map, *here, transient=transient, known=attractors).label
+        late = classify(map, here.theta, here.phi, here.component, transient=transient, known=attractors).label
         found[going] = np.where(late < len(attractors), late, UNSETTLED)
     return found
 

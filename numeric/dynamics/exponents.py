@@ -163,7 +163,7 @@ def surveyed(
     """
     growth = arrived(map, starts)
     skipped(growth, max(transient - ALIGNED, 0))
-    classified = classify(map, growth.component, growth.theta, growth.phi)
+    classified = classify(map, growth.theta, growth.phi, growth.component)
     label, waited = _settled(map, growth, classified, max(transient, ALIGNED))
     classified, waited = classified._replace(label=label), waited + max(transient - ALIGNED, 0)
     growth.advance(min(transient, ALIGNED))
@@ -196,8 +196,8 @@ def arrived(map: PinballMap, starts: Starts) -> Growth:
     """Particles on their way from their starts; at `lam = 0` from their first landing: the slap map forgets phi."""
     if map.law == "slap":
         landed = map.step(starts.theta, starts.phi, starts.component)
-        return Growth(map, landed.component, landed.theta, 0.0 * landed.phi)
-    return Growth(map, starts.component, starts.theta, starts.phi)
+        return Growth(map, landed.theta, 0.0 * landed.phi, landed.component)
+    return Growth(map, starts.theta, starts.phi, starts.component)
 
 
 def skipped(growth: Growth, bounces: int) -> None:
@@ -262,7 +262,7 @@ def _kind(index: int, attractor: Attractor | None) -> str:
 def _remembering(map: PinballMap, count: Count, members: Labels, measured: Measured) -> Measured:
     """With the naive error, from the growth of single bounces of a few particles."""
     few, end = members[:WATCHED], count.growth
-    watched = Growth(map.at(end.lam[few]), end.component[few], end.theta[few], end.phi[few])
+    watched = Growth(map.at(end.lam[few]), end.theta[few], end.phi[few], end.component[few])
     watched.advance(ALIGNED)
     track = np.empty((SINGLE + 1, few.size))
     track[0] = watched.stretch
@@ -283,7 +283,7 @@ def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int
     """The angle in `(s, phi)`, in radians from 0 to pi/2, at `bounces` points of every particle's orbit.
 
     >>> from numeric.dynamics.phase_points import phase_points
-    >>> measured = angles(PinballMap("cuspless", lam="0.5"), phase_points(0, [0.5, 0.7], 0.1), 50)
+    >>> measured = angles(PinballMap("cuspless", lam="0.5"), phase_points([0.5, 0.7], 0.1), 50)
     >>> measured.size, bool(np.min(measured) > 0.3)
     (100, True)
     """

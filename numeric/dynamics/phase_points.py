@@ -46,10 +46,10 @@ class Advanced(NamedTuple):
     code: NDArray[np.int64]
 
 
-def phase_points(component: ArrayLike, theta: ArrayLike, phi: ArrayLike) -> PhasePoints:
-    """Places from numbers or arrays of any shape, in one row.
+def phase_points(theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> PhasePoints:
+    """Phase points from numbers or arrays of any shape, in one row.
 
-    >>> phase_points(0, [0.0, 1.0], 0.0).component.tolist()
+    >>> phase_points([0.0, 1.0], 0.0).component.tolist()
     [0, 0]
     """
     index, angle, exit = np.broadcast_arrays(component, theta, phi)
@@ -73,7 +73,7 @@ def advanced(map: PinballMap, particles: PhasePoints, bounces: int) -> Advanced:
 def embedded(map: PinballMap, particles: PhasePoints) -> Array:
     """Rows `x, y, sin(phi)`, in which distances are measured: no angle has an end there.
 
-    >>> embedded(PinballMap("circle"), phase_points(0, [0.0], [0.0])).tolist()
+    >>> embedded(PinballMap("circle"), phase_points([0.0], [0.0])).tolist()
     [[1.0, 0.0, 0.0]]
     """
     x, y = map.states.point(particles.component, particles.theta)
@@ -99,7 +99,7 @@ class Gathered(NamedTuple):
 def gathered(map: PinballMap, particles: PhasePoints, known: Sequence[PhasePoints] = ()) -> Gathered:
     """The sets on which the orbits of a few of the particles lie, sets known before among them.
 
-    >>> found = gathered(PinballMap("cardioid", lam="0.5"), phase_points(0, [0.5, -0.5, 1.0], 0.1))
+    >>> found = gathered(PinballMap("cardioid", lam="0.5"), phase_points([0.5, -0.5, 1.0], 0.1))
     >>> found.member.tolist(), len(found.sets)
     ([0, 0, 0], 1)
     """
@@ -109,13 +109,14 @@ def gathered(map: PinballMap, particles: PhasePoints, known: Sequence[PhasePoint
     along = PhasePoints(orbit.component[1:].T, orbit.theta[1:].T, orbit.phi[1:].T)
     before = [np.full(points.size, i) for i, points in enumerate(known)]
     owner = np.concatenate([*before, len(known) + np.repeat(np.arange(looked.size), ORBIT)])
-    group = joined(owner, cells(map, together(*known, phase_points(*along))))
+    group = joined(owner, cells(map, together(*known, phase_points(along.theta, along.phi, along.component))))
     old = {int(group[i]): i for i in reversed(range(len(known)))}
     sets, new = list(known), group[len(known) :]
     for number in dict.fromkeys(int(x) for x in new):
         if number not in old:
             old[number] = len(sets)
-            points = phase_points(*along.only(new == number))
+            part = along.only(new == number)
+            points = phase_points(part.theta, part.phi, part.component)
             sets.append(points.only(np.linspace(0, points.size - 1, min(points.size, KEPT)).astype(int)))
     return Gathered(looked, np.array([old[int(x)] for x in new], dtype=np.int64), sets)
 

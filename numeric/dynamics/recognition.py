@@ -108,7 +108,7 @@ class Cycle:
 def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
     """The cycle whose bounces lie near the given ones, in order; None when Newton's method does not settle there.
 
-    >>> axis = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points(0, [1.5, -1.6], [0.01, 0.0]))
+    >>> axis = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points([1.5, -1.6], [0.01, 0.0]))
     >>> axis.period, axis.points.theta.round(12).tolist()
     (2, [-1.570796326795, 1.570796326795])
     """
@@ -216,7 +216,7 @@ def _moved(map: PinballMap, here: PhasePoints, step: Array) -> PhasePoints | Non
         return None
     if np.any(np.abs(phi) >= np.pi / 2):
         return None
-    return phase_points(here.component, theta - 2 * np.pi * np.rint(theta / (2 * np.pi)), phi)
+    return phase_points(theta - 2 * np.pi * np.rint(theta / (2 * np.pi)), phi, here.component)
 
 
 UNSETTLED = -1
@@ -318,7 +318,7 @@ def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
     """The largest radius tried such that particles that far from the cycle all come ten times nearer: sampled.
 
     >>> from numeric.dynamics.phase_points import phase_points
-    >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points(0, [1.5, -1.6], 0.0))
+    >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points([1.5, -1.6], 0.0))
     >>> reach(PinballMap("ellipse", a=2, lam="0.5"), cycle)
     0.01
     """

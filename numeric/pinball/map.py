@@ -241,7 +241,7 @@ class PinballMap:
         the determinant. At `lam = 0` the map is one-dimensional and `nu_minus` is minus infinity.
         """
         bounces, transient = counted("bounces", bounces), counted("transient", transient, least=0)
-        growth = Growth(self, component, theta, phi)
+        growth = Growth(self, theta, phi, component)
         growth.skip(transient, threads)
         growth.advance(bounces, threads)
         made = np.maximum(growth.bounces, 1)

@@ -164,14 +164,14 @@ class Growth:
 
     >>> import numpy as np
     >>> from numeric import PinballMap
-    >>> growth = Growth(PinballMap("cardioid", lam=0), 0, np.pi / 3, 0.0)  # T0' = 1 - t*|K| = -5/4 there
+    >>> growth = Growth(PinballMap("cardioid", lam=0), np.pi / 3, 0.0)  # T0' = 1 - t*|K| = -5/4 there
     >>> growth.advance(2)
     >>> growth.advance(2)
     >>> bool(abs(growth.stretch[0] / 4 - np.log(5 / 4)) < 1e-14), int(growth.bounces[0])
     (True, 4)
     """
 
-    def __init__(self, map: "PinballMap", component: ArrayLike, theta: ArrayLike, phi: ArrayLike) -> None:
+    def __init__(self, map: "PinballMap", theta: ArrayLike, phi: ArrayLike, component: ArrayLike = 0) -> None:
         self.map = map
         where, at, angle = map._start(theta, phi, component)
         self.component, self.theta, self.phi = where.ravel(), at.ravel(), angle.ravel()

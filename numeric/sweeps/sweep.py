@@ -324,7 +324,7 @@ def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, thre
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")
-    growth = Growth(map, starts.component, starts.theta, starts.phi)
+    growth = Growth(map, starts.theta, starts.phi, starts.component)
     growth.skip(transient, threads)
     reached = np.zeros((2, BLOCKS + 1, starts.theta.size))
     for i in range(1, BLOCKS + 1):

@@ -225,7 +225,7 @@ def _returning(map: PinballMap, particle: Particle, within: float) -> Cycle | No
         return None
     away = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) + np.abs(orbit.phi[1:] - orbit.phi[0])
     for period in np.argsort(away)[:8] + 1:
-        near = phase_points(orbit.component[:period], orbit.theta[:period], orbit.phi[:period])
+        near = phase_points(orbit.theta[:period], orbit.phi[:period], orbit.component[:period])
         found = polished(map, near) if away[period - 1] < within else None
         if found is not None:
             return shortest(map, found.points)

@@ -2,18 +2,18 @@
 
 from . import laws, strategies
 from .enclosed import EnclosedMap, Refusal, in_balls, in_multiprecision, perimeter
-from .exact import Ball, ExactMap, errors, exact_ball
+from .exact import Bounce, ExactMap, errors, exact_bounce
 from .first_hit import closes_smoothly, convex, first_hits, inside, minimal, turns_once, unobstructed
 
 __all__ = [
-    "Ball",
+    "Bounce",
     "EnclosedMap",
     "ExactMap",
     "Refusal",
     "closes_smoothly",
     "convex",
     "errors",
-    "exact_ball",
+    "exact_bounce",
     "first_hits",
     "in_balls",
     "in_multiprecision",

@@ -22,7 +22,7 @@ from numeric.backends.scalars import ScalarBackend
 from numeric.pinball.states import STATUSES
 from verification.arithmetic.balls import as_ball, bits_of, enclose, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
-from verification.maps.exact import Ball, ExactMap, closed_length
+from verification.maps.exact import Bounce, ExactMap, closed_length
 from verification.maps.first_hit import BITS, Boundary, Frame, free
 
 GUESSED = 40  # digits of a guess by mpmath
@@ -98,7 +98,7 @@ class EnclosedMap:
 
     >>> from numeric import PinballMap
     >>> ellipse = EnclosedMap(PinballMap("ellipse", a=2, lam=1), 1, bits=100)
-    >>> bounce = ellipse.bounce(ellipse.ball(0, Fraction(0), Fraction(0)))
+    >>> bounce = ellipse.bounce(ellipse.start(Fraction(0), Fraction(0)))
     >>> bounce.x.contains(-2), bounce.x.rad() < 1e-20
     (True, True)
     """
@@ -113,31 +113,31 @@ class EnclosedMap:
         self.parts = [part.curve for part in map.ir.parts]
         self.boundary = Boundary([self._placed(i) for i in range(len(self.parts))], self.ends)
 
-    def ball(self, component: int, theta: Any, phi: Any) -> Ball:
-        """All balls whose parameter and exit angle lie in these, which may be exact numbers."""
+    def start(self, theta: Any, phi: Any, component: int = 0) -> Bounce:
+        """All bounces whose parameter and exit angle lie in these, which may be exact numbers."""
         with working(self.bits):
             theta, phi = number(theta, self.bits), number(phi, self.bits)
             x, y, dx, dy, _, _ = self.curve(component, theta)
             speed = (dx * dx + dy * dy).sqrt()
             c, s = phi.cos(), phi.sin()
             v = (s * dx - c * dy) / speed, (s * dy + c * dx) / speed
-            return Ball(component, theta, phi, v, x, y)
+            return Bounce(component, theta, phi, v, x, y)
 
-    def bounce(self, ball: Ball) -> Ball | Refusal:
+    def bounce(self, here: Bounce) -> Bounce | Refusal:
         """One flight and one reflection, proved; a particle that stops by a named outcome has that outcome's `code`.
 
-        An outcome is what mpmath finds for the middle of the ball, and is not proved.
+        An outcome is what mpmath finds for the middle of `here`, and is not proved.
         """
         refusal = Refusal.WIDE
-        for guess in self._guesses(ball):
+        for guess in self._guesses(here):
             if guess.code:
                 return guess
             with working(self.bits):
-                landed = self._landed(ball, guess)
+                landed = self._landed(here, guess)
             if landed is None:
                 continue
             with working(BITS):
-                ends = (ball.component, ball.theta), (landed.component, landed.theta)
+                ends = (here.component, here.theta), (landed.component, landed.theta)
                 if free(self.boundary, *ends):
                     return landed
             refusal = Refusal.UNPROVED
@@ -172,25 +172,25 @@ class EnclosedMap:
 
         return place
 
-    def _guesses(self, ball: Ball) -> Iterator[Ball]:
+    def _guesses(self, here: Bounce) -> Iterator[Bounce]:
         """The landing of the middle: by a kernel if it finds one, then by mpmath."""
-        theta, phi = float(ball.theta.mid()), float(ball.phi.mid())
-        low, high = self.map.states.ends[ball.component]
+        theta, phi = float(here.theta.mid()), float(here.phi.mid())
+        low, high = self.map.states.ends[here.component]
         if low <= theta <= high and abs(phi) < 1.5707 and abs(abs(theta) - 3.141592653589793) > MARGIN:
-            step = self.map.step(theta, phi, ball.component)
+            step = self.map.step(theta, phi, here.component)
             if not step.code:
-                yield Ball(int(step.component), arb(float(step.theta)), None, (None, None), None, None)
+                yield Bounce(int(step.component), arb(float(step.theta)), None, (None, None), None, None)
         exact = self.exact
-        guess = exact.bounce(exact.ball(ball.component, exact.middle(ball.theta), exact.middle(ball.phi)))
-        yield Ball(guess.component, as_ball(guess.theta), None, (None, None), None, None, code=guess.code)
+        guess = exact.bounce(exact.start(exact.middle(here.theta), exact.middle(here.phi), here.component))
+        yield Bounce(guess.component, as_ball(guess.theta), None, (None, None), None, None, code=guess.code)
 
-    def _landed(self, ball: Ball, guess: Ball) -> Ball | None:
+    def _landed(self, here: Bounce, guess: Bounce) -> Bounce | None:
         """The enclosed landing near a guess, or None when Newton's step does not close."""
-        vx, vy = ball.v
+        vx, vy = here.v
 
         def flight(theta: arb) -> tuple[arb, arb]:
             x, y, dx, dy, _, _ = self.curve(guess.component, theta)
-            return vx * (y - ball.y) - vy * (x - ball.x), vx * dy - vy * dx
+            return vx * (y - here.y) - vy * (x - here.x), vx * dy - vy * dx
 
         def correction(at: Vector) -> Vector:
             value, slope = (each.mid() for each in flight(*at))
@@ -207,11 +207,11 @@ class EnclosedMap:
         if not box.contains_interior(newton) or not (len(self.ends) == 1 or low < newton < high):
             return None
         x, y, dx, dy, _, _ = self.curve(guess.component, newton)
-        if not vx * (x - ball.x) + vy * (y - ball.y) > 0:
+        if not vx * (x - here.x) + vy * (y - here.y) > 0:
             return None
         eta = -(arb.atan2(vx * dx + vy * dy, vx * dy - vy * dx))
-        following = self.ball(guess.component, newton, self._exit(eta, guess.component, newton))
-        return Ball(guess.component, newton, following.phi, following.v, x, y, eta)
+        following = self.start(newton, self._exit(eta, guess.component, newton), guess.component)
+        return Bounce(guess.component, newton, following.phi, following.v, x, y, eta)
 
 
 def number(value: Any, bits: int = 0) -> arb:
@@ -227,7 +227,7 @@ def number(value: Any, bits: int = 0) -> arb:
 
 TRIES = 8  # doublings of the precision before giving up
 Step = Callable[[str], None]
-Start = tuple[int, Any, Any]  # component, theta and phi, exactly
+Start = tuple[Any, Any, int]  # theta and phi, exactly, and the component
 
 
 def in_multiprecision(
@@ -236,21 +236,21 @@ def in_multiprecision(
     """The orbit computed with mpmath; rounding errors grow as the orbit's own instability makes them."""
     exact = ExactMap(map, digits, lam)
     mp = exact.context
-    turns = _turns(map, start)
-    ball = exact.ball(start[0], exact.exactly(start[1]) - 2 * turns * mp.pi, exact.exactly(start[2]))
+    theta, phi, component = start
+    here = exact.start(exact.exactly(theta) - 2 * _turns(map, start) * mp.pi, exact.exactly(phi), component)
     names = [part.name for part in map.ir.parts]
     entries: list[dict[str, Any]] = []
     for i in range(bounces + 1):
         if i:
-            following = exact.bounce(ball)
+            following = exact.bounce(here)
             if following.code:
                 entries.append(entries[-1] | {"eta": None, "status": STATUSES[following.code].name.lower()})
                 break
-            ball = following
+            here = following
             step(str(i))
-        numbers = (ball.theta, exact.length(ball.component, ball.theta), ball.x, ball.y, ball.eta, ball.phi)
+        numbers = (here.theta, exact.length(here.component, here.theta), here.x, here.y, here.eta, here.phi)
         texts = [None if x is None else mp.nstr(x, digits) for x in numbers]
-        entries.append(_entry(names[ball.component], texts))
+        entries.append(_entry(names[here.component], texts))
     return entries
 
 
@@ -272,33 +272,33 @@ def _attempt(
     names = [part.name for part in map.ir.parts]
     entries: list[dict[str, Any]] = []
     with working(bits):
-        theta = number(start[1], bits) - 2 * _turns(map, start) * arb.pi()
-    ball = enclosed.ball(start[0], theta, start[2])
+        theta = number(start[0], bits) - 2 * _turns(map, start) * arb.pi()
+    here = enclosed.start(theta, *start[1:])
     for i in range(bounces + 1):
         if i:
-            following = enclosed.bounce(ball)
+            following = enclosed.bounce(here)
             if following is Refusal.WIDE:
                 return None
             if isinstance(following, Refusal) or following.code:
                 status = "unproved" if isinstance(following, Refusal) else STATUSES[following.code].name.lower()
                 entries.append(entries[-1] | {"eta": None, "status": status})
                 break
-            ball = following
+            here = following
             step(str(i))
         with working(bits):
-            s = enclosed.length(ball.component, ball.theta, digits)
-            numbers = (ball.theta, s, ball.x, ball.y, ball.eta, ball.phi)
+            s = enclosed.length(here.component, here.theta, digits)
+            numbers = (here.theta, s, here.x, here.y, here.eta, here.phi)
             texts = [None if n is None else _text(n, digits) for n in numbers]
         if "" in texts:
             return None
-        entries.append(_entry(names[ball.component], texts))
+        entries.append(_entry(names[here.component], texts))
     return entries
 
 
 def _turns(map: PinballMap, start: Start) -> int:
     """The whole turns by which a start on a closed curve lies beyond the range of its parameter."""
-    low, high = map.states.ends[start[0]]
-    theta = float(start[1])
+    low, high = map.states.ends[start[2]]
+    theta = float(start[0])
     return 0 if len(map.states.ends) > 1 or low <= theta <= high else round((theta - (low + high) / 2) / (high - low))
 
 

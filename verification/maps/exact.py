@@ -27,8 +27,8 @@ COARSE = 50  # digits of the search for the first hit, when more are asked for
 
 
 @dataclass(frozen=True)
-class Ball:
-    """A ball on the boundary: component, parameter, exit angle and direction; `eta` is how it came."""
+class Bounce:
+    """A bounce on the boundary: component, parameter, exit angle and direction; `eta` is how it came."""
 
     component: int
     theta: Any
@@ -45,7 +45,7 @@ class ExactMap:
 
     >>> from numeric import PinballMap
     >>> exact = ExactMap(PinballMap("ellipse", a=2, lam=1), digits=30)
-    >>> print(exact.bounce(exact.ball(0, 0, 0)).x)
+    >>> print(exact.bounce(exact.start(0, 0)).x)
     -2.0
     """
 
@@ -65,35 +65,35 @@ class ExactMap:
         self.cusped = map.family.cusped
         self.coarse = ExactMap(map, COARSE, lam) if digits > COARSE else None
 
-    def ball(self, component: int, theta: Any, phi: Any) -> Ball:
-        """The ball at `theta` that leaves at the exit angle `phi`, both taken exactly."""
+    def start(self, theta: Any, phi: Any, component: int = 0) -> Bounce:
+        """The bounce at `theta` that leaves at the exit angle `phi`, both taken exactly."""
         mp = self.context
         theta, phi = mp.mpf(theta), mp.mpf(phi)
         tx, ty, x, y = self._frame(component, theta)
         c, s = mp.cos(phi), mp.sin(phi)
-        return Ball(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y)
+        return Bounce(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y)
 
-    def along(self, component: int, theta: Any, v: Sequence[Any]) -> Ball:
-        """The ball at `theta` that flies along `v`, which need not have length one."""
+    def along(self, theta: Any, v: Sequence[Any], component: int = 0) -> Bounce:
+        """The bounce at `theta` that flies along `v`, which need not have length one."""
         mp = self.context
         x, y = mp.mpf(v[0]), mp.mpf(v[1])
         tx, ty, px, py = self._frame(component, theta)
         size = mp.hypot(x, y)
         v = (x / size, y / size)
-        return Ball(component, theta, mp.atan2(v[0] * tx + v[1] * ty, v[1] * tx - v[0] * ty), v, px, py)
+        return Bounce(component, theta, mp.atan2(v[0] * tx + v[1] * ty, v[1] * tx - v[0] * ty), v, px, py)
 
-    def bounce(self, ball: Ball) -> Ball:
+    def bounce(self, here: Bounce) -> Bounce:
         """One flight and one reflection."""
         mp = self.context
-        component, theta, code = self._landing(ball)
-        if self.cusped and (mp.cos(theta / 2) < NEAR or self._meets_the_cusp(ball)):
-            return replace(ball, eta=None, code=Status.CUSP.code)
+        component, theta, code = self._landing(here)
+        if self.cusped and (mp.cos(theta / 2) < NEAR or self._meets_the_cusp(here)):
+            return replace(here, eta=None, code=Status.CUSP.code)
         tx, ty, x, y = self._frame(component, theta)
-        vx, vy = ball.v
+        vx, vy = here.v
         eta = -mp.atan2(vx * tx + vy * ty, vx * ty - vy * tx)
         phi = -self.lam * eta if self.formula is None else self._exit(eta, component, theta)
         c, s = mp.cos(phi), mp.sin(phi)
-        return Ball(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y, eta, code)
+        return Bounce(component, theta, phi, (s * tx - c * ty, s * ty + c * tx), x, y, eta, code)
 
     def _exit(self, eta: Any, component: int, theta: Any) -> Any:
         """The exit angle of a law that is no uniform contraction."""
@@ -119,38 +119,38 @@ class ExactMap:
         (zero,) = map.ir.origin[1](self.ops, *self.shape)
         return mp.quad(speed, [zero + (theta - zero) * k / 8 for k in range(9)])
 
-    def _landing(self, ball: Ball) -> tuple[int, Any, int]:
+    def _landing(self, here: Bounce) -> tuple[int, Any, int]:
         """Component and parameter of the first hit, and the code of its outcome."""
         mp = self.context
         if self.coarse is not None:
-            component, theta, code = self.coarse._landing(ball)
-            sharp = None if code else self._sharpened(ball, component, mp.mpf(theta))
+            component, theta, code = self.coarse._landing(here)
+            sharp = None if code else self._sharpened(here, component, mp.mpf(theta))
             if sharp is not None:
                 return component, sharp, code
-        state = [mp.mpf(ball.component), mp.mpf(ball.theta)], [mp.mpf(x) for x in ball.v]
+        state = [mp.mpf(here.component), mp.mpf(here.theta)], [mp.mpf(x) for x in here.v]
         landing = self.general.fly(self.ops, self.shape, "pinball", *state)
         return int(landing.position[0]), landing.position[1], int(landing.code or 0)
 
-    def _meets_the_cusp(self, ball: Ball) -> bool:
+    def _meets_the_cusp(self, here: Bounce) -> bool:
         """Does the flight pass the origin, which every point of the cardioid sees, closer than any landing tells?"""
-        (x, y), (vx, vy) = (ball.x, ball.y), ball.v
+        (x, y), (vx, vy) = (here.x, here.y), here.v
         return bool(x * vx + y * vy < 0 and abs(x * vy - y * vx) < NEAR * NEAR)
 
-    def _sharpened(self, ball: Ball, component: int, theta: Any) -> Any:
+    def _sharpened(self, here: Bounce, component: int, theta: Any) -> Any:
         """The zero of the flight function that Newton's method reaches; None if it is not the one nearby."""
-        mp, (vx, vy) = self.context, ball.v
+        mp, (vx, vy) = self.context, here.v
 
         def correction(at: Vector) -> Vector:
             x, y, dx, dy, _, _ = self.general.parts[component].curve(self.ops, *at, *self.shape)
-            return [(vx * (y - ball.y) - vy * (x - ball.x)) / (vx * dy - vy * dx)]
+            return [(vx * (y - here.y) - vy * (x - here.x)) / (vx * dy - vy * dx)]
 
         enough = mp.mpf(10) ** (-mp.dps * 3 // 5)  # the next correction would be lost in rounding
         found = iterated(correction, [theta], Stop(enough=enough, steps=self.digits))
         return found.x[0] if found.settled and abs(found.x[0] - theta) < mp.mpf(10) ** -COARSE else None
 
-    def orbit(self, ball: Ball, bounces: int) -> list[Ball]:
-        """The ball and its next `bounces` bounces; shorter when an outcome stops it."""
-        orbit = [ball]
+    def orbit(self, here: Bounce, bounces: int) -> list[Bounce]:
+        """A bounce and the next `bounces` ones; shorter when an outcome stops it."""
+        orbit = [here]
         for _ in range(bounces):
             following = self.bounce(orbit[-1])
             if following.code:
@@ -207,13 +207,13 @@ EPS = 2.0**-52
 Array = NDArray[np.float64]
 
 
-def exact_ball(map: PinballMap, exact: ExactMap, fields: list[Any]) -> Ball:
-    """The exact ball whose rounded state these kernel fields are."""
+def exact_bounce(map: PinballMap, exact: ExactMap, fields: list[Any]) -> Bounce:
+    """The exact bounce whose rounded state these kernel fields are."""
     f = [_number(exact.context, x) for x in fields]
     component, theta = _place(map, exact, f)
     leaving = f[len(map.family.position) :]
     phi = map.family.exit(exact.ops, exact.frame(component, theta), leaving) if leaving else 0
-    return exact.ball(component, theta, phi)
+    return exact.start(theta, phi, component)
 
 
 def errors(map: PinballMap, exact: ExactMap, before: list[Array], after: list[Array]) -> tuple[Array, Array]:
@@ -221,7 +221,7 @@ def errors(map: PinballMap, exact: ExactMap, before: list[Array], after: list[Ar
     family, ops, at = map.family, exact.ops, len(map.family.position)
     position, direction = np.zeros(before[0].size), np.zeros(before[0].size)
     for i in range(before[0].size):
-        truth = exact.bounce(exact_ball(map, exact, [row[i] for row in before]))
+        truth = exact.bounce(exact_bounce(map, exact, [row[i] for row in before]))
         g = [exact.context.mpf(float(row[i])) for row in after]
         if _place(map, exact, g)[0] != truth.component:
             position[i] = direction[i] = np.inf

@@ -82,10 +82,10 @@ def jacobian(tables: Any = None, **options: Any) -> Test:
         for along, unit in (((h, 0), before), ((0, h), 1.0)):
             ahead, behind = (
                 exact.bounce(
-                    exact.ball(
-                        particle.component,
+                    exact.start(
                         mp.mpf(particle.theta) + sign * along[0],
                         mp.mpf(particle.phi) + sign * along[1],
+                        particle.component,
                     )
                 )
                 for sign in (1, -1)
@@ -194,7 +194,7 @@ def first_hit(tables: Any = None, **options: Any) -> Test:
     def the_landing_is_the_first_hit(particle: Particle) -> None:
         step = _landed(particle)
         balls = EnclosedMap(particle.map, particle.lam, BITS)
-        proved = balls.bounce(balls.ball(particle.component, particle.theta, particle.phi))
+        proved = balls.bounce(balls.start(particle.theta, particle.phi, particle.component))
         if isinstance(proved, Refusal):
             assume(False)
         assert not proved.code, proved.code

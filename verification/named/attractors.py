@@ -56,7 +56,7 @@ def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
     >>> from numeric.dynamics.phase_points import phase_points
-    >>> axis = certificate(ellipse.at(a=2), Rational(1, 2), phase_points(0, [1.5, -1.6], 0.0))
+    >>> axis = certificate(ellipse.at(a=2), Rational(1, 2), phase_points([1.5, -1.6], 0.0))
     >>> axis.proved, axis.trace.str(10, radius=False), axis.determinant.str(10, radius=False)
     (True, '-0.4375000000', '0.2500000000')
     """
@@ -103,7 +103,7 @@ def certified_exponents(
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
     >>> from numeric.dynamics.phase_points import phase_points
-    >>> axis = certified_exponents(ellipse.at(a=2), Rational(1, 2), phase_points(0, [1.5, -1.6], 0.0), 15)
+    >>> axis = certified_exponents(ellipse.at(a=2), Rational(1, 2), phase_points([1.5, -1.6], 0.0), 15)
     >>> axis["nu_plus"][:16], axis["nu_minus"][:16]  # log(1/2)/2, a complex pair
     ('-0.3465735902799', '-0.3465735902799')
     """
@@ -254,7 +254,7 @@ def _successors(map: PinballMap, branch: Branch, longest: int) -> list[tuple[flo
         first = end.cycle.points.only(slice(0, 1))
         there = map.at(lam)
         for nudge in (1e-5, -1e-5):
-            label, attractors = classify(there, first.component, first.theta + nudge, first.phi, transient=20_000)
+            label, attractors = classify(there, first.theta + nudge, first.phi, first.component, transient=20_000)
             near = [attractors[i] for i in label[label >= 0]]
             found += [(lam, a.points) for a in near if a.kind is Kind.CYCLE and a.period <= longest]
     return found

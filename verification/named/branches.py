@@ -94,7 +94,7 @@ def ends(
     >>> from symbolic.tables.geometry import group
     >>> from symbolic.tables import cuspless
     >>> map = PinballMap("cuspless", lam=0.05)
-    >>> axis = polished(map, phase_points([0, 1], [0.0, 0.0], 0.0))
+    >>> axis = polished(map, phase_points([0.0, 0.0], 0.0, [0, 1]))
     >>> low, high = ends(map, cuspless, group(cuspless), axis, 0.05)
     >>> low.event.name, high.event.name, high.value, high.proved
     ('EDGE', 'FLIP', '0.09340033543136', True)
@@ -133,7 +133,7 @@ def _end(
 def _ahead(here: PhasePoints, before: PhasePoints, share: float) -> PhasePoints:
     """The bounces extrapolated."""
     theta = here.theta + share * (np.remainder(here.theta - before.theta + np.pi, 2 * np.pi) - np.pi)
-    return phase_points(here.component, theta, np.clip(here.phi + share * (here.phi - before.phi), -1.57, 1.57))
+    return phase_points(theta, np.clip(here.phi + share * (here.phi - before.phi), -1.57, 1.57), here.component)
 
 
 def _in_step(map: PinballMap, new: PhasePoints, old: PhasePoints) -> PhasePoints:

@@ -59,12 +59,12 @@ def test_the_period_doubles_at_each_member_of_the_cascade(n):
     gap = 2e-5 if n < 6 else 4e-6
 
     for side, period in ((-gap, 2 ** (n - 1)), (gap, 2**n)):
-        found = classify(an_egg(lam + side), 0, [0.05], [0.01], transient=100_000)
+        found = classify(an_egg(lam + side), [0.05], [0.01], transient=100_000)
         assert [found.attractors[i].period for i in found.label] == [period]
 
 
 def test_every_diameter_attracts_in_the_circle():
-    label, found = classify(PinballMap("circle", lam="0.5"), 0, [0.0, 1.0, 2.0], [0.5, -1.0, 0.1])
+    label, found = classify(PinballMap("circle", lam="0.5"), [0.0, 1.0, 2.0], [0.5, -1.0, 0.1])
 
     assert label.tolist() == [0, 0, 0]
     assert [(a.kind, a.period) for a in found] == [(Kind.NEUTRAL, 2)]
@@ -77,10 +77,10 @@ def test_the_share_of_both_ways_round_is_the_same_within_its_interval():
     assert one.share.count + other.share.count == 4000
 
 
-def test_labels_do_not_depend_on_the_company_of_a_ball():
-    starts = interior_starts(an_egg("0.66"), 300, 3)
-    label, found = classify(an_egg("0.66"), *starts[:3])
-    alone, again = classify(an_egg("0.66"), *(row[200:] for row in starts[:3]), known=found)
+def test_labels_do_not_depend_on_the_company_of_a_particle():
+    component, theta, phi = interior_starts(an_egg("0.66"), 300, 3)[:3]
+    label, found = classify(an_egg("0.66"), theta, phi, component)
+    alone, again = classify(an_egg("0.66"), theta[200:], phi[200:], component[200:], known=found)
 
     assert len(again) == len(found)
     assert alone.tolist() == label[200:].tolist()
@@ -94,14 +94,15 @@ def test_a_long_transient_is_no_attractor():
 
 
 def test_what_has_not_settled_is_said_to_be_unsettled():
-    label, _ = classify(an_egg("0.666"), *interior_starts(an_egg("0.666"), 2000, 1)[:3], transient=100, rounds=3)
+    starts = interior_starts(an_egg("0.666"), 2000, 1)
+    label, _ = classify(an_egg("0.666"), starts.theta, starts.phi, starts.component, transient=100, rounds=3)
 
     assert UNSETTLED in label
 
 
-def test_a_ball_that_stops_reaches_no_attractor():
+def test_a_particle_that_stops_reaches_no_attractor():
     join = float(PinballMap("cuspless").states.ends[0][1])
-    label, found = classify(PinballMap("cuspless", lam="0.5"), 0, *_onto_the_join(join))
+    label, found = classify(PinballMap("cuspless", lam="0.5"), *_onto_the_join(join))
 
     assert [(found[i].kind, found[i].status) for i in label] == [(Kind.STOPPED, Status.JOIN)]
 
@@ -130,7 +131,7 @@ def test_symmetries_take_orbits_to_orbits(table, lam, shape):
 def test_polishing_finds_the_least_period():
     map = an_egg("0.2")
     cycle = next(a for a in find(map, 50, 1) if a.period == 4).points
-    twice = phase_points(*(np.tile(row, 2) for row in cycle))
+    twice = phase_points(*(np.tile(row, 2) for row in (cycle.theta, cycle.phi, cycle.component)))
 
     assert polished(map, twice).period == 4
 
@@ -144,7 +145,7 @@ def test_a_certificate_proves_the_cycles_that_sampling_found():
 
 
 def test_a_certificate_does_not_prove_a_saddle_attracting():
-    axis = certificate(ellipse.at(a=2), Rational(1, 2), phase_points(0, [0.0, 3.14], 0.0))
+    axis = certificate(ellipse.at(a=2), Rational(1, 2), phase_points([0.0, 3.14], 0.0))
 
     assert axis.checks["exists"] is True
     assert axis.checks["attracting"] is None

@@ -55,7 +55,7 @@ def test_a_run_shorter_than_its_memory_is_not_trusted():
 def test_intervals_of_exponents_hold_a_long_runs_result(name, lam):
     map = PinballMap(name, lam=lam)
     start = interior_starts(map, 1200, seed=2)
-    growth = Growth(map, start.component, start.theta, start.phi if lam != "0" else 0 * start.phi)
+    growth = Growth(map, start.theta, start.phi if lam != "0" else 0 * start.phi, start.component)
     growth.skip(300)
     growth.advance(100)
     count = Count(growth)
@@ -97,7 +97,7 @@ def test_kernel_and_angles_agree_on_the_determinant_along_an_orbit(name, lam):
 def test_in_an_ellipse_areas_grow_by_positions_alone():
     map = PinballMap("ellipse", lam="0.7", a=1.5)
     start = interior_starts(map, 30, seed=3)
-    growth = Growth(map, start.component, start.theta, start.phi)
+    growth = Growth(map, start.theta, start.phi, start.component)
     growth.advance(25)
     gradients = [np.hypot(np.cos(t) / 1.5, np.sin(t)) for t in (start.theta, growth.theta)]
 
@@ -157,7 +157,7 @@ def test_particles_that_all_stop_are_an_answer():
 def test_merged_blocks_keep_the_growth_that_was_counted():
     map = PinballMap("cardioid", lam="0.4")
     start = interior_starts(map, 5, seed=1)
-    growth = Growth(map, start.component, start.theta, start.phi)
+    growth = Growth(map, start.theta, start.phi, start.component)
     count = Count(growth, most=16)
     counted = list(count.until(1000))
 
@@ -216,7 +216,7 @@ def test_multipliers_on_either_side_of_the_discriminant_give_exponents():
 
 def test_certified_exponents_of_the_eggs_triangles_are_their_closed_form():
     found = certified_exponents(
-        tables.egg(3).at(alpha="0.08"), Rational(9, 20), phase_points(0, [-2.8335, -0.739, 1.355], 0.0)
+        tables.egg(3).at(alpha="0.08"), Rational(9, 20), phase_points([-2.8335, -0.739, 1.355], 0.0)
     )
     eta = np.pi / (3 * 1.45)
 
@@ -226,7 +226,7 @@ def test_certified_exponents_of_the_eggs_triangles_are_their_closed_form():
 
 
 def test_a_ball_that_stops_has_no_sum():
-    stopped = volume(PinballMap("cardioid", lam="0.5"), phase_points(0, [0.0], [0.0]), 5)
+    stopped = volume(PinballMap("cardioid", lam="0.5"), phase_points([0.0], [0.0]), 5)
 
     assert not np.isfinite(stopped[0])
 

@@ -17,7 +17,7 @@ def test_no_ball_on_its_way_to_a_weakly_attracting_cycle_is_called_chaotic(below
     rng = np.random.default_rng(0)
     theta, phi = rng.uniform(-0.02, 0.02, PARTICLES), rng.uniform(-0.002, 0.002, PARTICLES)
     map = PinballMap("cuspless", lam=float(lambda_c()) - below)
-    found = classify(map, np.zeros(PARTICLES, dtype=np.int64), theta, phi)
+    found = classify(map, theta, phi, np.zeros(PARTICLES, dtype=np.int64))
     end = map.exponents(theta, phi, 200_000, 0, 0)
     there = (np.abs(end.theta) < CLOSE[0]) & (np.abs(end.phi) < CLOSE[1])
     chaotic = [i for i, one in enumerate(found.attractors) if one.kind is Kind.CHAOTIC]

@@ -120,7 +120,7 @@ def test_the_step_itself_is_the_exact_map(table):
     mp = exact.context
     where, theta, phi = table.starts(map, 4, seed=31)
     for i in range(4):
-        ball = exact.ball(int(where[i]), theta[i], phi[i])
+        ball = exact.start(theta[i], phi[i], int(where[i]))
         state = in_digits(map, mp, ball)
         found, code = map.family.bounce(exact.ops, map.law, exact.shape, mp.mpf(0.7), state)
         truth = in_digits(map, mp, exact.bounce(ball))

@@ -173,7 +173,7 @@ def test_landings_on_the_cut_between_two_pieces_are_found():
 
     assert [status.name for status in step.status] == ["REGULAR"] * 4
     assert np.allclose(step.x, [-2, 2, 2, 0], rtol=0, atol=1e-15)
-    assert ExactMap(map, 30).bounce(ExactMap(map, 30).ball(0, 0, 0)).code == 0
+    assert ExactMap(map, 30).bounce(ExactMap(map, 30).start(0, 0)).code == 0
 
 
 WAISTED = tables.polar(1 + cos(2 * theta) / 2, name="waisted")

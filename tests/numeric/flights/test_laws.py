@@ -76,7 +76,7 @@ def test_a_bounce_is_that_of_the_exact_map(name):
     map = made(name, PLACED, kernels=name == "cuspless")
     exact, step = ExactMap(map, 30), map.step(theta, phi)
     for i in range(theta.size):
-        truth = exact.bounce(exact.ball(0, theta[i], phi[i]))
+        truth = exact.bounce(exact.start(theta[i], phi[i]))
         assert abs(float(truth.phi) - step.phi[i]) < 64 * EPS
         assert truth.component == step.component[i]
 
@@ -206,8 +206,8 @@ def test_the_exact_map_and_the_map_in_balls_know_the_same_arc_length(name):
     map = made(name, MEASURED, kernels=name == "sinai")
     exact, enclosed, step = ExactMap(map, 30), EnclosedMap(map, Fraction(1, 2), 100), map.step(theta, phi)
     for i in range(theta.size):
-        truth = exact.bounce(exact.ball(0, theta[i], phi[i]))
-        ball = enclosed.bounce(enclosed.ball(0, float(theta[i]), float(phi[i])))
+        truth = exact.bounce(exact.start(theta[i], phi[i]))
+        ball = enclosed.bounce(enclosed.start(float(theta[i]), float(phi[i])))
 
         assert abs(float(truth.phi) - step.phi[i]) < 16 * EPS
         assert ball.phi.rad() < 1e-24

@@ -96,7 +96,7 @@ def test_the_text_of_a_new_family_runs_on_fifty_digits_and_is_the_definition(reg
     map = PinballMap(DISC, lam="0.7")
     exact = ExactMap(map, 50)
     mp, ops = exact.context, exact.ops
-    start = exact.ball(0, THETA[0], PHI[0])
+    start = exact.start(THETA[0], PHI[0])
     state = [*map.family.enter(ops, mp.mpf(0), start.theta), *start.v]
     fields, code = map.family.bounce(ops, map.law, exact.shape, exact.lam, state)
     truth = exact.bounce(start)

@@ -218,7 +218,7 @@ def test_slap_flights_stop_at_a_bulge_too():
 def test_fifty_digits_read_the_same_text():
     map = PinballMap(tables.polar(RADII["peanut"]), lam="0.5", kernels=False)
     exact = ExactMap(map, 40)
-    start = exact.ball(0, 0.3, 0.4)
+    start = exact.start(0.3, 0.4)
     mp = exact.context
     state = [*map.family.enter(exact.ops, mp.mpf(0), start.theta), *start.v]
     fields, code = map.family.bounce(exact.ops, map.law, exact.shape, exact.lam, state)

@@ -62,7 +62,7 @@ def test_the_derivative_is_the_limit_of_differences(table, lam_):
         columns = []
         for dtheta, dphi in ((h / speed, 0), (0, h)):
             ends = [
-                exact.bounce(exact.ball(int(where[i]), mp.mpf(theta[i]) + k * dtheta, mp.mpf(phi[i]) + k * dphi))
+                exact.bounce(exact.start(mp.mpf(theta[i]) + k * dtheta, mp.mpf(phi[i]) + k * dphi, int(where[i])))
                 for k in (1, -1)
             ]
             moved = float((ends[0].theta - ends[1].theta) / (2 * h))

@@ -86,7 +86,7 @@ def test_a_table_of_any_analytic_formula_flies_to_the_digits_of_its_balls(formul
 
     map = PinballMap(tables.polar(formula), lam="9/10")
     enclosed = EnclosedMap(map, Fraction(9, 10), bits=120)
-    ball = enclosed.bounce(enclosed.ball(0, Fraction(3, 10), Fraction(1, 5)))
+    ball = enclosed.bounce(enclosed.start(Fraction(3, 10), Fraction(1, 5)))
     step = map.step(0.3, 0.2)
 
     assert ball.x.rad() < 1e-25

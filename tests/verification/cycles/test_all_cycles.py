@@ -273,7 +273,7 @@ def test_the_count_says_what_it_cannot_tell_apart():
     ids=lambda value: getattr(value, "name", ""),
 )
 def test_a_double_normal_is_proved_on_tables_with_holes_cusps_corners_and_dents(table, components, theta):
-    found = certificate(table, Rational(1, 2), phase_points(components, theta, 0.0))
+    found = certificate(table, Rational(1, 2), phase_points(theta, 0.0, components))
 
     checks = dict(found.checks)
     assert checks.pop("attracting") is None

@@ -23,7 +23,7 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_an_orbit_is_the_same_in_balls_in_mpmath_and_in_doubles_as_far_as_each_goes(name):
     map, told = PinballMap(name, **SCENES[name]), []
-    lam, start = Rational(SCENES[name]["lam"]), (0, Rational(3, 10), Rational(1, 5))
+    lam, start = Rational(SCENES[name]["lam"]), (Rational(3, 10), Rational(1, 5), 0)
     enclosed = in_balls(map, lam, start, 4, 25, told.append)
     computed = in_multiprecision(map, lam, start, 4, 25, told.append)
     orbit = map.orbit(0.3, 0.2, 4)
@@ -46,18 +46,18 @@ def test_an_orbit_is_the_same_in_balls_in_mpmath_and_in_doubles_as_far_as_each_g
 def test_a_start_beyond_a_whole_turn_is_the_one_on_the_boundary(orbit):
     map, lam = PinballMap("circle"), Rational(1, 2)
     plain, turned = (
-        orbit(map, lam, (0, Rational(3, 10) + 2 * k * pi, Rational(1, 5)), 2, 20, lambda said: None) for k in (0, -3)
+        orbit(map, lam, (Rational(3, 10) + 2 * k * pi, Rational(1, 5), 0), 2, 20, lambda said: None) for k in (0, -3)
     )
 
     assert turned == plain
-    assert _turns(map, (0, Rational(3, 10) - 6 * pi, 0)) == -3
-    assert _turns(PinballMap("cuspless"), (0, 20.0, 0)) == 0
+    assert _turns(map, (Rational(3, 10) - 6 * pi, 0, 0)) == -3
+    assert _turns(PinballMap("cuspless"), (20.0, 0, 0)) == 0
 
 
 @pytest.mark.parametrize("orbit", [in_balls, in_multiprecision])
 def test_an_orbit_ends_where_the_map_is_not_defined_and_says_why(orbit):
     """Along the axis of the cardioid into its cusp."""
-    entries = orbit(PinballMap("cardioid"), Rational(1, 2), (0, Rational(0), Rational(0)), 5, 20, lambda said: None)
+    entries = orbit(PinballMap("cardioid"), Rational(1, 2), (Rational(0), Rational(0), 0), 5, 20, lambda said: None)
 
     assert [entry["status"] for entry in entries] == ["regular", "cusp"]
     assert entries[1]["eta"] is None

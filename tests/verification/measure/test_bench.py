@@ -163,7 +163,7 @@ def test_a_scalar_loop_lands_where_the_map_lands(name, scalar):
     map = SMALL[name]() if name in SMALL else calls.compared(name, "19/20")
     rng, component = np.random.default_rng(4), np.arange(20) % len(map.states.ends)  # every piece is left
     theta, phi = rng.uniform(*np.array(map.states.ends)[component].T), rng.uniform(-1.4, 1.4, 20)
-    pieces, places, angles = baselines.scalar_way(scalar, name, map)(component, theta, phi, 3)
+    pieces, places, angles = baselines.scalar_way(scalar, name, map)(theta, phi, component, 3)
 
     for i, ball in enumerate(zip(component, theta, phi, strict=True)):
         where, at, out = int(ball[0]), float(ball[1]), float(ball[2])

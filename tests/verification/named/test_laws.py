@@ -95,7 +95,7 @@ def test_the_chord_rule_of_a_law_has_its_own_derivatives(table, formula, x):
 def test_a_bounce_in_balls_holds_the_exit_angle_of_the_law():
     map = PinballMap(SCENE)
     enclosed = EnclosedMap(map, Fraction(1, 2), 100)
-    bounce = enclosed.bounce(enclosed.ball(0, Fraction(2, 5), Fraction(3, 10)))
+    bounce = enclosed.bounce(enclosed.start(Fraction(2, 5), Fraction(3, 10)))
     step = map.step(0.4, 0.3)
 
     assert abs(float(bounce.phi.mid()) - float(step.phi)) < 1e-14
@@ -148,7 +148,7 @@ def test_where_arc_length_is_an_integral_cycles_are_those_of_the_map_and_proved(
     first, second = (exact.context.mpf(x.mid().str(40, radius=False)) for x in proof.enclosure.zero)
     here, there = (exact.frame(0, theta) for theta in (first, second))
     away = there.x - here.x, there.y - here.y
-    start = exact.along(0, first, away)
+    start = exact.along(first, away)
     landed = exact.bounce(exact.bounce(start))
     said = json.loads(json.dumps(document(proof)))
 

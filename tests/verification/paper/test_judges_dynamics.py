@@ -159,7 +159,7 @@ def test_the_certified_cycle_has_the_determinant_that_its_angles_give():
 
     map = PinballMap("cardioid", lam="0.9")
     phi = [-0.484, 0.051, -1.126, -1.151, -1.098, -1.034, -0.962, -0.877, -0.759]
-    cycle = polished(map, phase_points(0, on_contraction.NINE, phi))
+    cycle = polished(map, phase_points(on_contraction.NINE, phi))
     eta = np.abs(cycle.points.phi) / 0.9
     _, determinant = on_contraction.expanding_cycle()
 

@@ -42,7 +42,7 @@ def test_the_twist_is_how_the_rotation_changes_with_the_distance():
     # second method: orbits at two distances from the isosceles triangle, and the mean angle that they turn
     _, turn = isosceles()
     map = PinballMap("egg", lam=1, alpha="0.1")
-    cycle = polished(map, phase_points(0, [3.141, -1.4413, 1.4413], [0.7498, 0.4104, 0.4104]))
+    cycle = polished(map, phase_points([3.141, -1.4413, 1.4413], [0.7498, 0.4104, 0.4104]))
     theta, phi = cycle.points.theta[0], cycle.points.phi[0]
 
     def momentum(at, angle):

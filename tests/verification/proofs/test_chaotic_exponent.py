@@ -96,7 +96,7 @@ def measured(orbits, bounces, seed):
     """The mean of log T0' and its standard error over independent orbits, from the float64 map."""
     map = PinballMap("cardioid", lam=0)
     starts = interior_starts(map, orbits, seed=seed)
-    growth = Growth(map, starts.component, starts.theta, starts.phi)
+    growth = Growth(map, starts.theta, starts.phi, starts.component)
     growth.skip(200)
     growth.advance(16)
     before = growth.stretch

@@ -75,7 +75,7 @@ def command(
     if arithmetic == "auto":
         from verification.measure.work.choice import for_orbit
 
-        choice = for_orbit(map, (index, float(theta), float(phi)), bounces, digits := digits or FEW)
+        choice = for_orbit(map, (float(theta), float(phi), index), bounces, digits := digits or FEW)
         arithmetic = choice.arithmetic
         picked = {"arithmetic": arithmetic, "why": choice.why}
     digits = digits or MANY
@@ -88,13 +88,13 @@ def command(
         output.console.print(f"{bounces + 1} rows are in {out}; the first:")
         bounces = min(bounces, MOST - 1)
     if arithmetic == "float64":
-        entries = in_float64(map, index, float(theta), float(phi), bounces)
+        entries = in_float64(map, float(theta), float(phi), bounces, index)
     else:
         from verification.maps.enclosed import in_balls, in_multiprecision
 
         follow = in_multiprecision if arithmetic == "mpmath" else in_balls
         with output.progress("Bouncing", bounces) as step:
-            entries = follow(map, scene.lam, (index, theta, phi), bounces, digits, step)
+            entries = follow(map, scene.lam, (theta, phi, index), bounces, digits, step)
     output.write({"bounces": entries} | picked, map, entries)
     show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
     if "why" in picked:
@@ -116,7 +116,7 @@ def wanted(digits: int | None, tolerance: str | None) -> int | None:
     return digits_for(tolerance)
 
 
-def in_float64(map: Any, index: int, theta: float, phi: float, bounces: int) -> list[dict[str, Any]]:
+def in_float64(map: Any, theta: float, phi: float, bounces: int, index: int = 0) -> list[dict[str, Any]]:
     """The orbit from the kernels, as far as it goes."""
     orbit = map.orbit(theta, phi, bounces, index)
     names = [part.name for part in map.ir.parts]

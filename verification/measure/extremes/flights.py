@@ -21,7 +21,7 @@ from sympy import sqrt
 from numeric import PinballMap, Status
 from verification.arithmetic.balls import as_ball, bits_of
 from verification.maps.enclosed import EnclosedMap, Refusal
-from verification.maps.exact import Ball, ExactMap, exact_ball
+from verification.maps.exact import Bounce, ExactMap, exact_bounce
 from verification.measure.extremes.kernels import GOES_ON, KERNELS, TEXTBOOK, Kernel
 from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured, Stability
 
@@ -216,37 +216,37 @@ class Truth:
             made.append([row[0] for row in rows])
         return made
 
-    def bounce(self, ball: Ball, balls: EnclosedMap | None = None) -> Ball:
+    def bounce(self, here: Bounce, balls: EnclosedMap | None = None) -> Bounce:
         """The landing: enclosed and proved the first hit, or by the definition with a hundred digits."""
         balls = balls or self.balls
-        found = balls.bounce(balls.ball(ball.component, as_ball(ball.theta), as_ball(ball.phi)))
+        found = balls.bounce(balls.start(as_ball(here.theta), as_ball(here.phi), here.component))
         if isinstance(found, Refusal):
-            return self.exact.bounce(ball)
+            return self.exact.bounce(here)
         if found.code == Status.JOIN.code:  # a landing all the same, only one that may be on either part
-            return replace(self.exact.bounce(ball), code=0)
+            return replace(self.exact.bounce(here), code=0)
         if found.code:
             return found
         middle = self.exact.middle
-        return self.exact.ball(found.component, middle(found.theta), middle(found.phi))
+        return self.exact.start(middle(found.theta), middle(found.phi), found.component)
 
-    def derivative(self, ball: Ball, landed: Ball) -> Any:
+    def derivative(self, here: Bounce, landed: Bounce) -> Any:
         """The matrix of `(theta, psi)` by `(theta, psi)`, and by the logarithm of a rounded shape."""
         mp, exact = self.mp, self.exact
         columns = []
         if self.map.law == "slap":
-            shifted = [exact.ball(ball.component, ball.theta + SMALLER, 0)]
+            shifted = [exact.start(here.theta + SMALLER, 0, here.component)]
         else:
             c, s = mp.cos(SMALLER), mp.sin(SMALLER)
-            vx, vy = ball.v
-            turned = exact.along(ball.component, ball.theta, (c * vx - s * vy, s * vx + c * vy))
-            shifted = [exact.along(ball.component, ball.theta + SMALLER, ball.v), turned]
+            vx, vy = here.v
+            turned = exact.along(here.theta, (c * vx - s * vy, s * vx + c * vy), here.component)
+            shifted = [exact.along(here.theta + SMALLER, here.v, here.component), turned]
         for one in shifted:
             columns.append([x / SMALLER for x in self.gap(self.bounce(one), landed)])
         if self.nearby is not None:
-            columns.append([x / SMALLER for x in self.gap(self.bounce(ball, self.nearby), landed)])
+            columns.append([x / SMALLER for x in self.gap(self.bounce(here, self.nearby), landed)])
         return mp.matrix(columns).T
 
-    def gap(self, one: Ball, other: Ball) -> list[Any]:
+    def gap(self, one: Bounce, other: Bounce) -> list[Any]:
         """`one - other` in `(theta, psi)`; of a slap only the parameter. Between parts, their distance in the plane."""
         mp = self.mp
         theta = one.theta - other.theta
@@ -271,20 +271,20 @@ class Asked:
 
     def __init__(self, truth: Truth, state: list[Any]) -> None:
         self.truth, self.state = truth, state
-        self.ball = ball = exact_ball(truth.map, truth.exact, state)
-        self.landed = truth.bounce(ball)
+        self.here = here = exact_bounce(truth.map, truth.exact, state)
+        self.landed = truth.bounce(here)
         if self.landed.code:
             return
-        mp, matrix = truth.mp, truth.derivative(ball, self.landed)
+        mp, matrix = truth.mp, truth.derivative(here, self.landed)
         self.spread = matrix * matrix.T + mp.eye(matrix.rows)  # of what one unit in data and result can do
         self.condition = mp.sqrt(max(mp.eigsy(self.spread, eigvals_only=True)))
 
     def why(self, status: str) -> tuple[float, str]:
         """What the truth has to say of the outcome that a kernel named: how far it is from that, and in words."""
-        mp, landed, (vx, vy) = self.truth.mp, self.landed, self.ball.v
+        mp, landed, (vx, vy) = self.truth.mp, self.landed, self.here.v
         if status == Status.JOIN.name:
-            x, height = -mp.mpf(1) / 4 - self.ball.x, mp.sqrt(3) / 4
-            miss = float(min(abs(vx * (y - self.ball.y) - vy * x) for y in (height, -height)) / DOUBLE)
+            x, height = -mp.mpf(1) / 4 - self.here.x, mp.sqrt(3) / 4
+            miss = float(min(abs(vx * (y - self.here.y) - vy * x) for y in (height, -height)) / DOUBLE)
             return miss, f"the true flight passes the join {miss:.2g} units off"
         if status == Status.GRAZING.name and landed.eta is not None:
             cosine = float(mp.cos(landed.eta))
@@ -296,7 +296,7 @@ class Asked:
         truth, mp = self.truth, self.truth.mp
         if self.landed.code or not all(np.isfinite(float(field)) for field in fields):
             return WRONG
-        found = exact_ball(truth.map, truth.exact, fields)
+        found = exact_bounce(truth.map, truth.exact, fields)
         gap = mp.matrix(truth.gap(found, self.landed))
         backward = mp.sqrt((gap.T * mp.lu_solve(self.spread, gap))[0])
         return Measured(*(float(x) for x in (mp.norm(gap) / unit, backward / unit, self.condition)))

@@ -249,7 +249,7 @@ def findings(asked: Product | Resting) -> list[Finding]:
 def _of_product(asked: Product) -> list[Finding]:
     shape: dict[str, Any] = {"alpha": asked.alpha} if asked.alpha else {}
     map = PinballMap(asked.scene, lam=asked.lam, **shape)
-    growth = Growth(map, 0, *asked.start)
+    growth = Growth(map, *asked.start)
     growth.advance(asked.bounces)
     engine = float(growth.stretch[0]) / asked.bounces
     orbit = map.orbit(*asked.start, asked.bounces)
@@ -276,7 +276,7 @@ def _of_rest(asked: Resting) -> list[Finding]:
     larger = (abs(trace) + context.sqrt(trace * trace - 4 * det)) / 2
     sizes = context.log(det / larger) / 2, context.log(larger) / 2
     map = PinballMap("ellipse", a="3/2", lam=asked.lam)
-    growth = Growth(map, 0, np.pi / 2, 0.0)
+    growth = Growth(map, np.pi / 2, 0.0)
     growth.advance(100)
     early = growth.stretch[0], growth.volume[0]
     growth.advance(asked.bounces)

@@ -153,7 +153,7 @@ def attracted(asked: Long) -> list[Finding]:
     problem = Problem(table, (0, 0, 0), lam=lam)
     corner = [-0.65 + 2 * np.pi * k / 3 for k in range(3)]
     triangle = floats(problem, corner)
-    proof = certificate(table, lam, phase_points(0, triangle, 0.0))
+    proof = certificate(table, lam, phase_points(triangle, 0.0))
     if not proof.proved:
         raise ValueError(f"{asked.name}: the triangle is not proved to attract: {dict(proof.checks)}")
     (ux, uy, *_), said = advanced(map, entered(map, *starts(asked.balls)), asked.bounces)

@@ -181,18 +181,18 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
     """mpmath and balls, rounded to their digits, against a proved enclosure with 30 digits more."""
     map, lam = PinballMap(name, lam=LAWS["pinball"], **_shape(name)), Fraction(str(LAWS["pinball"]))
     component, theta, phi, *_ = phase_starts(map, FEW, seed=3)
-    balls = [(int(c), float(t), float(p)) for c, t, p in zip(component, theta, phi, strict=True)]
+    particles = [(float(t), float(p), int(c)) for c, t, p in zip(component, theta, phi, strict=True)]
     for wanted in digits:
         truth = EnclosedMap(map, lam, bits_of(wanted + MORE, 64))
-        landed = [truth.bounce(truth.ball(*ball)) for ball in balls]
+        landed = [truth.bounce(truth.start(*particle)) for particle in particles]
         ways = (("mpmath", ExactMap(map, wanted, lam)), ("arb", EnclosedMap(map, lam, bits_of(wanted, 64))))
         for arithmetic, way in ways:
-            starts = [way.ball(*ball) for ball in balls]
-            found = [way.bounce(ball) for ball in starts]
+            starts = [way.start(*particle) for particle in particles]
+            found = [way.bounce(start) for start in starts]
             error = max(distance(one, two, wanted) for one, two in zip(found, landed, strict=True))
 
             def all_of_them(way: Any = way, starts: Any = starts) -> object:
-                return [way.bounce(ball) for ball in starts]
+                return [way.bounce(start) for start in starts]
 
             yield Row(name, arithmetic, f"{wanted} digits", error, best(all_of_them, runs) / FEW, runs)
 
@@ -310,7 +310,7 @@ def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., 
     given = float(map.shape[0]) if map.shape else 0.0
     numbers = None if own else scalar.numbers(map.table)
 
-    def run(component: Any, theta: Any, phi: Any, bounces: int) -> tuple[Any, Any, Any]:
+    def run(theta: Any, phi: Any, component: Any, bounces: int) -> tuple[Any, Any, Any]:
         k, at, out = component.copy(), theta.copy(), phi.copy()
         if own:
             scalar.every(own, at, out, lam, bounces, given)
@@ -333,9 +333,9 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
         compiled = scalar_way(scalar, name, map)
 
         def looped() -> None:
-            compiled(nought[:512], theta[:512], phi[:512], 300)
+            compiled(theta[:512], phi[:512], nought[:512], 300)
 
-        _, at, out = compiled(nought[:MEASURED], theta[:MEASURED], phi[:MEASURED], 1)
+        _, at, out = compiled(theta[:MEASURED], phi[:MEASURED], nought[:MEASURED], 1)
         error = _error(map, theta, phi, at, out)
         yield Row(name, "float64", SCALAR, error, best(looped, runs) / 512 / 300, runs)
     if name in RADII:
@@ -372,7 +372,7 @@ def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:
     exact = ExactMap(map, DIGITS)
     mp, worst = exact.context, 0.0
     for i in range(MEASURED):
-        truth = exact.bounce(exact.ball(0, theta[i], phi[i]))
+        truth = exact.bounce(exact.start(theta[i], phi[i]))
         gap = mp.mpf(float(at[i])) - truth.theta
         if truth.component == 0:
             gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))

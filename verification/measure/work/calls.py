@@ -227,7 +227,7 @@ def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(B
         ways[name, KERNEL] = partial(map.engine.run, KernelSpec(map.law), own, lam, map.shape, IN_TURN, (), 1)
         if scalar is not None:
             component, theta, phi, *_ = phase_starts(map, SCALAR_BALLS, seed=1)
-            ways[name, SCALAR] = partial(scalar_way(scalar, name, map), component, theta, phi, IN_TURN)
+            ways[name, SCALAR] = partial(scalar_way(scalar, name, map), theta, phi, component, IN_TURN)
     times: dict[tuple[str, str], list[float]] = {way: [] for way in ways}
     for _ in range(runs + 1):  # the first compiles
         for way, once in ways.items():

@@ -263,12 +263,12 @@ HOPELESS = 400.0  # digits: an orbit that loses more is not followed to say how 
 
 
 def for_orbit(
-    map: PinballMap, start: tuple[int, float, float], bounces: int, digits: int, proof: bool = False
+    map: PinballMap, start: tuple[float, float, int], bounces: int, digits: int, proof: bool = False
 ) -> Choice:
-    """What to follow the ball from `start` (component, parameter, exit angle) with, to have `digits` at its end.
+    """What to follow the particle from `start` (parameter, exit angle, component) with, to have `digits` at its end.
 
     >>> circle = PinballMap("circle", lam="0.5")
-    >>> for_orbit(circle, (0, 0.3, 0.2), 10, 10).arithmetic, for_orbit(circle, (0, 0.3, 0.2), 10, 20).arithmetic
+    >>> for_orbit(circle, (0.3, 0.2, 0), 10, 10).arithmetic, for_orbit(circle, (0.3, 0.2, 0), 10, 20).arithmetic
     ('float64', 'arb')
     """
     if bounces < 1:
@@ -280,13 +280,13 @@ def for_orbit(
     if math.isinf(lost):
         enough = [entry for entry in known if entry.arithmetic != "float64"]
         choice = cheapest(name, digits, proof, enough)
-        return _saying(choice, f"in float64 the ball stops or loses every digit within {bounces} bounces")
+        return _saying(choice, f"in float64 the particle stops or loses every digit within {bounces} bounces")
     rounded = math.ceil(lost)
     near = [e for e in known if e.arithmetic != "float64" or e.digits >= digits + rounded]
     return _saying(cheapest(name, digits, proof, near), f"digits lost in {bounces} bounces: {rounded}")
 
 
-def digits_lost(map: PinballMap, start: tuple[int, float, float], bounces: int) -> float:
+def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) -> float:
     """The decimal digits that a rounding error grows by on an orbit, wherever it is made; all when the orbit stops.
 
     It is the largest rise of the logarithm of a tangent vector's length, looked at so often and no oftener.

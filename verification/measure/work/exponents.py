@@ -99,8 +99,8 @@ def of_chaos() -> Question:
         growth.advance(max(bounces // ORBITS, 1))
         return [float(np.mean(growth.stretch - before) / max(bounces // ORBITS, 1))]
 
-    start = fixed_starts(map, 1)
-    ball = float(start[1][0]), float(start[2][0])
+    theta, phi, _ = fixed_starts(map, 1)
+    particle = float(theta[0]), float(phi[0])
     own = [
         Method("compiled kernel, error bar", "float64", "bounces", (1_000, 30_000, 1_000_000, 10_000_000), counted),
         Method("NumPy", "float64", "bounces", (1_000, 10_000, 100_000), plainly),
@@ -112,7 +112,7 @@ def of_chaos() -> Question:
         "the Lyapunov exponent of the cardioid at lam = 0, its slap map",
         "per bounce",
         lambda digits: [sharply()],
-        (*own, *textbook(map, ball)),
+        (*own, *textbook(map, particle)),
         most_digits=16,
     )
 
@@ -150,30 +150,32 @@ def run(map: PinballMap, orbits: int, bounces: int) -> Estimate:
 def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
     map = PinballMap(name, lam=lam)
     starts = interior_starts(map, orbits, seed=7)
-    growth = Growth(map, starts.component, starts.theta, starts.phi)
+    growth = Growth(map, starts.theta, starts.phi, starts.component)
     growth.skip(EARLY)
     going = growth.code == 0
-    return growth.component[going], growth.theta[going], growth.phi[going]
+    return growth.theta[going], growth.phi[going], growth.component[going]
 
 
 def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
-    """Balls on the attractor: component, parameter, exit angle."""
+    """Particles on the attractor: parameter, exit angle, component."""
     return _arrived(map.ir.table, float(map.lam), orbits)
 
 
-def textbook(map: PinballMap, ball: tuple[float, float]) -> list[Method]:
-    """Two neighbouring balls, and QR of one matrix after the other."""
+def textbook(map: PinballMap, particle: tuple[float, float]) -> list[Method]:
+    """Two neighbouring particles, and QR of one matrix after the other."""
     book = module("textbook")
     if book is None:
         return []
     return [
-        Method("two balls", "float64", "bounces", FEW, lambda n: [book.two_balls(map.step, ball, n)], textbook=True),
+        Method(
+            "two balls", "float64", "bounces", FEW, lambda n: [book.two_balls(map.step, particle, n)], textbook=True
+        ),
         Method(
             "QR, bounce by bounce",
             "float64",
             "bounces",
             FEW,
-            lambda n: [book.by_qr(map.step, map.derivative, ball, n)],
+            lambda n: [book.by_qr(map.step, map.derivative, particle, n)],
             textbook=True,
         ),
     ]

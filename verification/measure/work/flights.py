@@ -169,7 +169,7 @@ def bounced(map: PinballMap, digits: int) -> list[arb]:
     enclosed = EnclosedMap(map, LAM, bits_of(digits + MARGIN, 64))
     found: list[arb] = []
     for at, phi in PARTICLES:
-        landed = enclosed.bounce(enclosed.ball(0, Fraction(at), Fraction(phi)))
+        landed = enclosed.bounce(enclosed.start(Fraction(at), Fraction(phi)))
         if isinstance(landed, Refusal):
             raise ValueError(f"bounce: {landed.value}")
         found += [landed.theta, landed.phi]
@@ -181,8 +181,8 @@ def bracketing(map: PinballMap) -> Method:
 
     def call(digits: int) -> list[Any]:
         exact = ExactMap(map, digits, LAM)
-        landed = [exact.bounce(exact.ball(0, *ball)) for ball in PARTICLES]
-        return [value for ball in landed for value in (ball.theta, ball.phi)]
+        landed = [exact.bounce(exact.start(*particle)) for particle in PARTICLES]
+        return [value for each in landed for value in (each.theta, each.phi)]
 
     return Method("mpmath, every zero", "mpmath", "digits", DIGITS[:3], call, to_digits, len(PARTICLES))
 

@@ -133,7 +133,7 @@ def window() -> Finding:
     """A third kind of attractor beyond the crisis, in the region where orbits stayed below it."""
     map = PinballMap("egg", lam=WINDOW, alpha=SHAPE)
     orbit = map.orbit(*STAYS, 1000 + LONG)
-    near = phase_points(0, orbit.theta[-LONG:], orbit.phi[-LONG:])
+    near = phase_points(orbit.theta[-LONG:], orbit.phi[-LONG:])
     place = bounces(WINDOW, near)
     return by(
         f"at lam = {WINDOW} a cycle of {LONG} bounces attracts, besides the two of period 3",

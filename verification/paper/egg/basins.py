@@ -136,7 +136,7 @@ def slap_no_period3(claim: Claim) -> Judgement:
 def triangle_at(contraction: Rational) -> Finding:
     """A cycle of period 3 at `alpha = 0.08`, by interval Newton."""
     bounce = float(near_flat().subs({alpha: EXACT_SHAPE, lam: contraction}))
-    near = phase_points(0, [bounce + k * tau / 3 for k in range(3)], 0.0)
+    near = phase_points([bounce + k * tau / 3 for k in range(3)], 0.0)
     proof = certificate(egg(3).at(alpha=EXACT_SHAPE), contraction, near)
     return answer(proof.proved, f"an attracting cycle of period 3 is proved at lam = {contraction}")
 

@@ -57,7 +57,7 @@ def period2_islands(claim: Claim) -> Judgement:
 def isosceles() -> tuple[bool, Twist]:
     """The elliptic isosceles triangle of the egg with `alpha = 1/10`, enclosed, and its twist."""
     table = egg(3).at(alpha=END)
-    proof = certificate(table, S.One, phase_points(0, list(ISOSCELES), 0.0), 20)
+    proof = certificate(table, S.One, phase_points(list(ISOSCELES), 0.0), 20)
     needed = ("exists", "unique", "admissible", "minimal_period")
     return all(proof.checks[name] is True for name in needed), twist(table, (0, 0, 0), proof.theta, BITS)
 
@@ -114,7 +114,7 @@ def elastic_chaos(claim: Claim) -> Judgement:
 def layer(shape: str) -> tuple[float, float, bool]:
     """The largest exponent of orbits that start next to the triangle through the vertices, its error, and its sign."""
     map = PinballMap("egg", lam=1, alpha=shape)
-    near = phase_points(0, 1e-4 * np.linspace(-1, 1, 16), np.pi / 6)
+    near = phase_points(1e-4 * np.linspace(-1, 1, 16), np.pi / 6)
     x, y = map.states.point(near.component, near.theta)
     starts = phase_starts(map, 16, SEED)._replace(component=near.component, theta=near.theta, phi=near.phi, x=x, y=y)
     found = measured(map, starts, 200_000, 0)

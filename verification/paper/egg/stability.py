@@ -111,10 +111,10 @@ def cycles_at(contraction: Rational) -> tuple[Finding, Finding]:
     """At `alpha = 0.08` the cascade's cycle of period 8 is a saddle, and a cycle of period 16 attracts: in balls."""
     table = egg(3).at(alpha=SHAPE)
     sixteen = attractor(table, float(contraction), (0.05, 3.1))
-    eight = certificate(table, contraction, phase_points(0, eight_at(contraction), 0.0))
+    eight = certificate(table, contraction, phase_points(eight_at(contraction), 0.0))
     there = all(value is True for name, value in eight.checks.items() if name != "attracting")
     saddle = there and stability(eight.trace, eight.determinant) is Stability.SADDLE
-    proof = certificate(table, contraction, phase_points(0, sixteen, 0.0)) if len(sixteen) == 16 else None
+    proof = certificate(table, contraction, phase_points(sixteen, 0.0)) if len(sixteen) == 16 else None
     return (
         answer(saddle, f"the cycle of period 8 is a saddle at lam = {contraction}, trace {short(eight.trace)}"),
         answer(

@@ -29,7 +29,7 @@ def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
     """
     grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
     balls = grid.starts
-    label, attractors = classify(map, balls.component, balls.theta, balls.phi, TRANSIENT)
+    label, attractors = classify(map, balls.theta, balls.phi, balls.component, TRANSIENT)
     curves, names, count = {}, [], scaled(4000, fine, 50)
     for i, attractor in enumerate(attractors):
         name = "chaotic" if attractor.kind is Kind.CHAOTIC else f"period {attractor.period}"

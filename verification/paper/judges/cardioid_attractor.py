@@ -113,7 +113,7 @@ def approaches(contraction: str) -> Array:
     """The smallest distance to the cusp after so many bounces, one column for each of 256 particles."""
     map = PinballMap("cardioid", lam=contraction)
     start = interior_starts(map, 256, SEED)
-    growth = Growth(map, start.component, start.theta, start.phi if map.law != "slap" else 0 * start.phi)
+    growth = Growth(map, start.theta, start.phi if map.law != "slap" else 0 * start.phi, start.component)
     growth.skip(EARLY)
     orbit = map.orbit(growth.theta, growth.phi, 4096)
     return np.asarray(np.minimum.accumulate(np.hypot(orbit.x, orbit.y), axis=0))

@@ -88,7 +88,7 @@ def settled(table: str, lams: Array, particles: int) -> Growth:
     """The same particles, started as in the paper's appendix, on their attractors at each contraction in turn."""
     map = PinballMap(table, lam=np.repeat(lams, particles))
     starts = interior_starts(map.at(1), particles, SPECTRA_SEED)
-    growth = Growth(map, *(np.tile(field, len(lams)) for field in starts[:3]))
+    growth = Growth(map, *(np.tile(field, len(lams)) for field in (starts.theta, starts.phi, starts.component)))
     growth.skip(EARLY)
     return growth
 
@@ -213,7 +213,7 @@ def period3(claim: Claim) -> Judgement:
     value = triangle_rate().subs(lam, here)
     born = enclose(saddle_node().subs(alpha, SHAPE)).real
     table = tables.egg(3).at(alpha=SHAPE)
-    proof = certificate(table, here, phase_points(0, [-1.4541, 0.6403, 2.7347], 0.0), 20)
+    proof = certificate(table, here, phase_points([-1.4541, 0.6403, 2.7347], 0.0), 20)
     with working(BITS):
         same = agree(exponents(proof.trace, proof.determinant, 3)[0], enclose(value, {}, BITS).real)
     finding = rounded(str(claim.printed), value)
@@ -242,7 +242,7 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
     for k in range(1, steps + 1):
         theta = cycle_at(table, theta, contraction + (target - contraction) * k / steps)
     exact = Rational(Fraction(target).limit_denominator(10**7))
-    proof = certificate(table, exact, phase_points(0, theta, 0.0), 20)
+    proof = certificate(table, exact, phase_points(theta, 0.0), 20)
     with working(BITS):
         return proved(proof), exact, exponents(proof.trace, proof.determinant, len(theta))[0]
 
@@ -291,7 +291,7 @@ def weak_dissipation_attracts(claim: Claim) -> Judgement:
     """An elliptic hexagon of the egg that becomes a repeller: its bounces are too oblique."""
     table = tables.egg(3).at(alpha=Rational(1, 20))
     six = [-3.0849, -2.0728, -0.9905, 0.0216, 1.1038, 2.1160]
-    damped, elastic = (certificate(table, x, phase_points(0, six, 0.0), 20) for x in (Rational(99, 100), S.One))
+    damped, elastic = (certificate(table, x, phase_points(six, 0.0), 20) for x in (Rational(99, 100), S.One))
     with working(BITS):
         turning = bool(elastic.trace**2 < 4), bool(damped.trace**2 < 4 * damped.determinant)
         repels = bool(damped.determinant > 1)

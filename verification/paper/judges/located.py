@@ -163,7 +163,7 @@ def at_least_log() -> Finding:
 @cache
 def expanding_cycle() -> tuple[bool, arb]:
     """A certified cycle of period 9 at `lam = 9/10`: proved or not, and its determinant."""
-    proof = certificate(tables.cardioid, Rational(9, 10), phase_points(0, NINE, 0.0), 20)
+    proof = certificate(tables.cardioid, Rational(9, 10), phase_points(NINE, 0.0), 20)
     wanted = ("exists", "unique", "admissible", "minimal_period")
     return all(proof.checks[name] is True for name in wanted), proof.determinant
 

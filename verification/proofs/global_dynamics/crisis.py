@@ -285,7 +285,7 @@ def bracket(
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: tuple[Grid, Mask]) -> bool:
     """Does the orbit of a phase point enter the cells? Followed in balls, each landing a first hit."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, MANY_BITS)
-    here = map.ball(0, *start)
+    here = map.start(*start)
     for _ in range(MOST_BOUNCES):
         landed = map.bounce(here)
         if isinstance(landed, Refusal) or landed.code:

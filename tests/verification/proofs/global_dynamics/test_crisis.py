@@ -207,17 +207,17 @@ def test_an_orbit_enters_cells_where_each_landing_on_its_way_is_proved(monkeypat
     """Cells about `theta = 1/2`; None lands on a join."""
 
     @dataclass
-    class Ball:
+    class Landing:
         theta: arb
         phi: arb
         code: int = 0
 
     class Map:
         def __init__(self, map, lam, bits):
-            self.left = [x if isinstance(x, Refusal) else Ball(arb(x or 0), arb(0), int(x is None)) for x in bounces]
+            self.left = [x if isinstance(x, Refusal) else Landing(arb(x or 0), arb(0), int(x is None)) for x in bounces]
 
-        def ball(self, component, theta, phi):
-            return Ball(theta, phi)
+        def start(self, theta, phi):
+            return Landing(theta, phi)
 
         def bounce(self, here):
             return self.left.pop(0)

@@ -69,7 +69,7 @@ def test_images_hold_the_landings_that_balls_prove(scene, size):
                 low[index] + (high[index] - low[index]) * s for (low, high), s in zip(chosen[1:], share, strict=True)
             )
             x = float(np.clip(x, *(c + s * 1e-12 for c, s in zip(chart.x, (1, -1), strict=True))))
-            landed = judge.bounce(judge.ball(int(chosen.chart[index]), Fraction(x), Fraction(float(y))))
+            landed = judge.bounce(judge.start(Fraction(x), Fraction(float(y)), int(chosen.chart[index])))
             if isinstance(landed, Refusal) or landed.code:
                 continue
             judged += 1

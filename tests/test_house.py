@@ -102,7 +102,7 @@ def test_a_question_is_answered_by_twenty_files(question):
 
 
 def test_a_phase_point_is_given_in_one_order():
-    """`theta, phi, component`, as `PinballMap` takes them; only where states are made a place `component, theta` leads."""
+    """`theta, phi, component`, as `PinballMap` takes them; states are made from a place and angles."""
     states = ROOT / "numeric" / "pinball" / "coordinates.py"
     for path in CODE:
         functions = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]

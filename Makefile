@@ -31,8 +31,8 @@ slow: $(VENV)/test.stamp
 quick: $(VENV)/test.stamp
 	$(PYTEST) -m quick
 
-# The pages in a headless Chromium, which must be on the path or named by CHROMIUM.
-browser: $(VENV)/test.stamp $(VENV)/browser.stamp
+# The pages, those of the docs too, in a headless Chromium, which must be on the path or named by CHROMIUM.
+browser: $(VENV)/test.stamp $(VENV)/browser.stamp docs
 	$(BIN)/python -m pytest -q tests/browser
 
 # The certificates of the report, by the second reader: Python alone, nothing of this package. A few minutes. Then

@@ -79,13 +79,15 @@ def typeset(visitor, node):
     raise nodes.SkipNode
 
 
-NAMED = {  # what the theme leaves without a level, a name or a landmark, and code that scrolls by keyboard
+NAMED = {  # what the theme leaves without a level, name or heading, in a role of old, or out of the keyboard's reach
     '<p class="caption" role="heading">': '<p class="caption" role="heading" aria-level="2">',
     '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="All pages">',
     '<aside class="toc-drawer">': '<aside class="toc-drawer" aria-label="On this page">',
     '<div class="content-icon-container">': '<div class="content-icon-container" role="region" aria-label="Page">',
     '<div class="table-wrapper ': '<div tabindex="0" class="table-wrapper ',
     "<pre>": '<pre tabindex="0">',
+    'role="doc-biblioentry"': 'role="listitem"',
+    '<div id="search-results">': '<h1>Search</h1><div role="region" aria-label="Results" id="search-results">',
 }
 
 

@@ -26,21 +26,26 @@ STEEPEST = 0.999 * np.pi / 2
 OWN = "polar formula"
 TABLES = (*PAPER, *GALLERY, OWN)
 DEFAULTS = {"a": "1.5", "alpha": "0.08"}
-KEPT = ("table", "formula", "law", "shape", "lam", "component", "theta", "phi")  # of an address
+KEPT = ("table", "formula", "law", "shape", "lam", "component", "theta", "phi", "bounces")  # of an address
+MOST = 500  # bounces drawn
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A table by name or formula, its shape and contraction as text, and where the particle starts."""
+    """A table by name or formula, its shape and contraction as text, where the particle starts and how far it flies.
+
+    The first particle ends on a triangle.
+    """
 
     table: str = "egg"
     formula: str = "1 + cos(5*theta)/40"
     shape: str = "0.08"
     lam: str = "0.45"
     component: int = 0
-    theta: float = 0.3
-    phi: float = 0.2
+    theta: float = 0.4
+    phi: float = -0.5
     law: str = UNIFORM
+    bounces: int = 60
 
     @property
     def parameter(self) -> str | None:
@@ -59,23 +64,23 @@ class Choice:
         """The map of the scene."""
         return PinballMap(self.scene())
 
-    def command(self, bounces: int = 100) -> str:
+    def command(self) -> str:
         """The command line for this particle.
 
-        >>> Choice("ellipse", shape="1.5", lam="0.9", theta=0.5, phi=-0.25).command(10)
+        >>> Choice("ellipse", shape="1.5", lam="0.9", theta=0.5, phi=-0.25, bounces=10).command()
         'pinball orbit ellipse --a 1.5 --lam 0.9 --start=0.5,-0.25 --bounces 10'
         """
         table = ["--polar", self.formula] if self.table == OWN else [self.table]
         shape = [f"--{self.parameter}", self.shape] if self.parameter else []
         law = [] if self.law == UNIFORM else [f"--law={self.law}"]
         part = ["--component", self.map().ir.parts[self.component].name] if self.component else []
-        start = [f"--start={self.theta!r},{self.phi!r}", "--bounces", str(bounces)]
+        start = [f"--start={self.theta!r},{self.phi!r}", "--bounces", str(self.bounces)]
         return shlex.join(["pinball", "orbit", *table, *shape, *law, "--lam", self.lam, *part, *start])
 
-    def python(self, bounces: int = 100) -> str:
+    def python(self) -> str:
         """The same in Python.
 
-        >>> print(Choice("cardioid", lam="0.5", theta=0.5, phi=0.0).python(10))
+        >>> print(Choice("cardioid", lam="0.5", theta=0.5, phi=0.0, bounces=10).python())
         from numeric import PinballMap
         <BLANKLINE>
         map = PinballMap("cardioid", lam="0.5")
@@ -90,7 +95,7 @@ class Choice:
         law = "" if self.law == UNIFORM else f", law={self.law!r}"
         part = f", component={self.component}" if self.component else ""
         body = [f'map = PinballMap({table}, lam="{self.lam}"{shape}{law})']
-        body.append(f"orbit = map.orbit({self.theta!r}, {self.phi!r}, {bounces}{part})")
+        body.append(f"orbit = map.orbit({self.theta!r}, {self.phi!r}, {self.bounces}{part})")
         return "\n".join([*head, "", *body])
 
     def address(self) -> dict[str, str]:
@@ -111,11 +116,13 @@ class Choice:
         """
         known: dict[str, Any] = {name: str(said[name]) for name in ("formula", "law", "shape", "lam") if name in said}
         known |= {"table": said["table"]} if said.get("table") in TABLES else {}
-        for name, kind in (("component", int), ("theta", float), ("phi", float)):
+        for name, kind in (("component", int), ("theta", float), ("phi", float), ("bounces", int)):
             with suppress(KeyError, ValueError, TypeError):
                 known[name] = kind(said[name])
         with suppress(ValueError):
             if not 0 <= float(known.get("lam", 0)) <= 1 or not abs(known.get("phi", 0)) < STEEPEST:
+                return cls()
+            if not 1 <= known.get("bounces", 1) <= MOST:
                 return cls()
             return cls(**known)
         return cls()

@@ -17,7 +17,9 @@ from bokeh.plotting import figure
 from numeric import PinballMap
 from verification.app.choice import (
     DEFAULTS,
+    MOST,
     OWN,
+    SETTLING,
     TABLES,
     Choice,
     Particle,
@@ -83,7 +85,7 @@ class LiveTable:
         self.shape = pn.widgets.TextInput(name="alpha, shape of the egg", value=self.choice.shape)
         self.law = pn.widgets.TextInput(name="Exit angle, a formula in eta and lam", value=self.choice.law)
         self.lam = pn.widgets.FloatSlider(name="Contraction lambda", start=0, end=1, step=0.001, value=0.45)
-        self.bounces = pn.widgets.IntSlider(name="Bounces drawn", start=1, end=500, value=60)
+        self.bounces = pn.widgets.IntSlider(name="Bounces drawn", start=1, end=MOST, value=self.choice.bounces)
         self.find = pn.widgets.Button(name="Find the cycle", button_type="primary")
         self.basins = pn.widgets.Button(name="Show the basins")
         self.said = pn.pane.Markdown("", min_height=90)
@@ -182,7 +184,7 @@ class LiveTable:
 
     async def _try(self, wanted: Choice) -> None:
         """Reads a new formula in another process, so that no other visitor waits for it."""
-        why = await refusal(shlex.split(wanted.command(1))[1:], PATIENCE)
+        why = await refusal(shlex.split(wanted.command())[1:], PATIENCE)
         same = self.formula.value == wanted.formula and self.law.value == wanted.law
         if same and self.table.value == wanted.table:  # the visitor has not typed on
             in_turn(partial(self._tried, wanted, why))
@@ -228,7 +230,7 @@ class LiveTable:
         self.choice = replace(choice, law=self.choice.law)
         self.table.value, self.formula.visible = choice.table, choice.table == OWN
         self.formula.value, self.shape.value, self.law.value = choice.formula, choice.shape, choice.law
-        self.lam.value = float(choice.lam)
+        self.lam.value, self.bounces.value = float(choice.lam), choice.bounces
         self.shape.visible = choice.parameter is not None
         self.shape.name = f"{choice.parameter}, shape of the {choice.table}"
         self.rebuild()
@@ -246,7 +248,8 @@ class LiveTable:
 
     def redraw(self) -> None:
         """The orbit, the particle and the texts; the cycle that was found is forgotten."""
-        orbit = self.map.orbit(self.choice.theta, self.choice.phi, self.bounces.value, self.choice.component)
+        self.choice = replace(self.choice, bounces=self.bounces.value)
+        orbit = self.map.orbit(self.choice.theta, self.choice.phi, self.choice.bounces, self.choice.component)
         made = orbit.code == 0
         self.path.data = {"x": orbit.x[made], "y": orbit.y[made]}
         x1, y1 = tip(self.map, self._particle(), 0.4)
@@ -262,8 +265,8 @@ class LiveTable:
         if pn.state.location is not None:
             said = self.choice.address()
             pn.state.location.search = f"?{urlencode(said)}" if said else ""
-        self.command.value = self.choice.command(self.bounces.value)
-        self.python.value = self.choice.python(self.bounces.value)
+        self.command.value = self.choice.command()
+        self.python.value = self.choice.python()
 
     def fill(self) -> None:
         """One more portion of phase space."""
@@ -283,8 +286,10 @@ class LiveTable:
         s, sine = phase(self.map, orbit)
         self.ring.data, self.loop.data = {"x": s, "y": sine}, {"x": orbit.x, "y": orbit.y}
         numbers = ", ".join(f"{mu.real:.6g}" if mu.imag == 0 else f"{mu:.6g}" for mu in cycle.multipliers)
-        kind = "attracting" if abs(cycle.multipliers[0]) < 1 else "not attracting"
-        self.said.object = f"A cycle of period {cycle.period}, {kind}: multipliers {numbers}."
+        attracting = abs(cycle.multipliers[0]) < 1
+        where = "The orbit ends on" if attracting else f"After {SETTLING} bounces the orbit is on no cycle. Near it is"
+        kind = "attracting" if attracting else "not attracting"
+        self.said.object = f"{where} a cycle of period {cycle.period}, {kind}: multipliers {numbers}."
 
     def show_basins(self) -> None:
         """The attractor that each cell of phase space reaches, a colour for each."""

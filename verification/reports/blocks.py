@@ -7,6 +7,7 @@ exactly, by a proof in balls, in float64, or from a sample with its error.
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import Enum
+from math import floor, log10
 from typing import Any
 
 
@@ -35,6 +36,16 @@ class Number:
     def words(self) -> str:
         """On one line."""
         return f"{self.value} ± {self.error}" if self.error else self.value
+
+
+def solved(value: float, digits: int, error: float = 0.0) -> Number:
+    """A number that was solved for in float64, to so many digits: it errs by half a unit of the last one, or by more.
+
+    >>> solved(2 / 3, 4).words, solved(0.25, 4, 0.01).words
+    ('0.6667 ± 5e-05', '0.25 ± 1e-02')
+    """
+    unit = 10.0 ** (floor(log10(abs(value))) + 1 - digits) if value else 10.0**-digits
+    return Number(f"{value:.{digits}g}", f"{max(unit / 2, error):.0e}", Known.FLOAT)
 
 
 Cell = str | Number

@@ -26,6 +26,7 @@ from verification.cycles.recurrence import Closure
 from verification.maps.first_hit import closes_smoothly
 from verification.named.questions import PeriodicOrbit, Tick, find_cycles
 from verification.proofs.manifolds.grow import touches
+from verification.proofs.manifolds.known import settled
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened, tangency_proved
 from verification.proofs.manifolds.saddle import Orbit
@@ -162,7 +163,7 @@ def near(asked: Asked, lam: float, reach: float, heard: Tick) -> Iterator[tuple[
         rounds = max(ROUNDS, BOUNCES // len(orbit.start))
         for touch in touches(orbit, map, lam, rounds, TRIED, any_bounce=mirrored):
             if abs(touch.parameter - lam) <= reach:
-                yield touch, cycle
+                yield replace(touch, contact=settled(touch.contact, map)), cycle
 
 
 def plane_map(scene: Scene) -> Pinball:
@@ -229,7 +230,7 @@ def _touched(touch: Touch, cycle: PeriodicOrbit, change: tuple[float, float]) ->
         "period": cycle.period,
         "multipliers": [touch.multipliers[1], touch.multipliers[0]],
         "change": list(change),
-        "contact": asdict(replace(touch.contact, parameter=parameter)),
+        "contact": asdict(touch.contact),
     }
 
 

@@ -10,16 +10,18 @@ from sympy import S
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
+from numeric.dynamics.recognition import wilson
 from numeric.sweeps.fields import basins, bifurcation, parameter_space
 from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.named.attractors import Member, certificate, joined
+from verification.arithmetic.balls import decimal, working
+from verification.named.attractors import Member, certificate, exponents, joined
 from verification.named.questions import PeriodicOrbit
 from verification.reports import pictures
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Words
+from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Words, solved
 from verification.reports.lives import said_of
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
@@ -29,6 +31,8 @@ SHAPES = 40  # values of another parameter than the contraction: each is a table
 CELLS = 240  # of arc length in a bifurcation diagram
 FEW = 0.02  # of them
 LONGEST = 12  # period of an attracting cycle that is followed, whatever was asked for
+ROUNDED = 5e-6  # of an exponent that is shown with five decimals
+EXPONENT, SHOWN, BITS = 5, 8, 128  # digits of a cycle's exponents, in float64 and in balls, and the bits of these
 LISTED = 11  # contractions of a diagram whose exponents are listed
 
 
@@ -126,7 +130,7 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     size = f"{columns} values of {asked.parameter}, {orbits} particles, {bounces} bounces"
     effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.nanmedian(arrays['error'])):.1g} (median of nu_plus)")
     rows_of = exponent_rows(arrays)
-    said = {"level": level, "command": command, "size": size, "rows": rows_of}
+    said: dict[str, Any] = {"level": level, "command": command, "size": size, "orbits": orbits, "rows": rows_of}
     keys = asked.parameter, "chaotic_share", "nu_plus", "nu_plus_stderr"
     said["exponents"] = [dict(zip(keys, row, strict=True)) for row in rows_of]
     return [], [effort], said
@@ -199,13 +203,19 @@ def diagram_blocks(asked: Asked, parts: Parts, said: dict[str, Any], events: lis
     rows = tuple(
         (
             f"{value:.6g}",
-            Number(f"{share:.0%}", known=Known.SAMPLED),
+            _share(share, said["orbits"]),
             Number(f"{nu:.5f}", f"{error:.1g}", Known.SAMPLED),
         )
         for value, share, nu, error in said["rows"]
     )
     caption = "Along the diagram: the share of orbits with an exponent positive beyond its error, and the largest one."
     return [picture, Listing(caption, (asked.parameter, "chaotic orbits", "largest nu_plus"), rows, said["command"])]
+
+
+def _share(share: float, of: int) -> Number:
+    """A share of particles with half its 95 % interval."""
+    interval = wilson(round(share * of), of)
+    return Number(f"{share:.0%}", f"{max(share - interval.low, interval.high - share):.0%}", Known.SAMPLED)
 
 
 def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
@@ -216,7 +226,8 @@ def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
     map = PinballMap(scene)
     found = find(map, starts, asked.seed, images=True)
     row = joined(found, starts, float(exact("--at", text)))
-    rows = tuple(_member(scene, member) for member in row.members)
+    known = [_known(scene, member) for member in row.members]
+    rows = tuple(_member(*pair) for pair in zip(row.members, known, strict=True))
     missed = 3 / starts
     command = asked.command("attractor", f"--orbits {starts} --seed {asked.seed} --certify", lam=text)
     caption = (
@@ -232,13 +243,17 @@ def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
     wide = max((m.share.high - m.share.low for m in row.members), default=0.0) / 2
     effort = Effort(f"census at lambda = {text}", f"{starts} starts", 0.0, f"{wide:.2g} (half the widest interval)")
     cycles = [_cycle(scene, m.first) for m in row.members if m.kind is Kind.CYCLE and m.period <= LONGEST]
-    return blocks, [effort], {"cycles": cycles, "attractors": [_attractor(text, member) for member in row.members]}
+    told = [_attractor(text, *pair) for pair in zip(row.members, known, strict=True)]
+    return blocks, [effort], {"cycles": cycles, "attractors": told}
 
 
-def _attractor(text: str, member: Member) -> dict[str, Any]:
+Three = tuple[str | Number, str | Number, Number]
+
+
+def _attractor(text: str, member: Member, known: Three) -> dict[str, Any]:
     """An attractor for JSON: what it is, how many images it has, and the share of starts with a 95 % interval."""
-    first, share = member.first, member.share
-    numbers = {"nu_plus": first.nu_plus, "nu_minus": first.nu_minus}
+    share, numbers = member.share, dict(zip(("nu_plus", "nu_minus"), known[:2], strict=True))
+    errors = {f"{name}_error": nu.error if isinstance(nu, Number) else None for name, nu in numbers.items()}
     return {
         "lam": text,
         "kind": member.kind.name.lower(),
@@ -246,7 +261,8 @@ def _attractor(text: str, member: Member) -> dict[str, Any]:
         "symmetry": member.symmetry,
         "copies": member.copies,
         "share": [share.low, share.high],
-        **{name: float(nu) if np.isfinite(nu) else None for name, nu in numbers.items()},
+        **{name: nu.value if isinstance(nu, Number) else None for name, nu in numbers.items()},
+        **errors,
     }
 
 
@@ -257,39 +273,39 @@ def _cycle(scene: Scene, attractor: Attractor) -> dict[str, Any]:
     return said_of(PeriodicOrbit(scene, component, theta, phi, multipliers))
 
 
-def _member(scene: Scene, member: Member) -> tuple[str | Number, ...]:
-    first, share = member.first, member.share
-    chaotic = member.kind is Kind.CHAOTIC
+def _member(member: Member, known: Three) -> tuple[str | Number, ...]:
+    share = member.share
     name = {Kind.CYCLE: f"cycle of period {member.period}", Kind.CHAOTIC: "chaotic", Kind.NEUTRAL: "neutral"}
     half = (share.high - share.low) / 2
-    known = Known.SAMPLED if chaotic else Known.FLOAT
-    plus, minus = (
-        Number(f"{nu:.5f}", f"{error:.1g}" if chaotic else "", known) if np.isfinite(nu) else "-"
-        for nu, error in zip((first.nu_plus, first.nu_minus), first.errors, strict=True)
-    )
     return (
-        name.get(member.kind, f"stopped: {first.status.name.lower()}"),
+        name.get(member.kind, f"stopped: {member.first.status.name.lower()}"),
         member.symmetry,
         str(member.copies),
         Number(f"{(share.low + share.high) / 2:.3f}", f"{half:.3f}", Known.SAMPLED),
-        plus,
-        minus,
-        _existence(scene, first),
+        *known,
     )
 
 
-def _existence(scene: Scene, attractor: Attractor) -> Number:
-    """Of a cycle, what balls prove; of anything else, that it was seen."""
-    if attractor.kind is not Kind.CYCLE:
-        return Number("seen", known=Known.SAMPLED)
+def _known(scene: Scene, member: Member) -> Three:
+    """Both exponents and the existence of an attractor: of a cycle what balls prove, of anything else what was seen."""
+    first = member.first
+    if member.kind is not Kind.CYCLE:
+        errors = zip((first.nu_plus, first.nu_minus), first.errors, strict=True)
+        sampled = [Number(f"{nu:.5f}", f"{max(error, ROUNDED):.0e}", Known.SAMPLED) for nu, error in errors]
+        plus, minus = (number if np.isfinite(float(number.value)) else "-" for number in sampled)
+        return plus, minus, Number("seen", known=Known.SAMPLED)
+    plus, minus = (solved(nu, EXPONENT) if np.isfinite(nu) else "-" for nu in (first.nu_plus, first.nu_minus))
     try:
-        proof = certificate(scene.table, S(scene.lam), attractor.points, law=scene.law)
+        proof = certificate(scene.table, S(scene.lam), first.points, law=scene.law)
     except (ValueError, ZeroDivisionError):
-        return Number("in float64", known=Known.FLOAT)
+        return plus, minus, Number("in float64", known=Known.FLOAT)
     open_ = [name for name, value in proof.checks.items() if value is not True]
     if open_:
-        return Number(f"open: {', '.join(open_)}", known=Known.FLOAT)
-    return Number("exists and attracts", known=Known.PROVED)
+        return plus, minus, Number(f"open: {', '.join(open_)}", known=Known.FLOAT)
+    with working(BITS):
+        balls = exponents(proof.trace, proof.determinant, len(proof.theta))
+    plus, minus = (Number(*decimal(nu, SHOWN), Known.PROVED) if nu.is_finite() else "-" for nu in balls)
+    return plus, minus, Number("exists and attracts", known=Known.PROVED)
 
 
 def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], name: str, level: int) -> Picture:

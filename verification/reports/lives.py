@@ -23,7 +23,7 @@ from verification.plots.dynamics import plotted
 from verification.plots.sheet import styled
 from verification.proofs.periodic.bifurcation import Proof
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Block, Cell, Certificate, Effort, Known, Listing, Number, Picture, Words
+from verification.reports.blocks import Block, Cell, Certificate, Effort, Known, Listing, Number, Picture, Words, solved
 from verification.reports.pictures import saved
 
 Document = dict[str, Any]
@@ -31,6 +31,8 @@ Made = tuple[list[Block], list[Effort], Document]
 MOST = 250  # points of a branch, each way
 DOUBLED = 60  # of the branch of a doubled cycle
 STEPS = Steps(largest=0.2, most=150)  # of a curve
+LOCATED, PLACED = 9, 6  # digits of an event, and of a point on a curve
+CERTAIN = {BifurcationKind.BRANCH_POINT: 7}  # where branches cross the equations are singular
 MARK = 5  # decimals of trace and determinant by which cycles are told apart
 LAWS = {True: "vanish", False: "do not vanish", None: "no such law here"}
 
@@ -56,7 +58,7 @@ def search(asked: Asked, text: str, heard: Tick = lambda said: None) -> Made:
 def searched_blocks(asked: Asked, searches: Sequence[Document]) -> list[Block]:
     """What all searches found, in one table, and what they cannot tell."""
     rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (said["at"], str(n), *(Number(str(each), known=Known.SAMPLED) for each in (count, stable)), sums)
+        (said["at"], str(n), str(count), str(stable), sums)
         for said in searches
         for n, count, stable, sums in said["rows"]
     )
@@ -114,7 +116,7 @@ def life(asked: Asked, parts: Parts, text: str, said: Document, number: int) -> 
     except (ValueError, LostError, ZeroDivisionError) as why:
         words = Words(f"A cycle of period {orbit.period} at lambda = {text} could not be followed: {why}.")
         return [words], [], {"passes": {text: [said["mark"]]}, "events": []}
-    events = [located(asked, event, orbit.period, f"{name}-{i}") for i, event in enumerate(branch.events)]
+    events = [located(asked, event, orbit.period, f"{name}-{i}", branch) for i, event in enumerate(branch.events)]
     blocks: list[Block] = [_listing(asked, branch, orbit, events, text)]
     with styled():
         drawn = plotted([branch])
@@ -195,9 +197,11 @@ class Located:
         }
 
 
-def located(asked: Asked, event: Event, period: int, name: str) -> Located:
-    """An event, certified to the asked digits where its kind has certificates."""
-    plain = Located(event, f"{event.kind.value} {period}", Number(f"{event.value:.10g}", known=Known.FLOAT))
+def located(asked: Asked, event: Event, period: int, name: str, branch: Branch) -> Located:
+    """An event of a branch, certified to the asked digits where its kind has certificates."""
+    between = float(np.max(np.abs(np.diff(branch.values)), initial=0.0))  # two points, one of them on either side
+    digits, step = CERTAIN.get(event.kind, LOCATED), 0.0 if event.located else between
+    plain = Located(event, f"{event.kind.value} {period}", solved(event.value, digits, step))
     try:
         proof = proof_of(event, asked.digits, asked.parameter, None if asked.parameter == "lam" else S(asked.scene.lam))
     except (ValueError, ZeroDivisionError) as why:
@@ -279,19 +283,16 @@ def curve_blocks(asked: Asked, found: Sequence[Document]) -> list[Block]:
         rows: list[tuple[Cell, ...]] = [
             (
                 f"end: {why.removesuffix(' was reached')}",
-                Number(place.format(*np.round(point[:2], 9) + 0.0), known=Known.FLOAT),
+                *(solved(x, PLACED) for x in np.round(point[:2], 9) + 0.0),
             )
             for why, point in zip(curve["ends"], ends, strict=True)
         ]
-        rows += [
-            (what, Number(place.format(*np.round(point, 9) + 0.0), known=Known.FLOAT))
-            for what, *point in curve["special"]
-        ]
+        rows += [(what, *(solved(x, PLACED) for x in np.round(point, 9) + 0.0)) for what, *point in curve["special"]]
         caption = (
             f"Curve {number}: {curve['kind']} of period {curve['period']}, through ({letter}, lambda) = "
             f"{place.format(*curve['near'])}; {len(curve['points'])} points, each solved for in float64."
         )
-        blocks.append(Listing(caption, ("what", f"({letter}, lambda)"), tuple(rows), curve["command"]))
+        blocks.append(Listing(caption, ("what", letter, "lambda"), tuple(rows), curve["command"]))
     if not found:
         blocks.append(Words("No curve: the cycles that were followed met no fold, doubling or pitchfork on their way."))
     return blocks
@@ -303,11 +304,11 @@ COLUMNS = "what happens", "at", "branch that is born", "checklist"
 def _listing(asked: Asked, branch: Branch, orbit: PeriodicOrbit, events: list[Located], text: str) -> Listing:
     """Birth, death and what happens between."""
     rows: list[tuple[Cell, ...]] = []
-    for point, (end, why) in zip((branch.points[0], branch.points[-1]), branch.ends, strict=True):
-        known = Known.EXACT if end is End.INTERVAL else Known.FLOAT
-        rows.append(
-            (f"branch ends: {why.removesuffix(' was reached')}", Number(f"{point.z[-1]:.9g}", known=known), "", "-")
-        )
+    for points, (end, why) in zip((branch.points[:2], branch.points[:-3:-1]), branch.ends, strict=True):
+        values = [float(point.z[-1]) for point in points]
+        exact = Number(f"{values[0]:.9g}") if end is End.INTERVAL else None
+        where = exact or solved(values[0], LOCATED, abs(values[-1] - values[0]))
+        rows.append((f"branch ends: {why.removesuffix(' was reached')}", where, "", "-"))
     rows[1:1] = [event.row for event in events]
     stable = np.array([spectrum_of(point).stable for point in branch.points])
     share = f"attracts at {stable.mean():.0%} of the points of its branch" if stable.any() else "attracts nowhere"
@@ -347,7 +348,8 @@ def cascade(asked: Asked, said: Document, number: int, longest: int) -> Made:
         except (LostError, ValueError):
             break
         found += [
-            (period, located(asked, e, period, f"cascade-{number}-{period}-{i}")) for i, e in enumerate(branch.events)
+            (period, located(asked, e, period, f"cascade-{number}-{period}-{i}", branch))
+            for i, e in enumerate(branch.events)
         ]
         event = next((e for e in branch.events if e.kind is BifurcationKind.FLIP), None)
         flips += [] if event is None else [event.value]
@@ -355,7 +357,8 @@ def cascade(asked: Asked, said: Document, number: int, longest: int) -> Made:
         return [], [], {"events": []}
     rows: tuple[tuple[Cell, ...], ...] = tuple((str(n), *each.row) for n, each in found)
     words = command(asked, orbit, said["at"])
-    listing = Listing(_doublings(orbit, period, flips), ("period", *COLUMNS), rows, f"{words} --switch 1")
+    caption = _doublings(orbit, period, flips)
+    listing = Listing(caption, ("period", *COLUMNS), rows, f"{words} --switch 1") if rows else Words(caption)
     blocks: list[Block] = [listing, *(each.certificate for _, each in found if each.certificate)]
     data = {
         "events": [[each.value, each.label] for _, each in found],

@@ -13,7 +13,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 from verification.paper.report.findings import escaped
-from verification.paper.report.mathml import formula, mathml, remark
+from verification.paper.report.mathml import formula, formulas, mathml, remark
 from verification.reports.asked import FILE, Parts
 from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Number, Picture, Words
 from verification.reports.report import Report
@@ -137,7 +137,10 @@ HEAD = r"""\documentclass{article}
 \usepackage{textcomp}
 \setlength{\parindent}{0pt}\setlength{\parskip}{4pt}
 """
-GREEK = re.compile(r"(?<![A-Za-z\\])(lambda|lam|theta|alpha|phi|eta|kappa|nu)(?![A-Za-z])")
+GREEK = re.compile(r"(?<![A-Za-z\\])(lambda|lam|theta|alpha|phi|eta|kappa|nu)(?:\\_(plus|minus))?(?![A-Za-z])")
+LETTERS = {"lam": r"\lambda", "phi": r"\varphi"}
+LEAST = 7.0  # letters of a column
+SIGNS = {"plus": "_+", "minus": "_-", None: ""}
 
 
 def latex(report: Report, parts: Parts) -> str:
@@ -153,13 +156,21 @@ def latex(report: Report, parts: Parts) -> str:
 
 
 def tex(text: str) -> str:
-    r"""Text with its special signs escaped and the code's letters as the paper's.
+    r"""Text with its formulas set, its special signs escaped and the code's letters as the paper's.
 
-    >>> tex("lambda = 1/2, 50 %")
-    '$\\lambda$ = 1/2, 50 \\%'
+    >>> print(tex("50 %: nu_plus for lambda = 1/2"))
+    50 \%: $\nu_+$ for $\lambda = \frac{1}{2}$
     """
+    found, at = [], 0
+    for start, end, math in [*formulas(text), (len(text), len(text), "")]:
+        found += [_plain(text[at:start]), f"${math}$" if math else ""]
+        at = end
+    return "".join(found)
+
+
+def _plain(text: str) -> str:
     safe = escaped(text).replace("±", r"$\pm$")
-    return GREEK.sub(lambda found: rf"$\{ {'lam': 'lambda', 'phi': 'varphi'}.get(found[1], found[1]) }$", safe)
+    return GREEK.sub(lambda found: f"${LETTERS.get(found[1], chr(92) + found[1])}{SIGNS[found[2]]}$", safe)
 
 
 def typeset(given: Block, parts: Parts) -> str:
@@ -169,8 +180,8 @@ def typeset(given: Block, parts: Parts) -> str:
     if isinstance(given, Formula):
         return rf"\emph{{{tex(given.name)}}} ({given.known.value})" + f"\n\\[ {given.latex} \\]"
     if isinstance(given, Listing):
-        share = rf"\dimexpr(\linewidth-{2 * len(given.columns)}\tabcolsep)/{len(given.columns)}\relax"
-        width = rf">{{\raggedright\arraybackslash}}p{{{share}}}" * len(given.columns)
+        whole = rf"\dimexpr(\linewidth-{2 * len(given.columns)}\tabcolsep)*"
+        width = "".join(rf">{{\raggedright\arraybackslash}}p{{{whole}{x}/100\relax}}" for x in _shares(given))
         head, *rows = (" & ".join(_tex_cell(cell) for cell in row) + r" \\" for row in (given.columns, *given.rows))
         table = "\n".join([rf"{{\small\begin{{longtable}}{{{width}}}", head, r"\hline", *rows, r"\end{longtable}}"])
         return f"{tex(given.caption)}\n\n{table}{_tex_command(given.command)}"
@@ -181,8 +192,16 @@ def typeset(given: Block, parts: Parts) -> str:
     return _tex_certificate(given)
 
 
+def _shares(given: Listing) -> list[int]:
+    """Of the width of a table what each column takes, in hundredths: as its longest word or all of them ask."""
+    columns = zip(given.columns, *given.rows, strict=True)
+    texts = [[cell if isinstance(cell, str) else f"{cell.words} sampled" for cell in column] for column in columns]
+    sizes = [max(max([len(text) / 3, *map(len, text.split())]) for text in column) for column in texts]
+    return [int(100 * max(size, LEAST) / sum(max(size, LEAST) for size in sizes)) for size in sizes]
+
+
 def _tex_certificate(given: Certificate) -> str:
-    return rf"\texttt{{{tex(given.name)}.json}}: {tex(str(given.document['name']))}"
+    return rf"\texttt{{{escaped(given.name)}.json}}: {tex(str(given.document['name']))}"
 
 
 def _tex_cell(cell: str | Number) -> str:
@@ -196,5 +215,5 @@ def _tex_command(text: str) -> str:
 
 
 def _tex_address(text: str) -> str:
-    r"""What `\url` takes: a per cent sign or a brace would be read by TeX."""
-    return text.replace("%", r"\%").replace("{", r"\{").replace("}", r"\}")
+    r"""What `\url` takes: a per cent sign would be read by TeX, and so would a brace without its other."""
+    return text.replace("%", r"\%")

@@ -95,7 +95,7 @@ def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
         return
     where = inflections(table)
     if where:
-        yield "convex", f"no: the curvature changes sign at theta = {', '.join(where)}", Known.FLOAT
+        yield "convex", f"no: the curvature changes sign at theta = {', '.join(where)}, each within 5e-7", Known.FLOAT
     elif convexity(table).outcome is Outcome.REFUTED:
         yield "convex", "no: a point with positive curvature is known", Known.PROVED
     else:

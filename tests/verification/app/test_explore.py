@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from symbolic.tables.definition import PAPER
-from verification.app.choice import OWN, Choice
+from verification.app.choice import OWN, Choice, Particle
 from verification.app.cli import main, refusal
 from verification.app.live import LiveTable
 
@@ -117,7 +117,7 @@ def test_the_cycle_near_the_particle_is_the_ellipse_axis(live):
     live.start(type(live._particle())(0, 1.5, 0.02))
     live.find_cycle()
 
-    assert "A cycle of period 2, attracting" in live.said.object
+    assert "ends on a cycle of period 2, attracting" in live.said.object
 
 
 def test_phase_space_fills_and_rests(live):
@@ -136,12 +136,22 @@ def test_the_texts_name_the_component_of_a_start_on_the_wall():
     assert "component=1" in choice.python()
 
 
+def test_the_first_page_finds_the_triangle_that_its_orbit_ends_on_and_says_when_an_orbit_ends_on_none(live):
+    live.find_cycle()
+    assert "The orbit ends on a cycle of period 3, attracting" in live.said.object
+
+    live.start(Particle(0, 0.3, 0.2))  # in the chaotic sea
+    live.find_cycle()
+    assert "the orbit is on no cycle" in live.said.object
+    assert "not attracting" in live.said.object
+
+
 def test_the_cycle_that_a_settling_orbit_ends_on_is_found_from_far_away(live):
     """The triangle of the egg attracts at 0.9; the first bounces of this orbit are nowhere near it."""
     live.lam.value = 0.9
     live.find_cycle()
 
-    assert "A cycle of period 3, attracting" in live.said.object
+    assert "ends on a cycle of period 3, attracting" in live.said.object
 
 
 def test_the_strip_shows_where_orbits_end_for_all_contractions_and_where_the_slider_is(live):
@@ -159,6 +169,8 @@ def test_the_strip_shows_where_orbits_end_for_all_contractions_and_where_the_sli
 
 
 def test_the_exponents_of_the_orbit_come_with_their_errors(live):
+    live.start(Particle(0, 0.3, 0.2))  # in the chaotic sea
+
     assert re.search(r"Exponents per bounce: 0\.\d+ ± \S+ and -\d", live.said.object)
 
 
@@ -185,12 +197,12 @@ def test_a_law_of_ones_own_is_drawn_and_one_that_is_none_is_a_sentence(live, cap
 
 
 def test_an_address_brings_back_the_page_and_nonsense_in_one_does_no_harm():
-    choice = Choice("ellipse", shape="1.25", lam="0.7", theta=0.5, phi=-0.125)
+    choice = Choice("ellipse", shape="1.25", lam="0.7", theta=0.5, phi=-0.125, bounces=7)
     again = LiveTable(Choice.of_address(choice.address()))
 
     assert Choice.of_address(choice.address()) == choice
     assert again.choice == choice
-    assert again.command.value == choice.command(again.bounces.value)
+    assert again.command.value == choice.command()
     for said in (
         {"lam": "2"},
         {"lam": "x"},

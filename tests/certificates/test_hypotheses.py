@@ -74,6 +74,33 @@ def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve
     assert check.read_scene(scene, "", 60)[0].closed == [closed]
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("a", "b", "c", "e"), [(2, 3, 5, 11), (-1, 4, 2, -3), (0, -1, 1, 0)])
+def test_the_equations_of_a_cycle_say_that_it_closes_and_what_its_multipliers_are(check, sign, a, b, c, e):
+    """Of a round `(x, y) -> (a*x + b*y + 7, c*x + e*y - 3)`, perhaps mirrored, at (1/2, 1/4), with lam = 1/8."""
+    p, at = 60, [check.I.of(Fraction(1, 2**k), 60) for k in (1, 2, 3)]
+    x, y = (check.Jet.of(at[k], 1, k) for k in (0, 1))
+    cycle = check.Cycle.__new__(check.Cycle)
+    cycle.p, cycle.sign, cycle.lam, cycle.table = (
+        p,
+        sign,
+        check.I.of(Fraction(1, 9), p),
+        check.Table([["1", "-pi", "pi"]], {}, "", p),
+    )
+    cycle.run = lambda unknowns, d: [(x, y), ((x * a + y * b + 7) * sign, (x * c + y * e - 3) * sign)]
+    trace, det = a + e, a * e - b * c
+    wanted = {"fold": 1 - trace + det, "flip": 1 + trace + det, "focus": trace**2 - 4 * det}
+    wanted |= {"cycle": Fraction(1, 8) - Fraction(1, 9), "corner": None}
+    for kind, last in wanted.items():
+        cycle.kind = kind
+        found = [check.I.of(check.value(f), p) for f in cycle.equations(at, 0)]
+        closes = Fraction(a - 1, 2) + Fraction(b, 4) + 7, Fraction(c, 2) + Fraction(e - 1, 4) - 3
+        for ours, true in zip(found, [*closes, *([] if last is None else [last])], strict=False):
+            assert Fraction(ours.lo, 2**p) <= true <= Fraction(ours.hi, 2**p)
+            assert ours.width() <= 2
+        assert kind != "corner" or abs(found[2].real() - 0.5 + 3.141592653589793) < 1e-12
+
+
 @pytest.mark.parametrize(("cubic", "degenerate"), [("-1/9", True), ("1/9", False), ("0", False)])
 def test_the_cubic_coefficient_of_a_doubling_counts_what_the_quadratic_terms_add(check, cubic, degenerate):
     """Of a round `(x, y) -> (-x + x**2/3 + cubic*x**3, y/2)`: its coefficient is `1/9 + cubic`."""

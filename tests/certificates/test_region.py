@@ -118,6 +118,28 @@ def test_every_entry_is_looked_at(check, change, why):
         check.checked(GIVEN | change)
 
 
+@pytest.mark.parametrize(("small", "proved"), [(1, True), (Fraction(1, 2), True), (Fraction(1, 8), True), (0, False)])
+def test_the_squares_whose_images_are_asked_are_all_of_a_cell(check, region, small, proved):
+    """Halved both ways, up to four times, where an image is not covered or not enclosed."""
+    inside, done = region.Inside.__new__(region.Inside), []
+
+    def image(column, row, size):
+        if size > 2 * small and (column - row) % 1:
+            raise check.Unproved("not enclosed")
+        return column, row, size
+
+    inside.image = image
+    inside.covered = lambda column, row, size: size <= small and not done.append((column, row, size))
+    if not proved:
+        with pytest.raises(check.Unproved):
+            inside.cell(Fraction(3), Fraction(5), Fraction(1), 4)
+        return
+    inside.cell(Fraction(3), Fraction(5), Fraction(1), 4)
+    assert sum(size**2 for *_, size in done) == 1
+    assert len(set(done)) == len(done)
+    assert all(0 <= x - 3 <= 1 - size and 0 <= y - 5 <= 1 - size for x, y, size in done)
+
+
 def test_blocks_reach_to_the_last_column_and_row_and_each_is_counted(region):
     given = {"columns": 4, "rows": 6, "parts": 1, "runs": [[0, 2, 2, 0, 3], [0, 1, 0, 5, 1]]}
     cells, count = region.blocks(given)

@@ -195,7 +195,6 @@ class Expansion:
 
 def expansion(pieces: Pieces) -> Expansion | None:
     """The cone that the pieces leave invariant, proved; None when none is found."""
-    low, high = -math.inf, math.inf
     ratios = [float((p.rows[0][1] / p.rows[1][1]).mid()) for p in pieces.values()]
     low, high = min(ratios), max(ratios)
     for _ in range(50):

@@ -7,11 +7,13 @@ import pytest
 from flint import arb
 from sympy import Rational
 
-from verification.arithmetic.balls import FLOAT64, working
+from symbolic.cycles.thresholds import lambda_c
+from verification.arithmetic.balls import FLOAT64, real_ball, working
 from verification.proofs.corner import corner, corner_orbit, evidence
-from verification.proofs.corner.border_collision import Piece
+from verification.proofs.corner.border_collision import Expansion, Piece, _to_border, fixed_point
 from verification.proofs.corner.corner import ARC, WALL, Bounce, Corner, constant
 from verification.proofs.corner.corner_orbit import CornerClaim, corner_proved, doubled_branch
+from verification.proofs.corner.half_return import Step, TrappingRegion, _images
 from verification.proofs.periodic.interval_newton import Enclosure, Status
 
 ARC_END, WALL_END = (float(x.mid()) for x in corner.corner_parameters())
@@ -281,3 +283,76 @@ def test_the_one_sided_derivatives_are_difference_quotients_of_the_bounces_that_
         if component == WALL:
             assert abs(growth - fourth * shift / second - found.descent) < 1e-3
         assert abs(abs(second / phi) - abs(found.motion)) < 1e-3 * abs(found.motion)
+
+
+def test_the_contraction_moves_along_the_branch_as_fast_as_is_said():
+    """From `lambda_c` on it is `lambda_c + bend*e**2` with some value of the ball, by the mean-value theorem."""
+    found = doubled_branch()
+    with working(corner_orbit.BITS):
+        moved = (found.end - real_ball(lambda_c(), 30)) / arb(corner_orbit.MOST) ** 2
+
+        assert found.bend.contains(moved)
+        assert abs(found.bend / moved - 1) < 0.5
+
+
+@pytest.mark.parametrize("e", ["0.001", "0.01", "0.04"])
+def test_the_derivatives_of_the_divided_rules_are_their_difference_quotients(e):
+    """By `m` and by `lam`, at a point of the branch, and a wide ball of `e` holds them."""
+    with working(corner_orbit.BITS):
+        m, lam, h = corner_orbit.slope_at_zero(), real_ball(lambda_c(), 30).mid(), arb(10) ** -8
+        thin = corner_orbit.derivatives(arb(e), m, lam)
+        wide = corner_orbit.derivatives(arb(0.02, 0.02), m, lam)
+        for k, (dm, dlam) in enumerate(((h, 0), (0, h))):
+            ends = [corner_orbit.divided(arb(e), m + s * dm, lam + s * dlam) for s in (-1, 1)]
+            for i, (low, high) in enumerate(zip(*ends, strict=True)):
+                quotient = ((high - low) / (2 * h)).mid()
+                assert (thin[i, k] + arb(0, 1e-9)).contains(quotient)
+                assert thin[i, k].rad() < 0.01
+                assert wide[i, k].contains(quotient)
+
+
+def test_the_way_to_the_border_is_along_the_multiplier_below_minus_1():
+    for rows in ((0.1, 0.2, 0.1, -2.0), (0.5, -1.0, 0.75, -2.5), (-3.0, 0.5, 0.25, 0.5)):
+        piece = replace(affine(*rows), shift=(arb(0.25), arb(1)))
+        at, border = fixed_point(piece), _to_border(piece)
+        way = [b - a for a, b in zip(at, border, strict=True)]
+        moved = [b - a for a, b in zip(at, piece.of(border), strict=True)]
+        multiplier = min(np.roots([1, -float(piece.trace), float(piece.determinant)]))
+
+        assert border[1] == 0
+        assert multiplier < -1
+        assert [float(x) for x in moved] == pytest.approx([multiplier * float(x) for x in way], abs=1e-9)
+    assert _to_border(affine(0.5, 0, 0, -1)) is None
+    assert _to_border(affine(0.5, 0, 0, 2)) is None
+
+
+def test_the_exponents_of_a_region_are_bounded_over_all_of_its_steps():
+    steps = [
+        Step((0.0, 1.0), [], Expansion(OPEN, arb(least), arb(most)), (OPEN, OPEN))
+        for least, most in ((1.5, 2.0), (1.25, 1.75), (1.75, 3.0))
+    ]
+    low, high = TrappingRegion(True, 1.0, tuple(steps)).exponent
+
+    assert (low, high) == pytest.approx((np.log(1.25) / 2, np.log(3) / 2))
+
+
+@pytest.mark.parametrize("component", [ARC, WALL])
+def test_the_images_of_a_box_hold_those_of_the_smaller_boxes_within_it(component):
+    """As a whole, and as the middle's plus the slopes times the way from there; small boxes are nearly points."""
+    sign = -1 if component == ARC else 1
+    with working(64):
+        box = arb("0.002", "0.001"), sign * arb("0.001", "0.0005"), arb("0.003", "0.001")
+        found = _images(component, *box)
+        for shares in ((0, 0, 0), (1, 1, 1), (-1, 1, -1), (1, -1, 0), (0, 1, -1)):
+            at = [x.mid() + s * arb(x.rad()) * 15 / 16 for x, s in zip(box, shares, strict=True)]
+            for point in _images(component, *(arb(x.mid(), 1e-12) for x in at)):
+                held = []
+                for image in found:
+                    off = [x.mid() - b.mid() for x, b in zip(at, box, strict=True)]
+                    told = [
+                        q.centre + sum((s * d for s, d in zip(q.slopes, off, strict=True)), arb(0, 1e-9)) for q in image
+                    ]
+                    held.append(all(q.whole.contains(p.centre.mid()) and t.contains(p.centre.mid())
+                                    for q, p, t in zip(image, point, told, strict=True)))  # fmt: skip
+                assert any(held)
+                assert all(abs(q.whole) < 0.05 for image in found for q in image)

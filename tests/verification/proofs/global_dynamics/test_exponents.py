@@ -259,3 +259,16 @@ def test_a_sampled_share_is_that_of_the_area_within_its_standard_error(kept, sha
         1 / statements.STARTS,
     )
     assert statements.sampled_share(SimpleNamespace(range=(0, 1)), graph, 0) is None
+
+
+@pytest.mark.parametrize("lost", [[0, 0, 0], [0, 1, 0]])
+@pytest.mark.parametrize("inside", [[1, 1, 1], [1, 1, 0], [0, 0, 0]])
+def test_a_region_is_trapping_where_every_image_is_enclosed_and_lies_inside(monkeypatch, lost, inside):
+    cells = Grid((Chart("a", (0, 1), (0, 1)),), 3, 1).whole()
+    stated = statements.Region(Scene("circle"), (Fraction(1, 2),) * 2, 3, 1, 2, cells)
+    stated.__dict__["map"] = SimpleNamespace(charts=(Chart("a", (0, 1), (0, 1)),))
+    monkeypatch.setattr(statements, "mapped", lambda map, grid, cells, parts: (parts, np.array(lost, dtype=bool)))
+    monkeypatch.setattr(statements, "inside", lambda *_: np.array(inside, dtype=bool))
+
+    wanted = {"images_enclosed": not any(lost) or None, "images_inside": all(inside) or None}
+    assert stated.checks == {"convex_table": True} | wanted

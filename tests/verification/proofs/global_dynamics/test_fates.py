@@ -132,6 +132,22 @@ def test_a_cycle_that_no_sink_holds_counts_for_none():
     assert checks(0.0)["sinks"] is None
 
 
+@pytest.mark.parametrize(
+    ("factors", "answer"),
+    [([0.5], True), ([0.5, 0.999], True), ([], True), ([1.0], None), ([0.5, 1.5], None), ([None], None)],
+)
+def test_saddles_are_told_where_of_each_other_set_less_than_all_points_stay(factors, answer):
+    fate = replace(LOW, cycles=())
+    fate.__dict__["parts"] = [Cluster(Boxes(np.array([0]), (ONE, ONE), (ONE, ONE)), False, x) for x in factors]
+
+    assert fate.checks == {"returning": True, "sinks": True, "saddles": answer}
+    assert fate.proved is (answer is True)
+    fate = replace(LOW, cycles=())
+    fate.__dict__["parts"] = None
+    assert fate.checks == dict.fromkeys(("returning", "sinks", "saddles"))
+    assert not fate.proved
+
+
 def test_the_reach_of_a_cluster_is_that_of_its_furthest_box():
     assert list(_reach(np.array([3.0, 1.0, 5.0]), np.array([0, 0, 1]), 3)) == [3, 5, -np.inf]
 

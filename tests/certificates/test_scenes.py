@@ -1,6 +1,7 @@
 """What a scene may say to the second reader: letters, ranges, marks; and which documents may speak of mirror images."""
 
 import json
+import random
 from fractions import Fraction
 from pathlib import Path
 
@@ -159,3 +160,34 @@ def test_half_of_a_cycle_is_spoken_of_only_where_table_and_law_have_the_mirror_s
     with pytest.raises((check.Wrong, check.Unproved)) as why:
         check.checked(given)
     assert ("do not fit" in str(why.value)) is not fits
+
+
+def test_a_chord_is_free_where_no_wall_is_between_its_ends_in_whatever_direction_it_runs(check):
+    """Between random places on two sides of a square, with a two-sided wall somewhere, by the signs of four areas."""
+    dice, met = random.Random(3), {True: 0, False: 0}
+    area = lambda a, b, c: (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])  # noqa: E731
+    place = lambda part, s: ((s, 0), (1, s), (1 - s, 1), (0, 1 - s))[part]  # noqa: E731
+    for _ in range(60):
+        (a, b), (c, d) = ((Fraction(dice.randrange(5, 60), 64) for _ in range(2)) for _ in range(2))
+        if (a, b) == (c, d):
+            continue
+        ends = [
+            (f"{a} + ({c - a})*theta", f"{b} + ({d - b})*theta"),
+            (f"{c} + ({a - c})*theta", f"{d} + ({b - d})*theta"),
+        ]
+        wall = [{"x": x, "y": y, "from": "0", "to": "1"} for x, y in ends]
+        table, *_ = check.read_scene({"component": [*SQUARE, *wall], "lam": "1"}, "", 80)
+        (i, s), (j, t) = ((part, Fraction(dice.randrange(3, 61), 64)) for part in dice.sample(range(4), 2))
+        p, q = place(i, s), place(j, t)
+        crossed = (
+            area(p, q, (a, b)) * area(p, q, (c, d)) <= 0 and area((a, b), (c, d), p) * area((a, b), (c, d), q) <= 0
+        )
+        if met[crossed] == (3 if crossed else 12):  # to halve a wall that is in the way takes longest
+            continue
+        met[crossed] += 1
+        try:
+            table.free([(i, check.I.of(s, 80))], [(j, check.I.of(t, 80))], table.letters)
+            assert not crossed
+        except check.Unproved:
+            assert crossed
+    assert met == {True: 3, False: 12}

@@ -11,6 +11,7 @@ from sympy import Rational
 
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, working
+from verification.proofs.manifolds import horseshoe as horseshoes
 from verification.proofs.manifolds.horseshoe import (
     BITS,
     Edge,
@@ -137,6 +138,30 @@ def test_a_horseshoe_of_the_egg_is_refused_with_another_symmetry_at_its_end():
 
     assert not replace(egg(), edges=(*egg().edges[:-1], turned)).proved
     assert replace(egg(), map=Pinball(cuspless)).checks["admissible"] is None
+
+
+@pytest.mark.parametrize(
+    ("edges", "apart", "admissible", "missing"),
+    [
+        ({}, True, True, set()),
+        ({2: (True, False)}, True, True, {"cones"}),
+        ({-1: (True, False)}, True, True, {"cones"}),
+        ({0: (False, False)}, True, True, {"covering", "cones"}),
+        ({-1: (False, True)}, True, True, {"covering", "cones"}),
+        ({}, False, True, {"disjoint"}),
+        ({}, True, None, {"admissible"}),
+    ],
+)
+def test_each_item_of_a_horseshoe_is_what_its_own_step_proves(monkeypatch, edges, apart, admissible, missing):
+    made = replace(egg())
+    wrong = {made.edges[k]: answer for k, answer in edges.items()}
+    monkeypatch.setattr(type(made), "_covering", lambda self, map, parameter, edge: wrong.get(edge, (True, True)))
+    monkeypatch.setattr(horseshoes, "_apart", lambda *_: apart)
+    monkeypatch.setattr(horseshoes, "smooth", lambda _: admissible)
+
+    assert made.checks == {item: None if item in missing else True for item in horseshoes.CHECKS}
+    assert replace(made, edges=made.edges[:-1]).checks["covering"] is None  # these are no two loops
+    assert (made.entropy > 0) is (not missing)
 
 
 def point(h, x, y):

@@ -332,6 +332,8 @@ def test_a_law_with_a_slope_that_vanishes_or_with_a_root_is_not_proved_to_be_ana
     assert not falling(Law("-lam*eta + eta**3/10"), arb("0.6"))
     assert not falling(Law("-lam*eta*sqrt(1 + eta**2/99)"), arb("0.6"))
     assert not falling(BENT, None)
+    assert smooth(table(SHAPE, BENT), arb("0.6")) is True
+    assert smooth(table(SHAPE, BENT)) is smooth(table(SHAPE, Law("-lam*eta + eta**3/10")), arb("0.6")) is None
     for sign in "+-":  # its slope is -0.6 +- c*eta: at one end of the incidence angles it vanishes, or just does not
         assert falling(Law(f"-lam*eta {sign} 0.6*eta**2/(2*1.5718)"), arb("0.6"))
         assert not falling(Law(f"-lam*eta {sign} 0.6*eta**2/(2*1.5703)"), arb("0.6"))

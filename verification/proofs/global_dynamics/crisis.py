@@ -320,7 +320,7 @@ def kept_apart(map: PinballImages, grid: tuple[int, int, int], points: Sequence[
         return None
     member = found[1][0]
     wide = binary_dilation(np.pad(member, ((1, 1), (0, 0)), mode="wrap"), np.ones((3, 3)))[1:-1]
-    if any(np.any(wide & np.roll(member, k * grid[0] // 3, 0)) for k in (1, 2)):
+    if np.any(wide & np.roll(member, grid[0] // 3, 0)):  # and so apart from the copy turned back
         return None
     low, high = map.charts[0].x
     return low + (high - low) * (np.flatnonzero(member.any(1)) + 0.5) / grid[0]

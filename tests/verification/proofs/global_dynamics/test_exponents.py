@@ -272,3 +272,27 @@ def test_a_region_is_trapping_where_every_image_is_enclosed_and_lies_inside(monk
 
     wanted = {"images_enclosed": not any(lost) or None, "images_inside": all(inside) or None}
     assert stated.checks == {"convex_table": True} | wanted
+
+
+@pytest.mark.parametrize(
+    ("run", "within"),
+    [
+        ([0, 2, 6, 0, 3], True), ([1, 2, 0, 4, 1], True), ([2, 1, 0, 0, 1], False), ([0, 0, 0, 0, 1], False),
+        ([0, 1, 0, 0, 0], False), ([0, 2, 7, 0, 1], False), ([0, 1, 8, 0, 1], False), ([0, 2, 0, 5, 1], False),
+        ([0, 1, 0, 3, 4], False), ([0, 2, 0, 1, 3], False), ([-1, 1, 0, 0, 1], False), ([0, 1, 0, 0], False),
+    ],
+)  # fmt: skip
+def test_blocks_of_a_document_lie_within_the_grid_of_one_of_its_charts(run, within):
+    """Two charts of eight columns and six rows; `[chart, size, column, row, how many]`."""
+    if within:
+        chart, size, column, row, count = run
+        found = statements._unrolled([[0, 1, 0, 0, 1], run], 2, 8, 6)
+        assert [list(field[1:]) for field in found] == [
+            [chart] * count,
+            [column] * count,
+            [row + size * k for k in range(count)],
+            [size] * count,
+        ]
+    else:
+        with pytest.raises(ValueError, match="certificate: "):
+            statements._unrolled([[0, 1, 0, 0, 1], run], 2, 8, 6)

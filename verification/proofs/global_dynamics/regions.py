@@ -200,9 +200,10 @@ def _runs(cells: Cells) -> Iterator[list[int]]:
 
 def _unrolled(runs: Any, charts: int, columns: int, rows: int) -> Cells:
     """The blocks of runs; none may jut out of the grid."""
-    found = np.array([[whole("a run", x, LARGEST, 0) for x in run] for run in runs], dtype=np.int64)
-    if found.ndim != 2 or found.shape[1] != 5 or not 1 <= int(found[:, 4].sum()) <= MOST_BOXES:
+    given = [[whole("a run", x, LARGEST, 0) for x in run] for run in runs]
+    if {len(run) for run in given} != {5} or not 1 <= sum(run[4] for run in given) <= MOST_BOXES:
         raise ValueError("certificate: runs is no list of [chart, size, column, row, how many]")
+    found = np.array(given, dtype=np.int64)
     chart, size, column, row, count = found.T
     good = (chart < charts) & (size >= 1) & (count >= 1) & (column + size <= columns) & (row + size * count <= rows)
     if not np.all(good):

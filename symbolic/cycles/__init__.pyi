@@ -48,7 +48,7 @@ from .cycle import (
     saddle,
     trace_and_determinant,
 )
-from .defocusing import least_exponent
+from .defocusing import half, least_exponent
 from .normal_forms import QUARTIC, Map, a, bounce, chord, coefficient, composed, least_bend, return_map
 from .polygons import (
     COSINE,
@@ -73,6 +73,7 @@ from .polygons import (
     turning_polynomial,
 )
 from .resonance import flat_triangle
+from .returns import HIGHEST, LOWEST, leaves, margins
 from .splitting import grazing, least_rate, radius_defects, rate, splits
 from .thresholds import (
     alpha_hat,
@@ -93,8 +94,10 @@ from .thresholds import (
 __all__ = [
     "COSINE",
     "CUSP",
+    "HIGHEST",
     "LAUNCH_COS2",
     "LAUNCH_Q2",
+    "LOWEST",
     "QUARTIC",
     "RATE",
     "SHRINKS",
@@ -140,6 +143,7 @@ __all__ = [
     "frame",
     "gentle_elsewhere",
     "grazing",
+    "half",
     "half_turn",
     "in_cosine",
     "infimum_attained",
@@ -155,7 +159,9 @@ __all__ = [
     "least_bend",
     "least_exponent",
     "least_rate",
+    "leaves",
     "major_axis",
+    "margins",
     "minor_axis",
     "monodromy",
     "multipliers",

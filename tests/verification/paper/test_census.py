@@ -16,6 +16,7 @@ from verification.named.branches import Event
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import basins as on_basins
 from verification.paper.judges import attractors as on_attractors
+from verification.paper.judges import cuspless_chaos as on_chaos
 from verification.paper.report.report import catalogue
 
 EGG = egg(3).at(alpha="0.08")
@@ -88,15 +89,15 @@ def test_without_attractors_nothing_is_said_of_them(monkeypatch):
 def test_a_second_attractor_leaves_the_only_one_open(monkeypatch):
     chaos, cycle = found = on_attractors.found("cuspless", "0.09")
     assert {a.kind for a in found} == {Kind.CHAOTIC, Kind.CYCLE}
-    monkeypatch.setattr(on_attractors, "found", lambda *_: (chaos, cycle))
+    monkeypatch.setattr(on_chaos, "found", lambda *_: (chaos, cycle))
 
-    assert on_attractors.only_chaos(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.OPEN
+    assert on_chaos.only_attractor(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.OPEN
     alone = chaos if chaos.kind is Kind.CHAOTIC else cycle
     whole = replace(alone, share=replace(alone.share, count=on_attractors.STARTS))
-    monkeypatch.setattr(on_attractors, "found", lambda *_: (whole,))
-    assert on_attractors.only_chaos(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.SUPPORTED
-    monkeypatch.setattr(on_attractors, "splits", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
-    assert on_attractors.only_chaos(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.OPEN
+    monkeypatch.setattr(on_chaos, "found", lambda *_: (whole,))
+    assert on_chaos.only_attractor(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.SUPPORTED
+    monkeypatch.setattr(on_chaos, "splits", lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+    assert on_chaos.only_attractor(CLAIMS["cuspless.only_attractor"]).verdict is Verdict.OPEN
 
 
 def test_grazing_is_left_behind_and_not_approached():

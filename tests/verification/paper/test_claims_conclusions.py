@@ -26,7 +26,7 @@ def test_a_mixture_is_supported_and_open_without_the_cone_of_the_cardioid(monkey
     assert verdict(on_conclusions.mixture, "map.mixture") is Verdict.OPEN
 
 
-@pytest.mark.parametrize("ground", ["splits", "two_rates"])
+@pytest.mark.parametrize("ground", ["attracted", "two_rates"])
 def test_weak_dissipation_leads_to_chaos_by_the_cones_of_both_tables(monkeypatch: pytest.MonkeyPatch, ground: str):
     assert verdict(on_conclusions.weak_chaos, "map.weak_chaos") is Verdict.CONFIRMED
     monkeypatch.setattr(on_conclusions, ground, lambda: UNKNOWN)

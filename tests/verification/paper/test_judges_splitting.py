@@ -8,6 +8,7 @@ from symbolic.cycles.splitting import least_rate
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
 from verification.paper.claims.claim import Verdict
+from verification.paper.judges import cuspless_chaos as on_chaos
 from verification.paper.judges import hyperbolicity as on_splitting
 from verification.paper.report.report import catalogue
 
@@ -94,9 +95,17 @@ def test_time_averages_of_a_dissipative_table_are_not_those_of_the_elastic_measu
     assert verdict(on_splitting.ergodic, "cuspless.elastic_ergodic") is Verdict.OPEN
 
 
-def test_an_attractor_that_is_not_chaotic_does_not_attract_globally(monkeypatch):
-    assert verdict(on_splitting.global_near_one, "cuspless.global_near_one") is Verdict.SUPPORTED
+@pytest.mark.parametrize("ground", ["every_return", "splits"])
+@pytest.mark.parametrize(
+    ("judge", "name"),
+    [
+        (on_chaos.global_near_one, "cuspless.global_near_one"),
+        (on_chaos.above_tenth, "cuspless.chaotic_above_tenth"),
+        (on_chaos.accumulates, "cuspless.accumulates_on_joins"),
+    ],
+)
+def test_chaos_of_the_cuspless_table_rests_on_every_return(monkeypatch, judge, name, ground):
+    assert verdict(judge, name) is Verdict.CONFIRMED
 
-    below = on_splitting.found("cuspless", "0.05")
-    monkeypatch.setattr(on_splitting, "found", lambda *_: below)
-    assert verdict(on_splitting.global_near_one, "cuspless.global_near_one") is Verdict.OPEN
+    monkeypatch.setattr(on_chaos, ground, lambda: UNPROVED)
+    assert verdict(judge, name) is Verdict.OPEN

@@ -13,7 +13,7 @@ from numeric.dynamics.attractors import Attractor
 from symbolic import tables
 from symbolic.cycles.almost_every import two_rates
 from symbolic.cycles.defocusing import expands, least_exponent
-from symbolic.cycles.splitting import least_rate, splits
+from symbolic.cycles.splitting import least_rate
 from symbolic.cycles.thresholds import even_stability_numbers
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.motion.collision import derivative_matrix
@@ -25,6 +25,7 @@ from verification.named.curves import double_one, expanding_cycle
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
+from verification.paper.judges.cuspless_chaos import ONE_PIECE, attracted, one_set
 from verification.paper.judges.ellipse import LIMIT, lyapunov
 from verification.paper.judges.hyperbolicity import PROVED_TO, born, chaos, corner
 from verification.proofs.manifolds.known import CONTACTS
@@ -87,7 +88,8 @@ def corners() -> Finding:
         f"for lambda* < lam <= {PROVED_TO} an unstable cycle lies in the region that is thrown into itself, so "
         "the attractor holds its unstable manifold. A smooth arc of that grows, along the boundary, by a factor above "
         "1 at each half return until it crosses a join, since the region is bounded, and not tangent to it; there the "
-        "slope dphi/ds jumps by lam times the jump of the curvature. The cycle is its own mirror image: both joins are "
+        "slope dphi/ds jumps by lam times the jump of the curvature. The cycle is its own mirror image: both joins "
+        "are "
         "met",
         chaos(),
         answer(saddle, "a cycle of period 4 that meets the arc next to the joins lies in the region"),
@@ -193,23 +195,19 @@ def near(theta: arb, x: float) -> float:
 
 @judges("map.weak_chaos")
 def weak_chaos(claim: Claim) -> Judgement:
-    """What attracts every orbit is compact, and of its orbits that miss cusp and joins each is unstable."""
-    each = [found("cuspless", x) for x in NEAR_ELASTIC]
-    alone = all(len(some) == len(chaotic(some)) == 1 and unsettled(some) == 0 for some in each)
+    """What attracts every orbit is no cycle, and of its orbits that miss cusp and joins each is unstable."""
     return Judgement(
         by(
-            "the map takes the strip abs(phi) <= lam*pi/2 into itself, and what its images have in common attracts "
-            "every orbit. In the cuspless table the map is continuous, so this attractor is compact, in one piece as "
-            "a set, and holds the orbit of period 2; for 16/27 < lam < 1 every orbit that misses the joins is "
-            "stretched by a cone. In the cardioid, for every lam < 1, every orbit that misses the cusp is, one other "
-            "direction shrinks, and almost every orbit converges to no cycle",
-            splits(),
+            "in the cardioid, for every lam < 1, every orbit that misses the cusp stretches in one direction and "
+            "shrinks "
+            "in another, and almost every orbit converges to no cycle",
+            attracted(),
             two_rates(),
         ),
-        "cardioid, lam < 1, and cuspless cardioid, 16/27 < lam < 1: what attracts is no cycle off the joins, and every "
-        f"orbit off cusp and joins is unstable, at a rate of at least {least_exponent()} and {least_rate()}; that it "
-        f"has one dense orbit is not shown (sampled: {STARTS} starts at lam = {', '.join(NEAR_ELASTIC)} of the latter "
-        f"{'all reach one chaotic set' if alone else 'do not all reach one set'})",
+        "cardioid, lam < 1, and cuspless cardioid, 1/10 <= lam < 1: no cycle off the joins attracts, and every orbit "
+        "off "
+        f"cusp and joins is unstable, near lam = 1 at a rate of at least {least_exponent()} and {least_rate()}; "
+        f"{ONE_PIECE}; {one_set(NEAR_ELASTIC)}",
     )
 
 
@@ -234,7 +232,8 @@ def other_K(claim: Claim) -> Judgement:
             *squares,
             at={lam: S.Half},
         ),
-        "odd K: the diameters double on a curve alpha-tilde(K) of their own, supercritically for every lam < 1 (proved "
+        "odd K: the diameters double on a curve alpha-tilde(K) of their own, supercritically for every lam < 1 "
+        "(proved "
         "for K = 5 and 7), and a tongue follows; even K: they never do, and no tongue was found",
         answer(all(sign.supercritical for sign in odd), "K = 5 and 7: a supercritical doubling for every 0 <= lam < 1"),
         "The answer: for odd K the portrait begins as for K = 3, for even K it does not. Section 'Other numbers of "

@@ -22,7 +22,7 @@ from symbolic import tables
 from symbolic.cycles.cycle import cuspless_horizontal, is_double_normal
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.polygons import near_flat
-from symbolic.cycles.splitting import least_rate, splits
+from symbolic.cycles.splitting import splits
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.motion.flight import flight
 from symbolic.tables.scene import Scene
@@ -215,23 +215,6 @@ def compact_near_zero(claim: Claim) -> Judgement:
     )
 
 
-@judges("cuspless.accumulates_on_joins")
-def accumulates(claim: Claim) -> Judgement:
-    """The least distance to a join falls like one over the number of points, as with a positive density there."""
-    said, good = [], True
-    for contraction in ("0.08", "0.2", "0.5", "0.9"):
-        cloud = chaotic(found("cuspless", contraction))[0].points
-        map = PinballMap("cuspless", lam=contraction)
-        orbit = map.orbit(cloud.theta[::256], cloud.phi[::256], 3000, cloud.component[::256])
-        s = map.arclength.s(orbit.theta, orbit.component)
-        half = map.arclength.perimeter / 2
-        distance = np.abs(np.abs(np.remainder(s + half, 2 * half) - half) - JOIN)
-        few, many = np.min(distance[:100]), np.min(distance)
-        good = good and many < 1e-4 and many < few
-        said.append(f"{many:.0e} among {distance.size} points at {contraction}")
-    return sampled("orbits on the attractor come as near the joins as their number allows", "; ".join(said), good)
-
-
 @judges("cuspless.attractors_nonsmooth")
 def nonsmooth(claim: Claim) -> Judgement:
     """The jump of the attractor's slope is `lam` times that of the curvature: at the joins, and not at `s = 0`."""
@@ -248,27 +231,6 @@ def nonsmooth(claim: Claim) -> Judgement:
             f"{'; '.join(said)}. So it has corners at the joins, and none is seen at s = 0",
         ),
         "corners at s = +-sqrt(3)/4, where the slope dphi/ds jumps by 3*lam/2; no corner at s = 0",
-    )
-
-
-@judges("cuspless.chaotic_above_tenth", "cuspless.only_attractor")
-def only_chaos(claim: Claim) -> Judgement:
-    """No attracting cycle above 16/27, by a cone; below it one chaotic set and nothing else at a few contractions."""
-    lams = ("0.0935", "0.1", "0.15", "0.25", "0.4", "0.6", "0.8", "0.95")
-    each = [found("cuspless", x) for x in lams]
-    alone = all(len(some) == 1 and len(chaotic(some)) == 1 and unsettled(some) == 0 for some in each)
-    least = min(a.nu_plus for some in each for a in some)
-    said = (
-        "proved for 16/27 < lam < 1: every orbit that misses the joins stretches, at a rate of at least "
-        f"{least_rate()}, so no cycle off the joins attracts; sampled: at lam = {', '.join(lams)} each of {STARTS} "
-        f"random starts reaches one and the same chaotic set, nu_+ >= {least:.2f}; a share below "
-        f"{3 / STARTS:.0%} of others is not excluded"
-    )
-    return sampled(
-        "one chaotic attractor, from lambda_c = 0.0934... on, for lam < 1; that no cycle attracts beside it is proved "
-        "from lam = 16/27 on",
-        said,
-        alone and bool(splits()),
     )
 
 

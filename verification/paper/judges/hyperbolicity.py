@@ -18,7 +18,7 @@ from sympy import Matrix, Rational, S
 from numeric import PinballMap
 from numeric.pinball.sampling import phase_starts
 from symbolic.cycles.defocusing import expands
-from symbolic.cycles.splitting import grazing, least_rate, radius_defects, rate, splits
+from symbolic.cycles.splitting import grazing, radius_defects, rate, splits
 from symbolic.cycles.thresholds import lambda_c
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.motion.collision import derivative_matrix
@@ -28,7 +28,6 @@ from verification.arithmetic.balls import enclose
 from verification.arithmetic.iteration import telling
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
-from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled
 from verification.paper.judges.cuspless import attracting_below
 from verification.paper.judges.exponents import SPECTRA_SEED as SEED
 from verification.paper.judges.located import certified, located, subcritical
@@ -152,22 +151,6 @@ def ergodic(claim: Claim) -> Judgement:
     return sampled("ergodic at lam = 1 by the theorems cited, whose defocusing condition is proved here", said, good)
 
 
-@judges("cuspless.global_near_one")
-def global_near_one(claim: Claim) -> Judgement:
-    """That nothing but chaos attracts is proved near 1; that there is one attractor is sampled."""
-    near = ("0.7", "0.8", "0.9", "0.95", "0.99")
-    seen = {x: found("cuspless", x) for x in near}
-    single = all(len(some) == len(chaotic(some)) == 1 and not unsettled(some) for some in seen.values())
-    said = (
-        "proved: for 16/27 < lam < 1 every orbit stretches at a rate of at least "
-        f"{least_rate()}, so no cycle attracts; sampled: at lam = {', '.join(near)} all of {STARTS} "
-        "starts reach one and the same chaotic attractor"
-    )
-    return sampled(
-        "for lam > 16/27 nothing but chaos attracts; one chaotic attractor is found", said, single and bool(splits())
-    )
-
-
 MOST = 30  # steps of Newton's method
 
 
@@ -216,7 +199,6 @@ def _cross(a: NDArray[np.complex128], b: NDArray[np.complex128]) -> Array:
 
 PROVED_TO, NEAR = 0.1, 1e-6  # a contraction, and a distance from lambda-star
 ANGLE = 0.04  # what "phi close to 0" is taken for: phi-star is -0.029
-SAMPLED = np.linspace(PROVED_TO, 0.99, 48)
 
 
 def answer(holds: bool | None, reason: str) -> Finding:
@@ -302,25 +284,6 @@ def fourth_collision_above(claim: Claim) -> Judgement:
         ),
         "Not for every lambda > lambda*: at lambda = 0.9 the fourth collision lies beyond s* again "
         "for all |phi| <= 0.05.",
-    )
-
-
-@judges("cuspless.chaotic_above_star")
-def chaotic_above_star(claim: Claim) -> Judgement:
-    """Proved up to 0.1; from there on exponents along orbits from the join."""
-    map = PinballMap("cuspless", lam=SAMPLED)
-    start = np.full(SAMPLED.size, 2 * np.pi / 3)
-    least = float(map.exponents(start, np.full(SAMPLED.size, -0.025), 20_000, 2000).nu_plus.min())
-    near = chaos()
-    said = (
-        f"proved: {near.reason}; sampled: at {SAMPLED.size} contractions from {PROVED_TO} to {SAMPLED[-1]} the orbit "
-        f"from the join has an exponent of at least {least:.2f}"
-    )
-    return Judgement(
-        Finding(Outcome.UNKNOWN, f"not proved for lam > {PROVED_TO}"),
-        f"a chaotic attractor next to the corner orbit for lambda* < lam <= {PROVED_TO}, with an open set of angles "
-        "at the join that lead to it; at lam = 1 area is kept, and there is none",
-        evidence=said if near and least > 0.1 else "",
     )
 
 

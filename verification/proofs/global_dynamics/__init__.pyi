@@ -8,6 +8,7 @@ from .fates import Fate
 from .graph import Cells, Grid, MorseGraph, morse_graph, refined
 from .images import PinballImages
 from .regions import KIND, Region, checked, expansion, region, sampled_share, shares
+from .returns import every_return
 
 __all__ = [
     "KIND",
@@ -25,6 +26,7 @@ __all__ = [
     "boxed",
     "checked",
     "continued",
+    "every_return",
     "expansion",
     "kept_apart",
     "lost",

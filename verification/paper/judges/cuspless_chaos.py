@@ -1,0 +1,127 @@
+"""Claims on the chaos of the cuspless cardioid, from `lambda*` to 1. Paper: section 5.
+
+`symbolic.cycles.returns` and `splitting` show, for every `1/10 <= lam < 1`, that each return to the arc stretches beams
+of a cone, so that every orbit that misses the joins is unstable; a trapping polygon shows chaos from `lambda*` to 1/10.
+Not shown is that what attracts has one dense orbit.
+"""
+
+from sympy import S
+
+from symbolic.cycles.returns import HIGHEST, LOWEST
+from symbolic.cycles.splitting import least_rate, splits
+from symbolic.expressions.signs import Finding
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables.table import cos_eta1, cos_phi0, lam
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
+from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled
+from verification.paper.judges.hyperbolicity import PROVED_TO, chaos
+from verification.proofs.global_dynamics.returns import every_return
+
+NEAR_ONE = ("0.7", "0.8", "0.9", "0.95", "0.99")
+ABOVE = ("0.0935", "0.1", "0.15", "0.25", "0.4", "0.6", "0.8", "0.95")
+ONE_PIECE = "that what attracts has one dense orbit is not shown"
+
+
+def unstable() -> Finding:
+    """Every orbit that misses the joins is unstable, for every contraction from 1/10 to 1."""
+    return by(
+        f"for {LOWEST} <= lam <= {HIGHEST} each return to the arc, in at most two bounces, multiplies a form of beams "
+        "that "
+        "is positive in a cone by a number above 1 that depends on lam alone; for 16/27 < lam < 1 their widths grow; "
+        "so "
+        "every orbit that misses the joins stretches at an exponential rate, and no cycle off the joins attracts",
+        every_return(),
+        splits(),
+    )
+
+
+def attracted() -> Finding:
+    """What attracts every orbit is compact and connected, and its orbits that miss the joins are unstable."""
+    return by(
+        "the map is continuous and takes the strip abs(phi) <= lam*pi/2 into itself; what its images have in common "
+        "is "
+        "compact and connected, attracts every orbit and holds the unstable orbit of period 2",
+        unstable(),
+    )
+
+
+def one_set(lams: tuple[str, ...]) -> str:
+    """What random starts reach, in words."""
+    each = [found("cuspless", x) for x in lams]
+    single = all(len(some) == len(chaotic(some)) == 1 and not unsettled(some) for some in each)
+    least = min(a.nu_plus for some in each for a in some)
+    reached = f"reach one and the same chaotic set, nu_+ >= {least:.2f}" if single else "do not all reach one set"
+    return f"sampled, {STARTS} starts at each of lam = {', '.join(lams)} {reached}"
+
+
+@judges("cuspless.global_near_one")
+def global_near_one(claim: Claim) -> Judgement:
+    """A compact set attracts every orbit, and each orbit in it that misses the joins is unstable."""
+    return Judgement(
+        attracted(),
+        f"for every {LOWEST} <= lam < 1 a compact, connected set attracts every orbit, and each that misses the joins "
+        "is "
+        f"unstable, near lam = 1 at a rate of at least {least_rate()}; {ONE_PIECE}; {one_set(NEAR_ONE)}",
+    )
+
+
+@judges("cuspless.chaotic_above_tenth")
+def above_tenth(claim: Claim) -> Judgement:
+    """As printed: from 1/10 on, for every contraction below 1."""
+    return Judgement(
+        attracted(),
+        f"for every {LOWEST} <= lam < 1 a compact, connected set attracts every orbit, and each that misses the joins "
+        "is "
+        f"unstable; {ONE_PIECE}; {one_set(ABOVE)}",
+    )
+
+
+@judges("cuspless.only_attractor")
+def only_attractor(claim: Claim) -> Judgement:
+    """No cycle off the joins attracts from 1/10 on; that chaos has one attractor is sampled."""
+    said = (
+        f"proved for {LOWEST} <= lam < 1: every orbit that misses the joins is unstable, so no cycle off the joins "
+        f"attracts; {one_set(ABOVE)}; a share below {3 / STARTS:.0%} of others is not excluded"
+    )
+    return sampled(
+        "one chaotic attractor, from lambda_c = 0.0934... on, for lam < 1; that no cycle attracts beside it is proved "
+        f"from lam = {LOWEST} on",
+        said,
+        "one and the same" in said and bool(unstable()),
+    )
+
+
+@judges("cuspless.chaotic_above_star")
+def chaotic_above_star(claim: Claim) -> Judgement:
+    """By a polygon up to 1/10 and by the form of beams from there on; at the elastic end nothing attracts."""
+    return Judgement(
+        counterexample(
+            "at lam = 1 the map keeps the area cos(phi) ds dphi of every set, so no set of smaller area attracts one",
+            zero("det DT = cos(phi0)/cos(eta1)", derivative_matrix().det().subs(lam, 1) - cos_phi0 / cos_eta1),
+            at={lam: S.One},
+        ),
+        f"for lambda* < lam <= {PROVED_TO} an open set of angles at the join leads to a chaotic attractor next to the "
+        f"corner orbit; for {LOWEST} <= lam < 1 every orbit is attracted by a compact set, and each that misses the "
+        f"joins is unstable; {ONE_PIECE}",
+        by("from lambda* to 1/10, and from there to 1", chaos(), attracted()),
+        "The range is open: at lambda = 1 areas are kept, and nothing attracts.",
+    )
+
+
+@judges("cuspless.accumulates_on_joins")
+def accumulates(claim: Claim) -> Judgement:
+    """A curve along the cone that no point leaves onto a join would grow beyond all bounds."""
+    return Judgement(
+        by(
+            "a curve along the cone that never meets a join lies on one component at each bounce, where its length is "
+            "bounded, and grows at every return; so after finitely many bounces some point lands on a join, and its "
+            "neighbours near it. Hence starts that come as near to a join as wanted, as late as wanted, are open and "
+            "dense, and those that do so again and again are dense (Baire): among all starts that miss the joins for "
+            f"{LOWEST} <= lam < 1, in the trapping polygon for lambda* < lam <= {PROVED_TO}",
+            chaos(),
+            unstable(),
+        ),
+        "generic orbits, a countable intersection of open dense sets of starts, come arbitrarily near the joins again "
+        "and again, for every lambda* < lam < 1",
+    )

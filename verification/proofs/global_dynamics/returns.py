@@ -1,0 +1,77 @@
+"""The margins of `symbolic.cycles.returns` are positive: boxes of exit angle, incidence on the wall, and contraction.
+
+Paper: section 5. The exit angle at the arc is `phi = (2*u - 1)*lam*pi/2`, the polar angle of the start three halves
+of which is `v*(phi + pi/2)`; with `u` and `v` in `[0, 1]` these are all ways by the wall on which the start is not
+below the axis, since `eta = phi - 3/2*theta0` is above `-pi/2`. Boxes that prove nothing are cut in two along each
+side.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+from sympy import Expr
+
+from numeric.lowering.lower import converted
+from numeric.lowering.program import Builder, Program
+from symbolic.cycles.defocusing import half
+from symbolic.cycles.returns import HIGHEST, LOWEST, leaves, margins, returns
+from symbolic.expressions.signs import Finding, Outcome, conjunction
+from symbolic.tables.table import lam
+from verification.proofs.global_dynamics.boxes import ArrayOps, exactly, hull
+
+LETTERS = half, leaves, lam
+FIRST, DEPTH, MOST = (16, 16, 32), 10, 1 << 19  # boxes along each side, how often they are halved, how many at once
+LEAST = 2.0**-9  # what a margin is to be at least: where one vanishes, boxes would have no end
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Are both margins `LEAST` or more on all ways by the wall? None where boxes do not say; and how many that took."""
+
+    positive: bool | None
+    boxes: int
+
+
+def program(*formulas: Expr) -> Program:
+    """Formulas in `theta0/2`, the exit angle and `lam`, for any number system."""
+    builder = Builder(*map(str, LETTERS))
+    nodes = dict(zip(LETTERS, builder.nodes, strict=True))
+    return builder.program(*(converted(builder, formula, nodes) for formula in formulas))
+
+
+def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fraction(str(HIGHEST))) -> Margins:
+    """Are both margins positive for every contraction from `low` to `high`?
+
+    >>> positive_margins(Fraction(1, 5), Fraction(3, 5)).positive
+    True
+    >>> print(positive_margins(Fraction(9, 100), Fraction(1, 10)).positive)  # below lambda_c period 2 attracts
+    None
+    """
+    ops, run, boxes = ArrayOps(), program(*margins()), 0
+    start, wide = exactly(Fraction(low)), exactly(Fraction(high) - Fraction(low))
+    grid = np.meshgrid(*(np.arange(n) / n for n in FIRST), indexing="ij")
+    corners, sides = np.array([x.ravel() for x in grid]), np.array([[1 / n] for n in FIRST])  # exact: powers of 2
+    for _ in range(DEPTH):
+        u, v, share = (hull(corner, corner + side) for corner, side in zip(corners, sides, strict=True))
+        contraction = start + wide * share
+        exit = (2 * u - 1) * contraction * ops.pi / 2
+        values = run(ops, v * (exit + ops.pi / 2) / 3, exit, contraction)
+        left = ~np.logical_and.reduce([value.lower() >= LEAST for value in values])
+        boxes += left.size
+        if not np.any(left):
+            return Margins(True, boxes)
+        if np.count_nonzero(left) > MOST // 8:
+            break
+        sides = sides / 2
+        corners = np.concatenate([corners[:, left] + sides * np.array([k]).T for k in np.ndindex(2, 2, 2)], axis=1)
+    return Margins(None, boxes)
+
+
+@cache
+def every_return() -> Finding:
+    """Every return to the arc stretches for `LOWEST <= lam <= HIGHEST`: the identities, and the margins in balls."""
+    found = positive_margins()
+    reason = f"both margins by way of the wall are at least {LEAST} in {found.boxes} boxes"
+    return conjunction(returns(), Finding(Outcome.PROVED if found.positive else Outcome.UNKNOWN, reason))

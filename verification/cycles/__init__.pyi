@@ -15,7 +15,7 @@ from .cascade import (
     symmetry_breaking,
 )
 from .cells import Array, fixed_points
-from .chain import Chain, dot, trace_and_determinant
+from .chain import Chain, Elimination, dot, trace_and_determinant
 from .chords import Chords, arc_length, chord_angles, landing
 from .critical import Small, corner, corner_angle, focus, polygon, solved
 from .newton import (
@@ -37,8 +37,8 @@ from .newton import (
     refined,
     settled,
 )
-from .problem import Linearised, NormalForm, Problem, mirrored, seen_mirrored
-from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, henon
+from .problem import Linearised, NormalForm, Problem, bordering_slopes, mirrored, seen_mirrored
+from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, Terms, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
 from .switching import Box, Curve, Degenerate, Tick, curve, switched
 from .systems import SHAPE, Cycles, rotations, symmetries
@@ -66,6 +66,7 @@ __all__ = [
     "Cycles",
     "Degenerate",
     "Doubling",
+    "Elimination",
     "End",
     "Event",
     "Found",
@@ -81,12 +82,14 @@ __all__ = [
     "Step",
     "Steps",
     "System",
+    "Terms",
     "Tick",
     "UnsettledError",
     "all_cycles",
     "arc_length",
     "at_contraction",
     "attractor",
+    "bordering_slopes",
     "chord_angles",
     "corner",
     "corner_angle",

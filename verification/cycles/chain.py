@@ -1,10 +1,11 @@
 """Cyclic tridiagonal systems, solved in linear time over any kind of number.
 
 Row `i` of a chain says `lower[i]*x[i-1] + diagonal[i]*x[i] + upper[i]*x[i+1] = r[i]`; around the end
-`x[n] = sign*x[0]`, with `sign = -1` for vectors that come back negated. The last unknown is set
-apart; the others are eliminated in order, without pivoting. The pivots follow the direction that
-the cycle's derivative attracts, so in a dissipative map rounding errors (and the radii of balls) die
-out along the chain instead of multiplying. A pivot that may be 0 ends in `nan` balls: nothing proved.
+`x[n] = sign*x[0]`, with `sign = -1` for vectors that come back negated, or a complex number of modulus 1 for
+vectors that come back multiplied by it. The last unknown is set apart; the others are eliminated in order, without
+pivoting. The pivots follow the direction that the cycle's derivative attracts, so in a dissipative map rounding errors
+(and the radii of balls) die out along the chain instead of multiplying. A pivot that may be 0 ends in `nan` balls:
+nothing proved.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -18,16 +19,21 @@ SMALL_PIVOT = 1 << 10  # times which it is below what stands beside it
 
 @dataclass(frozen=True)
 class Chain:
-    """The three diagonals of a cyclic tridiagonal matrix of at least two rows, and its sign."""
+    """The three diagonals of a cyclic tridiagonal matrix, and its sign: 1, -1, or a complex number of modulus 1."""
 
     lower: Sequence[Any]
     diagonal: Sequence[Any]
     upper: Sequence[Any]
-    sign: int = 1
+    sign: Any = 1
 
     def __post_init__(self) -> None:
-        if len(self.diagonal) < 2:
-            raise ValueError(f"chain: {len(self.diagonal)} row is no chain; a cycle has at least 2 bounces")
+        if not self.diagonal:
+            raise ValueError("chain: no row; a cycle has a bounce at least")
+
+    @property
+    def back(self) -> Any:
+        """The factor the other way round, `x[-1] = back*x[n-1]`: 1 over the sign."""
+        return self.sign.conjugate()
 
     @property
     def rows(self) -> list[tuple[Any, Any, Any]]:
@@ -40,8 +46,8 @@ class Chain:
         >>> Chain([1, 1, 1], [2, 2, 2], [3, 3, 3], -1).times([1, 0, 0])
         [2, 1, -3]
         """
-        n, s = len(x), self.sign
-        padded = [s * x[-1], *x, s * x[0]]
+        n = len(x)
+        padded = [self.back * x[-1], *x, self.sign * x[0]]
         return [
             self.lower[i] * padded[i] + self.diagonal[i] * padded[i + 1] + self.upper[i] * padded[i + 2]
             for i in range(n)
@@ -74,26 +80,31 @@ class Elimination:
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
-        n, s = len(chain.diagonal), chain.sign
-        self.pivots: Vector = [chain.diagonal[0]]
-        self.factors: Vector = [0]
+        n, s, back = len(chain.diagonal), chain.sign, chain.back
+        self.pivots: Vector = [chain.diagonal[0]][: n - 1]
+        self.factors: Vector = [0][: n - 1]
         for i in range(1, n - 1):
             factor = chain.lower[i] / self.pivots[-1]
             self.factors.append(factor)
             self.pivots.append(chain.diagonal[i] - factor * chain.upper[i - 1])
-        column: Vector = [0] * (n - 1)
-        column[0] = s * chain.lower[0]
-        column[-1] = column[-1] + chain.upper[n - 2]
-        self.column = column
+        self.column: Vector = [0] * (n - 1)
         self.row: Vector = [0] * (n - 1)
-        self.row[0] = s * chain.upper[n - 1]
-        self.row[-1] = self.row[-1] + chain.lower[n - 1]
-        self.right: Vector = [*self.inner([-c for c in column]), 1]
+        self.last = chain.diagonal[n - 1]
+        if n == 1:  # both neighbours are the bounce itself
+            self.last = self.last + back * chain.lower[0] + s * chain.upper[0]
+        else:
+            self.column[0] = back * chain.lower[0]
+            self.column[-1] = self.column[-1] + chain.upper[n - 2]
+            self.row[0] = s * chain.upper[n - 1]
+            self.row[-1] = self.row[-1] + chain.lower[n - 1]
+        self.right: Vector = [*self.inner([-c for c in self.column]), 1]
         self.left: Vector = [*self._transposed([-c for c in self.row]), 1]
-        self.bordering = chain.diagonal[n - 1] + dot(self.row, self.right)
+        self.bordering = self.last + dot(self.row, self.right)
 
     def inner(self, r: Sequence[Any]) -> Vector:
         """The solution of the rows but the last, with the last unknown 0."""
+        if not self.pivots:
+            return []
         x = [r[0]]
         for i in range(1, len(self.pivots)):
             x.append(r[i] - self.factors[i] * x[i - 1])
@@ -103,6 +114,8 @@ class Elimination:
         return x
 
     def _transposed(self, r: Sequence[Any]) -> Vector:
+        if not self.pivots:
+            return []
         x = [r[0] / self.pivots[0]]
         for i in range(1, len(self.pivots)):
             x.append((r[i] - self.chain.upper[i - 1] * x[i - 1]) / self.pivots[i])
@@ -167,7 +180,7 @@ def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vecto
     >>> by_cramer(Chain([1, 2], [0, 0], [1, 2]), [4, 6]), by_cramer(Chain([1, 2], [3, 0], [1, 2]), [4, 6])
     ([1.5, 2.0], None)
     """
-    if len(chain.diagonal) > 2:
+    if len(chain.diagonal) != 2:
         return None
     (a, d), s = chain.diagonal, chain.sign
     b, c = chain.upper[0] + s * chain.lower[0], chain.lower[1] + s * chain.upper[1]

@@ -224,7 +224,7 @@ class Linearised:
 
 
 def bordering_slopes(
-    terms: Terms[Any], closure: Closure, v: Sequence[Any], w: Sequence[Any], sign: int
+    terms: Terms[Any], closure: Closure, v: Sequence[Any], w: Sequence[Any], sign: Any
 ) -> tuple[Vector, dict[str, Any]]:
     """`d(w A v)` by the bounces and by each parameter, `A` the linearised rules on vectors that come back times `sign`.
 
@@ -235,7 +235,7 @@ def bordering_slopes(
     by_parameter: dict[str, Any] = dict.fromkeys(terms.slope_by, 0)
     entries = [[terms.bend.get((min(j, k), max(j, k))) for k in range(3)] for j in range(3)]
     for i in range(n):
-        near = v[i - 1] if i else close * v[n - 1], v[i], v[i + 1] if i < n - 1 else close * v[0]
+        near = v[i - 1] if i else close.conjugate() * v[n - 1], v[i], v[i + 1] if i < n - 1 else close * v[0]
         turns = 1 if i else closure.turn, 1, 1 if i < n - 1 else closure.turn
         for j, turn in enumerate(turns):
             total: Any = 0

@@ -76,12 +76,8 @@ class BifurcationKind(Enum):
             return trace_and_determinant(rows, turn)[1] - 1
         if self.solved is None:
             raise ValueError(f"a {self.value} is no zero of one equation in the multipliers")
-        sign = turn * self.multiplier
-        if len(rows) == 1:
-            ((before, here, after),) = rows
-            return sign * before + here + sign * after
         lower, diagonal, upper = zip(*rows, strict=True)
-        return Elimination(Chain(lower, diagonal, upper, sign)).bordering
+        return Elimination(Chain(lower, diagonal, upper, turn * self.multiplier)).bordering
 
 
 SOLVED = {

@@ -5,12 +5,13 @@ that it bears breaks its symmetry (a pitchfork, on half the cycle), and what it 
 again, up to an accumulation curve. Every curve is followed in the two parameters from one start.
 
 A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and
-then Neimark-Sacker bifurcations are possible. Three facts about the paper's own egg, each proved in balls:
+then Neimark-Sacker bifurcations are possible. Four facts about the paper's own egg, each proved in balls:
 
 - `contracting_up_to`: below a contraction no cycle of the egg expands, so none bifurcates that way;
 - `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1;
 - `double_one`: a cycle of period 17 with the double multiplier 1 at a `lam < 1`. The zero is regular, so
-  along `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1.
+  along `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1;
+- `invariant_circle`: on that side the cycle with trace 1/2, about which an attracting closed curve is born.
 
 The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified: two schemes that share no
 assumption but geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on what is
@@ -20,6 +21,7 @@ error that is stated.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import pairwise
 from math import pi
 from typing import Any
@@ -48,6 +50,7 @@ from verification.cycles.recurrence import Array, BifurcationKind
 from verification.cycles.switching import Curve, Degenerate, curve, switched
 from verification.named.locate import certify
 from verification.proofs.periodic.interval_newton import Enclosure, interval_newton
+from verification.proofs.periodic.torus import TRACE, Rotating, Torus, torus
 
 TWO = ("alpha", "lam")
 SHARE = 0.96  # of the shape whose diameter doubles at lam = 0: there every doubling has its contraction
@@ -154,6 +157,7 @@ LONG = (  # period 17, rotation number 4/17; then alpha and lam
     *(0.357381, 2.12005, 4.011587, 5.416771, 0.214657, 2.020715, 3.654544, 4.551936),
     *(0.06873034054513638, 0.9637899748709065),
 )
+TURNING = 0.06873034020024987, 0.9637899755913615  # where its trace is 1/2
 
 
 @dataclass(frozen=True)
@@ -192,6 +196,22 @@ def double_one() -> Enclosure:
     with working(256):
         radius = (arb(10) ** -22).mid()
     return interval_newton(system, exact_balls(solution.z), radius, 256)
+
+
+@cache
+def invariant_circle() -> Torus:
+    """The torus bifurcation of that cycle with trace 1/2, as the contraction varies.
+
+    For each contraction above the enclosed one and near it, an attracting closed curve of the 17th iterate surrounds
+    each point of the cycle. As 1/2 is no integer, the rotation on it is irrational for some of them, as near as one
+    likes.
+
+    >>> found = invariant_circle()
+    >>> found.certified, found.attracting, found.side, found.problem.irrational
+    (True, True, 1, True)
+    """
+    problem = Rotating(Chords(egg(3), (0,) * 17), TWO, {TRACE: Rational(1, 2)})
+    return torus(problem, [*LONG[:17], *TURNING], "lam")
 
 
 def contracting_up_to(alpha: Expr, K: int = 3) -> float:

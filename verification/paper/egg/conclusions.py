@@ -21,16 +21,24 @@ from symbolic.tables.geometry import curvature
 from symbolic.tables.table import K1, alpha, lam, theta
 from verification.named.attractors import certificate
 from verification.named.branches import Cascade, cascade
-from verification.named.curves import double_one, expanding_cycle
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
-from verification.paper.judges.attractors import SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, unsettled
+from verification.paper.judges.attractors import (
+    SHAPE,
+    STARTS,
+    chaotic,
+    cycles,
+    egg,
+    found,
+    proved_at,
+    rotating,
+    unsettled,
+)
 from verification.paper.judges.cuspless_chaos import ONE_PIECE, attracted, one_set
 from verification.paper.judges.ellipse import LIMIT, lyapunov
 from verification.paper.judges.hyperbolicity import PROVED_TO, born, chaos, corner
 from verification.proofs.manifolds.known import CONTACTS
 from verification.proofs.periodic.bifurcation import doubling_curve
-from verification.proofs.periodic.interval_newton import Status
 
 MIXED = ("0.1", "0.43", "0.5", "0.6", "0.7", "0.83")  # contractions of the egg at alpha = 0.08
 DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # where orbits of these periods attract
@@ -143,22 +151,13 @@ def collapse(claim: Claim) -> Judgement:
 
 @judges("map.uniform_contraction")
 def uniform_contraction(claim: Claim) -> Judgement:
-    """Two facts that speak against the reason given: areas may grow, and multipliers be complex of modulus 1."""
-    grows = expanding_cycle()
-    resonant = double_one().status is Status.UNIQUE
+    """Such circles exist under the paper's own law."""
     return Judgement(
-        Finding(
-            Outcome.UNKNOWN,
-            "a uniform contraction of angles does not by itself exclude invariant circles: "
-            + (
-                "a cycle of the egg that enlarges areas is proved"
-                if grows.certified and grows.determinant > 1
-                else "no expanding cycle is proved"
-            )
-            + ("; and so is a double multiplier 1 of a cycle of period 17 at lam = 0.96379" if resonant else ""),
-        ),
-        "uniform contraction does not exclude them: a cycle with det = 1.372 at lam = 0.95, and at alpha = 0.06873, "
-        "lam = 0.96379 a double multiplier 1, next to which the multipliers are complex of modulus 1",
+        rotating(),
+        "uniform contraction of the angle does not exclude them: it is no contraction of areas at each point, so "
+        "multipliers can be complex of modulus 1 at lam < 1, and an attracting circle is born there",
+        erratum="A uniform contraction of the angle is no reason: with it the egg has attracting invariant circles "
+        "with an irrational rotation, next to alpha = 0.06873034, lambda = 0.96378998.",
     )
 
 

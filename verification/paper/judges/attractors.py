@@ -30,6 +30,7 @@ from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam, phi
 from verification.arithmetic.balls import working
 from verification.named.attractors import certificate
+from verification.named.curves import invariant_circle
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown
 from verification.paper.judges.ellipse import settles, two_cycles
@@ -115,26 +116,38 @@ def two_types(claim: Claim) -> Judgement:
     return sampled(derived, said, bool(elsewhere) and not touching)
 
 
+@cache
+def rotating() -> Finding:
+    """Attracting closed curves of the egg on which the rotation is irrational, which refute that there are none."""
+    found = invariant_circle()
+    shape, contraction = (x.str(15, radius=False) for x in found.enclosure.zero[-2:])
+    holds = found.certified and found.attracting and found.side > 0 and found.problem.irrational
+    return counterexample(
+        f"the egg at alpha = {shape}..., for some contractions above lam = {contraction}..., as near to it as one "
+        "likes: an attracting curve, diffeomorphic to a circle, surrounds each point of a cycle of period 17, and the "
+        "17th iterate of the map on it is conjugate to an irrational rotation",
+        answer(
+            holds or None,
+            "a torus bifurcation: a cycle of period 17 with the multipliers exp(+-i*omega), 2*cos(omega) = 1/2, so "
+            "that omega/(2*pi) is irrational; their size grows with lam at the rate "
+            f"{found.growth.str(6, radius=False)}, the Lyapunov coefficient is {found.lyapunov.str(6, radius=False)}",
+        ),
+        at={letter: Rational(shape), lam: Rational(contraction)},
+    )
+
+
 @judges("map.no_irrational_rotation")
 def no_rotation(claim: Claim) -> Judgement:
-    """Excluded by proof where every orbit tends to a cycle or stretches; elsewhere each start of a sample ends so."""
-    excluded = by("the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits())
-    scenes: list[tuple[str, str, dict[str, Any]]] = [("cuspless", x, {}) for x in ("0.09", "0.5")]
-    scenes += [("egg", x, {"alpha": SHAPE}) for x in ("0.2", "0.43", "0.45", "0.7", "0.83")]
-    left = [unsettled(found(name, x, **shape)) for name, x, shape in scenes]
-    other = [a for name, x, shape in scenes for a in found(name, x, **shape) if a.kind in (Kind.NEUTRAL, Kind.STOPPED)]
-    said = (
-        "proved for lam < 1: in the ellipses (lam > 0) every orbit tends to one of two cycles, in the circle to a "
-        "diameter; in the cardioid, and in the cuspless one for lam > 16/27, every orbit off the cusp and the joins "
-        "stretches exponentially, as none does along or near a smooth curve with such a rotation that attracts; "
-        f"sampled: {len(scenes)} scenes of the egg and of the cuspless cardioid, {STARTS} starts each: every start "
-        f"ends on an attracting cycle or a set with nu_+ > 0 ({sum(left)} did not settle)"
-    )
-    return sampled(
-        "none for lam < 1: proved in the circle and the ellipses, and in the cardioid of curves that attract; at "
-        "lam = 1 the lines of the circle are such curves (theta -> theta + pi - 2*phi)",
-        said,
-        bool(excluded) and not other and sum(left) == 0,
+    """Some are born in the egg, at a torus bifurcation; excluded where every orbit tends to a cycle or stretches."""
+    return Judgement(
+        rotating(),
+        "in the egg there are some, which attract; none for lam < 1 in the circle and the ellipses (lam > 0), where "
+        "every orbit tends to a cycle; none that attracts in the cardioid, and in the cuspless one for lam > 16/27, "
+        "where every orbit off the cusp and the joins stretches exponentially, as none does along or near a smooth "
+        "curve with such a rotation; at lam = 1 the lines of the circle are such curves (theta -> theta + pi - 2*phi)",
+        by("the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits()),
+        "The behaviour that was not observed occurs in the egg: next to alpha = 0.06873034, lambda = 0.96378998 "
+        "attracting invariant circles with an irrational rotation surround the points of a cycle of period 17.",
     )
 
 

@@ -2,17 +2,21 @@
 
 from .bifurcation import Checks, Claim, Proof, Stability, Twist, doubling_curve, over_interval, proved, stability, twist
 from .interval_newton import Enclosure, Status, compared, dense, proofs, slope_bits, stays_below, stepped
+from .torus import TRACE, Rotating, Torus
 from .triangles import PRODUCED, SLAP, contracts, flips_nowhere, no_triangles, witness
 
 __all__ = [
     "PRODUCED",
     "SLAP",
+    "TRACE",
     "Checks",
     "Claim",
     "Enclosure",
     "Proof",
+    "Rotating",
     "Stability",
     "Status",
+    "Torus",
     "Twist",
     "compared",
     "contracts",

@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import pytest
+from flint import acb, arb
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from sympy import Matrix, Rational, cos, diff, log, sin, sqrt, symbols
@@ -22,7 +23,7 @@ fractions = st.fractions(-3, 3, max_denominator=7)
 
 @st.composite
 def chains(draw):
-    n = draw(st.integers(2, 7))
+    n = draw(st.integers(1, 7))
     three = [draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(3)]
     return Chain(*three, draw(st.sampled_from([1, -1])))
 
@@ -136,8 +137,21 @@ def test_a_problem_that_is_not_square_is_refused():
         Problem(egg(3), (0, 0), BifurcationKind.FLIP, "lam")
     with pytest.raises(ValueError, match="theta -> -theta is no mirror image"):
         Problem(polar(2 + sin(theta) / 9), (0, 0), lam=Rational(1, 2), closure=MIRROR)
-    with pytest.raises(ValueError, match="1 row is no chain"):
-        Chain([1], [1], [1])
+    with pytest.raises(ValueError, match="no row"):
+        Chain([], [], [])
+
+
+@given(chains(), st.sampled_from([acb(3, 4) / 5, acb(-5, 12) / 13]), st.data())
+def test_a_chain_whose_vectors_come_back_turned_is_solved_too(real, unit, data):
+    n = len(real.diagonal)
+    three = [[arb(x.numerator) / x.denominator for x in row] for row in (real.lower, real.diagonal, real.upper)]
+    right = [arb(data.draw(st.integers(-9, 9))) for _ in range(n)]
+    turned = Chain(*three, unit)
+    x = Elimination(turned).solve(right)
+    assume(all(value.is_finite() for value in x))
+
+    assert all(value.overlaps(acb(r)) for value, r in zip(turned.times(x), right, strict=True))
+    assert (unit * turned.back).overlaps(acb(1))
 
 
 @given(chains(), st.data())

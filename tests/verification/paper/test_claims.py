@@ -40,6 +40,8 @@ CONTRACT = {
 
 FAIL_AT_A_WITNESS = (
     "map.whispering_gallery",
+    "map.no_irrational_rotation",
+    "map.uniform_contraction",
     "egg.period4_created",
     "egg.period3_found",
     "egg.figure_attractors",

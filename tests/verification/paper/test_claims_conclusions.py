@@ -68,7 +68,10 @@ def test_a_collapse_needs_an_attractor_before_and_none_after(monkeypatch: pytest
     assert verdict(on_conclusions.collapse, "map.collapse_in_crises") is Verdict.OPEN
 
 
-def test_why_there_are_no_invariant_circles_stays_open():
+def test_uniform_contraction_excludes_no_invariant_circles_if_one_is_proved(monkeypatch: pytest.MonkeyPatch):
+    assert verdict(on_conclusions.uniform_contraction, "map.uniform_contraction") is Verdict.REFUTED
+    monkeypatch.setattr(on_conclusions, "rotating", lambda: UNKNOWN)
+
     assert verdict(on_conclusions.uniform_contraction, "map.uniform_contraction") is Verdict.OPEN
 
 

@@ -12,6 +12,7 @@ from symbolic.cycles.defocusing import away, least_stretch
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import lam
 from verification.arithmetic.balls import working
+from verification.cycles.recurrence import delayed
 from verification.paper.claims.claim import Verdict
 from verification.paper.judges import attractors as on_attractors
 from verification.paper.judges import cardioid_attractor as on_defocusing
@@ -22,6 +23,7 @@ from verification.paper.report.report import catalogue
 from verification.proofs.manifolds.enclosed import attracting, complex_balls
 from verification.proofs.manifolds.known import SHARPER, TRIANGLE, table
 from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.periodic.torus import Rotating
 from verification.proofs.slap_map.exponent import slap_exponent
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
@@ -116,11 +118,31 @@ def test_the_egg_is_the_only_smooth_table_with_chaos_by_proofs_on_both_sides(ste
 
 
 @pytest.mark.parametrize("step", ["two_cycles", "settles", "expands", "splits"])
-def test_that_there_is_no_rotation_rests_on_each_proof(step, monkeypatch):
-    monkeypatch.setattr(on_attractors, "found", lambda *_, **__: ())
-    monkeypatch.setattr(on_attractors, "unsettled", lambda _: 0)
-    assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.SUPPORTED
+def test_that_there_is_no_rotation_elsewhere_rests_on_each_proof(step, monkeypatch):
+    assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.CORRECTED
     monkeypatch.setattr(on_attractors, step, lambda: Finding(Outcome.UNKNOWN, "a step is missing"))
+
+    assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.REFUTED
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"lyapunov": arb(1)},
+        {"lyapunov": arb(0, 1)},
+        {"growth": arb(-1)},
+        {"checks": {"exists": None}},
+        {"problem": Rotating(delayed(1), ("r", "trace"))},
+    ],
+    ids=["repelling", "unknown", "on the other side", "not proved", "any trace"],
+)
+def test_a_circle_that_is_not_proved_to_attract_and_to_turn_irrationally_refutes_nothing(other, monkeypatch):
+    real = on_attractors.invariant_circle()
+    assert on_attractors.rotating.__wrapped__().outcome is Outcome.REFUTED
+    monkeypatch.setattr(on_attractors, "invariant_circle", lambda: replace(real, **other))
+    missing = on_attractors.rotating.__wrapped__()
+    assert missing.outcome is Outcome.UNKNOWN
+    monkeypatch.setattr(on_attractors, "rotating", lambda: missing)
 
     assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.OPEN
 

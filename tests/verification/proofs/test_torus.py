@@ -23,7 +23,7 @@ from verification.maps.exact import ExactMap
 from verification.named.curves import invariant_circle
 from verification.proofs.periodic.bifurcation import birkhoff_normal_form
 from verification.proofs.periodic.interval_newton import Status
-from verification.proofs.periodic.torus import Rotating, Rotation, torus
+from verification.proofs.periodic.torus import TRACE, Rotating, Rotation, torus
 
 t, d, bend, cubic = (Symbol(name, real=True) for name in ("t", "d", "bend", "cubic"))
 RULE = AFTER - t * HERE + d * BEFORE + bend * HERE * BEFORE + cubic * HERE**2 * BEFORE
@@ -75,6 +75,7 @@ def test_run_through_several_times_a_cycle_grows_and_turns_as_many_times_as_fast
     ring = replace(PLANE, period=times)
     assume(all(abs(cmath.exp(1j * k * times * cmath.acos(trace / 2).real) - 1) > 0.05 for k in (1, 2, 3, 4)))
     several, whole = at_zero(trace, a, c, ring)
+    assert max(map(abs, several.value)) < 1e-9  # it closes, and has that multiplier
     upper = whole.imag > 0  # of the two multipliers the one with positive imaginary part is followed
 
     def same(x):
@@ -159,6 +160,10 @@ def test_the_egg_bears_an_attracting_circle_next_to_its_cycle_of_period_17():
     assert found.side == 1
     assert found.problem.irrational
     assert found.enclosure.zero[-1] < Rational(964, 1000)
+    for trace in ("3/2", "-1/2", "-3/2"):
+        near = [*map(float, found.enclosure.zero)]
+        other = torus(replace(found.problem, fixed={TRACE: Rational(trace)}), near, "lam", 30)
+        assert (other.certified, other.attracting, other.side, other.problem.irrational) == (True, True, 1, True)
 
 
 def test_its_coefficient_is_that_of_the_derivatives_of_the_map_itself():
@@ -191,4 +196,4 @@ def test_its_coefficient_is_that_of_the_derivatives_of_the_map_itself():
 
     assert abs(form.trace - 0.5) < 1e-9
     assert form.drift < 0
-    assert abs(abs(ratio) - 1) < 1e-6
+    assert abs(abs(ratio) - 1) < 1e-9

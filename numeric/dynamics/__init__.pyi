@@ -4,7 +4,7 @@ from .attractors import classify, find, moved, name, with_images
 from .basins import Window, intermingling, labels, random_points, starts_at, whole
 from .exponents import ALIGNED, Count, Group, Survey, angles, jump, slopes, surveyed
 from .phase_points import Array, PhasePoints, embedded
-from .recognition import Attractor, Cycle, Kind, Labels, polished, shortest
+from .recognition import Attractor, Cycle, Kind, Labels, polished, shortest, wilson
 from .statistics import Estimate, Uncertainty, estimate, uncertainty
 
 __all__ = [
@@ -39,5 +39,6 @@ __all__ = [
     "surveyed",
     "uncertainty",
     "whole",
+    "wilson",
     "with_images",
 ]

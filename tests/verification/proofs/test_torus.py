@@ -180,7 +180,7 @@ def test_its_coefficient_is_that_of_the_derivatives_of_the_map_itself():
     leaving = chord_angles(egg(3), multiprecision(mp))(0, 0, 0)(*here, mp.mpf(shape))[0]
     step = mp.mpf(10) ** -24
     places = [(i, j) for i in range(4) for j in range(4 - i)]
-    ends = [exact.orbit(exact.ball(0, here[0] + i * step, leaving + j * step), 17)[-1] for i, j in places]
+    ends = [exact.orbit(exact.start(here[0] + i * step, leaving + j * step), 17)[-1] for i, j in places]
     vandermonde = mp.matrix([[mp.mpf(i) ** k * mp.mpf(j) ** m for k, m in places] for i, j in places])
     series = []
     for values in ([mp.asin(mp.sin(end.theta - here[0])) for end in ends], [end.phi - leaving for end in ends]):

@@ -2,7 +2,7 @@
 
 from . import report
 from .findings import escaped, letter, tables
-from .mathml import formula, remark
+from .mathml import formula, formulas, remark
 from .page import Picture, diagrams, markdown
 from .report import Result, codes, verify
 
@@ -13,6 +13,7 @@ __all__ = [
     "diagrams",
     "escaped",
     "formula",
+    "formulas",
     "letter",
     "markdown",
     "remark",

@@ -3,7 +3,7 @@
 from . import proof
 from .enclosed import Enclosed, TooWideError, attracting, complex_balls, enclosed_cycle, enclosed_saddle, remainder
 from .grow import branch, touches
-from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis, decimals, table
+from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis, decimals, settled, table
 from .plane_map import Pinball
 from .proof import (
     LEAST_DIGITS,
@@ -54,6 +54,7 @@ __all__ = [
     "proof",
     "remainder",
     "scale",
+    "settled",
     "sharpened",
     "table",
     "tangency_proved",

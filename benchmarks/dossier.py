@@ -24,7 +24,7 @@ from verification.measure.work.row import Row, duration, footer, front, short
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"
 KERNEL = "float64 llvm"
-RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one ball at a time": "numba"}
+RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one particle at a time": "numba"}
 PLAIN = "float64 the paper's way, in Python"
 BOUNDS = 4, 8  # units of 2**-52: of the place and of the direction
 MANY = 100  # digits
@@ -73,7 +73,7 @@ def calls(bench):
 
 
 def elsewhere(bench):
-    """What balls at rest cost on tables that are not the paper's, as ratios."""
+    """What particles at rest cost on tables that are not the paper's, as ratios."""
     rows = [row for row in bench["calls"] if row["scene"] not in SCENES]
     return ", ".join(f"{row['scene']} {row['ratio']:.2g}" for row in rows), max(row["bar"] for row in rows)
 

@@ -2,7 +2,7 @@
 
     python benchmarks/drift.py [COLLISIONS]
 
-Over `n` collisions of many balls, the mean change of `L1*L2` over `n` is the drift; its standard error
+Over `n` collisions of many particles, the mean change of `L1*L2` over `n` is the drift; its standard error
 is the walk's. The product is formed in 80 bits from the kernel's state, so that only the map rounds.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 from numeric import PinballMap
 from numeric.kernels.machine import KernelSpec
 
-BALLS = 2048
+PARTICLES = 2048
 
 
 def say(text):
@@ -23,7 +23,7 @@ def say(text):
 
 
 def product(map, rows):
-    """`L1*L2` about the foci, of the exact ball whose rounded state the rows are."""
+    """`L1*L2` about the foci, of the exact particle whose rounded state the rows are."""
     ux, uy, vx, vy = (row.astype(np.longdouble) for row in rows)
     size = np.hypot(ux, uy)
     ux, uy = ux / size, uy / size
@@ -39,13 +39,13 @@ def main(collisions):
     for a in ("3/2", "11/10", "3"):
         map = PinballMap("ellipse", lam=1, a=a)
         rng = np.random.default_rng(5)
-        theta, phi = rng.uniform(-np.pi, np.pi, BALLS), np.arcsin(rng.uniform(-1, 1, BALLS) * 0.999)
-        rows = map.states.enter(np.zeros(BALLS, dtype=int), theta, phi, map.law)
-        lam = np.ones(BALLS)
+        theta, phi = rng.uniform(-np.pi, np.pi, PARTICLES), np.arcsin(rng.uniform(-1, 1, PARTICLES) * 0.999)
+        rows = map.states.enter(np.zeros(PARTICLES, dtype=int), theta, phi, map.law)
+        lam = np.ones(PARTICLES)
         start = product(map, rows)
         result = map.engine.run(KernelSpec(map.law), rows, lam, map.shape, collisions)
         change = np.asarray(product(map, [result.rows[f] for f in map.family.fields(map.law)]) - start, dtype=float)
-        mean, error = change.mean() / collisions, change.std(ddof=1) / np.sqrt(BALLS) / collisions
+        mean, error = change.mean() / collisions, change.std(ddof=1) / np.sqrt(PARTICLES) / collisions
         walk = change.std() / np.sqrt(collisions)
         say(f"a = {a:<6} drift {mean:+.2e} +- {error:.1e} a collision; spread {walk:.2e} * sqrt(n)")
 

@@ -36,7 +36,7 @@ def say(text):
 
 
 def chaotic(map, count):
-    """Balls on the chaotic attractor, their vectors aligned."""
+    """Particles on the chaotic attractor, their vectors aligned."""
     start = interior_starts(map, 2 * count, seed=5)
     phi = start.phi if map.law != "slap" else 0 * start.phi
     end = map.exponents(start.theta, phi, EARLY, EARLY, start.component)
@@ -47,7 +47,7 @@ def chaotic(map, count):
 
 
 def truth(map):
-    """The exponent from 4000 balls of 16000 bounces, and its error."""
+    """The exponent from 4000 particles of 16000 bounces, and its error."""
     growth = chaotic(map, 4000)
     count = Count(growth, most=64)
     for _ in count.until(16_000):

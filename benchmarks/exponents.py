@@ -9,7 +9,7 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.kernels.machine import KernelSpec, starting
-from verification.measure.work.bench import BALLS, LAWS, SCENES, attracted, best
+from verification.measure.work.bench import LAWS, PARTICLES, SCENES, attracted, best
 
 BOUNCES = 1000
 
@@ -17,14 +17,14 @@ BOUNCES = 1000
 def main(names):
     for name in names:
         map = PinballMap(name, lam=LAWS["pinball"], **SCENES[name])
-        own, lam, one = attracted(map, BALLS), np.full(BALLS, float(map.lam)), np.ones(BALLS)
+        own, lam, one = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam)), np.ones(PARTICLES)
 
         def nanoseconds(question, tangent=(), map=map, own=own, lam=lam):
             def once():
                 return map.engine.run(question, own, lam, map.shape, BOUNCES, tangent, 1)
 
             once()
-            return best(once, 7) / BOUNCES / BALLS * 1e9
+            return best(once, 7) / BOUNCES / PARTICLES * 1e9
 
         pairs = [
             (

@@ -1,13 +1,13 @@
 """Every stiff and extreme case by every kernel: writes docs/extremes.md and the record that tests compare.
 
     python benchmarks/extremes.py [--longer] [--check]
-    python benchmarks/extremes.py --collisions 1e9 [--balls 256] [--only WORD]
+    python benchmarks/extremes.py --collisions 1e9 [--particles 256] [--only WORD]
     python benchmarks/extremes.py --page
 
 `--longer` adds what takes a minute, cycles of period 2^8 and 2^12 and a product of 10^4 matrices; the page in the
 repository has it. `--check` writes nothing and says which verdicts differ from the record; the exit code is then 1.
-`--collisions` measures the long orbits alone, so many collisions of all balls together, and keeps their lines for the
-page with the command, each as soon as it is measured. `--page` writes the page again from what is kept.
+`--collisions` measures the long orbits alone, so many collisions of all particles together, and keeps their lines
+for the page with the command, each as soon as it is measured. `--page` writes the page again from what is kept.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import json
 import sys
 from pathlib import Path
 
-from verification.measure.extremes.orbits import BALLS, findings, orbits
+from verification.measure.extremes.orbits import PARTICLES, findings, orbits
 from verification.measure.extremes.page import LONG, RECORD, lines, page, record, rows
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "extremes.md"
@@ -45,10 +45,10 @@ def kept(path, several):
     path.write_text("[\n" + ",\n".join(json.dumps(one) for one in several) + "\n]\n")
 
 
-def long(collisions, balls, only):
+def long(collisions, particles, only):
     """The long orbits, each kept as soon as it is measured."""
-    command = f"python benchmarks/extremes.py --collisions {collisions:.3g} --balls {balls}"
-    for one in orbits(collisions, balls):
+    command = f"python benchmarks/extremes.py --collisions {collisions:.3g} --particles {particles}"
+    for one in orbits(collisions, particles):
         if only in one.name:
             now = found([(f"Orbits of {collisions:.0e} collisions", one.name, findings(one))])
             cases = {line["case"] for line in now}
@@ -60,7 +60,7 @@ def long(collisions, balls, only):
 
 def main(asked):
     if asked.collisions:
-        long(int(asked.collisions), asked.balls, asked.only)
+        long(int(asked.collisions), asked.particles, asked.only)
     elif not asked.page:
         now = found(rows(asked.longer))
         if asked.check:
@@ -77,6 +77,6 @@ if __name__ == "__main__":
     for word in ("longer", "check", "page"):
         words.add_argument(f"--{word}", action="store_true")
     words.add_argument("--collisions", type=float)
-    words.add_argument("--balls", type=int, default=BALLS)
+    words.add_argument("--particles", type=int, default=PARTICLES)
     words.add_argument("--only", default="")
     sys.exit(main(words.parse_args()))

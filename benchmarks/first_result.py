@@ -58,7 +58,7 @@ WORDS = """# What a scene does not need
 Each line is a fresh process that asks one question of one scene, with the kernel in the cache. *Operations* are the
 vector instructions of one bounce, compares and selects included, and *share* is what is left of the kernel that
 does everything for that table: general `lam`, a tangent vector and a record. *State* is the doubles kept for a
-ball. A component index is part of the state of the cuspless table and of the stadium; the others have one component
+particle. A component index is part of the state of the cuspless table and of the stadium; the others have one component
 and no index. *Modules* are those of `numeric` and the packages beside it (of llvmlite only its version is read).
 *Memory* is the peak of the resident set above that of a process that only imports NumPy, and *time* the processor's
 from NumPy's import to the answer, the shortest of three runs on a busy machine.
@@ -114,7 +114,7 @@ def probe(text, folder, runs=1, warm=True):
 
 
 def counted(name, law, asked):
-    """Operations, the share of the kernel that does everything, and the doubles of a ball's state."""
+    """Operations, the share of the kernel that does everything, and the doubles of a particle's state."""
     map = PinballMap(name, lam=LAWS[law], **TABLES[name])
     question = KernelSpec(law, **QUESTIONS[asked])
     own, whole = (

@@ -19,7 +19,7 @@ from numeric import PinballMap
 from numeric.kernels.machine import KernelSpec, wide
 from numeric.kernels.text import kernel_text, operations
 from verification.measure.extremes.orbits import SCENES
-from verification.measure.work.bench import BALLS, LAWS, attracted
+from verification.measure.work.bench import LAWS, PARTICLES, attracted
 
 LANES, PASSES = 8, 20_000
 CHAINS = 12 if wide() else 6  # vectors of eight doubles that the registers hold beside what they work with
@@ -96,7 +96,7 @@ def main():
     for name, shape in SCENES.items():
         for law, lam in LAWS.items():
             map = PinballMap(name, lam=lam, **shape)
-            own, lams = attracted(map, BALLS, 20), np.full(BALLS, float(map.lam))
+            own, lams = attracted(map, PARTICLES, 20), np.full(PARTICLES, float(map.lam))
             question = KernelSpec(law)
             counts = operations(kernel_text(map.family, map.engine.names, question))
 
@@ -104,7 +104,7 @@ def main():
                 map.engine.run(question, own, lams, map.shape, BOUNCES, (), 1)
 
             bounce()
-            measured = best(bounce) / BALLS / BOUNCES
+            measured = best(bounce) / PARTICLES / BOUNCES
             bound = (counts["fma"] + counts["add"] + counts["mul"]) * rates["fma"]
             in_turn = bound + counts["div"] * rates["div"] + counts["sqrt"] * rates["sqrt"]
             every = in_turn + (counts["compare"] + counts["select"]) * rates["fma"]

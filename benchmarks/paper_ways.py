@@ -1,4 +1,4 @@
-"""The paper's own ways to follow a ball, as a reader of its appendix would write them: floats, one ball, no tricks.
+"""The paper's own ways to follow a particle, as a reader of its appendix would write them: floats, and no tricks.
 
 Ellipse: the quadratic. Cardioid: the cubic of [BackerDullin1997]. Cuspless: the same, cut off at the
 wall. Egg: Newton-Raphson along the ray. Each takes and returns `(component, theta, phi)`.

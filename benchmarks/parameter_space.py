@@ -20,12 +20,12 @@ from numeric.sweeps.sweep import map_of, measured
 WIDE = np.round(np.arange(0.051, 0.0600, 0.001), 6), np.round(np.arange(0.3, 0.96, 5e-4), 6)
 NARROW = np.round(np.arange(0.030, 0.0505, 0.001), 6), np.round(np.arange(0.8, 0.99, 5e-5), 6)
 NEAR_ONE = np.array([0.0555, 0.056, 0.057, 0.058, 0.059])
-BALLS, BOUNCES, SEED = 2000, 10**8, 3
+PARTICLES, BOUNCES, SEED = 2000, 10**8, 3
 TRANSIENT = 200_000
 
 
 def search(shape, lams, starts, bounces, transient):
-    """The contractions at which some ball is chaotic, and how many of the balls."""
+    """The contractions at which some particle is chaotic, and how many of the particles."""
     found = run(parameter_space(np.array([shape]), lams, starts, bounces, transient, seed=SEED)).chaotic.values[0]
     return {float(lams[j]): int(found[j]) for j in np.nonzero(found)[0]}
 
@@ -33,18 +33,18 @@ def search(shape, lams, starts, bounces, transient):
 def follow(shape, lam, transient):
     """The share of chaotic particles, how many of those still are after a long run, and their exponent."""
     map = map_of(egg(3, shape), lam)
-    first = measured(map, interior_starts(map, BALLS, SEED), 4000, transient)
+    first = measured(map, interior_starts(map, PARTICLES, SEED), 4000, transient)
     on = np.nonzero(first.chaotic)[0]
     if on.size == 0:
         return "all of it transient"
     last = measured(map, first.ended(on), max(4000, BOUNCES // on.size), 0)
     nu = last.nu_plus[last.chaotic]
-    said = f"{on.size / BALLS:.2%} of {BALLS} balls, {nu.size} of {on.size} still chaotic after {BOUNCES:.0e} bounces"
+    said = f"{on.size / PARTICLES:.2%} of {PARTICLES}, {nu.size} of {on.size} still chaotic after {BOUNCES:.0e} bounces"
     return said + (f", nu_+ = {np.mean(nu):.5f} +- {np.std(nu) / np.sqrt(nu.size):.0e}" if nu.size else "")
 
 
 def reported(shape, lams, starts, bounces, transient):
-    """One line for a shape, at the contraction where most balls were chaotic."""
+    """One line for a shape, at the contraction where most particles were chaotic."""
     found = search(shape, lams, starts, bounces, transient)
     said = "none"
     if found:

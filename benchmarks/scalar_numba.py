@@ -1,4 +1,4 @@
-"""Baseline: one ball at a time in numba, with angles, libm and Newton; what one writes in numba first."""
+"""Baseline: one particle at a time in numba, with angles, libm and Newton; what one writes in numba first."""
 
 import math
 

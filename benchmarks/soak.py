@@ -13,7 +13,7 @@ from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import phase_starts
 from verification.measure.work.bench import SCENES
 
-BALLS, PART = 8192, 2000
+PARTICLES, PART = 8192, 2000
 
 
 def say(text):
@@ -28,12 +28,12 @@ def main(collisions, only):
             continue
         for lam in (0.95, 1):
             map = PinballMap(name, lam=lam, **shape)
-            component, theta, phi = phase_starts(map, BALLS, seed=3)[:3]
+            component, theta, phi = phase_starts(map, PARTICLES, seed=3)[:3]
             fields = map.family.fields(map.law)
             rows = map.states.enter(component, theta, phi, map.law)
             began, lost, off = time.perf_counter(), {}, 0.0
-            for _ in range(max(1, round(collisions / BALLS / PART))):
-                result = map.engine.run(KernelSpec(map.law), rows, np.full(BALLS, float(lam)), map.shape, PART)
+            for _ in range(max(1, round(collisions / PARTICLES / PART))):
+                result = map.engine.run(KernelSpec(map.law), rows, np.full(PARTICLES, float(lam)), map.shape, PART)
                 rows = [np.ascontiguousarray(result.rows[field]) for field in fields]
                 for row in rows:
                     off = max(off, float(np.max(np.abs(row))) if np.all(np.isfinite(row)) else np.inf)
@@ -41,8 +41,8 @@ def main(collisions, only):
                     codes = result.rows["code"].astype(int)
                     for code in set(codes[codes > 0].tolist()):
                         lost[code] = lost.get(code, 0) + int(np.sum(codes == code))
-                    again = codes > 0  # a ball that stopped starts anew
-                    fresh = map.states.enter(*phase_starts(map, BALLS, seed=len(lost))[:3], map.law)
+                    again = codes > 0  # a particle that stopped starts anew
+                    fresh = map.states.enter(*phase_starts(map, PARTICLES, seed=len(lost))[:3], map.law)
                     rows = [np.where(again, new, old) for new, old in zip(fresh, rows, strict=True)]
             component, theta = map.states.place(rows)
             x, y = map.states.point(component, theta)

@@ -23,33 +23,33 @@ TURNS = 10
 
 
 def parameter_space_of(pairs, starts=100, bounces=2000):
-    """The sweep, and what makes the balls of a part of it."""
+    """The sweep, and what makes the particles of a part of it."""
     grid = np.linspace(0, 1, pairs)
     sweep = parameter_space(grid.round(9) / 10, grid, starts, bounces, transient=0)
 
-    def balls(part):
+    def particles(part):
         return spread(egg(3, part.values["alpha"][0]), part.values["lam"], starts, part.seed)
 
-    return sweep, balls, bounces
+    return sweep, particles, bounces
 
 
 def basins_of(cells, transient=1000):
-    """The sweep, and what makes the balls of a part of it."""
+    """The sweep, and what makes the particles of a part of it."""
     text = text_of(Scene("cuspless"))
     sweep = basins(text, 0.09, cells, cells, transient=transient)
 
-    def balls(part):
+    def particles(part):
         columns, rows = part.values["s"], part.values["sin_phi"]
         map = map_of(text, 0.09)
         return map, starts_at(map, np.tile(columns, rows.size), np.repeat(rows, columns.size))
 
-    return sweep, balls, transient
+    return sweep, particles, transient
 
 
-def kernel(map, balls, bounces):
-    """A call that runs the compiled loop on these balls, and does nothing else."""
-    own = map.states.enter(balls.component, balls.theta, balls.phi, "pinball")
-    one = np.ones(balls.theta.size)
+def kernel(map, particles, bounces):
+    """A call that runs the compiled loop on these particles, and does nothing else."""
+    own = map.states.enter(particles.component, particles.theta, particles.phi, "pinball")
+    one = np.ones(particles.theta.size)
     lam = np.broadcast_to(map.lam, one.shape).astype(float)
     question = KernelSpec("pinball", exponents=True)
     return lambda: map.engine.run(question, own, lam, map.shape, bounces, starting(one, 0 * one, one), 1)
@@ -61,12 +61,12 @@ def seconds(action):
     return time.perf_counter() - begun
 
 
-def ratio(name, sweep, balls, bounces):
+def ratio(name, sweep, particles, bounces):
     whole, bare, workers = 0.0, 0.0, cores()
     next(iter(on_threads(sweep, sweep.indices()[:1], 1)))  # compiles
     for turn in range(TURNS):
         indices = sweep.indices()[turn::TURNS]
-        calls = [kernel(*balls(sweep.part(at)), bounces) for at in indices]
+        calls = [kernel(*particles(sweep.part(at)), bounces) for at in indices]
         whole += seconds(lambda indices=indices: list(on_threads(sweep, indices, workers)))
         with ThreadPoolExecutor(workers) as pool:
             bare += seconds(lambda pool=pool, calls=calls: list(pool.map(lambda call: call(), calls)))

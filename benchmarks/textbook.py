@@ -41,34 +41,34 @@ def egg_by_brentq(component, theta, phi, lam, alpha, xtol):
 # ---- its derivative
 
 
-def moved(step, speed, ball, ds, dphi):
+def moved(step, speed, particle, ds, dphi):
     """Arc length (to first order about the landing) and exit angle after a step from a neighbour."""
     zero = np.zeros(1, dtype=int)
-    theta = ball[0] + ds / float(speed(zero, np.array([ball[0]]))[0])
-    landed = step(theta, ball[1] + dphi)
+    theta = particle[0] + ds / float(speed(zero, np.array([particle[0]]))[0])
+    landed = step(theta, particle[1] + dphi)
     return float(landed.theta), float(landed.phi)
 
 
-def differences(step, speed, ball, one, other):
+def differences(step, speed, particle, one, other):
     """The matrix from the differences of neighbours, each given as a factor of `(ds, dphi)`."""
     columns = []
-    here = step(*ball)
+    here = step(*particle)
     rate = float(speed(np.zeros(1, dtype=int), np.array([float(here.theta)]))[0])
     for ds, dphi in ((1, 0), (0, 1)):
-        a, b = (moved(step, speed, ball, h * ds, h * dphi) for h in (one, other))
+        a, b = (moved(step, speed, particle, h * ds, h * dphi) for h in (one, other))
         columns.append([math.remainder(a[0] - b[0], 2 * math.pi) * rate / (one - other), (a[1] - b[1]) / (one - other)])
     (ss, ps), (sp, pp) = columns
     return ss, sp, ps, pp
 
 
-def forward(step, speed, ball, h):
+def forward(step, speed, particle, h):
     """Forward differences."""
-    return differences(step, speed, ball, h, 0.0)
+    return differences(step, speed, particle, h, 0.0)
 
 
-def central(step, speed, ball, h):
+def central(step, speed, particle, h):
     """Central differences."""
-    return differences(step, speed, ball, h, -h)
+    return differences(step, speed, particle, h, -h)
 
 
 class Lambdified:
@@ -138,7 +138,7 @@ def flip(map_at, start, period, low, high, xtol):
 
 
 def period_of(map, start, bounces, longest, same=1e-6):
-    """The period of the cycle that a ball has settled on after so many bounces."""
+    """The period of the cycle that a particle has settled on after so many bounces."""
     theta, phi = iterated(map, *start, bounces)
     orbit = map.orbit(theta, phi, longest)
     for period in range(1, longest + 1):
@@ -148,7 +148,7 @@ def period_of(map, start, bounces, longest, same=1e-6):
 
 
 def doubling_seen(map_at, start, period, low, high, bounces):
-    """Where a settled ball's period first exceeds `period`: bisection, as one reads it off a diagram."""
+    """Where a settled particle's period first exceeds `period`: bisection, as one reads it off a diagram."""
     while high - low > 1e-12:
         middle = (low + high) / 2
         if period_of(map_at(middle), start, bounces, 2 * period) > period:
@@ -176,7 +176,7 @@ def fold_seen(map_at, start, period, low, high, xtol):
 
 
 def corner_by_brentq(xtol):
-    """`lambda*`: for each contraction the ball from the corner is followed for two bounces on the cardioid's arc."""
+    """`lambda*`: for each contraction a particle from the corner is followed for two bounces on the cardioid's arc."""
     join = 2 * math.pi / 3
 
     def point(at):
@@ -223,9 +223,9 @@ def corner_by_findroot(digits):
 # ---- exponents
 
 
-def two_balls(step, ball, bounces, apart=1e-8):
+def two_particles(step, particle, bounces, apart=1e-8):
     """The largest exponent, of a neighbour put back to its distance after each bounce [BenettinGalganiStrelcyn1976]."""
-    theta, phi = ball
+    theta, phi = particle
     near_theta, near_phi, total = theta + apart, phi, 0.0
     for _ in range(bounces):
         a, b = step(theta, phi), step(near_theta, near_phi)
@@ -237,9 +237,9 @@ def two_balls(step, ball, bounces, apart=1e-8):
     return total / bounces
 
 
-def by_qr(step, derivative, ball, bounces):
+def by_qr(step, derivative, particle, bounces):
     """Both exponents from QR decompositions of the derivative matrices, one bounce at a time."""
-    theta, phi = ball
+    theta, phi = particle
     Q, sums = np.eye(2), np.zeros(2)
     for _ in range(bounces):
         Q, R = np.linalg.qr(derivative(theta, phi) @ Q)

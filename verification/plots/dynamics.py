@@ -279,7 +279,7 @@ def _limit(axes: object, end: Accumulation) -> None:
     axes.plot(end.lam, end.alpha, color="tab:red", lw=1.6, label="accumulation")  # type: ignore[attr-defined]
 
 
-BALLS, BOUNCES, TRANSIENT, SEED = 300, 400, 2000, 1
+PARTICLES, BOUNCES, TRANSIENT, SEED = 300, 400, 2000, 1
 LENGTHS = dict.fromkeys(CONTACTS, (16.0, 12.0)) | {"boundary": (26.0, 9.0)}  # of each unstable and each stable branch
 ZOOM = dict.fromkeys(CONTACTS, (0.12, 0.009)) | {
     "boundary": (0.16, 0.09)
@@ -337,10 +337,10 @@ def attractor(kind: str, alpha: Expr, lam: float, law: Law = PAPERS_LAW) -> tupl
     """A cloud of points on the chaotic attractor, just below the crisis where it still attracts."""
     rng = np.random.default_rng(SEED)
     map = PinballMap("egg", lam=lam - (1e-4 if kind == "boundary" else 1e-6), alpha=alpha, law=law)
-    theta, phi = rng.uniform(-0.05, 0.05, (2, BALLS))
-    ball = map.exponents(theta, phi, 200, TRANSIENT)
-    chaotic = ball.nu_plus > 0
-    orbit = map.orbit(ball.theta[chaotic], ball.phi[chaotic], BOUNCES)
+    theta, phi = rng.uniform(-0.05, 0.05, (2, PARTICLES))
+    particle = map.exponents(theta, phi, 200, TRANSIENT)
+    chaotic = particle.nu_plus > 0
+    orbit = map.orbit(particle.theta[chaotic], particle.phi[chaotic], BOUNCES)
     return _modulo(orbit.theta.ravel()), orbit.phi.ravel()
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 HEAD = f"     {'way':<38}{'time a bounce':>13}{'ratio':>10}   error / 2**-52"
 CALLS = f"{'table':<10}{'call':<36}{'time':>12}{'ratio':>8}{'bar':>7}   against"
 TABLES = f"{'table':<20}{'ratio':>8}{'bar':>7}{'':18}{'time a bounce':>13}{'scalar numba':>14}{'times':>8}"
-CASES = f"{'case':<40}{'balls':>6}{'position':>10}{'direction':>11}{'/condition':>19}"
+CASES = f"{'case':<40}{'particles':>6}{'position':>10}{'direction':>11}{'/condition':>19}"
 
 
 @click.command(epilog="Example: pinball bench --scene egg --digits 20 --digits 100 --json bench.json")
@@ -139,7 +139,7 @@ def show_ratios(console: "Console", rows: "list[Row]") -> None:
     for name in own:
         ratios = [
             times[name, kernel] / times["egg", base] if (name, kernel) in times else None
-            for kernel, base in (("llvm",) * 2, ("llvm, exponents",) * 2, ("numba, one ball at a time", "llvm"))
+            for kernel, base in (("llvm",) * 2, ("llvm, exponents",) * 2, ("numba, one particle at a time", "llvm"))
         ]
         shown = [f"{ratio:.2f}" if ratio else "-" for ratio in ratios]
         console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
@@ -190,7 +190,7 @@ def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
         label = f"{case.scene}, {case.case}"
         errors = f"{case.position:>10.3g}{case.direction:>11.3g}"
         shares = f"{case.position_by_condition:>10.2g}{case.direction_by_condition:>9.2g}"
-        console.print(f"{label:<40}{case.balls:>6}{errors}{shares}{' *' if beyond else ''}".rstrip())
+        console.print(f"{label:<40}{case.particles:>6}{errors}{shares}{' *' if beyond else ''}".rstrip())
 
 
 ENDINGS = (".png", ".pdf", ".svg")

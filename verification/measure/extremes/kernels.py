@@ -4,7 +4,7 @@ On 80-bit arrays the step of `numeric/flights` has 64 bits of mantissa, 11 more 
 
 What `numeric.backends.scalars` has for 53 bits is put aside here, word by word, as `numeric.backends.scalars` does
 it: sines and arctangents are the C library's, and a zero is sharpened until its correction is below the unit or
-ceases to shrink. Splitting for exact products, and the outcomes that stop a ball, remain as they are.
+ceases to shrink. Splitting for exact products, and the outcomes that stop a particle, remain as they are.
 
 All four run the same step; `TEXTBOOK` is the quadratic formula that one would write first, kept to show that the
 measure tells it apart.

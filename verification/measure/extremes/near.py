@@ -53,7 +53,7 @@ class Stability(Enum):
 
     STABLE = "as right as rounded data allow"
     SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
-    STOPPED = "no number: the kernel stops the ball and names the outcome"
+    STOPPED = "no number: the kernel stops the particle and names the outcome"
     UNSTABLE = "wrong by more than rounded data explain; use what is named in its place"
 
 

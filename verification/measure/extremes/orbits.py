@@ -36,19 +36,19 @@ from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured
 from verification.named.attractors import certificate
 
 Array = NDArray[np.float64]
-BALLS, SEED, SHORT = 256, 5, 2_560_000
+PARTICLES, SEED, SHORT = 256, 5, 2_560_000
 PART = 2**20  # bounces in one call
 BLOCK = 1000  # bounces whose states are kept at once for a mean
-MEAN = "more balls or longer orbits: a mean is known to its standard error and no better"
+MEAN = "more particles or longer orbits: a mean is known to its standard error and no better"
 
 
 @dataclass(frozen=True)
 class Long:
-    """So many balls for so many bounces each."""
+    """So many particles for so many bounces each."""
 
     name: str
     measure: Callable[["Long"], list[Finding]]
-    balls: int
+    particles: int
     bounces: int
 
     def found(self, what: str, measured: Measured | None, status: str, reason: str = "", instead: str = "") -> Finding:
@@ -61,9 +61,9 @@ def findings(asked: Long) -> list[Finding]:
     return asked.measure(asked)
 
 
-def orbits(collisions: int = SHORT, balls: int = BALLS) -> tuple[Long, ...]:
-    """Every long orbit, so many collisions of all balls together."""
-    each = max(1, collisions // balls)
+def orbits(collisions: int = SHORT, particles: int = PARTICLES) -> tuple[Long, ...]:
+    """Every long orbit, so many collisions of all particles together."""
+    each = max(1, collisions // particles)
     kinds: tuple[tuple[str, Callable[[Long], list[Finding]]], ...] = (
         ("elastic ellipse a = 3/2", lambda asked: invariant(asked, "3/2")),
         ("elastic ellipse a = 3", lambda asked: invariant(asked, "3")),
@@ -72,18 +72,18 @@ def orbits(collisions: int = SHORT, balls: int = BALLS) -> tuple[Long, ...]:
         ("cardioid at lam = 4/5, starts that are mirror images", mirrored),
         ("elastic cardioid", ergodic),
     )
-    shown = f"{balls} balls, {each:.0e} bounces each"
-    return tuple(Long(f"{name}, {shown}", measure, balls, each) for name, measure in kinds)
+    shown = f"{particles} particles, {each:.0e} bounces each"
+    return tuple(Long(f"{name}, {shown}", measure, particles, each) for name, measure in kinds)
 
 
-def starts(balls: int) -> tuple[Array, Array]:
+def starts(particles: int) -> tuple[Array, Array]:
     """Parameters and exit angles of random particles."""
     rng = np.random.default_rng(SEED)
-    return rng.uniform(-np.pi, np.pi, balls), np.arcsin(rng.uniform(-1, 1, balls) * 0.999)
+    return rng.uniform(-np.pi, np.pi, particles), np.arcsin(rng.uniform(-1, 1, particles) * 0.999)
 
 
 def entered(map: PinballMap, theta: Array, phi: Array) -> list[Array]:
-    """The rows of balls on the first component."""
+    """The rows of particles on the first component."""
     return [np.asarray(row) for row in map.states.enter(np.zeros(theta.size, dtype=np.int64), theta, phi, map.law)]
 
 
@@ -95,7 +95,7 @@ def advanced(map: PinballMap, rows: list[Array], bounces: int) -> tuple[list[Arr
         after = map.engine.run(KernelSpec(map.law), own, lam, map.shape, min(PART, bounces - done), threads=1).rows
         own = [np.ascontiguousarray(after[field]) for field in map.family.fields(map.law)]
         if "code" in after and np.any(after["code"]):
-            said = "a ball stopped"
+            said = "a particle stopped"
         if not all(np.all(np.isfinite(row)) for row in own):
             said = "not a number"
     return own, said
@@ -109,7 +109,7 @@ def root_mean_square(x: Any) -> float:
 def invariant(asked: Long, a: str) -> list[Finding]:
     """The product of the angular momenta about the foci of the elastic ellipse."""
     map = PinballMap("ellipse", lam=1, a=a)
-    rows = entered(map, *starts(asked.balls))
+    rows = entered(map, *starts(asked.particles))
     after, said = advanced(map, rows, asked.bounces)
     error = root_mean_square(momenta(map, after) - momenta(map, rows)) / DOUBLE
     condition = float(np.sqrt(asked.bounces)) + 1
@@ -117,7 +117,7 @@ def invariant(asked: Long, a: str) -> list[Finding]:
 
 
 def momenta(map: PinballMap, rows: list[Any]) -> Any:
-    """The product of the angular momenta about both foci, in 80 bits, of the exact balls behind the rounded rows."""
+    """The product of the angular momenta about both foci, in 80 bits, of the exact particles behind rounded rows."""
     ux, uy, vx, vy = made_unit(map.family, [row.astype(np.longdouble) for row in rows])
     a = np.longdouble(map.shape[0])
     momentum = a * ux * vy - uy * vx
@@ -127,7 +127,7 @@ def momenta(map: PinballMap, rows: list[Any]) -> Any:
 def turning(asked: Long) -> list[Finding]:
     """`theta + n*(pi - 2*phi)` in the elastic circle, of the exact doubles, with 50 digits."""
     map = PinballMap("circle", lam=1)
-    rows = entered(map, *starts(asked.balls))
+    rows = entered(map, *starts(asked.particles))
     (theta, phi), said = advanced(map, rows, asked.bounces)
     context = mpmath.MPContext()
     context.dps = 50
@@ -147,7 +147,7 @@ def turning(asked: Long) -> list[Finding]:
 
 
 def attracted(asked: Long) -> list[Finding]:
-    """The distance of balls from the attracting triangles of the egg, which are proved."""
+    """The distance of particles from the attracting triangles of the egg, which are proved."""
     table, lam = tables.egg(3).at(alpha="2/25"), Rational(7, 10)
     map = PinballMap("egg", alpha="2/25", lam="7/10")
     problem = Problem(table, (0, 0, 0), lam=lam)
@@ -156,7 +156,7 @@ def attracted(asked: Long) -> list[Finding]:
     proof = certificate(table, lam, phase_points(triangle, 0.0))
     if not proof.proved:
         raise ValueError(f"{asked.name}: the triangle is not proved to attract: {dict(proof.checks)}")
-    (ux, uy, *_), said = advanced(map, entered(map, *starts(asked.balls)), asked.bounces)
+    (ux, uy, *_), said = advanced(map, entered(map, *starts(asked.particles)), asked.bounces)
     context = mpmath.MPContext()
     context.dps = 40
     proved = [context.mpf(x.str(35, radius=False)) for x in proof.theta]
@@ -173,7 +173,7 @@ def attracted(asked: Long) -> list[Finding]:
 def mirrored(asked: Long) -> list[Finding]:
     """The largest gap between chaotic orbits and the mirror images of those that started as their mirror images."""
     map = PinballMap("cardioid", lam="4/5")
-    theta, phi = starts(asked.balls // 2)
+    theta, phi = starts(asked.particles // 2)
     both = np.concatenate([theta, -theta]), np.concatenate([phi, -phi])
     (p, q, c, s), said = advanced(map, entered(map, *both), asked.bounces)
     half, gap = theta.size, 0.0
@@ -185,23 +185,23 @@ def mirrored(asked: Long) -> list[Finding]:
 def ergodic(asked: Long) -> list[Finding]:
     """Means over chaotic orbits: `cos(phi)` is pi/4, and `sin(theta/2)**2`, a share of the length squared, 1/3."""
     map = PinballMap("cardioid", lam=1)
-    rows, said, sums = entered(map, *starts(asked.balls)), "", np.zeros((2, asked.balls))
+    rows, said, sums = entered(map, *starts(asked.particles)), "", np.zeros((2, asked.particles))
     for done in range(0, asked.bounces, BLOCK):
         count = min(BLOCK, asked.bounces - done)
-        lam = np.ones(asked.balls)
+        lam = np.ones(asked.particles)
         result = map.engine.run(KernelSpec(map.law, record=True), rows, lam, map.shape, count, threads=1)
         assert result.record is not None
         rows = [np.ascontiguousarray(row) for row in result.record[-1]]
         if np.any(result.rows["code"]) or not np.all(np.isfinite(result.record[-1])):
-            said = "a ball stopped"
+            said = "a particle stopped"
         sums += result.record[:, 2].sum(axis=0), (result.record[:, 1] ** 2).sum(axis=0)
     made = []
     for what, mean, truth in zip(
         (", mean of cos(phi)", ", mean of sin(theta/2)^2"), sums, (np.pi / 4, 1 / 3), strict=True
     ):
-        mean = mean / asked.bounces  # of each ball
+        mean = mean / asked.bounces  # of each particle
         error = abs(float(np.mean(mean)) - truth) / DOUBLE
-        doubt = float(np.std(mean, ddof=1) / np.sqrt(asked.balls)) / DOUBLE
+        doubt = float(np.std(mean, ddof=1) / np.sqrt(asked.particles)) / DOUBLE
         reason = f"{error / doubt:.1f} standard errors of {doubt * DOUBLE:.1e}"
         made.append(asked.found(what, WRONG if said else Measured(error, error / doubt, doubt), said, reason, MEAN))
     return made
@@ -230,7 +230,7 @@ LABELLED, DIGITS, SEED_OF_LABELLED = 24, 50, 11
 
 
 class Case(NamedTuple):
-    """Balls of one kind on one table."""
+    """Particles of one kind on one table."""
 
     label: str
     map: PinballMap
@@ -244,7 +244,7 @@ class Accuracy(NamedTuple):
 
     scene: str
     case: str
-    balls: int
+    particles: int
     position: float
     direction: float
     position_by_condition: float
@@ -252,7 +252,7 @@ class Accuracy(NamedTuple):
 
 
 def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` balls of every kind; the first word of a label is the table."""
+    """`count` particles of every kind; the first word of a label is the table."""
     rng = np.random.default_rng(seed)
     side = np.where(rng.integers(0, 2, count) == 0, 1, -1)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -289,7 +289,7 @@ def scene(name: str, lam: Any = LAM) -> PinballMap:
 
 
 def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` balls of every kind on a table of `LONG_RADII`."""
+    """`count` particles of every kind on a table of `LONG_RADII`."""
     rng, map = np.random.default_rng(seed), scene(name)
     side, zero = rng.choice([-1, 1], count), np.zeros(count, dtype=np.int64)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -314,7 +314,7 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
 
 
 def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` balls of every kind on a table of pieces cubic in `theta` from 0 to 1."""
+    """`count` particles of every kind on a table of pieces cubic in `theta` from 0 to 1."""
     rng, parts = np.random.default_rng(seed), len(map.ir.parts)
     side, tiny = rng.choice([-1, 1], count), 10.0 ** rng.uniform(-12, -1, count)
     at, theta = rng.integers(0, parts, count), rng.uniform(0, 1, count)
@@ -367,7 +367,7 @@ def conditions(case: Case) -> tuple[Array, Array]:
 
 
 def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
-    """The kernel's fields before and after one bounce, and which balls go on."""
+    """The kernel's fields before and after one bounce, and which particles go on."""
     map = case.map
     own = map.states.enter(case.component, case.theta, case.phi, map.law)
     lam = np.full(case.theta.size, float(map.lam))
@@ -377,9 +377,9 @@ def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
     return own, list(result.record[0]), going
 
 
-def accuracy(name: str, balls: int = LABELLED) -> Iterator[Accuracy]:
+def accuracy(name: str, particles: int = LABELLED) -> Iterator[Accuracy]:
     """The errors of every case of a table, against the exact map of the rounded state."""
-    for case in cases(balls) if name in SCENES else own_cases(name, balls // 3):
+    for case in cases(particles) if name in SCENES else own_cases(name, particles // 3):
         if case.label.split(",")[0] == name:
             own, after, going = bounced(case)
             before, found = [row[going] for row in own], [row[going] for row in after]

@@ -46,7 +46,7 @@ def rows(longer: bool = False, collisions: int = SHORT) -> Iterator[Group]:
 
 
 def advised(found: Finding) -> Finding:
-    """With what to use in its place, where the kernel is not stable or stopped a ball."""
+    """With what to use in its place, where the kernel is not stable or stopped a particle."""
     advice = ADVICE.get((found.kernel, found.stability), "")
     said = [STOPPED[status] for status in found.status.split(", ") if status in STOPPED]
     return replace(found, instead="; ".join(text for text in (advice, *said) if text))
@@ -143,7 +143,7 @@ def _verdicts(found: Sequence[Line]) -> str:
 
 
 def _exceptions(found: Sequence[Line]) -> str:
-    """Who is not stable or stops balls, how often, and what to use."""
+    """Who is not stable or stops particles, how often, and what to use."""
     kept: dict[tuple[str, str], list[Line]] = {}
     for one in found:
         if one.verdict is not Stability.STABLE or one.stopped_by:
@@ -156,7 +156,7 @@ def _exceptions(found: Sequence[Line]) -> str:
         names = list(dict.fromkeys(one.case for one in several))
         cases = names[0] + (f", and {len(names) - 1} more" if len(names) > 1 else "")
         rows.append(f"| {what} | {methods} | {cases} | {instead} |")
-    rows.append("\nA status beside `stable` names balls of the case that stopped; the others were right.")
+    rows.append("\nA status beside `stable` names particles of the case that stopped; the others were right.")
     return "\n".join(rows) + "\n"
 
 
@@ -259,7 +259,7 @@ zeros that end at a correction below 2^-27, 1 to a shape (`sqrt(2)`) that reache
 functions, zeros sharpened to the last bit (`verification/measure/extremes/kernels.py`) and the shape rounded to 80
 bits its worst
 backward error is the one in the table. It judges `benchmarks/adversarial.py` too, which says how far the judge itself
-moves when its state is rounded once more: less than 0.2 units of a double, but 390 for balls aimed at the cusp, of
+moves when its state is rounded once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp, of
 which 80 bits cannot judge the last bits; there 50 digits say at most 4 and 8.
 
 **Exponents** are held against the product of the matrices along the kernel's own orbit. Along another orbit from the

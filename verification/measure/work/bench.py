@@ -39,9 +39,9 @@ from verification.measure.extremes.orbits import DIGITS, RADII, SCENES, scene
 Array = NDArray[np.float64]
 LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
 FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # laws of a user's own: a polynomial, and one sine
-BALLS, RUNS = 4096, 5
+PARTICLES, RUNS = 4096, 5
 WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
-CHECKED = 24  # balls whose errors are measured
+CHECKED = 24  # particles whose errors are measured
 FEW = 8  # in multiprecision
 MORE = 30  # digits of the truth, beyond those that are checked
 SMALLEST = Decimal("1e-300")  # of the errors written as floats
@@ -102,10 +102,10 @@ def best(action: Callable[[], object], runs: int = RUNS) -> float:
 
 def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
     """LLVM kernels, with and without exponents and with two threads, and the same step on NumPy arrays."""
-    for kernels, kernel, balls, bounces in ((True, "llvm", BALLS, 1000), (False, "numpy", BALLS, 10)):
+    for kernels, kernel, particles, bounces in ((True, "llvm", PARTICLES, 1000), (False, "numpy", PARTICLES, 10)):
         map = PinballMap(name, lam=LAWS["pinball"], kernels=kernels, **_shape(name))
-        own = attracted(map, balls)
-        lam = np.full(balls, float(map.lam))
+        own = attracted(map, particles)
+        lam = np.full(particles, float(map.lam))
         error = worst(map, own)
 
         def run(
@@ -123,11 +123,11 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
             once()
             return best(once, runs) / bounces / own[0].size
 
-        nought = np.zeros(balls)
+        nought = np.zeros(particles)
         alone = run(KernelSpec(map.law))
         yield Row(name, "float64", kernel, error, alone, runs)
         if kernels:
-            copies = 1 + int(WORTH_A_THREAD / (alone * balls * bounces))  # more balls, for more bounces would underflow
+            copies = 1 + int(WORTH_A_THREAD / (alone * particles * bounces))  # not more bounces, which would underflow
             many = [np.tile(field, copies) for field in own]
             tangent = tuple(starting(nought + 1, nought, nought + 1))
             yield Row(
@@ -140,12 +140,12 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
             yield Row(name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs)
     for law in ("slap", "elastic"):
         map = PinballMap(name, lam=LAWS[law], **_shape(name))
-        own, lam = attracted(map, BALLS, 1), np.full(BALLS, float(map.lam))
+        own, lam = attracted(map, PARTICLES, 1), np.full(PARTICLES, float(map.lam))
         alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
         yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
     for formula in FORMULAS if name == "egg" else ():
         map = PinballMap(name, lam=LAWS["pinball"], law=formula, **_shape(name))
-        own, lam = attracted(map, BALLS), np.full(BALLS, float(map.lam))
+        own, lam = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam))
         alone = run(KernelSpec(map.law), map=map, own=own, lam=lam, bounces=1000)
         yield Row(name, "float64", f"llvm, phi = {formula}", worst(map, own), alone, runs)
 
@@ -153,7 +153,7 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
 def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
     """A table that is not the paper's: kernels with and without exponents, and scalar numba as one writes it first."""
     map = scene(name)
-    own, lam, nought = attracted(map, BALLS), np.full(BALLS, float(map.lam)), np.zeros(BALLS)
+    own, lam, nought = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam)), np.zeros(PARTICLES)
     error = worst(map, own)
     for kernel, spec in (("llvm", KernelSpec(map.law)), ("llvm, exponents", KernelSpec(map.law, exponents=True))):
         tangent = tuple(starting(nought + 1, nought, nought + 1)) if spec.exponents else ()
@@ -162,7 +162,7 @@ def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
             return map.engine.run(spec, own, lam, map.shape, 300, tangent, 1)
 
         once()
-        yield Row(name, "float64", kernel, error, best(once, runs) / 300 / BALLS, runs)
+        yield Row(name, "float64", kernel, error, best(once, runs) / 300 / PARTICLES, runs)
 
 
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
@@ -207,16 +207,16 @@ def distance(found: Any, truth: Any, digits: int) -> Decimal:
         return Decimal((largest * 2**52).upper().str(3, radius=False))
 
 
-def attracted(map: PinballMap, balls: int, transient: int = 100) -> list[Array]:
+def attracted(map: PinballMap, particles: int, transient: int = 100) -> list[Array]:
     """Fields of random particles after some bounces."""
-    starts = phase_starts(map, balls, seed=1)
+    starts = phase_starts(map, particles, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
-    rows = map.engine.run(KernelSpec(map.law), own, np.full(balls, float(map.lam)), map.shape, transient).rows
+    rows = map.engine.run(KernelSpec(map.law), own, np.full(particles, float(map.lam)), map.shape, transient).rows
     return [np.ascontiguousarray(rows[field]) for field in map.family.fields(map.law)]
 
 
 def worst(map: PinballMap, own: list[Array]) -> Decimal:
-    """The largest error of one bounce over the first balls, in units of 2**-52, against 50 digits."""
+    """The largest error of one bounce over the first particles, in units of 2**-52, against 50 digits."""
     first = [field[:CHECKED].copy() for field in own]
     lam = np.full(CHECKED, float(map.lam))
     after = map.engine.run(KernelSpec(map.law, record=True), first, lam, map.shape, 1).record
@@ -277,7 +277,7 @@ FOLDER = ROOT / "benchmarks"
 MISSING = "The baselines need a checkout, or the source distribution: benchmarks/ is no part of the installed package."
 MEASURED = 24  # whose errors are measured
 LAM = 0.95
-SCALAR = "numba, one ball at a time"
+SCALAR = "numba, one particle at a time"
 
 
 def is_checkout() -> bool:
@@ -368,7 +368,7 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
 
 
 def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:
-    """The largest error of parameter or angle over the first balls, in units of 2**-52."""
+    """The largest error of parameter or angle over the first particles, in units of 2**-52."""
     exact = ExactMap(map, DIGITS)
     mp, worst = exact.context, 0.0
     for i in range(MEASURED):

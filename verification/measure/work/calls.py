@@ -20,15 +20,15 @@ from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from verification.measure.extremes.by_hand import discs, outline, spikes
 from verification.measure.extremes.orbits import SCENES, scene
-from verification.measure.work.bench import BALLS, FORMULAS, LAWS, SCALAR, Row, attracted, module, scalar_way
+from verification.measure.work.bench import FORMULAS, LAWS, PARTICLES, SCALAR, Row, attracted, module, scalar_way
 
 LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
-REST = 512, 1_000, 100_000  # balls at rest: how many, bounces of a short run, of a long one
+REST = 512, 1_000, 100_000  # particles at rest: how many, bounces of a short run, of a long one
 FEW_AT_REST = 64, 4_000, 40_000  # where a bounce takes ten times as long
 
 WANDERING = "999999/1000000"
 KERNEL = "llvm, lam = 0.999999"
-IN_TURN, SCALAR_BALLS = 50, 512  # bounces of a run that takes turns with others, and particles of it in numba
+IN_TURN, SCALAR_PARTICLES = 50, 512  # bounces of a run that takes turns with others, and particles of it in numba
 BARS: dict[str, tuple[str, float | None]] = {  # what a bounce on a table is compared with, and the largest ratio
     "egg": ("egg", None),
     "square": ("egg", 0.6),
@@ -92,7 +92,7 @@ def taking_turns(one: Callable[[], object], other: Callable[[], object], runs: i
 
 
 def call_rows(name: str, runs: int) -> Iterable[Call]:
-    """The calls on one of the paper's tables; of one given by its radius, what balls at rest cost."""
+    """The calls on one of the paper's tables; of one given by its radius, what particles at rest cost."""
     if name not in SCENES:
         yield at_rest(name, min(runs, 3), FEW_AT_REST)
         return
@@ -173,7 +173,7 @@ def pieces_at_rest(runs: int) -> Iterable[Call]:
 
 
 def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: PinballMap | None = None) -> Call:
-    """Exponents of balls of which many come to rest, where subnormal numbers would be: a bounce must cost the same."""
+    """Exponents of particles of which many come to rest, where subnormal numbers would be: a bounce costs the same."""
     count, short, long = sizes
     map = map or scene(name, "9/10")
     starts = phase_starts(map, count, seed=1)
@@ -222,15 +222,15 @@ def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(B
     """
     scalar, ways = module("scalar_numba") if baselines else None, dict[tuple[str, str], Callable[[], object]]()
     for name in names:
-        map, lam = compared(name), np.full(BALLS, float(Fraction(WANDERING)))
-        own = attracted(map, BALLS, 10)
+        map, lam = compared(name), np.full(PARTICLES, float(Fraction(WANDERING)))
+        own = attracted(map, PARTICLES, 10)
         ways[name, KERNEL] = partial(map.engine.run, KernelSpec(map.law), own, lam, map.shape, IN_TURN, (), 1)
         if scalar is not None:
-            component, theta, phi, *_ = phase_starts(map, SCALAR_BALLS, seed=1)
+            component, theta, phi, *_ = phase_starts(map, SCALAR_PARTICLES, seed=1)
             ways[name, SCALAR] = partial(scalar_way(scalar, name, map), theta, phi, component, IN_TURN)
     times: dict[tuple[str, str], list[float]] = {way: [] for way in ways}
     for _ in range(runs + 1):  # the first compiles
         for way, once in ways.items():
-            times[way].append(best(once, 1) / IN_TURN / (BALLS if way[1] == KERNEL else SCALAR_BALLS))
+            times[way].append(best(once, 1) / IN_TURN / (PARTICLES if way[1] == KERNEL else SCALAR_PARTICLES))
     for (name, kernel), spent in times.items():
         yield Row(name, "float64", kernel, None, min(spent[1:]), runs, WANDERING)

@@ -207,7 +207,7 @@ def cheapest(question: str, digits: int, proof: bool = False, measured: Iterable
 
     More digits than the table has are answered by what is cheapest at the most that it has.
 
-    >>> kernel = Entry("kernel", "float64", "4 balls", 14, 1e-6, False)
+    >>> kernel = Entry("kernel", "float64", "4 particles", 14, 1e-6, False)
     >>> ball = Entry("balls", "arb", "100 digits", 100, 1e-3, True)
     >>> cheapest("step-egg", 12, measured=[kernel, ball]).why
     'kernel promises 14 digits in 1 us; next is balls, 1e+03 times as long'

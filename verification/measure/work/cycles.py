@@ -38,7 +38,7 @@ STRIDE = 0.2  # of the way back to its birth, in the contraction
 def cycle(
     name: str, title: str, table: Table, at: Rational, start: tuple[float, ...], own: PinballMap, settles: bool
 ) -> Question:
-    """The bounces of one cycle; `own` is its map, and `settles` says whether balls reach it."""
+    """The bounces of one cycle; `own` is its map, and `settles` says whether particles reach it."""
     problem = Problem(table, (0,) * len(start), lam=at)
     sought = Sought(problem, start)
 
@@ -70,7 +70,7 @@ def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
     return round(float(out[0]), 3 if problem.period < 10 else 9)
 
 
-def textbook_cycle(map: PinballMap, ball: tuple[float, float], period: int, settles: bool) -> list[Method]:
+def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, settles: bool) -> list[Method]:
     """Single shooting on the compiled step, and for an attracting cycle a particle that settles on it."""
     book = module("textbook")
     if book is None:
@@ -81,10 +81,10 @@ def textbook_cycle(map: PinballMap, ball: tuple[float, float], period: int, sett
         return [float(x) for x in orbit.theta]
 
     def shot(xtol: float) -> list[float]:
-        return bounces(*book.shooting(map, ball, period, xtol))
+        return bounces(*book.shooting(map, particle, period, xtol))
 
     def settled(count: int) -> list[float]:
-        return bounces(*book.iterated(map, *ball, period * count))
+        return bounces(*book.iterated(map, *particle, period * count))
 
     shooting = Method(
         "single shooting", "float64", "xtol", TOLERANCES, shot, lambda x: Decimal(f"{x:.3g}"), textbook=True
@@ -233,10 +233,13 @@ def textbook_doublings() -> list[Method]:
         return made
 
     def flips(xtol: float) -> list[float]:
-        return [book.flip(map_at, ball, period, low, high, xtol) for period, ball, low, high in brackets()]
+        return [book.flip(map_at, particle, period, low, high, xtol) for period, particle, low, high in brackets()]
 
     def watched(bounces: int) -> list[float]:
-        return [book.doubling_seen(map_at, ball, period, low, high, bounces) for period, ball, low, high in brackets()]
+        return [
+            book.doubling_seen(map_at, particle, period, low, high, bounces)
+            for period, particle, low, high in brackets()
+        ]
 
     kept = TOLERANCES
     return [

@@ -46,7 +46,7 @@ def of_a_cycle() -> Question:
     start = triangle_start()
     problem = Problem(EGG, (0, 0, 0), lam=HALF)
     map = PinballMap("egg", lam="1/2", alpha="2/25")
-    ball = start[0], first_exit(problem, start)
+    particle = start[0], first_exit(problem, start)
 
     def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
         trace, determinant = trace_and_determinant(Linearised(problem, arithmetic, z).terms.rows)
@@ -60,7 +60,7 @@ def of_a_cycle() -> Question:
             return [enclosed_exponents(*pair, 3)[0]]
 
     def counted(bounces: int) -> list[float]:
-        return [float(map.exponents(*ball, bounces).nu_plus)]
+        return [float(map.exponents(*particle, bounces).nu_plus)]
 
     own = Method("compiled kernel", "float64", "bounces", MANY, counted)
     return Question(
@@ -69,7 +69,7 @@ def of_a_cycle() -> Question:
         "the larger Lyapunov exponent of the attracting triangle of the egg, alpha = 2/25, lam = 1/2",
         "per bounce",
         certified,
-        (own, *Sought(problem, start, read).methods(certified), *textbook(map, ball)),
+        (own, *Sought(problem, start, read).methods(certified), *textbook(map, particle)),
     )
 
 
@@ -168,7 +168,12 @@ def textbook(map: PinballMap, particle: tuple[float, float]) -> list[Method]:
         return []
     return [
         Method(
-            "two balls", "float64", "bounces", FEW, lambda n: [book.two_balls(map.step, particle, n)], textbook=True
+            "two particles",
+            "float64",
+            "bounces",
+            FEW,
+            lambda n: [book.two_particles(map.step, particle, n)],
+            textbook=True,
         ),
         Method(
             "QR, bounce by bounce",

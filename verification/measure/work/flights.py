@@ -30,7 +30,7 @@ from verification.measure.work.sought import DIGITS, Sought, to_digits
 
 LAM = Fraction(19, 20)
 PARTICLES = ((0.3, 0.2), (-2.0, 0.9), (1.25, -1.0), (2.75, 0.5))  # parameter and exit angle, doubles taken exactly
-COUNTS = (4, 64, 4096)  # balls to a call of the kernels; from the first few on they repeat
+COUNTS = (4, 64, 4096)  # particles to a call of the kernels; from the first few on they repeat
 EPS = 2.0**-52
 STEP = 8 * EPS  # the law that the kernels are held to, or 8 condition numbers
 MATRIX = 64 * EPS
@@ -41,7 +41,7 @@ MARGIN = 12  # digits that the flights lose at most, of those that balls are com
 
 @dataclass(frozen=True)
 class Flights:
-    """The landings of some balls on a convex table of one component: the chord leaves at the exit angle."""
+    """The landings of some particles on a convex table of one component: the chord leaves at the exit angle."""
 
     table: Table
 
@@ -53,33 +53,33 @@ class Flights:
     def angles(self, arithmetic: Arithmetic, z: Vector) -> list[tuple[Any, ...]]:
         """The exit angles of the chords to `z`, with derivatives."""
         chord = load(chord_kernel(self.table, 0, 0, 1), arithmetic)
-        return [chord(exactly(arithmetic, ball[0]), x) for ball, x in zip(PARTICLES, z, strict=True)]
+        return [chord(exactly(arithmetic, particle[0]), x) for particle, x in zip(PARTICLES, z, strict=True)]
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """How far each exit angle is from what it should be."""
         found = self.angles(arithmetic, z)
-        return [a[0] - exactly(arithmetic, ball[1]) for a, ball in zip(found, PARTICLES, strict=True)]
+        return [a[0] - exactly(arithmetic, particle[1]) for a, particle in zip(found, PARTICLES, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """The corrections for a residual: each ball by itself."""
+        """The corrections for a residual: each particle by itself."""
         return [x / a[2] for x, a in zip(r, self.angles(arithmetic, z), strict=True)]
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
         """Newton's corrections."""
         found = self.angles(arithmetic, z)
-        return [(a[0] - exactly(arithmetic, ball[1])) / a[2] for a, ball in zip(found, PARTICLES, strict=True)]
+        return [(a[0] - exactly(arithmetic, particle[1])) / a[2] for a, particle in zip(found, PARTICLES, strict=True)]
 
     def landed(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Parameter and next exit angle of each ball."""
+        """Parameter and next exit angle of each particle."""
         chord = load(chord_kernel(self.table, 0, 0, 0), arithmetic)
         lam = arithmetic.q(LAM.numerator, LAM.denominator)
-        back = [-lam * chord(x, exactly(arithmetic, ball[0]))[0] for ball, x in zip(PARTICLES, z, strict=True)]
+        back = [-lam * chord(x, exactly(arithmetic, particle[0]))[0] for particle, x in zip(PARTICLES, z, strict=True)]
         return [value for pair in zip(z, back, strict=True) for value in pair]
 
     def turned(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """The four entries of each ball's derivative matrix."""
+        """The four entries of each particle's derivative matrix."""
         matrix = load(matrix_kernel(self.table), arithmetic)
-        rows = [matrix(exactly(arithmetic, ball[0]), x) for ball, x in zip(PARTICLES, z, strict=True)]
+        rows = [matrix(exactly(arithmetic, particle[0]), x) for particle, x in zip(PARTICLES, z, strict=True)]
         return [entry for row in rows for entry in row]
 
 
@@ -123,7 +123,7 @@ def scene(name: str) -> tuple[Table, PinballMap, tuple[float, ...]]:
 
 
 def steps(name: str) -> Question:
-    """One bounce of a few balls: parameter and exit angle."""
+    """One bounce of a few particles: parameter and exit angle."""
     table, map, starts = scene(name)
     sought = Sought(Flights(table), starts, Flights(table).landed, len(PARTICLES))
     bound = STEP * (1 + sought.condition())
@@ -136,7 +136,7 @@ def steps(name: str) -> Question:
     return Question(
         f"step-{name}",
         f"One bounce, {name}",
-        f"parameter and exit angle after one bounce of {len(PARTICLES)} balls on the {name}, lam = {LAM}",
+        f"parameter and exit angle after one bounce of {len(PARTICLES)} particles on the {name}, lam = {LAM}",
         "radians",
         lambda digits: bounced(map, digits),
         (*own, *textbook_steps(map)),
@@ -157,7 +157,7 @@ def jacobians() -> Question:
     return Question(
         "jacobian",
         "The derivative of one bounce, egg",
-        f"d(s1, phi1)/d(s0, phi0) of {len(PARTICLES)} balls on the egg, lam = {LAM}",
+        f"d(s1, phi1)/d(s0, phi0) of {len(PARTICLES)} particles on the egg, lam = {LAM}",
         "of an entry",
         certified,
         (*kernels(map, turned, MATRIX), *sought.methods(certified), *textbook_jacobians(map, table)),
@@ -188,7 +188,7 @@ def bracketing(map: PinballMap) -> Method:
 
 
 def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]], bound: float) -> list[Method]:
-    """The compiled kernel and the same step on NumPy arrays, for a few balls to thousands at a time."""
+    """The compiled kernel and the same step on NumPy arrays, for a few particles to thousands at a time."""
     shape: dict[str, Any] = dict(zip((entry.name for entry in map.ir.shape), map.exact_shape, strict=True))
     plain = PinballMap(map.ir.table, lam=LAM, kernels=False, **shape)
     promise = Decimal(f"{bound:.3g}")
@@ -198,13 +198,13 @@ def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]]
         return call(own, theta, phi)
 
     return [
-        Method(name, "float64", "balls", COUNTS, partial(ran, own), lambda n: promise)
+        Method(name, "float64", "particles", COUNTS, partial(ran, own), lambda n: promise)
         for name, own in (("compiled kernel", map), ("NumPy", plain))
     ]
 
 
 def running(map: PinballMap, bound: float) -> Method:
-    """The compiled kernel within a long run of many balls, where a bounce is all that a bounce costs."""
+    """The compiled kernel within a long run of many particles, where a bounce is all that a bounce costs."""
     count, bounces = COUNTS[-1], 256
     starts = phase_starts(map, count, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
@@ -215,18 +215,18 @@ def running(map: PinballMap, bound: float) -> Method:
         return stepped(map, *np.array(PARTICLES).T)
 
     promise = Decimal(f"{bound:.3g}")
-    label = (f"{count} balls, {bounces} bounces",)
+    label = (f"{count} particles, {bounces} bounces",)
     return Method("compiled kernel, in a run", "float64", "", label, call, lambda _: promise, count * bounces)
 
 
 def stepped(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """Parameter and exit angle of the first few balls after a step of all."""
+    """Parameter and exit angle of the first few particles after a step of all."""
     landed = map.step(theta, phi)
     return [float(x) for pair in zip(landed.theta[: len(PARTICLES)], landed.phi, strict=False) for x in pair]
 
 
 def turned(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """The matrices of the first few balls."""
+    """The matrices of the first few particles."""
     return [float(x) for x in map.derivative(theta, phi)[: len(PARTICLES)].ravel()]
 
 
@@ -267,7 +267,7 @@ def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
     lambdified = book.Lambdified([theta0, theta1], angle, list(matrix_expressions(table).values()))
 
     def differences(way: Any, h: float) -> list[float]:
-        return [float(x) for ball in PARTICLES for x in way(map.step, map.states.speed, ball, h)]
+        return [float(x) for particle in PARTICLES for x in way(map.step, map.states.speed, particle, h)]
 
     made = [
         Method(
@@ -286,7 +286,7 @@ def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
         "float64",
         "",
         ("to rounding",),
-        lambda _: [float(x) for ball in PARTICLES for x in lambdified(*ball)],
+        lambda _: [float(x) for particle in PARTICLES for x in lambdified(*particle)],
         per=len(PARTICLES),
         textbook=True,
     )

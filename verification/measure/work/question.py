@@ -29,7 +29,7 @@ from flint import arb, fmpq
 from verification.arithmetic.balls import as_ball, bits_of, working
 from verification.measure.work.row import Row, timed
 
-COUNTS = ("balls", "points")  # the units of settings that say how many answers a call gives
+COUNTS = ("particles", "points")  # the units of settings that say how many answers a call gives
 GUARD = 20  # digits of a reference beyond the most that are asked for
 Answer = Sequence[Any]
 
@@ -48,7 +48,7 @@ class Method:
 
     `unit` says what a setting is (`digits`, `xtol`, `bounces`), `promise(setting)` the largest error that the way
     claims for itself, None when it claims none. A call gives `per` answers at a time, or as many as the setting says
-    where that counts balls or points. A method that is `elsewhere` is run by another process of its own.
+    where that counts particles or points. A method that is `elsewhere` is run by another process of its own.
     """
 
     name: str

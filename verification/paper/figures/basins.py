@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ACROSS, UP = 360, 240  # cells of a draft
-TRANSIENT = 1000  # bounces before a ball is first looked at
+TRANSIENT = 1000  # bounces before a particle is first looked at
 BLANK, SHADE = (1.0, 1.0, 1.0), (0.78, 0.84, 0.78)
 RED = (0.87, 0.55, 0.5)
 
 
 def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
-    """Which attractor the ball in each cell of phase space reaches, and the attractors.
+    """Which attractor the particle in each cell of phase space reaches, and the attractors.
 
     The abscissa is `theta` where `angle` is true, else arc length; cells are equal in arc length either way.
     """
     grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
-    balls = grid.starts
-    label, attractors = classify(map, balls.theta, balls.phi, balls.component, TRANSIENT)
+    particles = grid.starts
+    label, attractors = classify(map, particles.theta, particles.phi, particles.component, TRANSIENT)
     curves, names, count = {}, [], scaled(4000, fine, 50)
     for i, attractor in enumerate(attractors):
         name = "chaotic" if attractor.kind is Kind.CHAOTIC else f"period {attractor.period}"
@@ -37,7 +37,7 @@ def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
         orbit = orbit_on(map, attractor, count)
         shown = by_angle(orbit) if angle else by_arc_length(map, orbit)
         curves[names[-1]] = cycle_points(map, attractor)[0] if angle and attractor.period else shown
-    x = np.arctan2(balls.y, balls.x)[: grid.s.size] if angle else grid.s
+    x = np.arctan2(particles.y, particles.x)[: grid.s.size] if angle else grid.s
     order = np.argsort(x)
     table = label.reshape(grid.sin_phi.size, grid.s.size)[:, order]
     raster = Raster(x[order], grid.sin_phi, np.where(table < 0, len(names), table), (*names, "unsettled"))

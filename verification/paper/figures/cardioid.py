@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-BALLS = 40
+PARTICLES = 40
 
 
 def attractors(fine: float = 1.0) -> Panels:
@@ -56,8 +56,8 @@ def attractors(fine: float = 1.0) -> Panels:
     panels = []
     for lam in ("0.3", "0.8"):
         map, bounces = PinballMap("cardioid", lam=lam), scaled(500, fine, 20)
-        orbit = settled(map, BALLS, bounces).orbit
-        known = facts(map, seed=SEED, balls=BALLS, bounces=bounces, transient=TRANSIENT)
+        orbit = settled(map, PARTICLES, bounces).orbit
+        known = facts(map, seed=SEED, particles=PARTICLES, bounces=bounces, transient=TRANSIENT)
         panels.append(
             Panel(rf"$\lambda = {lam}$", "s", "sin_phi", {"attractor": by_arc_length(map, orbit)}, facts=known)
         )
@@ -154,7 +154,7 @@ def _mean(values: Array, chosen: NDArray[np.bool_]) -> Array:
 
 
 JOIN = 3**0.5 / 4  # the arc length of the lower join; the upper one is at -JOIN
-CUSPLESS_BALLS = 60  # orbits that show an attractor
+CUSPLESS_PARTICLES = 60  # orbits that show an attractor
 LAMBDA_C = (27 - 8 * 11**0.5) / 5
 STAR = "0.0712172"  # lambda*, as certified
 RANGES = (("0.1", "0.2", "0.3"), ("0.4", "0.5", "0.6"), ("0.7", "0.8", "0.9"))
@@ -191,9 +191,12 @@ def phase_space(fine: float = 1.0) -> Panels:
         curves, bounces = {}, scaled(200, fine, 20)
         for lam in lams:
             map = PinballMap("cuspless", lam=lam)
-            curves[lam] = by_arc_length(map, settled(map, CUSPLESS_BALLS, bounces).orbit)
+            curves[lam] = by_arc_length(map, settled(map, CUSPLESS_PARTICLES, bounces).orbit)
         known = facts(
-            PinballMap("cuspless", lam=[float(lam) for lam in lams]), seed=SEED, balls=CUSPLESS_BALLS, bounces=bounces
+            PinballMap("cuspless", lam=[float(lam) for lam in lams]),
+            seed=SEED,
+            particles=CUSPLESS_PARTICLES,
+            bounces=bounces,
         )
         panels.append(Panel(rf"$\lambda \in [{lams[0]}, {lams[-1]}]$", "s", "sin_phi", curves, facts=known))
     return tuple(panels)

@@ -19,7 +19,7 @@ from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
 from verification.paper.figures.cardioid import cycle_points, found, orbit_on, shares
-from verification.paper.figures.phase import SEED, balls_of, by_angle, facts, flights, outline, polar
+from verification.paper.figures.phase import SEED, by_angle, facts, flights, outline, particles_of, polar
 from verification.paper.figures.phase import slap_by_angle as slap_graph
 from verification.plots.sheet import (
     BLACK,
@@ -53,10 +53,10 @@ def islands(fine: float = 1.0) -> Panels:
     """Elastic orbits of many starts at three shapes, each orbit a curve of its own."""
     panels = []
     for alpha in ("0.02", "0.05", "0.08"):
-        map, balls, bounces = PinballMap("egg", lam=1, alpha=alpha), 60, scaled(400, fine, 20)
-        starts = phase_starts(map, balls, SEED)
+        map, particles, bounces = PinballMap("egg", lam=1, alpha=alpha), 60, scaled(400, fine, 20)
+        starts = phase_starts(map, particles, SEED)
         orbit = map.orbit(starts.theta, starts.phi, bounces)
-        curves = {f"orbit {i}": by_angle(balls_of(orbit, i)) for i in range(balls)}
+        curves = {f"orbit {i}": by_angle(particles_of(orbit, i)) for i in range(particles)}
         known = facts(map, seed=SEED, bounces=bounces)
         panels.append(Panel(rf"$\alpha = {alpha}$", "theta", "sin_phi", curves, facts=known))
     return tuple(panels)
@@ -131,13 +131,13 @@ def perturbed_slap(fine: float = 1.0) -> Panels:
     At `lam = 0` this is the graph of the slap map's third iterate.
     """
     curves = {"0.0": slap_graph(PinballMap("egg", lam=0, alpha=ALPHA), 3, scaled(400, fine, 20))}
-    rng, balls = np.random.default_rng(SEED), scaled(600, fine, 20)
+    rng, particles = np.random.default_rng(SEED), scaled(600, fine, 20)
     for lam in ("0.2", "0.3", "0.4"):
         map = PinballMap("egg", lam=lam, alpha=ALPHA)
-        theta = rng.uniform(-np.pi, np.pi, balls)
-        phi = rng.uniform(-1, 1, balls) * (float(lam) * np.pi / 2)
+        theta = rng.uniform(-np.pi, np.pi, particles)
+        phi = rng.uniform(-1, 1, particles) * (float(lam) * np.pi / 2)
         curves[lam] = Curve(theta, polar(map, map.orbit(theta, phi, 3).theta[-1]))
-    known = facts(PinballMap("egg", lam=[float(lam) for lam in curves], alpha=ALPHA), seed=SEED, balls=balls)
+    known = facts(PinballMap("egg", lam=[float(lam) for lam in curves], alpha=ALPHA), seed=SEED, particles=particles)
     return (Panel(rf"$\alpha = {ALPHA}$", "theta", "theta_3", curves, facts=known),)
 
 
@@ -242,7 +242,7 @@ def draw_attractors(panels: Panels) -> "Figure":
 
 
 def bifurcation(fine: float = 1.0) -> Panels:
-    """Where balls from random starts are after a long time, for contractions around the cascade and the merging."""
+    """Where particles from random starts are after a long time, for contractions around the cascade and the merging."""
     from numeric.sweeps.fields import bifurcation as sweep
     from numeric.sweeps.sweep import text_of
     from symbolic.tables.scene import Scene

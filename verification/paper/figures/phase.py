@@ -24,14 +24,14 @@ OUTLINE_POINTS = 721  # points of a table's boundary
 
 
 class Settled(NamedTuple):
-    """Orbits after their transient, a ball to a column, and the larger exponent of each."""
+    """Orbits after their transient, a particle to a column, and the larger exponent of each."""
 
     orbit: Orbit
     nu_plus: Array
 
 
-def settled(map: PinballMap, balls: int, bounces: int, transient: int = TRANSIENT, seed: int = SEED) -> Settled:
-    """The orbits of balls that start in the interior, long after. A ball that stops is left out.
+def settled(map: PinballMap, particles: int, bounces: int, transient: int = TRANSIENT, seed: int = SEED) -> Settled:
+    """The orbits of particles that start in the interior, long after. A particle that stops is left out.
 
     The exponent is that of the last quarter of the transient.
 
@@ -39,17 +39,17 @@ def settled(map: PinballMap, balls: int, bounces: int, transient: int = TRANSIEN
     >>> bool(np.all(np.abs(np.cos(found.orbit.theta)) < 1e-9)), bool(np.all(found.nu_plus < 0))
     (True, True)
     """
-    starts = interior_starts(map, balls, seed)
+    starts = interior_starts(map, particles, seed)
     part = max(1, transient // 4)
     end = map.exponents(starts.theta, starts.phi, part, transient - part, starts.component)
     whole = end.code == 0
     orbit = map.orbit(end.theta[whole], end.phi[whole], bounces, end.component[whole])
     going = orbit.code[-1] == 0
-    return Settled(balls_of(orbit, going), end.nu_plus[whole][going])
+    return Settled(particles_of(orbit, going), end.nu_plus[whole][going])
 
 
-def balls_of(orbit: Orbit, chosen: Any) -> Orbit:
-    """Some of the balls, by an index of columns."""
+def particles_of(orbit: Orbit, chosen: Any) -> Orbit:
+    """Some of the particles, by an index of columns."""
     return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their kinds
 
 
@@ -85,7 +85,7 @@ def by_angle(orbit: Orbit) -> Curve:
 
 
 def flights(orbit: Orbit) -> Curve:
-    """The trajectories in the plane, with a gap between two balls."""
+    """The trajectories in the plane, with a gap between two particles."""
     gap = np.full((1, orbit.x.shape[1]), np.nan)
     return Curve(*(np.concatenate([field, gap]).T.ravel() for field in (orbit.x, orbit.y)))
 
@@ -155,21 +155,21 @@ def slap_by_angle(map: PinballMap, iterate: int, points: int) -> Curve:
     return Curve(polar(map, found.x), found.y)
 
 
-BALLS, FLIGHTS = 300, 3  # orbits in phase space, and of those drawn in the table
+PARTICLES, FLIGHTS = 300, 3  # orbits in phase space, and of those drawn in the table
 
 
 def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
-    """The flights of a few balls and the bounces of many, long after their start.
+    """The flights of a few particles and the bounces of many, long after their start.
 
     >>> room, space = portrait(PinballMap("ellipse", lam="1/2", a=2), 0.1)
     >>> space.x, space.y
     ('s', 'sin_phi')
     """
     bounces = scaled(200, fine, 20)
-    orbit = settled(map, BALLS, bounces).orbit
+    orbit = settled(map, PARTICLES, bounces).orbit
     theta, phi, component = (field[-1, :FLIGHTS] for field in (orbit.theta, orbit.phi, orbit.component))
     few = map.orbit(theta, phi, 60, component)
-    known = facts(map, seed=SEED, balls=BALLS, bounces=bounces)
+    known = facts(map, seed=SEED, particles=PARTICLES, bounces=bounces)
     room = Panel("the table", "x", "y", {"outline": outline(map), "flights": flights(few)}, facts=known)
     space = Panel("phase space", "s", "sin_phi", {"bounces": by_arc_length(map, orbit)}, facts=known)
     return room, space

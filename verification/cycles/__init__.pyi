@@ -41,7 +41,7 @@ from .problem import Linearised, NormalForm, Problem, bordering_slopes, mirrored
 from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, Terms, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
 from .switching import Box, Curve, Degenerate, Tick, curve, switched
-from .systems import SHAPE, Cycles, rotations, symmetries
+from .systems import SHAPE, Cycles, reflected, rotations, symmetries
 
 __all__ = [
     "ATTEMPTS",
@@ -116,6 +116,7 @@ __all__ = [
     "polygon",
     "record",
     "refined",
+    "reflected",
     "rotations",
     "seen_mirrored",
     "settled",

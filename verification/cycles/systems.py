@@ -18,11 +18,10 @@ from math import pi, remainder
 from typing import Any
 
 import numpy as np
-from sympy import Matrix, Rational, cos, expand_trig, simplify, sin
-from sympy import pi as exact_pi
 
+from symbolic.tables.geometry import boundary_coefficients, group
 from symbolic.tables.law import PAPERS_LAW, Law
-from symbolic.tables.table import Table, theta
+from symbolic.tables.table import Table
 from verification.arithmetic.balls import FLOAT64
 from verification.cycles.cells import Spectrum, beside, dense, null_vectors, ring_matrix, solved, spectrum
 from verification.cycles.chords import Chords
@@ -65,12 +64,12 @@ def inverse(terms: Terms[Array], closure: Closure) -> Callable[[Any], Any]:
 
 
 SAME = 1e-7  # radians
-ORDERS = range(12, 1, -1)
+ROUND = 12  # turns of a circle about the origin that are counted, of infinitely many
 
 
 @cache
 def rotations(table: Table) -> int:
-    """The largest `k` up to 12 such that a turn by `2*pi/k` is proved to map the table to itself.
+    """The largest `k` such that a turn by `2*pi/k` is proved to map the table to itself; `ROUND` for a circle.
 
     >>> from symbolic.tables import cuspless, egg
     >>> rotations(egg(3)), rotations(cuspless)
@@ -78,17 +77,20 @@ def rotations(table: Table) -> int:
     """
     if len(table.components) > 1:
         return 1
-    point = Matrix(table.components[0].point)
-    for k in ORDERS:
-        angle = 2 * exact_pi * Rational(1, k)
-        turned = Matrix([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]]) * point
-        values = {theta: Rational(1, 3)} | {p.symbol: Rational(1, 97) for p in table.shapes}
-        gap = (turned - point.subs(theta, theta + angle)).subs(values)
-        if max(abs(float(x)) for x in gap) > SAME:
-            continue
-        if all(simplify(expand_trig(x)) == 0 for x in turned - point.subs(theta, theta + angle)):
-            return k
-    return 1
+    waves = boundary_coefficients(table.components[0])
+    if waves is not None and len(waves) == 1:
+        return ROUND
+    return sum(symmetry.sign > 0 for symmetry in group(table))
+
+
+def reflected(table: Table) -> bool:
+    """Is `theta -> -theta` proved to be a symmetry of the table?
+
+    >>> from symbolic.tables import egg
+    >>> reflected(egg(3).at(alpha="2/25"))
+    True
+    """
+    return any(symmetry.sign < 0 and symmetry.shift[0] == 0 for symmetry in group(table))
 
 
 @cache

@@ -12,17 +12,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import pi
 
 from numeric import PinballMap
 from numeric.sweeps.fields import bifurcation
 from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
-from symbolic.tables.geometry import group
 from symbolic.tables.scene import Scene
-from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
 from verification.cycles.recurrence import Closure
+from verification.cycles.systems import reflected, rotations
 from verification.maps.first_hit import closes_smoothly
 from verification.named.questions import PeriodicOrbit, Tick, find_cycles
 from verification.proofs.manifolds.grow import touches
@@ -149,7 +147,7 @@ def closer(asked: Asked, parts: Parts, values: NDArray[Any], j: int) -> tuple[fl
 def near(asked: Asked, lam: float, reach: float, heard: Tick) -> Iterator[tuple[Touch, PeriodicOrbit]]:
     """The tangencies within reach of a contraction, each with the saddle whose manifolds touch."""
     here = asked.scene.at(lam=repr(round(lam, 9)))
-    mirrored = rotations(here.table)[1] and here.law.odd
+    mirror = here.law.odd and reflected(here.table)
     map, known = plane_map(here), list[list[float]]()
     for cycle in find_cycles(here, up_to=asked.period, seed=asked.seed, tick=heard):
         one, two = cycle.multipliers
@@ -159,29 +157,16 @@ def near(asked: Asked, lam: float, reach: float, heard: Tick) -> Iterator[tuple[
             continue
         known.append(look)
         heard("tangencies")
-        orbit = round_of(cycle, map.turn, mirrored)
+        orbit = round_of(cycle, map.turn, mirror)
         rounds = max(ROUNDS, BOUNCES // len(orbit.start))
-        for touch in touches(orbit, map, lam, rounds, TRIED, any_bounce=mirrored):
+        for touch in touches(orbit, map, lam, rounds, TRIED, any_bounce=mirror):
             if abs(touch.parameter - lam) <= reach:
                 yield replace(touch, contact=settled(touch.contact, map)), cycle
 
 
 def plane_map(scene: Scene) -> Pinball:
     """The map of a scene, with the rotations that its table and its law have."""
-    return Pinball(scene.table, turn=1 if scene.law.placed else rotations(scene.table)[0], law=scene.law)
-
-
-def rotations(table: Table) -> tuple[int, bool]:
-    """How many rotations the table has, as shifts of its parameter, and whether `theta -> -theta` is a symmetry.
-
-    >>> from symbolic.tables import egg
-    >>> rotations(egg(3).at(alpha="2/25"))
-    (3, True)
-    """
-    symmetries = group(table)
-    turn = sum(symmetry.sign > 0 for symmetry in symmetries)
-    uniform = all((turn * symmetry.shift[0] / (2 * pi)).is_integer for symmetry in symmetries if symmetry.sign > 0)
-    return (turn if uniform else 1), any(symmetry.sign < 0 and symmetry.shift[0] == 0 for symmetry in symmetries)
+    return Pinball(scene.table, turn=1 if scene.law.placed else rotations(scene.table), law=scene.law)
 
 
 def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:

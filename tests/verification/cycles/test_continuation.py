@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.optimize import fsolve
-from sympy import Rational, sqrt, tan
+from sympy import Rational, cos, sin, sqrt, tan
 from sympy import pi as exact_pi
 
 from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import alpha_tilde, lambda_c
-from symbolic.tables import cuspless, egg
+from symbolic.tables import circle, cuspless, egg, ellipse, polar
 from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam as lam_letter
+from symbolic.tables.table import theta
 from verification.app.commands.follow import command as follow
 from verification.app.commands.follow import varied
 from verification.cycles import cells
@@ -27,6 +28,7 @@ from verification.cycles.cells import spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
 from verification.cycles.switching import switched
+from verification.cycles.systems import reflected, rotations
 from verification.named.events import proof_of
 from verification.named.locate import locate
 from verification.plots.dynamics import runs
@@ -355,3 +357,20 @@ def test_curves_of_the_events_come_with_their_special_points(tmp_path):
     assert result.return_value == 0
     assert "1:2 resonance at (0.055385138, 1.000000000)" in result.output  # 1/(9 + sqrt(82))
     assert [point["what"] for point in curve["special"]] == ["1:2 resonance"]
+
+
+WAVES = polar(1 + cos(6 * theta) / 50 + sin(9 * theta) / 100, "waves")
+
+
+@pytest.mark.parametrize(
+    ("table", "turns", "mirror"),
+    [
+        (egg(3), 3, True), (egg(13), 13, True), (egg(24), 24, True), (ellipse, 2, True), (circle, 12, True),
+        (cuspless, 1, True), (WAVES, 3, False), (polar(1 + cos(theta - 1) / 9, "aside"), 1, False),
+    ],
+    ids=lambda value: getattr(value, "name", None),
+)  # fmt: skip
+def test_turns_of_a_table_are_counted_up_to_any_order_and_its_mirror_apart(table, turns, mirror):
+    """A turn by `2*pi/n` keeps `sum c_k exp(i*k*theta)` where `n` divides all differences of the `k`."""
+    assert rotations(table) == turns
+    assert reflected(table) is mirror

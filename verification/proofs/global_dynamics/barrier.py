@@ -21,8 +21,8 @@ import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
-from symbolic.tables.geometry import group
 from symbolic.tables.scene import Scene
+from verification.cycles.systems import reflected, rotations
 from verification.proofs.global_dynamics.boxes import Boxes, Images
 from verification.proofs.global_dynamics.crisis import enters, grown, marked_cells
 from verification.proofs.global_dynamics.graph import BLOCK, Cells, Grid, Mask
@@ -61,12 +61,12 @@ class Barrier:
     @cached_property
     def turns(self) -> int:
         """How many turns keep the table."""
-        return sum(symmetry.sign == 1 for symmetry in group(self.map.map.table))
+        return rotations(self.map.map.table)
 
     @cached_property
     def mirrored(self) -> bool:
         """Does the reflection `theta -> -theta` keep the table?"""
-        return any(symmetry.sign == -1 and symmetry.shift == (0,) for symmetry in group(self.map.map.table))
+        return reflected(self.map.map.table)
 
     @cached_property
     def grid(self) -> Grid:

@@ -35,7 +35,7 @@ from verification.app.choice import (
     tip,
 )
 from verification.app.cli import refusal
-from verification.paper.figures.phase import outline
+from verification.plots.results import outline
 from verification.plots.sheet import PALETTE
 
 INK, PARTICLE, CYCLE = "#30343a", "#c2410c", "#1d4ed8"

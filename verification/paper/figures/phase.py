@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from numeric import Orbit, PinballMap
 from numeric.pinball.sampling import boundary, interior_starts
+from verification.plots import results
 from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Fact, Panel, Panels, cloud, scaled, sheet
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 SEED = 1
 TRANSIENT = 2000  # bounces thrown away: the paper's several thousand, where draft pictures need no more
-OUTLINE_POINTS = 721  # points of a table's boundary
 
 
 class Settled(NamedTuple):
@@ -91,13 +91,8 @@ def flights(orbit: Orbit) -> Curve:
 
 
 def outline(map: PinballMap) -> Curve:
-    """The boundary of the table, closed."""
-    parts = []
-    for index, (low, high) in enumerate(map.states.ends):
-        theta = np.linspace(low, high, OUTLINE_POINTS)
-        parts.append(np.array(map.states.point(np.full(OUTLINE_POINTS, index), theta)))
-    x, y = np.concatenate([*parts, parts[0][:, :1]], axis=1)
-    return Curve(x, y)
+    """The boundary of a table without holes, closed."""
+    return Curve(*(np.append(row, row[0]) for row in results.outline(map)))
 
 
 def facts(map: PinballMap, **more: Fact) -> dict[str, Fact]:

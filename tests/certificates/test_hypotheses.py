@@ -264,6 +264,47 @@ def test_an_entry_out_of_its_range_is_wrong_and_says_so(check, changed):
         check.checked(given | changed)
 
 
+@pytest.mark.parametrize(
+    ("entry", "accepted", "refused"),
+    [
+        ("bits", [16, 200_000], [15, 200_001]), ("digits", [1, 60_000], [0, 60_001]),
+        ("radius", [["1", "0"], ["1", "-500000"]], [["2", "0"], ["1", "-500001"], ["0", "0"]]),
+        ("components", [[0] * 1024], [[0] * 1025]), ("mirror", [False, True], [0, None]), ("free", [""], ["lam", "a"]),
+        ("centre", [[["999999", "0"]] * 2], [[["1000000", "0"]] * 2, [["-1000000", "0"]] * 2]),
+    ],
+)  # fmt: skip
+def test_an_entry_at_the_end_of_its_range_is_read_on_and_one_beyond_it_is_not(check, entry, accepted, refused):
+    """Read on, the documents are refused for what they state."""
+    given = json.loads((FOLDER / "minor-axis.json").read_text()) | {"statement": ""}
+    for value in accepted:
+        with pytest.raises(check.Wrong, match=r"the statement must be|do not fit"):
+            check.checked(given | {entry: value})
+    for value in refused:
+        with pytest.raises(check.Wrong, match="out of range"):
+            check.checked(given | {entry: value})
+
+
+@pytest.mark.parametrize("text", ["lambda-star", "phi-star", "saddle-node", "minor-axis"])
+def test_a_document_of_one_kind_is_refused_under_each_of_the_others(check, text):
+    """By its entries, its free letter, or the number of its unknowns: before anything is computed."""
+    given = json.loads((FOLDER / f"{text}.json").read_text())
+    for kind in {*check.KINDS} - {given["kind"]}:
+        with pytest.raises(check.Wrong):
+            check.checked(given | {"kind": kind, "checks": dict.fromkeys(check.KINDS[kind], True)})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"scene": {"table": "circle"}}, {"components": [0, 1]}, {"components": [0, 0, 0]}, {"mirror": False},
+     {"scene": {"table": "cuspless", "law": "-lam*eta"}}, {"free": "alpha"}],
+    ids=str,
+)  # fmt: skip
+def test_the_corner_orbit_is_one_of_the_cuspless_cardioid_and_closed_by_its_mirror(check, change):
+    given = json.loads((FOLDER / "lambda-star.json").read_text())
+    with pytest.raises(check.Wrong, match=r"do not fit|out of range"):
+        check.checked(given | change)
+
+
 @pytest.mark.parametrize("given", [[], None, "kind", 3, {}, {"kind": "cycle"}, {"kind": ["cycle"]}])
 def test_what_is_no_document_is_refused_and_not_read_on(check, given, tmp_path, capsys):
     file = tmp_path / "some.json"

@@ -163,6 +163,9 @@ def test_the_exponents_of_pieces_that_stretch_by_known_factors_are_their_logarit
     assert same == pytest.approx((math.log(2) / 2, math.log(2) / 2), abs=1e-6)
     assert other == pytest.approx((math.log(2), math.log(3)), abs=1e-6)
     assert exponents({ARC: affine(0, -2, 2, 0), WALL: double}, SQUARE) is None
+    for rows in ((0.5, 0.25, 0.5, 2.0), (0.25, -0.5, 0.75, -3.0)):  # by the larger multiplier, wherever `v` comes from
+        low, high = exponents({ARC: affine(*rows), WALL: affine(*rows)}, SQUARE, bounces=1, length=8)
+        assert low <= math.log(max(abs(np.linalg.eigvals(np.array(rows).reshape(2, 2))))) <= high < low + 0.06
     above = [(-1.0, 0.5), (1.0, 0.5), (1.0, 1.0), (-1.0, 1.0)]  # goes up, and never to the other piece
     assert exponents({ARC: double, WALL: treble}, above, bounces=1, length=3)[0] == pytest.approx(math.log(3), abs=1e-6)
 

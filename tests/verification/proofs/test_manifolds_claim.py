@@ -134,26 +134,30 @@ BALL, OPEN = arb(1, 0.1), arb(0, 1)
 
 
 @pytest.mark.parametrize(
-    ("status", "convex", "objects", "bend", "speed", "missing"),
+    ("status", "convex", "clear", "objects", "bend", "speed", "missing"),
     [
-        (Status.UNIQUE, True, "", BALL, -BALL, {}),
-        (Status.UNKNOWN, True, "", BALL, BALL, dict.fromkeys(("exists", "unique", "quadratic", "transversal"))),
-        (Status.EMPTY, True, "", BALL, BALL, dict.fromkeys(("exists", "unique"), False)
+        (Status.UNIQUE, True, False, "", BALL, -BALL, {}),
+        (Status.UNKNOWN, True, False, "", BALL, BALL, dict.fromkeys(("exists", "unique", "quadratic", "transversal"))),
+        (Status.EMPTY, True, False, "", BALL, BALL, dict.fromkeys(("exists", "unique"), False)
          | dict.fromkeys(("quadratic", "transversal"))),
-        (Status.UNIQUE, None, "", BALL, BALL, {"admissible": None}),
-        (Status.UNIQUE, True, "no law", BALL, BALL, {"admissible": None}),
-        (Status.UNIQUE, True, "", OPEN, BALL, {"quadratic": None}),
-        (Status.UNIQUE, True, "", BALL, OPEN, {"transversal": None}),
-        (Status.UNIQUE, True, "", arb(0), -BALL, {"quadratic": None}),
+        (Status.UNIQUE, None, False, "", BALL, BALL, {"admissible": None}),
+        (Status.UNIQUE, None, True, "", BALL, BALL, {}),  # each flight is free, though the table is not convex
+        (Status.UNKNOWN, None, True, "", BALL, BALL,
+         dict.fromkeys(("exists", "unique", "admissible", "quadratic", "transversal"))),
+        (Status.UNIQUE, True, True, "no law", BALL, BALL, {"admissible": None}),
+        (Status.UNIQUE, True, False, "", OPEN, BALL, {"quadratic": None}),
+        (Status.UNIQUE, True, False, "", BALL, OPEN, {"transversal": None}),
+        (Status.UNIQUE, True, False, "", arb(0), -BALL, {"quadratic": None}),
     ],
 )  # fmt: skip
 def test_each_item_of_a_tangency_is_what_its_own_step_proves(
-    monkeypatch, status, convex, objects, bend, speed, missing
+    monkeypatch, status, convex, clear, objects, bend, speed, missing
 ):
     linear = SimpleNamespace(values=[arb(0)] * 3, along=[arb(0)] * 2, step=lambda values, how: [arb(0)] * len(values))
     real = [SimpleNamespace(real=arb(k)) for k in range(7, 11)]  # complex balls have a real part
     pairs = [SimpleNamespace(saddle=SimpleNamespace(stable=real[k], unstable=real[k + 1])) for k in (0, 2)]
     system = SimpleNamespace(linear=lambda at: linear, parameter=arb("0.6"), contact=CLAIM.contact, pairs=pairs)
+    system.clear = lambda at: clear
     zero = [arb(0.1), arb(0.2), arb(0.3), arb(0.4), arb(0.6)]
     monkeypatch.setattr(proof, "settled", lambda *_: SimpleNamespace(unknowns=zero))
     monkeypatch.setattr(proof, "stepped", lambda *_: Enclosure(status, zero))

@@ -9,7 +9,7 @@ from sympy import Rational
 
 from symbolic.cycles.thresholds import lambda_c
 from verification.arithmetic.balls import FLOAT64, real_ball, working
-from verification.proofs.corner import corner, corner_orbit, evidence
+from verification.proofs.corner import corner, corner_orbit, evidence, half_return
 from verification.proofs.corner.border_collision import Expansion, Piece, _to_border, fixed_point
 from verification.proofs.corner.corner import ARC, WALL, Bounce, Corner, constant
 from verification.proofs.corner.corner_orbit import CornerClaim, corner_proved, doubled_branch
@@ -124,6 +124,8 @@ CORNER = {"s4_minimum_at_a_kink", "s4_dips_below", "unstable"}
         (replace(GOOD, status=Status.UNKNOWN), True, 10, ITEMS, set()),
         (FAR, True, 10, {"admissible", "minimal_period"}, set()),  # the mirror image of the corner's orbit
         (NEAR_2, True, 10, {"admissible", "minimal_period"}, set()),
+        (replace(GOOD, zero=[arb(0), GOOD.zero[1]]), True, 10, {"admissible", "minimal_period"}, set()),
+        (replace(GOOD, zero=[arb(2), GOOD.zero[1]]), True, 10, {"admissible", "minimal_period"}, set()),
     ],
 )  # fmt: skip
 def test_the_checklist_of_the_corner_orbit_says_what_is_proved_of_it(
@@ -356,3 +358,41 @@ def test_the_images_of_a_box_hold_those_of_the_smaller_boxes_within_it(component
                                     for q, p, t in zip(image, point, told, strict=True)))  # fmt: skip
                 assert any(held)
                 assert all(abs(q.whole) < 0.05 for image in found for q in image)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "traps", "grown", "proved"),
+    [
+        ({}, [True], 1, True),
+        ({}, [None, None, True], 3, True),  # a region that the family does not trap is grown anew from it
+        ({}, [None] * 9, 5, False),
+        ({"expansion": lambda _: None}, [True], 1, False),
+        ({"expansion": lambda _: Expansion(OPEN, arb(1), arb(2))}, [True], 1, False),
+        ({"expansion": lambda _: Expansion(OPEN, arb(1, 0.5), arb(2))}, [True], 1, False),
+        ({"pieces": None}, [True], 1, False),
+        ({"grown": None}, [True], 1, False),
+    ],
+)
+def test_a_step_is_proved_where_a_region_is_trapped_and_vectors_of_its_cone_grow(
+    monkeypatch, wrong, traps, grown, proved
+):
+    asked, region = [], [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0)]
+
+    def pieces(region, e):
+        if "pieces" in wrong:
+            raise ArithmeticError
+        return {ARC: affine(0.5, 0, 0, -2), WALL: affine(0.5, 0, 0, 2)}
+
+    monkeypatch.setattr(
+        half_return, "grown", lambda *given: asked.append(given) or (None if "grown" in wrong else region)
+    )
+    monkeypatch.setattr(half_return, "pieces", pieces)
+    monkeypatch.setattr(half_return, "trapped", lambda *_: traps.pop(0))
+    monkeypatch.setattr(
+        half_return, "expansion", wrong.get("expansion", lambda _: Expansion(OPEN, arb("1.125"), arb(2)))
+    )
+    found = half_return.step({}, (0.0, 1e-3))
+
+    assert (found is not None) is proved
+    assert len(asked) == grown
+    assert found is None or (found[1].region is region and found[1].e == (0.0, 1e-3))

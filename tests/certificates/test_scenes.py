@@ -191,3 +191,27 @@ def test_a_chord_is_free_where_no_wall_is_between_its_ends_in_whatever_direction
         except check.Unproved:
             assert crossed
     assert met == {True: 2, False: 9}
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "holds"),
+    [(0, 4, True), (1, 3, True), (1, 2, True), (2, 3, True), (0, 1, True), (-1, 2, False), (3, 5, False)],
+)
+def test_an_orbit_over_a_box_holds_that_from_its_middle_or_is_none(check, low, high, holds):
+    """A flight over the box lands in [0, 4], the one from the middle in `[low, high]`."""
+    p, table = 60, check.Table([["1", "-pi", "pi"]], {}, "", 60)
+    jet = lambda a, b: check.Jet.of(check.I.of(a, p).hull(check.I.of(b, p)), 1, 0)  # noqa: E731
+    table.flight = lambda part, place, state, names: [jet(0, 4), jet(0, 4)]
+    launch = lambda *letters: (letters[0], letters[1], {})  # noqa: E731
+    boxes = [check.I.of(-1, p).hull(check.I.of(1, p))] * 3
+    middle = [None, [jet(low, high), jet(1, 2)]]
+    run = lambda given: table.orbit(launch, boxes, [(0, None)] * 2, 1, given)  # noqa: E731
+
+    if holds:
+        for given in (middle, [None, middle[1][::-1]]):
+            x, y = (check.value(f) for f in run(given)[1])
+            assert {(x.lo, x.hi), (y.lo, y.hi)} == {(low << p, high << p), (1 << p, 2 << p)}
+    else:
+        for given in (middle, [None, middle[1][::-1]]):
+            with pytest.raises(check.Unproved, match="no middle orbit"):
+                run(given)

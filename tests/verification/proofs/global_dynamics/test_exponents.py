@@ -113,8 +113,9 @@ def test_a_set_in_which_a_walk_ends_is_refused():
     if graph.transitions.edges[last[0], last[0]]:
         pytest.fail("the box chosen is fixed; choose another")
 
-    with pytest.raises(ValueError, match="no edge within the set"):
-        expansion(map, graph.transitions, alone)
+    for some in (alone, np.zeros_like(block)):
+        with pytest.raises(ValueError, match="no edge within the set"):
+            expansion(map, graph.transitions, some)
 
 
 def test_a_box_that_may_shrink_vectors_to_nothing_bounds_no_exponent():

@@ -2,7 +2,7 @@
 
 A part is done when the file of each of its fields is there and its checksum is right; a file appears at once or not
 at all. So there is no journal to lose, and whatever a killed sweep leaves behind is redone or overwritten. A part has
-the same bits whoever computes it: two drivers are kept apart where the system has locks, and only waste time elsewhere.
+the same bits whoever computes it: two drivers are kept apart by a lock, and without one only waste time.
 """
 
 import itertools
@@ -13,7 +13,6 @@ import shutil
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -129,24 +128,21 @@ def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[bool]:
-    """Keeps a second driver out, where the system has locks that end with their process, and says whether it does."""
+    """Keeps a second driver out by a lock that ends with its process, and says whether the file system has one."""
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(path.with_name(f".{path.name}.lock"), blocking=False)
     try:
-        locks: Any = import_module("fcntl")
-    except ImportError:  # not a POSIX system: two drivers do everything twice, with the same bits
+        lock.acquire()
+    except Timeout:
+        raise ValueError(f"--store {path}: another process is writing to it; wait for it or stop it") from None
+    except (OSError, NotImplementedError):  # no locks there, or nothing to be written: two drivers do everything twice
         yield False
         return
-    handle = os.open(path, os.O_RDONLY)
     try:
-        try:
-            locks.flock(handle, locks.LOCK_EX | locks.LOCK_NB)
-            alone = True
-        except BlockingIOError:
-            raise ValueError(f"--store {path}: another process is writing to it; wait for it or stop it") from None
-        except OSError:  # a file system without locks
-            alone = False
-        yield alone
+        yield True
     finally:
-        os.close(handle)
+        lock.release()
 
 
 def _made(sweep: Sweep, path: Path) -> None:

@@ -7,6 +7,7 @@ tables with plain numbers is read without SymPy.
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +39,15 @@ KEYS = (*BOUNDARY, "shape", "law", "lam")
 PLAIN = re.compile(r"[+-]?(\d{1,99}/[1-9]\d{0,98}|(\d{1,99}\.?\d{0,99}|\.\d{1,99})([eE][+-]?\d{1,2})?)", re.ASCII)
 WORD = re.compile(r"[A-Za-z][A-Za-z0-9_ -]{0,59}", re.ASCII)
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def like(name: str, known: Iterable[str]) -> str:
+    """The question whether another name was meant, where a known one is like it.
+
+    >>> like("stadum", GALLERY)
+    '; did you mean stadium?'
+    """
+    return "".join(f"; did you mean {each}?" for each in get_close_matches(name, list(known), 1))
 
 
 def exact(label: str, given: Any) -> "Fraction | Expr":

@@ -13,7 +13,6 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from functools import cached_property, wraps
 from importlib import import_module
 from importlib.util import find_spec
@@ -23,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symbolic.tables.definition import like
 from verification.arithmetic.iteration import heard
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ HOMES = {  # commands that share a module
 DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}
 EXTRAS |= {"pyarrow": "table", "hypothesis": "hypothesis"}
-EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed"), "sweep")
+EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed", "filelock"), "sweep")
 COMPLETE = "_PINBALL_COMPLETE"  # the variable of the environment by which a shell asks
 LONGEST = 600  # characters of a sentence; a reader sees the end of it
 
@@ -242,8 +242,8 @@ class Questions(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
-            near = "".join(f"; did you mean {name}?" for name in get_close_matches(cmd_name, COMMANDS, 1))
-            raise click.UsageError(f"no command is called {cmd_name!r}; accepted: {', '.join(COMMANDS)}{near}")
+            accepted = ", ".join(COMMANDS) + like(cmd_name, COMMANDS)
+            raise click.UsageError(f"no command is called {cmd_name!r}; accepted: {accepted}")
         home, attribute = HOMES.get(cmd_name, (cmd_name, "command"))
         command: click.Command = getattr(import_module(f"verification.app.commands.{home}"), attribute)
         return command
@@ -326,10 +326,12 @@ def sentence(error: click.ClickException) -> str:
     message = error.format_message().strip().removesuffix(".")
     context = getattr(error, "ctx", None)
     if isinstance(error, click.NoSuchOption) and context is not None:
-        options = {name for parameter in context.command.get_params(context) for name in parameter.opts}
-        accepted = ", ".join(sorted(name for name in options if name.startswith("-")))
-        return f"no option is called {error.option_name}; accepted: {accepted}"
+        options = {name for each in context.command.get_params(context) for name in each.opts if name[0] == "-"}
+        known = sorted(options)
+        return f"no option is called {error.option_name}; accepted: {', '.join(known)}{like(error.option_name, known)}"
     kind = getattr(getattr(error, "param", None), "type", None)
+    if isinstance(kind, click.Choice) and " is not one of " in message:
+        return message + like(message.partition(" is not one of ")[0].rpartition(": ")[2].strip("'"), kind.choices)
     if isinstance(kind, click.IntRange):
         return f"{message}; accepted: integers from {kind.min}" + ("" if kind.max is None else f" to {kind.max}")
     if type(error) is click.UsageError and context is not None and context.parent is not None:
@@ -340,8 +342,7 @@ def sentence(error: click.ClickException) -> str:
 def _told(message: str, status: int) -> int:
     """Prints `message` as one sentence, and gives `status` back."""
     message = " ".join(message.split())
-    if len(message) > LONGEST:
-        message = message[: LONGEST - 200] + " ... " + message[-195:]
+    message = message if len(message) <= LONGEST else message[: LONGEST - 200] + " ... " + message[-195:]
     if os.environ.get("PINBALL_DEBUG") == "1":
         traceback.print_exc()
     click.echo(f"pinball: {message}", err=True)

@@ -7,7 +7,6 @@ where there is a closed form it must agree. `value` and `radius` are decimals th
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -18,6 +17,7 @@ from sympy import Expr, Integer, N, S, acos
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
 from symbolic.expressions.text import kernel, load
+from symbolic.tables.definition import like
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
@@ -114,8 +114,7 @@ def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) ->
     '0.0934003354313602414161'
     """
     if name not in NAMES:
-        near = "".join(f"; did you mean {each}?" for each in get_close_matches(name, NAMES, 1))
-        raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}{near}")
+        raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}{like(name, NAMES)}")
     if not 1 <= digits <= MOST_DIGITS:
         raise ValueError(f"locate: digits = {digits} is out of range; accepted: 1 to {MOST_DIGITS}")
     search, parameters = NAMES[name]

@@ -164,6 +164,8 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(monkeypatch, tmp_path
         (["verify", "--report", "/dev/null/x"], "--report '/dev/null/x' cannot be made"),
         (["judge"], "no command is called 'judge'; accepted: verify, "),
         (["reprt"], "; did you mean report?"),
+        (["orbit", "eg"], "; did you mean egg?"),
+        (["orbit", "egg", "--lamm", "1"], "; did you mean --lam?"),
         (["judge\nme\x1b"], "no command is called 'judge\\nme\\x1b'"),
     ],
 )

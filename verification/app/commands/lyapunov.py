@@ -267,10 +267,10 @@ def show(console: "Console", document: dict[str, Any]) -> None:
     law = LAWS[document["start_law"]]
     console.print(f"over {document['orbits']} orbits of {document['counted']} bounces, per bounce; starts: {law}")
     for group in document["groups"]:
-        line = f"{group['orbits']:>8} orbits: {group['kind']}"
+        console.print(f"{group['orbits']:>8} orbits: {group['kind']}")
         if group["nu_plus"] is not None:
-            line += f"  nu_plus = {_measured(group, 'nu_plus')}  nu_minus = {_measured(group, 'nu_minus')}"
-        console.print(line)
+            both = (f"{name} = {_measured(group, name)}" for name in ("nu_plus", "nu_minus"))
+            console.print(f"{'':>17} {', '.join(both)}")
         if group.get("naive_stderr"):
             ratio = group["nu_plus_stderr"] / group["naive_stderr"]
             console.print(

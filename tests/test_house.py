@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tokenize
 import tomllib
+from collections import Counter
 from itertools import chain
 from pathlib import Path
 from types import SimpleNamespace
@@ -61,6 +62,10 @@ def test_precision_is_never_set_for_others(path):
 @pytest.mark.parametrize("path", CODE + TESTS, ids=named)
 def test_a_file_holds_one_idea(path):
     assert len(path.read_text().splitlines()) <= LINES
+
+
+def test_a_room_holds_at_most_fifteen_files():
+    assert {named(folder): count for folder, count in Counter(path.parent for path in CODE).items() if count > 15} == {}
 
 
 @pytest.mark.parametrize("path", CODE, ids=named)

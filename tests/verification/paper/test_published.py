@@ -11,7 +11,7 @@ from symbolic import tables
 from symbolic.tables.table import lam
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import paper
-from verification.paper.judges import elastic, laws, polygons
+from verification.paper.published import elastic, laws, polygons
 from verification.paper.report.report import judge
 
 SHIPPED = ("polygons", "elastic", "laws")

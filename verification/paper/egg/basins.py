@@ -4,6 +4,8 @@ The basin of an attracting cycle is open, so no two such basins are intermingled
 a fractal boundary, and its dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
 """
 
+from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from math import tau
 
@@ -12,7 +14,7 @@ from sympy import Expr, Rational
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind
-from numeric.dynamics.basins import Window, intermingling, labels, random_points, starts_at, whole
+from numeric.dynamics.basins import labels, random_points, starts_at, whole
 from numeric.dynamics.phase_points import Array, phase_points
 from numeric.dynamics.recognition import Labels
 from numeric.dynamics.statistics import Uncertainty, uncertainty
@@ -20,12 +22,15 @@ from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, is_dou
 from symbolic.cycles.polygons import near_flat, saddle_node
 from symbolic.expressions.signs import Finding
 from symbolic.tables import egg
+from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha, lam
 from verification.arithmetic.iteration import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, sampled, shown
 from verification.paper.judges.attractors import SHAPE, found, unsettled
+from verification.proofs.global_dynamics.common_boundary import CommonBoundary, entered_around
+from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
 from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_points
 
@@ -92,22 +97,47 @@ def two_basins(claim: Claim) -> Judgement:
     )
 
 
+def beyond_the_crisis() -> CommonBoundary:
+    """The triangle of the vertices at 0.7, with an orbit to either attracting triangle along one of its branches."""
+    sink, saddle = (1.16897116, 0.43119899), replace(TRIANGLE, start=(-0.14235898,))
+    sinks, turns = (sink, (-sink[0], -sink[1])), (Fraction(1, 3), Fraction(2, 3))
+    starts = 0.9, 0.21125  # sampled in the middle of pieces of the branch that go to one triangle
+    return CommonBoundary(Scene("egg", alpha=SHAPE), Fraction(7, 10), saddle, 1, starts, sinks, turns)
+
+
+MIDDLE = (Fraction(0), Fraction(1, 50)), (Fraction(0), Fraction(1, 20))  # between the triangles, one for each
+
+
+@cache
+def common() -> tuple[Finding, Finding]:
+    """Both basins have open discs between the triangles; and they come near all of the saddle's stable manifold."""
+    found = beyond_the_crisis()
+    checks = found.checks
+    cycles = answer(bool(checks["discs"] and checks["apart"]), "two cycles attract a disc each, apart from the other")
+    inner = [entered_around(found, k, *point) for k, point in enumerate(MIDDLE)]
+    said = ", ".join(f"all starts near theta = {x}, phi = {y}" for x, y in MIDDLE)
+    open_ = answer(all(inner), f"{said} go to one triangle each")
+    proof = "of the orbits along one branch of its unstable manifold, one is proved to go to each attracting triangle"
+    return by("both basins are open", cycles, open_), by("the inclination lemma", answer(found.proved, proof))
+
+
 @judges("egg.basins_intermingled")
 def egg_intermingled(claim: Claim) -> Judgement:
-    """The uncertainty exponent over five decades, and small squares in the middle of the region."""
+    """Open discs of one basin alone lie in the region; both basins come near all of the saddle's stable manifold."""
     law = boundary("egg", "0.7", (1e-3, 1e-5, 1e-7))
-    map, attractors = scene("egg", "0.7")
-    middle = Window((-0.3, 0.3), (-0.1, 0.1))
-    wide, fine = intermingling(map, attractors, [1e-2, 1e-4], 100, SEED, middle, EARLY)
-    said = (
-        f"the boundary has the dimension {told(law)}, next to 2; around s = 0, phi = 0 {wide.mixed.count} of 100 "
-        f"squares of side 0.01 and {fine.mixed.count} of side 0.0001 hold starts of both basins among 25. In the end "
-        f"the share must vanish, since the basins are open: it falls like eps^{law.exponent:.3f}"
-    )
-    return sampled(
-        "a fractal boundary of dimension about 1.968, not yet all of the region",
-        said,
-        law.dimension - 3 * law.error > 1.9 and wide.mixed.low > 0.8,
+    open_, both = common()
+    return Judgement(
+        counterexample(
+            "the region holds open sets of one basin alone, so not every neighbourhood in it meets both",
+            open_,
+        ),
+        "each neighbourhood of each point of the stable manifold of the triangle of the vertices holds open sets of "
+        "both basins, so that manifold lies on the boundary of both; sampled, the common boundary has the dimension "
+        f"{told(law)}",
+        both,
+        "The basins of the two attracting triangles are open, so they are not completely intermingled; they have a "
+        "common boundary, which holds the stable manifold of the unstable triangle of the vertices: arbitrarily close "
+        "to each of its points there are starts that go to either attracting triangle.",
     )
 
 

@@ -2,6 +2,7 @@
 
 from .barrier import Barrier, lost
 from .boxes import Boxes
+from .common_boundary import CommonBoundary, entered_around
 from .crisis import BoundaryCrisis, boxed, kept_apart
 from .database import KNOWN, Numbers, continued
 from .fates import Fate
@@ -17,6 +18,7 @@ __all__ = [
     "BoundaryCrisis",
     "Boxes",
     "Cells",
+    "CommonBoundary",
     "Fate",
     "Grid",
     "MorseGraph",
@@ -26,6 +28,7 @@ __all__ = [
     "boxed",
     "checked",
     "continued",
+    "entered_around",
     "every_return",
     "expansion",
     "kept_apart",

@@ -23,10 +23,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from flint import acb, arb, fmpq
+from flint import acb, arb
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
@@ -37,26 +37,23 @@ from verification.arithmetic.series import Jet
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.proofs.global_dynamics.boxes import Boxes, Images
+from verification.proofs.global_dynamics.branch import OUTER, Branch, exact, unstable_branch
 from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Rectangles, mapped
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import whole
 from verification.proofs.manifolds.enclosed import (
-    Enclosed,
     TooWideError,
     complex_balls,
-    enclosed,
     enclosed_saddle,
-    remainder,
 )
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import orbit_of, orbit_said
-from verification.proofs.manifolds.saddle import Orbit, Saddle, horner, local, saddle
+from verification.proofs.manifolds.saddle import Orbit, Saddle, local, saddle
 from verification.proofs.manifolds.tangency import one_cycle, scale
 from verification.proofs.manifolds.touching import bounce
 
 KIND, SCHEMA = "boundary crisis", 1
 BITS, MANY_BITS = 160, 640  # of the balls; many for an orbit in balls, which grow faster than the orbit is unstable
-OUTER = 16  # the radius of the disc on which the rule is bounded: four bits for each order of the series
 PIECES, ROUNDS = 1024, 3  # of the branch at LOW, and how far it is followed before boxes take over
 CUTS = 16  # of the contractions, over each of which the saddle is enclosed
 MOST_BOUNCES, SAMPLES = 400, 20_000
@@ -66,14 +63,6 @@ SLACK = 1e-14  # for each turn of 2*pi taken off, more than that errs in float64
 FAR, NEAR = 10.0, 1e-5  # radians: of a start at most, and between the saddle at LOW and where it is said to be
 CHECKS = ("saddle", "manifold", "kept", "taken", "apart", "leaves")
 Array = NDArray[np.float64]
-
-
-class Branch(NamedTuple):
-    """The enclosed series of an unstable manifold, a bound for its remainder, and the bits of its balls."""
-
-    series: Enclosed
-    error: arb
-    bits: int
 
 
 @dataclass(frozen=True)
@@ -168,43 +157,26 @@ class BoundaryCrisis:
         ends = [self.lam[0] + (self.lam[1] - self.lam[0]) * Fraction(k, CUTS) for k in range(CUTS + 1)]
         with working(BITS):
             map, orbit, parts = self.map.over(complex_balls(BITS)), self.saddle, list[Saddle]()
-            before = enclosed_saddle(orbit, map, _exact(ends[0]))
+            before = enclosed_saddle(orbit, map, exact(ends[0]))
             if not abs(before.points[0] - orbit.start[0]) < NEAR:
                 raise TooWideError("saddle", "the saddle at the lower contraction is another than said")
             for a, b in pairwise(ends):
-                around = enclosed_saddle(orbit, map, acb(_exact(a).real.union(_exact(b).real)))
+                around = enclosed_saddle(orbit, map, acb(exact(a).real.union(exact(b).real)))
                 orbit = replace(orbit, start=tuple(float(x.real.mid()) for x in around.points))
-                after = enclosed_saddle(orbit, map, _exact(b))
+                after = enclosed_saddle(orbit, map, exact(b))
                 if not (one_cycle(around, before) and one_cycle(around, after)):
                     raise TooWideError("saddle", "the cycle at an end may be another than the one in between")
                 parts.append(replace(around, orbit=orbit))
                 before = after
         return parts[0], parts[-1]
 
-    def _branch(self, around: Saddle, lam: Fraction, bits: int) -> "Branch":
+    def _branch(self, around: Saddle, lam: Fraction, bits: int) -> Branch:
         """The series of the unstable manifold at one contraction, its remainder proved; `TooWideError`."""
-        with working(bits):
-            size = scale(around.orbit, self.map, float(lam), True, OUTER)
-            at = enclosed_saddle(around.orbit, self.map.over(complex_balls(bits)), _exact(lam))
-            if not one_cycle(around, at):
-                raise TooWideError("saddle", "the branch may be that of another cycle")
-            made = enclosed(at, True, bits // 4, size.unit, size.chief)
-            error = remainder(made, OUTER)
-            if not made.factor.real > 1:
-                raise TooWideError("saddle", "the unstable multiplier is not above 1, and the branch has two sides")
-            return Branch(made, error, bits)
+        return unstable_branch(around.orbit, self.map, lam, bits, around)
 
-    def _launched(self, branch: "Branch", low: Array, high: Array) -> list[tuple[arb, arb]]:
-        """Phase points on pieces of the branch: `z` from `factor**(low - 1)` to `factor**(high - 1)`, on one side."""
-        found = []
-        with working(branch.bits):
-            map, error = self.map.over(balls(branch.bits)), arb(0, branch.error)
-            for a, b in zip(low, high, strict=True):
-                power = arb(float(a)).union(arb(float(b))) - 1
-                z = self.side * (power * branch.series.factor.real.log()).exp()
-                before, here = (horner([c.real for c in jet.c], z) + error for jet in branch.series.pair())
-                found.append((before, map.angle(before, here)[0]))
-        return found
+    def _launched(self, branch: Branch, low: Array, high: Array) -> list[tuple[arb, arb]]:
+        """Phase points on pieces of the branch, on one side."""
+        return branch.points(self.side, low.tolist(), high.tolist())
 
     def _turned(self, points: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
         """Phase points with their turned copies: a round is a bounce and a turn, so an orbit passes one of them."""
@@ -349,10 +321,6 @@ def _turned_back(boxes: Boxes) -> Boxes:
     turns = 2 * np.pi * np.rint((boxes.x[0] + boxes.x[1]) / (4 * np.pi))
     slack = SLACK * (1 + np.abs(turns))
     return boxes._replace(x=(boxes.x[0] - turns - slack, boxes.x[1] - turns + slack))
-
-
-def _exact(x: Fraction) -> acb:
-    return acb(arb(fmpq(x.numerator, x.denominator)))
 
 
 def _outwards(x: arb, up: bool) -> float:

@@ -13,6 +13,7 @@ from .proof import (
     orbit_of,
     orbit_said,
     sharpened,
+    smooth,
     tangency_proved,
 )
 from .saddle import Orbit, Saddle, horner, local
@@ -56,6 +57,7 @@ __all__ = [
     "scale",
     "settled",
     "sharpened",
+    "smooth",
     "table",
     "tangency_proved",
     "touches",

@@ -118,7 +118,7 @@ def _length(x: BallArray, y: BallArray) -> Array:
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turns: Sequence[Fraction]) -> bool:
     """Does the orbit of a phase point enter the disc, or a turned copy? Followed in balls, each landing a first hit."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, BITS)
-    here = map.ball(0, *start)
+    here = map.start(*start)
     (a, b), (c, d) = disc.inverse
     for _ in range(MOST_BOUNCES):
         landed = map.bounce(here)

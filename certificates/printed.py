@@ -33,6 +33,7 @@ TOO_LONG = {  # cycles that the second reader does not follow: `pinball check` p
     "0.733049182811774930329": 384,
     "0.733049214847218347941": 768,
 }
+FOLLOWING = ("nu_plus", "nu_minus", "multiplier of a round, out", "in")  # columns
 FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enough digits for the second reader
 
 
@@ -60,14 +61,23 @@ def kept_reports() -> Iterator[tuple[str, list[dict[str, Any]], list[str]]]:
     for path in sorted((ROOT / "docs" / "reports").glob("*.json")):
         blocks = [b for part in json.loads(path.read_text())["sections"] for b in part["blocks"]]
         inside = [block["document"] | {"schema": 4} for block in blocks if block["kind"] == "certificate"]
-        cells = [(row[0], cell) for block in blocks for row in block.get("rows", ()) for cell in row]
-        told = [cell["value"] for name, cell in cells if isinstance(cell, dict) and is_certified(name, cell)]
+        tables = [block for block in blocks if block["kind"] == "table"]
+        cells = [
+            (row[0], *pair)
+            for each in tables
+            for row in each["rows"]
+            for pair in zip(each["columns"], row, strict=True)
+        ]
+        told = [cell["value"] for *where, cell in cells if isinstance(cell, dict) and is_certified(*where, cell)]
         yield path.stem, inside, told
 
 
-def is_certified(row: Any, cell: dict[str, Any]) -> bool:
-    """Is a cell of a report a proved number with an error? A perimeter is an integral, and has no certificate."""
-    return cell.get("known") == "proved" and bool(cell.get("error")) and row != "perimeter"
+def is_certified(row: Any, column: str, cell: dict[str, Any]) -> bool:
+    """Is a cell of a report a proved number with an error, and of a kind that has certificates?
+
+    A perimeter is an integral; multipliers and exponents follow from a cycle that is enclosed when the report is made.
+    """
+    return cell.get("known") == "proved" and bool(cell.get("error")) and row != "perimeter" and column not in FOLLOWING
 
 
 def of_pages() -> Iterator[tuple[str, str]]:

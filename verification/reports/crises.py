@@ -261,8 +261,9 @@ def _table(asked: Asked, changes: int, pairs: list[tuple[Document, Document]]) -
         "Homoclinic tangencies near the contractions at which the diagram shows a chaotic attractor to gain or lose "
         f"much at once: the manifolds of a saddle touch, among cycles up to period {asked.period}. A crisis is such a "
         "tangency. Each was sought in float64; one that is proved is quadratic, alone within its radius, and passes "
-        "with a speed that is not 0. That the attractor changes there is sampled: the last column has the middle and half "
-        "the distance of two contractions between which it was seen, which is later where chaos lasts long and then ends."
+        "with a speed that is not 0. That the attractor changes there is sampled: the last column has the middle of "
+        "two contractions between which it was seen, and half their distance; where chaos lasts long and then ends, "
+        "it is seen too late."
     )
     rows = tuple(_row(*pair) for pair in pairs)
     return Listing(caption, COLUMN, rows, asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:150"))

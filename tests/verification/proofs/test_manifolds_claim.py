@@ -232,3 +232,22 @@ def test_smaller_units_are_tried_where_a_remainder_is_not_bounded_and_for_no_oth
     else:
         assert tangency.smaller(None, None, None, start, None).unit == 10.0 ** -(count - 1)
         assert tried == [(pytest.approx(10.0**-k), 10 * k) for k in range(count)]
+
+
+def test_a_bounce_of_a_pair_has_the_derivatives_of_its_polynomials_and_cauchys_bounds_of_what_they_leave_out():
+    """`1 + 2*z + 3*z**2 + 5*z**3`, and by the parameter `7 + z - z**2`: by hand at z = 1/4, a step of 1/8 away."""
+    balls = lambda *c: [arb(x) for x in c]  # noqa: E731
+    made = tangency.Pair(None, None, [[], balls(1, 2, 3, 5)], [[], balls(7, 1, -1, 0)], arb("1e-9"), arb(0.5), ())
+    found = made.at(1, arb(0.25), arb(0.125))
+    place, first, second = 1 + 0.5 + 3 / 16 + 5 / 64, 2 + 1.5 + 15 / 16, 6 + 30 / 4
+    wanted = {
+        "place": (place + (7 + 0.25 - 1 / 16) / 8, 1e-9), "first": (first + (1 - 0.5) / 8, 2e-9),
+        "second": (second - 2 / 8, 8e-9), "by_parameter": (7 + 0.25 - 1 / 16, 2e-9), "mixed": (1 - 0.5, 4e-9),
+    }  # fmt: skip
+    for name, (true, error) in wanted.items():
+        ball = getattr(found, name)
+        assert ball.contains(true)
+        assert abs(float(ball.rad()) - error) < 1e-3 * error
+    for z in (arb(0.5), arb(-0.5), arb(0.4, 0.2)):
+        with pytest.raises(TooWideError, match="radius 1/2"):
+            made.at(1, z, arb(0))

@@ -163,3 +163,25 @@ def test_the_derivative_under_a_law_of_the_place_is_enclosed(scene):
                 assert np.all(np.abs(found - ball.m)[good] <= (ball.r + 1e-5 * (1 + np.abs(found)))[good])
 
     assert judged > 100
+
+
+@pytest.mark.parametrize(
+    ("law", "most"),
+    [
+        ("-lam*sin(2*eta)", 0.5),
+        ("-lam*sin(2*eta)*(1 + cos(3*theta)/2)", 0.75),
+        ("-lam*(eta + eta**2)/3", 0.6730),
+        ("-lam*(eta - eta**2)/3", 0.6730),
+    ],
+)
+def test_the_strip_of_a_law_holds_its_exit_angles_at_all_angles_of_incidence_and_places(law, most):
+    """The largest is met at a quarter of a right angle, at one place, or at one end of the incidence angles alone."""
+    map = PinballImages(Scene("egg", alpha="0.08", lam="1/2", law=law))
+    eta, theta = (list(pieces) for pieces in zip(*map.incidences(), strict=True))
+
+    assert most <= map.top < most + 0.02
+    for pieces, end in ((eta[0], np.pi / 2), *([(theta, np.pi)] if map.placed else [])):
+        low, high = (np.ravel([getattr(x, side)() for x in np.atleast_1d(pieces)]) for side in ("lower", "upper"))
+        assert low[0] <= -end
+        assert high[-1] >= end
+        assert np.all(low[1:] <= high[:-1])

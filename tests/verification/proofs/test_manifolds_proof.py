@@ -312,6 +312,7 @@ def test_backwards_a_particle_comes_from_where_forwards_it_left():
     [
         ("merging", "-lam*eta + eta**2/99", "no odd function of eta"),
         ("boundary", "-lam*eta + cos(theta)/99", "the orbit closes by turns of the table"),
+        ("band-merging", "-lam*eta + cos(theta)/99", "the orbit closes by turns of the table"),
         ("band-merging", "-lam*eta + cos(theta/2)/99", "the orbit closes by turns of the table"),
         ("boundary", "-lam*eta + sin(s)/99", "arc length s"),
         ("boundary", "-lam*eta - b*sin(2*eta)", "b is no number"),

@@ -102,3 +102,24 @@ def test_turns_and_mirror_images_of_a_table_are_counted_apart(radius, turns, mir
 
     assert (found.turns, found.mirrored) == (turns, mirrored)
     assert (found.grid.columns, found.grid.rows) == (64 * turns, 1)
+
+
+def test_a_box_is_on_a_side_of_the_staircase_where_it_is_on_that_side_of_every_step_below_or_above_it():
+    """Narrow boxes and wide ones at once, over the seam too; three turns of eight steps."""
+    stated, rng = Barrier(EGG, (AT, AT), 8), np.random.default_rng(5)
+    heights = stated.__dict__["heights"] = rng.uniform(-0.5, 0.5, 8)
+    left, wide = rng.uniform(-np.pi, np.pi, 60), rng.choice([0.01, 0.3, 1.5], 60)
+    bottom = rng.uniform(-0.6, 0.6, 60)
+    boxes = Boxes(np.zeros(60, dtype=np.int64), (left, left + wide), (bottom, bottom + 0.02))
+    width = 2 * np.pi / 24
+    steps = [
+        np.unique(np.floor((np.linspace(a, b, 200) + np.pi) / width).astype(int) % 8)
+        for a, b in zip(*boxes.x, strict=True)
+    ]
+
+    assert list(stated.below(boxes)) == [b + 0.02 < heights[some].min() for b, some in zip(bottom, steps, strict=True)]
+    assert list(stated.above(boxes)) == [b > heights[some].max() for b, some in zip(bottom, steps, strict=True)]
+    assert 0 < stated.below(boxes).sum() < 60
+    stated.__dict__["heights"] = None
+    assert not stated.below(boxes).any()
+    assert not stated.above(boxes).any()

@@ -155,8 +155,9 @@ def test_the_reach_of_a_cluster_is_that_of_its_furthest_box():
 class Landings:
     """In the place of a map: every box lands on one arc, and `theta` shrinks by a half."""
 
-    def __init__(self, wide=1.0, closed=True, smooth=True, joins=False, less=0):
+    def __init__(self, wide=1.0, closed=True, smooth=True, joins=False, less=0, others=()):
         self.wide, self.closed, self.smooth, self.joins, self.less = wide, closed, smooth, joins, less
+        self.others = [(Piece(np.arange(count), None, None, None, False), None) for count in others]
 
     def derivatives(self, boxes):
         count = boxes.chart.size - self.less
@@ -164,7 +165,7 @@ class Landings:
         low = np.linspace(-self.wide / 2, 0, count)
         piece = Piece(np.arange(count), chart, low, low + self.wide / 2, self.smooth)
         zero = BallArray(np.zeros(count), np.zeros(count))
-        return [(piece, Slopes(BallArray(np.full(count, 0.5), np.zeros(count)), zero, zero, zero, zero))]
+        return [(piece, Slopes(BallArray(np.full(count, 0.5), np.zeros(count)), zero, zero, zero, zero)), *self.others]
 
 
 @pytest.mark.parametrize(
@@ -179,6 +180,10 @@ class Landings:
         (Landings(smooth=False), [(9, 9)], None),
         (Landings(joins=True), [(9, 9)], None),
         (Landings(less=1), [(9, 9)], None),
+        (Landings(others=[0, 0]), [(9, 9)], [True]),
+        (Landings(others=[0, 1]), [(9, 9)], None),  # some landings lie elsewhere
+        (Landings(wide=7.0), [(9, 9), (25, 25)], [True, True]),
+        (Landings(wide=7.0), [(9, 9), (25, 29), (29, 25)], None),  # of two clusters one is wider: with it a whole turn
         (Landings(), [(9, 9), (9, 32), (32, 9)], None),  # 32 is the outside: some box is lost
     ],
 )

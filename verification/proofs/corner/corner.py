@@ -24,6 +24,7 @@ from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
+from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.critical import corner
 from verification.cycles.newton import refined
 from verification.proofs.corner.border_collision import Piece, robust
@@ -280,13 +281,11 @@ def after_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spr
 
 
 def _polished(rule: Callable[[arb], tuple[arb, arb, arb]], value: arb, near: float) -> float:
-    for _ in range(8):
-        found = rule(arb(near))
-        step = float(((found[0] - value) / found[2]).mid())
-        near -= step
-        if not abs(step) > 1e-13:
-            break
-    return near
+    def correction(x: Vector) -> list[float]:
+        found = rule(arb(x[0]))
+        return [float(((found[0] - value) / found[2]).mid())]
+
+    return float(iterated(correction, [near], Stop(enough=1e-13, steps=8)).x[0])
 
 
 def _root(rule: Callable[[arb], tuple[arb, arb, arb]], value: arb, near: float, radius: float) -> arb:

@@ -27,7 +27,7 @@ from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel, ends_kernel
 from symbolic.tables import cuspless
 from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
-from verification.arithmetic.iteration import Tick, silent
+from verification.arithmetic.iteration import Stop, Tick, Vector, iterated, silent
 from verification.cycles.problem import mirrored
 from verification.proofs.corner.corner import (
     ARC,
@@ -348,11 +348,11 @@ def kink(lam: arb) -> Kink:
 
 
 def _near(lam: arb) -> float:
-    near = float(enclosed()[0].mid())
-    for _ in range(8):
-        (course, *_) = courses(arb(near), lam)
-        near -= float((course.second.centre / course.second.slopes[0]).mid())
-    return near
+    def correction(x: Vector) -> list[float]:
+        (course, *_) = courses(arb(x[0]), lam)
+        return [float((course.second.centre / course.second.slopes[0]).mid())]
+
+    return float(iterated(correction, [float(enclosed()[0].mid())], Stop(steps=8)).x[0])
 
 
 def kink_falls(lowest: float, highest: float) -> bool | None:

@@ -31,7 +31,7 @@ from symbolic.motion.chords import chord_kernel
 from symbolic.tables import egg
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import FLOAT64, balls, working
-from verification.arithmetic.iteration import Tick, silent
+from verification.arithmetic.iteration import Stop, Tick, Vector, iterated, silent
 from verification.maps.first_hit import convex
 
 BITS = 64
@@ -147,12 +147,13 @@ def _angles(table: Table) -> tuple[Any, Any]:
 
 
 def _landing(angle: Any, here: float, phi: float) -> float:
-    """Where a ball lands, in float64."""
-    there = here + math.pi - 2 * phi
-    for _ in range(60):
-        value, _, slope, *_ = angle(here, there)
-        there -= (value - phi) / slope
-    return float(there)
+    """Where a particle lands, in float64."""
+
+    def correction(x: Vector) -> list[float]:
+        value, _, slope, *_ = angle(here, x[0])
+        return [(value - phi) / slope]
+
+    return float(iterated(correction, [here + math.pi - 2 * phi], Stop(steps=60)).x[0])
 
 
 def _lands_within(angle: Any, centre: arb, cell: arb, end: float, reach: float, phi: Span) -> bool:

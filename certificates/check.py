@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from importlib import import_module
 from itertools import product
-from math import atan, factorial, isqrt, prod
+from math import atan, isqrt, prod
 from pathlib import Path
 
 Wrong, Unproved = (type(name, (Exception,), {}) for name in ("Wrong", "Unproved"))  # no certificate; an item fails
@@ -42,6 +42,7 @@ SAYS |= {
     "through each other as lam varies.",
 }
 WHAT = {"fold": "the multiplier 1: a fold", "flip": "the multiplier -1: a flip", "focus": "two equal multipliers"}
+FACTORS = Fraction(1), Fraction(1), Fraction(1, 2), Fraction(1, 6)  # of Taylor's series
 WAYS = ("table", "polar", "parametric", "component")  # to say a boundary; more of it: undefined, origin
 
 
@@ -75,7 +76,7 @@ class I(Number):
         if isinstance(x, I):
             k = p - x.p
             return x if k == 0 else I(x.lo << k, x.hi << k, p) if k > 0 else I(x.lo >> -k, -(-x.hi >> -k), p)
-        x = Fraction(x)
+        x = x if isinstance(x, int) else Fraction(x)
         return I((x.numerator << p) // x.denominator, -((-x.numerator << p) // x.denominator), p)
 
     def __add__(self, o):
@@ -119,14 +120,13 @@ class I(Number):
         r, w = self.hi - m.lo, p + 32 + max(0, m.lo.bit_length() - p)  # a huge argument takes as many more bits of pi
         k = round(Fraction(2 * m.lo << w - p, pi(w).lo)) if abs(m.lo) > one else 0
         x = I.of(m, w) - (pi(w) * Fraction(k, 2) if k else 0)
-        y, sums, slack = x.mid().lo, [], x.hi - x.mid().lo + 16
-        for n in (1, 0):
-            total, term = 0, y if n else 1 << w
-            while abs(term) > 1:  # each term is at most 4 units off, and what follows the last one at most 16
-                total, slack, n = total + term, slack + 4, n + 2
-                term = -((term * y >> w) * y >> w) // (n * (n - 1))
-            sums.append(total)
-        s, c = (I.of(I(v - slack, v + slack, w), p) for v in sums)
+        y, total, slack, n = x.mid().lo, 0, x.hi - x.mid().lo + 16, 1
+        term, square = y, y * y >> w
+        while abs(term) > 1:  # each term is at most 4 units off, and what follows the last one at most 16
+            total, slack, n = total + term, slack + 4, n + 2
+            term = -(term * square >> w) // (n * (n - 1))
+        other = isqrt((1 << 2 * w) - total * total)  # the cosine: of angles up to 1 with a slope of at most 2
+        s, c = (I.of(I(v - off, v + off, w), p) for v, off in ((total, slack), (other, 2 * slack + 2)))
         turned = ((s, c), (c, -s), (-s, -c), (-c, s))[k % 4]
         return [I(max(f.lo - r, -one), min(f.hi + r, one), p) for f in turned]
 
@@ -151,11 +151,11 @@ def pi(p):
 
 @cache
 def algebra(degree):
-    """The exponents in order, where each stands, and which pairs multiply to which."""
+    """The exponents in order, where each stands, and of each the pairs that multiply to it."""
     powers = [e for d in range(degree + 1) for e in product(range(d + 1), repeat=3) if sum(e) == d]
     at = {e: i for i, e in enumerate(powers)}
-    sums = ((i, j, tuple(map(sum, zip(d, e)))) for i, d in enumerate(powers) for j, e in enumerate(powers))
-    return powers, at, [(i, j, at[e]) for i, j, e in sums if e in at]
+    rest = lambda e, d: at.get(tuple(a - b for a, b in zip(e, d)))
+    return powers, at, [[(i, rest(e, d)) for i, d in enumerate(powers) if rest(e, d) is not None] for e in powers]
 
 
 class Jet(Number):
@@ -165,11 +165,8 @@ class Jet(Number):
         self.c, self.degree = c, degree
 
     @staticmethod
-    def of(x, degree, letter=None):
-        c = [x] + [0] * (len(algebra(degree)[0]) - 1)
-        if letter is not None and degree:
-            c[3 - letter] = 1
-        return Jet(c, degree)
+    def of(x, degree, letter=3):  # 3: a number, none of the letters
+        return Jet([x, *(int(k == 3 - letter) for k in range(1, len(algebra(degree)[0])))], degree)
 
     def __add__(self, o):
         if isinstance(o, Jet):
@@ -179,10 +176,17 @@ class Jet(Number):
     def __mul__(self, o):
         if not isinstance(o, Jet):
             return Jet([a * o if a != 0 else 0 for a in self.c], self.degree)
-        c = [0] * len(self.c)
-        for i, j, k in algebra(self.degree)[2]:
-            if self.c[i] != 0 and o.c[j] != 0:  # an interval never equals a number
-                c[k] = c[k] + self.c[i] * o.c[j]
+        c = []
+        for pairs in algebra(self.degree)[2]:
+            low = high = total = p = 0
+            for x, y in [(self.c[i], o.c[j]) for i, j in pairs]:
+                if type(x) is type(y) is I:  # the sum of such products is rounded once
+                    ends, p = (x.lo * y.lo, x.lo * y.hi, x.hi * y.lo, x.hi * y.hi), x.p
+                    low, high = low + min(ends), high + max(ends)
+                elif x != 0 and y != 0:  # an interval never equals a number
+                    total = x * y + total
+            found = I(low >> p, -(-high >> p), p) if p else 0
+            c.append(total + found if p and total != 0 else found if p else total)
         return Jet(c, self.degree)
 
     __neg__ = lambda self: Jet([-a for a in self.c], self.degree)
@@ -205,7 +209,7 @@ def function(name, x, p):
     d, at, one = (x.degree if isinstance(x, Jet) else 0), I.of(value(x), p), I.of(1, p)
     if name in ("sin", "cos"):
         s, c = at.sin_cos()
-        terms = [f / factorial(k) for k, f in enumerate((s, c, -s, -c) if name == "sin" else (c, -s, -c, s))][: d + 1]
+        terms = [f * by for f, by in zip((s, c, -s, -c) if name == "sin" else (c, -s, -c, s), FACTORS[: d + 1])]
     else:
         r = one / (at * at + 1 if name == "atan" else at)
         tangent = [at.atan(), r, -at * r * r, (at * at * 3 - 1) * r * r * r / 3] if name == "atan" else []
@@ -318,11 +322,12 @@ class Table:
                 break
             near = found
         need(sure, "exists: a landing is not enclosed")
-        t = Jet.of(found, theta.degree)
-        for k in range(1, t.degree + 1):
-            h, dh = off(t, names)
-            terms, factor = zip(algebra(t.degree)[0], t.c, h.c), I.of(-1, p) / value(dh)
-            t = Jet([a + b * factor if sum(e) == k else a for e, a, b in terms], t.degree)
+        t = Jet.of(found, 0)
+        for k in range(1, theta.degree + 1):  # the coefficients of degree k, from those below
+            n = len(algebra(k)[0])
+            cut = lambda x, n=n, k=k: Jet(x.c[:n], k) if isinstance(x, Jet) else x
+            h, dh = off(Jet((t.c + [0] * n)[:n], k), {name: cut(x) for name, x in names.items()}, cut)
+            t = Jet(t.c + [-b / value(dh) for b in h.c[len(t.c) :]], k)
         a, b, da, db = self.at(there, t, names, p)
         vx, vy = a - x, b - y
         across, psi = vx * db - vy * da, I.of(value(psi), p)
@@ -365,9 +370,8 @@ class Table:
 
         def settled(part, piece):
             line, speed, along = crossing(part, piece)
-            if 0 not in line or along < 0 or along - (dx * dx + dy * dy) > 0:
-                return True
-            if 0 not in crossing(part, piece.mid())[0] + speed * (piece - piece.mid()):
+            off = 0 not in line or along < 0 or along - (dx * dx + dy * dy) > 0
+            if off or 0 not in crossing(part, piece.mid())[0] + speed * (piece - piece.mid()):
                 return True
             turns = lambda at: pi(p) * 2 * (self.closed[part] and round((piece - at).real() / 6.283185307179586))
             speeds = (crossing(part, piece.hull(at + turns(at)))[1] for other, at in start + end if other == part)
@@ -387,10 +391,8 @@ class Table:
 
 def newton(equations, box, p):
     """N, proved to lie in the interior of the box; `equations` gives three jets, of degree 1, or 0 at the middle."""
-    middle, cross = [x.mid() for x in box], []
-    a, b, c = (x.gradient(p) for x in equations(box, 1))
-    for v, w in ((b, c), (c, a), (a, b)):
-        cross.append([v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]])
+    middle, (a, b, c) = [x.mid() for x in box], (x.gradient(p) for x in equations(box, 1))
+    cross = [[v[k - 2] * w[k - 1] - v[k - 1] * w[k - 2] for k in range(3)] for v, w in ((b, c), (c, a), (a, b))]
     values, one = [value(x) for x in equations(middle, 0)], 1 / sum(x * y for x, y in zip(a, cross[0]))  # Cramer's rule
     image = [m - sum(row[i] * x for row, x in zip(cross, values)) * one for i, m in enumerate(middle)]
     need(all(map(I.inside, image, box)), "exists, unique: interval Newton does not map the box into itself")
@@ -518,8 +520,7 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
     turned = sign > 0 and all(map(same, [x + pi(p) * Fraction(2, 3) for x in bounces], boxes[1:] + boxes[:1]))
     what = scene.get("table") if scene.get("K", 3) == 3 and "law" not in scene else None, kind, free, len(parts)
     if kind == "corner":
-        true = {"lam": "lambda-star", "phi": "phi-star"}[free]
-        return true if abs(bounces[1].real() - 0.2545) < 0.001 else "an orbit through both corners"
+        return beside("corner").called(free, bounces[1])
     special = {("cuspless", "flip", "lam", 2): "lambda-c", ("egg", "fold", "lam", 3): "saddle-node"}
     special |= {("egg", "flip", "alpha", 2): "alpha-tilde", ("egg", "focus", "alpha", 2): "alpha-hat"}
     if what in special and (turned if what[-1] == 3 else mirrored):
@@ -561,8 +562,7 @@ def checked(given):
     need(kind != "tangency" or name == true, f"the name must be {true!a}", Wrong)
     boxes = [I.of(x - radius, p).hull(I.of(x + radius, p)) for x in centre]
     if kind == "tangency":
-        places = (I.of(x, p).wide(I.of(x / 2**36, p)) for x in centre[:2])
-        image = beside("tangency").touching(given, table, [*places, boxes[2]])
+        image = beside("tangency").touching(given, table, boxes[2])
         found = image[2]
     else:
         box, reach = boxes.pop() if free else None, table.letters.get(free)

@@ -25,3 +25,9 @@ def cornered(cycle, image, theta1):
     kink = (motion > 0 and straight < 0 and arc > 0) or (motion < 0 and arc < 0 and straight > 0)
     for item, holds in (("s4_minimum_at_a_kink", kink), ("s4_dips_below", fall < 0), ("unstable", unstable)):
         need(holds, f"{item}: this sign is not proved")
+
+
+def called(free, theta1):
+    """The name of a value of the corner orbit, by the place of the bounce between the corners."""
+    true = {"lam": "lambda-star", "phi": "phi-star"}[free]
+    return true if abs(theta1.real() - 0.2545) < 0.001 else "an orbit through both corners"

@@ -371,6 +371,27 @@ def remember_images() -> None:
     inside.image = kept
 
 
+def remember_manifolds() -> None:
+    """Makes the reader keep what it found of each local manifold: most mutants have one of the first file's."""
+    tangency, known = check.beside("tangency"), dict[Any, Any]()
+    manifold = tangency.Manifold
+
+    def kept(table: Any, given: Any, lam: Any, back: bool) -> Any:
+        numbers = [*table.letters.values(), lam]
+        formulas = [ast.dump(node) for part in table.parts for node in part]
+        key = json.dumps(given), back, *formulas, *table.letters, *((x.lo, x.hi, x.p) for x in numbers)
+        if key not in known:
+            try:
+                known[key] = manifold(table, given, lam, back)
+            except check.Unproved as why:
+                known[key] = why
+        if isinstance(known[key], check.Unproved):
+            raise known[key]
+        return known[key]
+
+    tangency.Manifold = kept
+
+
 def judged(name: str, k: int, original: Document, first: str) -> str:
     """`refused`, `not proved`, `true` or `FALSE`."""
     given = mutant(name, original, k)
@@ -389,6 +410,7 @@ def main() -> int:
     kept: dict[str, list[str]] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
     false = 0
     remember_images()
+    remember_manifolds()
     for name in [given.only] if given.only else (*SAMPLES, REGION, TOUCH):
         original = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
         first, found = check.checked(original).splitlines()[0], kept.setdefault(name, [])

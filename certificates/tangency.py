@@ -65,12 +65,13 @@ class Manifold:
         return total
 
 
-def touching(given, table, box):
-    """Exactly one contact of two manifolds in a box: where, and lam.
+def touching(given, table, lam):
+    """Exactly one contact of two manifolds with lam in a box, and places near those of a file: the three of them.
 
     The particle that came and the one that goes are at one place, at angles that obey the law; tangents are parallel.
     Where the derivative of these equations is regular, the contact is quadratic and passes with non-zero speed."""
-    p, meets = table.p, given["meets"]
+    p, meets, places = table.p, given["meets"], map(exact, given["centre"][:2])
+    box = [*(I.of(x, p).wide(I.of(x / 2**36, p)) for x in places), lam]
     sides = [Manifold(table, given[key], box[2], key == "stable") for key in ("unstable", "stable")]
     orbit = [(0, I.of(exact(pair), p).wide(I.of(Fraction(1, 10**5), p))) for pair in given["orbit"]]
     need(type(meets) is int and 0 < meets < len(orbit) - 1, "meets is out of range", Wrong)

@@ -120,7 +120,10 @@ def own(table, way, scene):
     """Which components are closed, and where the map is undefined; a radius is positive where nothing is marked.
 
     Where a law has theta, and not its period, a bounce lies between the ends."""
+    length = table.law and any(getattr(node, "id", "") == "s" for node in ast.walk(table.law))
+    need(not length, "scene: a law with s, arc length as an integral, is read by `pinball check` alone", Wrong)
     if way != "table":
+        table.turns = [inside]
         table.closed = list(map(closed, table.parts))
         joined(table, scene)
         table.marks = [marked(table, mark) for mark in scene.get("undefined", [])]
@@ -222,3 +225,34 @@ def marked(table, mark):
     fit = set(mark) == {"name", "component", "theta"} and type(mark["component"]) is int
     need(fit and 0 <= mark["component"] < len(table.parts), "scene: an undefined point is not understood", Wrong)
     return mark["component"], I.of(evaluate(parse(mark["theta"]), table.letters, table.p)[0], table.p)
+
+
+def inside(table, x, y, names):
+    """Proves that the boundary runs once round a point, counterclockwise; what runs round a hole is taken off.
+
+    It is counted where it crosses a ray from the point: a piece that may meet the ray lies on its side of the point."""
+    total, p = 0, x.p
+
+    def place(part, theta):
+        qx, qy, *_ = table.at(part, theta, names, p)
+        return (qx - x) * 3 + (qy - y), (qy - y) * 3 - (
+            qx - x
+        )  # along the ray, which no axis or diagonal is, and across
+
+    for part in range(len(table.parts)):
+        (low, high), queue, spent = table.ends(part, p), [(Fraction(0), Fraction(1))], 0
+        while queue:
+            (a, b), spent = queue.pop(), spent + 1
+            need(spent < 4000, "admissible: the boundary may run through a chord")
+            start, end = (low + (high - low) * I.of(z, p) for z in (a, b))
+            try:
+                along, across = place(part, start.hull(end))
+                signs = [(z > 0) - (z < 0) for z in (place(part, z)[1] for z in (start, end))]
+                seen = along > 0 or 0 not in across or (along < 0 and 0 not in signs)
+            except Unproved:  # a formula may have no value on a wide piece
+                seen = False
+            if not seen:
+                queue += [(a, (a + b) / 2), ((a + b) / 2, b)]
+            elif along < 0:
+                total += (signs[0] - signs[1]) // 2
+    need(total == 1, "admissible: the boundary does not run once round a chord, counterclockwise")

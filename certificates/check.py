@@ -283,7 +283,7 @@ class Table:
 
     def __init__(self, parts, letters, law, p):
         self.parts, self.letters, self.p = [[parse(text) for text in part] for part in parts], letters, p
-        self.law, self.marks = law and parse(law), []  # components and parameters where the map is undefined
+        self.law, self.marks, self.turns = law and parse(law), [], []  # where the map is undefined; about a point
         self.closed = [len(parts) == 1] * len(parts)  # is it a curve with the period 2*pi? Of the paper's tables
 
     def at(self, part, theta, names, p):
@@ -363,6 +363,8 @@ class Table:
         start, end = ([(part, I.of(at, p)) for part, at in bounce] for bounce in (start, end))
         (x, y, *_), (u, v, *_) = (self.at(*bounce[0], names, p) for bounce in (start, end))
         dx, dy, spent = u - x, v - y, 0
+        while self.turns:  # of a table of one's own, once
+            self.turns.pop()(self, (x + u) / 2, (y + v) / 2, names)
 
         def crossing(part, theta):
             qx, qy, tx, ty = self.at(part, theta, names, p)
@@ -531,11 +533,11 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
 
 def checked(given):
     """The line that says what is proved of a document; `Wrong` or `Unproved` say why not."""
-    if isinstance(given, dict) and given.get("kind") == "trapping region":
-        return beside("region").trapping(given)
+    if isinstance(given, dict) and given.get("kind") in ("trapping region", "boundary crisis"):
+        return beside("region").trapping(given) if "runs" in given else beside("crisis").crisis(given)
     need(isinstance(given, dict) and given.get("kind") in KINDS, f"kind must be one of {', '.join(KINDS)}", Wrong)
     keys = "schema name statement kind scene free bits digits centre radius checks".split()
-    own = "unstable stable orbit meets contact" if given["kind"] == "tangency" else "components mirror"
+    own = beside("tangency").entries(given) if given["kind"] == "tangency" else "components mirror"
     need(set(given) == {*keys, *own.split()}, f"the entries must be {', '.join(keys)}, {own}", Wrong)
     schema, name, words, kind, scene, free, bits, digits, centre, radius, items = map(given.get, keys)
     need(schema == 4, "this checker reads schema 4", Wrong)
@@ -558,23 +560,20 @@ def checked(given):
     n = f"its {len(parts)} bounces" if sign > 0 else f"{len(parts)} bounces, and then their mirror images,"
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))
     need(words == said, f"the statement must be: {said!a}", Wrong)
-    true = f"tangency of two manifolds: {title}"
-    need(kind != "tangency" or name == true, f"the name must be {true!a}", Wrong)
     boxes = [I.of(x - radius, p).hull(I.of(x + radius, p)) for x in centre]
     if kind == "tangency":
-        image = beside("tangency").touching(given, table, boxes[2])
-        found = image[2]
+        image, true = beside("tangency").touching(given, table, boxes[2], title)
     else:
         box, reach = boxes.pop() if free else None, table.letters.get(free)
         table.letters |= {free: box} if reach else {}
         boxes = [table.ends(0, p)[1].wide(I.of(radius, p)), *boxes] if kind == "corner" else boxes  # the first bounce
         cycle = Cycle(table, kind, parts, boxes, sign, "lam" if kind == "corner" else free, box, lam)
         image, bounces = cycle.solved()
-        found = image[1] if (kind, free) == ("corner", "phi") else image[2] if free else bounces[-1]
-        need(not reach or found.inside(reach), f"{free} is not in its range", Wrong)
+        need(not reach or image[2].inside(reach), f"{free} is not in its range", Wrong)
         beside("corner").cornered(cycle, image, bounces[1]) if kind == "corner" else cycle.admissible(bounces, image[2])
         cycle.generic(image) if kind in ("fold", "flip") else None
         true = named(kind, sign, parts, bounces, boxes, scene, free, title, p)
+    found = image[1] if (kind, free) == ("corner", "phi") else image[2] if free else bounces[-1]
     within(free, image[2], scene.get("table")) if free else None
     need(found.width() * 10**digits <= 1 << p, "precise: the enclosure is wider than the digits say")
     need(name == true, f"the name must be {true!a}", Wrong)

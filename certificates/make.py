@@ -23,10 +23,11 @@ from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.files import document
 from verification.named.locate import certify, locate
 from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.crisis import grown
+from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket, grown
 from verification.proofs.global_dynamics.graph import Cells
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import Region
+from verification.proofs.manifolds.known import CONTACTS
 
 Proof = Callable[[], Any]
 HERE = Path(__file__).parent
@@ -120,6 +121,12 @@ def region(scene: Scene, start: tuple[float, float], lam: tuple[str, str], grid:
     return proof
 
 
+def crisis_between(low: str, high: str) -> Proof:
+    """The boundary crisis of the egg between two contractions, by cells; the orbit that leaves is sought in float64."""
+    ends, triangle = (Fraction(low), Fraction(high)), CONTACTS["boundary"].unstable
+    return lambda: bracket(Scene(tables.egg(3), alpha=EGG), triangle, 1, ends, (1024, 512, 1))
+
+
 CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
     {
         "lambda-star": value("lambda-star"),
@@ -154,6 +161,7 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         "triangle-region": region(
             Scene(tables.egg(3), alpha=EGG, lam=HALF), (2.88671, -0.34907), ("49/100", "1/2"), (512, 256, 1)
         ),
+        "crisis-between": crisis_between("3/5", "663/1000"),
     }
 )
 
@@ -161,7 +169,7 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
 def text(name: str) -> str:
     """A certificate as it stands in its file."""
     proof = CERTIFICATES[name]()
-    if isinstance(proof, Region) and all(proof.checks.values()):
+    if isinstance(proof, Region | BoundaryCrisis) and all(proof.checks.values()):
         return json.dumps(proof.to_dict()) + "\n"
     if proof is None or not proof.certified:
         raise ArithmeticError(f"{name}: not proved")

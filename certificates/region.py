@@ -135,14 +135,18 @@ class Inside:
         return landing, psi * self.lam
 
     def covered(self, theta, phi):
-        """Do the cells hold a rectangle and all that is next to it? No particle leaves the strip."""
+        """Do the cells hold a rectangle and all that is next to it?"""
+        return all(cell in self.cells for cell in self.met(theta, phi))
+
+    def met(self, theta, phi):
+        """The cells that a rectangle meets or is next to. No particle leaves the strip."""
         u = (theta / pi(self.p) + 1) * self.columns / 2
         v = (phi / self.top + 1) * self.rows / 2
         (a, b), (c, d) = (((x.lo - 1) >> x.p, (x.hi + 1) >> x.p) for x in (u, v))
         c, d = max(c, 0), min(d, self.rows - 1)
         need(a <= b and c <= d, "images_enclosed: an image lies outside the strip")
         across = range(a, min(b, a + self.columns - 1) + 1)
-        return all((i % self.columns, j) in self.cells for i in across for j in range(c, d + 1))
+        return [(i % self.columns, j) for i in across for j in range(c, d + 1)]
 
     def guess(self, theta, psi):
         """A landing in floating point: counterclockwise from the start the line has points to its right, then left."""

@@ -8,6 +8,13 @@ from fractions import Fraction
 from check import I, Jet, Wrong, algebra, exact, function, need, newton, value
 
 
+def entries(given):
+    """What a file of a tangency has beside the entries of every kind; with another law it has not all of them."""
+    other = isinstance(given.get("scene"), dict) and "law" in given["scene"]
+    need(not other, "scene: a tangency under another law than -lam*eta is read by `pinball check` alone", Wrong)
+    return "unstable stable orbit meets contact"
+
+
 class Manifold:
     """The unstable manifold of a saddle, for each lam of a box; or, with time running back, the stable one.
 
@@ -65,11 +72,13 @@ class Manifold:
         return total
 
 
-def touching(given, table, lam):
-    """Exactly one contact of two manifolds with lam in a box, and places near those of a file: the three of them.
+def touching(given, table, lam, title):
+    """Exactly one contact of two manifolds with lam in a box, and places near those of a file: these, and its name.
 
     The particle that came and the one that goes are at one place, at angles that obey the law; tangents are parallel.
     Where the derivative of these equations is regular, the contact is quadratic and passes with non-zero speed."""
+    true = f"tangency of two manifolds: {title}"
+    need(given["name"] == true, f"the name must be {true!a}", Wrong)
     p, meets, places = table.p, given["meets"], map(exact, given["centre"][:2])
     box = [*(I.of(x, p).wide(I.of(x / 2**36, p)) for x in places), lam]
     sides = [Manifold(table, given[key], box[2], key == "stable") for key in ("unstable", "stable")]
@@ -83,12 +92,14 @@ def touching(given, table, lam):
         return [table.orbit(side.launch, side.boxes(x, box[2]), way, d) for side, x, way in sought]
 
     def equations(box, d):
-        (a, b), (u, v) = ([side.on(Jet(f.c[:10], 2)) for f in run[-1]] for side, run in zip(sides, runs(box, d + 2)))
+        chains.append(runs(box, d + 2))
+        (a, b), (u, v) = ([side.on(Jet(f.c[:10], 2)) for f in run[-1]] for side, run in zip(sides, chains[-1]))
         v = -v * Jet.of(box[2], 2, 2)
         return a - u, b - v, a.diff(0) * v.diff(1) - b.diff(0) * u.diff(1)
 
+    chains = [[side.states for side in sides]]
     image = newton(equations, box, p)
-    for chain in (*(side.states for side in sides), *runs(image, 1)):
+    for chain in chains[0] + chains[1]:  # of the saddles, and of all starts in the box
         for here, there in zip(chain, chain[1:]):
             table.free([(0, value(here[0]))], [(0, value(there[0]))], table.letters)
-    return image
+    return image, true

@@ -17,8 +17,9 @@ from verification.proofs.manifolds.proof import ITEMS, Proof, TangencyClaim, Tan
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "certificates"
-SCHEMA, CELLS = (
-    json.loads((FOLDER / "schema" / f"{name}.json").read_text()) for name in ("version_4", "trapping_region_1")
+SCHEMA, CELLS, CRISIS = (
+    json.loads((FOLDER / "schema" / f"{name}.json").read_text())
+    for name in ("version_4", "trapping_region_1", "boundary_crisis_1")
 )
 FILES = sorted(FOLDER.glob("*.json"))
 PAGE = (ROOT / "docs" / "certificate_format.md").read_text()
@@ -26,13 +27,15 @@ PAGE = (ROOT / "docs" / "certificate_format.md").read_text()
 
 def valid(given: object) -> bool:
     """By the schema of its kind."""
-    cells = isinstance(given, dict) and given.get("kind") == "trapping region"
-    return jsonschema.Draft202012Validator(CELLS if cells else SCHEMA).is_valid(given)
+    kind = given.get("kind") if isinstance(given, dict) else None
+    own = {"trapping region": CELLS, "boundary crisis": CRISIS}
+    return jsonschema.Draft202012Validator(own.get(kind, SCHEMA)).is_valid(given)
 
 
 def test_the_schemas_are_some():
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     jsonschema.Draft202012Validator.check_schema(CELLS)
+    jsonschema.Draft202012Validator.check_schema(CRISIS)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)

@@ -260,6 +260,46 @@ def test_a_law_that_knows_where_theta_began_is_read_between_the_ends_alone(check
     assert (table.closed, other.closed) == ([True], [False])
 
 
+def test_what_only_the_package_reads_of_laws_is_refused_in_one_sentence(check):
+    """Arc length in a law, even where a number of that name is given; a tangency under a law that is told."""
+    law = "-lam*eta*(1 + sin(s)/50)"
+    length = "refused: scene: a law with s, arc length as an integral, is read by `pinball check` alone"
+    touch = document("boundary-crisis")
+    contact = {key: x for key, x in touch.items() if key not in ("unstable", "stable", "orbit", "meets")}
+    other = "refused: scene: a tangency under another law than -lam*eta is read by `pinball check` alone"
+
+    assert said(check, replaced(document("law-in-all-words"), law=law)) == length
+    assert said(check, replaced(document("law-in-all-words"), law=law, shape={"alpha": "2/25", "s": "1"})) == length
+    assert said(check, replaced(document("own-mirror"), law=law)) == length
+    assert said(check, replaced(touch, law="-lam*eta - eta**3/50")) == other
+    assert said(check, replaced(contact, law="-lam*eta - eta**3/50")) == other
+
+
+DISC = {"name": "disc", "x": "cos(theta)", "y": "-sin(theta)", "from": "-pi", "to": "pi"}
+OTHER = {"name": "other", "x": "4 - cos(theta)", "y": "sin(theta)", "from": "-pi", "to": "pi"}
+ROUND = {"name": "round", "x": "2 + 5*cos(theta)", "y": "5*sin(theta)", "from": "-pi", "to": "pi"}
+
+
+@pytest.mark.parametrize(
+    ("curves", "answer"),
+    [
+        ([DISC, OTHER, ROUND], "proved"),
+        ([DISC, OTHER, ROUND | {"y": "-5*sin(theta)"}], "not proved: admissible: the boundary does not run once round"),
+        ([DISC, OTHER], "not proved: admissible: the boundary does not run once round"),
+        ([DISC, OTHER, ROUND | {"x": "20 + 5*cos(theta)"}], "not proved: admissible: the boundary does not run once"),
+        ([DISC, OTHER, ROUND, ROUND | {"y": "6*sin(theta)"}], "not proved: admissible: the boundary does not run once"),
+    ],
+)
+def test_a_cycle_between_two_discs_is_one_of_a_table_that_holds_them(check, curves, answer):
+    """Clockwise discs are holes. With nothing round them, or two curves, or one elsewhere, they are no table."""
+    given = document("scatterer") | {"components": [0, 1], "centre": [["0", "0"]] * 2, "radius": ["1", "-60"]}
+    given |= {"digits": 15, "scene": {"component": curves, "lam": "1/3"}}
+    for key in ("name", "statement"):
+        given[key] = given[key].replace("5 pieces", f"{len(curves)} pieces")
+
+    assert said(check, given).startswith(answer)
+
+
 def test_a_number_below_the_last_place_of_an_interval_is_no_zero(check):
     """Of a spline's formula `1177...*theta**3/12978...`: at 64 bits the divisor's inverse has no digit."""
     large, theta = 10**28, check.I.of(Fraction(1, 2), 64)

@@ -1,0 +1,246 @@
+"""Boundary crises between two contractions, for `check.py`: a saddle, a branch of its manifold, and two sets of cells.
+
+What is stated, and why each step proves it: docs/certificate_format.md. All is seen up to a turn of the table.
+"""
+
+from fractions import Fraction
+from math import ceil, isqrt, log, log2
+
+from check import I, Jet, Unproved, Wrong, function, need, pi, read_scene, value
+from region import BITS, HALVINGS, Inside, bend, convex
+
+ENTRIES = {"schema", "name", "kind", "scene", "saddle", "side", "lam", "columns", "rows", "parts", "start", "sink"}
+GRID, MOST = (342, 512), 60_000  # columns for a part of the table that turns onto the next, and rows; cells of a set
+CUTS, PIECES = 16, 96  # of lam; of the branch
+AWAY, SAMPLES, LONG = 0.1, 400, 60  # how far from the saddle the pieces are; orbits along the branch that are tried
+SMALL, TINY, MORE = 24, 240, 1200  # bits by which the local branch is small; more of them for one orbit along it
+
+
+def crisis(given):
+    """What is proved of a document."""
+    scene, (turns, q), low, high = said(given)
+    table, _, words = read_scene(scene, "lam", BITS)
+    finer, finest = (read_scene(scene, "lam", bits)[0] for bits in (4 * BITS, MORE))
+    at, side = given["saddle"]["start"][0], given["side"]
+    true = f"boundary crisis of {words}, saddle at theta = {at:.5f}, {turns}/{q} of a turn a bounce, side {side:+d}"
+    true += f": lam between {low} and {high}"
+    need(given["name"] == true, f"the name must be: {true!a}", Wrong)
+    convex(table)
+    saddle = continued(table, Fraction(turns, q), low, high, at)
+    strip = I.of(high, BITS)
+    both, below = (Grown(table, lam, strip, q) for lam in (I.of(low, BITS).hull(strip), I.of(low, BITS)))
+    taken = both.grow(both.met(*(I.of(Fraction(x), BITS) for x in given["sink"])))
+    first = Branch(finer, Fraction(turns, q), low, saddle[0], SMALL)
+    kept = below.grow(cell for box in first.pieces(side, below) for cell in below.met(*box))
+    around = {((column + i) % GRID[0], row + j) for column, row in kept for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    need(not around & taken, "apart: the two sets may have a common point")
+    rough, last = (Branch(t, Fraction(turns, q), high, saddle[1], k) for t, k in ((table, SMALL), (finest, TINY)))
+    need(last.leaves(side, both, taken, rough), "leaves: no orbit along the branch is seen to enter the other set")
+    return f"proved: {true}\n  {len(kept)} cells are kept at {low}, {len(taken)} are trapping up to {high}."
+
+
+def said(given):
+    """The scene, the turn that is a round with a bounce, and the ends of lam."""
+    need(set(given) == ENTRIES, f"the entries must be {', '.join(sorted(ENTRIES))}", Wrong)
+    need(given["schema"] == 1, "this reader knows boundary crises of schema 1", Wrong)
+    scene, saddle, ends, numbers = given["scene"], given["saddle"], given["lam"], [given["start"], *given["sink"]]
+    known = isinstance(scene, dict) and scene.get("table") == "egg" and "law" not in scene
+    need(known, "scene: of crises this reader knows those of the paper's egg under its law alone", Wrong)
+    fit = set(saddle) == {"name", "start", "sign", "shift"} and len(saddle["start"]) == 1 and saddle["sign"] == 1
+    (turns, q), numbers = saddle["shift"], [*numbers, *saddle["start"]]
+    fit = fit and type(turns) is type(q) is int and 0 < turns < q and scene.get("K", 3) % q == 0
+    need(fit, "saddle: a round is not one bounce and a turn of the table", Wrong)
+    fit = given["side"] in (1, -1) and all(type(x) is float and abs(x) < 10 for x in numbers) and len(numbers) == 4
+    fit = fit and len(ends) == 2 and all(str(Fraction(x)) == x for x in ends)
+    low, high = map(Fraction, ends)
+    need(fit and 0 < low < high < 1, "side, lam, start or sink is out of range", Wrong)
+    return {key: x for key, x in scene.items() if key != "lam"}, (turns, q), low, high
+
+
+def law(table, turn, theta, lam):
+    """The exit angle of the chord from a place to the next, less what the law says; and that angle."""
+    p = table.p
+    theta = theta if isinstance(theta, Jet) else Jet.of(theta, 0)
+    (x, y, tx, ty), (u, v, sx, sy) = (table.at(0, z, table.letters, p) for z in (theta, theta + pi(p) * (turn * 2)))
+    dx, dy = u - x, v - y
+    ahead, behind = dy * tx - dx * ty, dx * sy - dy * sx
+    need(value(ahead) > 0 and value(behind) > 0, "saddle: a chord may not run inside", Unproved)
+    out = function("atan", (dx * tx + dy * ty) * function("inverse", ahead, p), p)
+    return out - function("atan", (dx * sx + dy * sy) * function("inverse", behind, p), p) * lam, out
+
+
+def found(table, turn, lam, start):
+    """Where the law holds, about: by secants from a start."""
+    p = table.p
+    at, before = I.of(Fraction(start), p), I.of(Fraction(start) + Fraction(1, 2**20), p)
+    old = value(law(table, turn, before, lam)[0]).mid()
+    for _ in range(40):
+        new = value(law(table, turn, at, lam)[0]).mid()
+        if abs((new - old).lo) < 64 or abs((at - before).lo) < 64:
+            break
+        at, before, old = (at - new * ((at - before) / (new - old))).mid(), at, new
+    return at
+
+
+def one(table, turn, box, lam):
+    """Proves that for each lam of a range the law holds at just one place of a box."""
+    p, (left, right) = table.p, (I(end, end, table.p) for end in (box.lo, box.hi))
+    slope = law(table, turn, Jet.of(box, 1, 0), lam)[0].gradient(p)[0]
+    a, b = (value(law(table, turn, end, lam)[0]) for end in (left, right))
+    fit = (slope > 0 and a < 0 and b > 0) or (slope < 0 and a > 0 and b < 0)
+    need(fit, "saddle: not seen to be one cycle")
+
+
+def derivative(table, turn, state, lam):
+    """That of a bounce and a turn back over a box of states, and its determinant.
+
+    With the angle `tau` of the tangent the law is `psi1 = -lam*(psi + tau1 - tau - pi)`."""
+    p, names = table.p, table.letters | {"lam": I.of(1, table.p)}
+    way = [(0, state[0]), (0, (state[0] + pi(p) * (turn * 2)).wide(I.of(Fraction(1, 2**12), p)))]
+    launch = lambda x, y, _: (x, y, names)  # noqa: E731
+    there = table.orbit(launch, [*state, lam], way, 2)[-1][0]
+    (a, b, _), here, then = there.gradient(p), bend(table, state[0]), bend(table, value(there))
+    return (a, b), ((here - then * a) * lam, (then * b + 1) * -lam), (a + b * here) * -lam
+
+
+def continued(table, turn, low, high, at):
+    """Proves one curve of saddles from `low` to `high`, whose unstable direction is nowhere upright; where it ends."""
+    p, places = table.p, []
+    ends = [low + (high - low) * Fraction(k, CUTS) for k in range(CUTS + 1)]
+    for lam in ends:
+        places.append(found(table, turn, I.of(lam, p), places[-1].real() if places else at))
+    near = [x.wide(I.of(Fraction(1, 2**36), p)) for x in places]
+    need(near[0].inside(I.of(Fraction(at), p).wide(I.of(Fraction(1, 10**5), p))), "saddle: it is not where it is said")
+    for k in range(CUTS):
+        lam = I.of(ends[k], p).hull(I.of(ends[k + 1], p))
+        box = near[k].hull(near[k + 1])
+        box = box.wide(box - box.mid())
+        one(table, turn, box, lam)
+        for x, end in zip(near[k : k + 2], ends[k : k + 2], strict=True):  # the same cycle on both sides of a join
+            one(table, turn, x, I.of(end, p))
+            need(x.inside(box), "saddle: the cycle at an end may be another")
+        out = value(law(table, turn, box.mid(), lam)[1])
+        out = out + law(table, turn, Jet.of(box, 1, 0), lam)[1].gradient(p)[0] * (box - box.mid())
+        (a, b), (_, d), det = derivative(table, turn, (box, out), lam)
+        trace = a + d
+        need(1 - trace + det < 0 and 1 + trace + det > 0 and 0 not in b, "saddle: its multipliers are not seen")
+    return near[0], near[-1]
+
+
+class Branch:
+    """The unstable manifold next to a saddle: a curve `y = w(x)`, `abs(w) <= slope*abs(x)`, `abs(x) <= reach`.
+
+    A state is the saddle, and `x` and `y` times directions whose first entry is 1. Where derivatives keep the cone
+    `abs(dy) <= slope*abs(dx)` and make `dx` grow, a round takes such curves to such, and any two closer."""
+
+    def __init__(self, table, turn, lam, near, small):
+        p, self.table, self.turn, self.lam = table.p, table, turn, I.of(lam, table.p)
+        at = found(table, turn, self.lam, near.real())
+        self.theta = at.wide(I.of(Fraction(1, 2 ** (p - 24)), p))
+        one(table, turn, self.theta, self.lam)
+        need(self.theta.inside(I.of(near, p)), "manifold: the saddle may be another")
+        self.psi = value(law(table, turn, self.theta, self.lam)[1])
+        (a, b), (_, d), det = derivative(table, turn, (at, self.psi.mid()), self.lam)
+        a, b, trace, det = (x.mid() for x in (a, b, a + d, det))
+        root = (trace * trace - det * 4).mid()
+        root = I(isqrt(root.lo << p), isqrt(root.lo << p), p)
+        self.grows = ((trace + root) / 2).mid()
+        self.along, self.across = (((half - a) / b).mid() for half in (self.grows, (trace - root) / 2))
+        self.reach, self.slope = Fraction(1, 2**small), Fraction(256, 2**small)
+        self.most = self.proved()
+
+    def state(self, x, y):
+        return x + y + self.theta, x * self.along + y * self.across + self.psi
+
+    def proved(self):
+        """What no factor of a round along the curve exceeds, when all is proved of it."""
+        p, s = self.table.p, self.slope
+        x = I.of(0, p).wide(I.of(self.reach, p))
+        (a, b), (c, d), _ = derivative(self.table, self.turn, self.state(x, x * s), self.lam)
+        one, images = 1 / (self.across - self.along), [(a + b * k, c + d * k) for k in (self.along, self.across)]
+        (e, g), (f, h) = (((u * self.across - v) * one, (v - u * self.along) * one) for u, v in images)
+        f = f.size() * s
+        need(e - f > 1 and (g.size() + h.size() * s - (e - f) * s).hi < 0, "manifold: the cone is not kept")
+        need(h.size() + f < 1, "manifold: two curves may not come closer")
+        return Fraction((e + f).hi, 1 << p)
+
+    def sampled(self, x, rounds, map, until=lambda box: False):
+        """About where an orbit along the curve lands, bounce by bounce, until that is so; and its last state."""
+        p, names, way = self.table.p, self.table.letters | {"lam": self.lam}, []
+        here = [z.mid() for z in self.state(x.mid(), I.of(0, p))]
+        while len(way) <= rounds:
+            way.append((0, here[0].wide(I.of(Fraction(1, 2**9), p))))
+            if until(here):
+                break
+            there = I.of(Fraction(map.guess(here[0].real(), here[1].real())), p).wide(I.of(Fraction(1, 80), p))
+            here = [value(z).mid() for z in self.table.flight(0, (0, there), [Jet.of(z, 0) for z in here], names)]
+        return way, here
+
+    def followed(self, x, way):
+        """The last state of all that leaves from over an interval of the curve."""
+        p, names = self.table.p, self.table.letters | {"lam": self.lam}
+        need((x.size() - self.reach).hi <= 0, "manifold: a start beyond it")
+        launch = lambda x, y, lam: (*self.state(x, y), names)  # noqa: E731
+        states = self.table.orbit(launch, [x, I.of(0, p).wide(x * self.slope), self.lam], way, 1)
+        return [value(z) for z in states[-1]]
+
+    def pieces(self, side, map):
+        """Boxes that hold a piece of the branch from a point to its image, some rounds away from the saddle."""
+        rounds = 1 + ceil(log(AWAY / self.reach) / log(self.most))
+        ends = [self.reach / Fraction(float(self.most) ** (k / PIECES)) for k in range(PIECES)]
+        ends.append(self.reach / self.most)
+        for a, b in zip(ends[1:], ends, strict=False):
+            x = I.of(a, self.table.p).hull(I.of(b, self.table.p)) * side
+            yield self.followed(x, self.sampled(x, rounds, map)[0])
+
+    def leaves(self, side, map, cells, rough):
+        """Is there an orbit along the branch that enters the cells? Looked for from further off, then enclosed."""
+        rounds = LONG + ceil(log(AWAY / rough.reach) / log(rough.most))
+        down = ceil((TINY - SMALL) / log2(self.grows.real()))
+        enters = lambda box: {*map.met(*(I.of(z, BITS) for z in box))} <= cells  # noqa: E731
+        for k in range(SAMPLES):
+            x = rough.reach / Fraction(float(rough.most) ** (k * 0.381966 % 1))
+            try:
+                if enters(rough.sampled(I.of(x, BITS) * side, rounds, map, enters)[1]):
+                    far = I.of(x, MORE) * side
+                    for _ in range(down):
+                        far = (far / self.grows).mid()
+                    if enters(self.followed(far, self.sampled(far, rounds + down, map, enters)[0])):
+                        return True
+            except Unproved:  # of this orbit nothing is known
+                continue
+        return False
+
+
+class Grown(Inside):
+    """Cells of a part of the table that turns onto the next: those that are met, and that the images of these meet."""
+
+    def __init__(self, table, lam, high, parts):
+        super().__init__(table, lam, high, (parts * GRID[0], GRID[1]), set())
+
+    def met(self, theta, phi):
+        """The cells of the part that a rectangle meets, borders included, turned into it."""
+        return {(i % GRID[0], j) for i, j in super().met(theta, phi)}
+
+    def grow(self, seeds):
+        """The least set that holds these cells and all that images of its cells meet."""
+        found = {*seeds}
+        new = [*found]
+        while new:
+            column, row = new.pop()
+            more = self.images(Fraction(column), Fraction(row), Fraction(1), HALVINGS) - found
+            found |= more
+            new += more
+            need(len(found) <= MOST, "kept, taken: the cells have no end")
+        return found
+
+    def images(self, column, row, size, more):
+        """What the image of a square of cells meets; by halves where it is not enclosed."""
+        try:
+            return self.met(*self.image(column, row, size))
+        except Unproved as why:
+            need(more, why)
+        half = size / 2
+        return set().union(
+            *(self.images(x, y, half, more - 1) for x in (column, column + half) for y in (row, row + half))
+        )

@@ -125,7 +125,7 @@ def own(table, way, scene):
     if way != "table":
         table.turns = [inside]
         table.closed = list(map(closed, table.parts))
-        joined(table, scene)
+        table.curves = joined(table, scene)
         table.marks = [marked(table, mark) for mark in scene.get("undefined", [])]
         if way == "polar" and not table.marks:
             positive(table)
@@ -181,12 +181,13 @@ def joined(table, scene):
             low, high = (number(node, names, p) for node in part[-2:])
             need(I.of(high - low, p) > 0, f"scene: piece {k} does not run forward, from less to more", Wrong)
     for names in cases:
-        tips, first = [[tip(part, end, names, p) for end in part[-2:]] for part in table.parts], 0
+        tips, first, curves = [[tip(part, end, names, p) for end in part[-2:]] for part in table.parts], 0, []
         for k, (_, last) in enumerate(tips, 1):
             if k == len(tips) or not meet(last, tips[k][0], p):
                 back = meet(last, tips[first][0], p)
                 need(back, f"scene: the boundary is not closed: piece {k} ends where no other begins", Wrong)
-                first = k
+                curves, first = [*curves, range(first, k)], k
+    return curves
 
 
 def tip(part, end, names, p):
@@ -227,11 +228,33 @@ def marked(table, mark):
     return mark["component"], I.of(evaluate(parse(mark["theta"]), table.letters, table.p)[0], table.p)
 
 
+def apart(table, names, p):
+    """Proves that no two closed curves of the boundary have a common point: halved until their boxes lie apart."""
+    whole, spent = (Fraction(0), Fraction(1)), 0
+    pairs = [(one, other) for k, one in enumerate(table.curves) for other in table.curves[:k]]
+    queue = [((k, whole), (other, whole)) for one, more in pairs for k in one for other in more]
+
+    def box(part, ends):
+        low, high = table.ends(part, p)
+        return table.at(part, low + (high - low) * I.of(ends[0], p).hull(I.of(ends[1], p)), names, p)[:2]
+
+    while queue:
+        (part, (a, b)), other = queue.pop()
+        spent += 1
+        need(spent < 4000, "admissible: two curves of the boundary may meet")
+        try:
+            done = any(0 not in x - y for x, y in zip(box(part, (a, b)), box(*other), strict=True))
+        except Unproved:  # a formula may have no value on a wide piece
+            done = False
+        queue += [] if done else [(other, (part, half)) for half in ((a, (a + b) / 2), ((a + b) / 2, b))]
+
+
 def inside(table, x, y, names):
     """Proves that the boundary runs once round a point, counterclockwise; what runs round a hole is taken off.
 
     It is counted where it crosses a ray from the point: a piece that may meet the ray lies on its side of the point."""
     total, p = 0, x.p
+    apart(table, names, p)
 
     def place(part, theta):
         qx, qy, *_ = table.at(part, theta, names, p)

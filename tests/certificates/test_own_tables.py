@@ -288,10 +288,15 @@ ROUND = {"name": "round", "x": "2 + 5*cos(theta)", "y": "5*sin(theta)", "from": 
         ([DISC, OTHER], "not proved: admissible: the boundary does not run once round"),
         ([DISC, OTHER, ROUND | {"x": "20 + 5*cos(theta)"}], "not proved: admissible: the boundary does not run once"),
         ([DISC, OTHER, ROUND, ROUND | {"y": "6*sin(theta)"}], "not proved: admissible: the boundary does not run once"),
+        ([DISC | {"y": "-7*sin(theta)"}, OTHER, ROUND], "not proved: admissible: two curves of the boundary may meet"),
+        (
+            [DISC, OTHER, ROUND, ROUND | {"x": "2 + 6*cos(theta)", "y": "6*sin(theta)"}],
+            "not proved: admissible: the bound",
+        ),
     ],
 )
 def test_a_cycle_between_two_discs_is_one_of_a_table_that_holds_them(check, curves, answer):
-    """Clockwise discs are holes. With nothing round them, or two curves, or one elsewhere, they are no table."""
+    """Clockwise discs are holes. With nothing round them, two curves, one elsewhere or across, they are no table."""
     given = document("scatterer") | {"components": [0, 1], "centre": [["0", "0"]] * 2, "radius": ["1", "-60"]}
     given |= {"digits": 15, "scene": {"component": curves, "lam": "1/3"}}
     for key in ("name", "statement"):

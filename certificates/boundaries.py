@@ -6,7 +6,7 @@ A formula is a tree, as `check.parse` makes it. What is asked of one is seen in 
 import ast
 from fractions import Fraction
 
-from check import I, Unproved, Wrong, evaluate, need, parse, pi
+from check import I, Unproved, Wrong, beside, evaluate, need, parse, pi
 
 ODD, EVEN = ("sin", "tan", "sinh", "tanh", "atan"), ("cos", "cosh", "abs", "Abs")  # as functions
 
@@ -123,7 +123,7 @@ def own(table, way, scene):
     length = table.law and any(getattr(node, "id", "") == "s" for node in ast.walk(table.law))
     need(not length, "scene: a law with s, arc length as an integral, is read by `pinball check` alone", Wrong)
     if way != "table":
-        table.turns = [inside]
+        table.turns = [beside("curves").inside]
         table.closed = list(map(closed, table.parts))
         table.curves = joined(table, scene)
         table.marks = [marked(table, mark) for mark in scene.get("undefined", [])]
@@ -226,56 +226,3 @@ def marked(table, mark):
     fit = set(mark) == {"name", "component", "theta"} and type(mark["component"]) is int
     need(fit and 0 <= mark["component"] < len(table.parts), "scene: an undefined point is not understood", Wrong)
     return mark["component"], I.of(evaluate(parse(mark["theta"]), table.letters, table.p)[0], table.p)
-
-
-def apart(table, names, p):
-    """Proves that no two closed curves of the boundary have a common point: halved until their boxes lie apart."""
-    whole, spent = (Fraction(0), Fraction(1)), 0
-    pairs = [(one, other) for k, one in enumerate(table.curves) for other in table.curves[:k]]
-    queue = [((k, whole), (other, whole)) for one, more in pairs for k in one for other in more]
-
-    def box(part, ends):
-        low, high = table.ends(part, p)
-        return table.at(part, low + (high - low) * I.of(ends[0], p).hull(I.of(ends[1], p)), names, p)[:2]
-
-    while queue:
-        (part, (a, b)), other = queue.pop()
-        spent += 1
-        need(spent < 4000, "admissible: two curves of the boundary may meet")
-        try:
-            done = any(0 not in x - y for x, y in zip(box(part, (a, b)), box(*other), strict=True))
-        except Unproved:  # a formula may have no value on a wide piece
-            done = False
-        queue += [] if done else [(other, (part, half)) for half in ((a, (a + b) / 2), ((a + b) / 2, b))]
-
-
-def inside(table, x, y, names):
-    """Proves that the boundary runs once round a point, counterclockwise; what runs round a hole is taken off.
-
-    It is counted where it crosses a ray from the point: a piece that may meet the ray lies on its side of the point."""
-    total, p = 0, x.p
-    apart(table, names, p)
-
-    def place(part, theta):
-        qx, qy, *_ = table.at(part, theta, names, p)
-        return (qx - x) * 3 + (qy - y), (qy - y) * 3 - (
-            qx - x
-        )  # along the ray, which no axis or diagonal is, and across
-
-    for part in range(len(table.parts)):
-        (low, high), queue, spent = table.ends(part, p), [(Fraction(0), Fraction(1))], 0
-        while queue:
-            (a, b), spent = queue.pop(), spent + 1
-            need(spent < 4000, "admissible: the boundary may run through a chord")
-            start, end = (low + (high - low) * I.of(z, p) for z in (a, b))
-            try:
-                along, across = place(part, start.hull(end))
-                signs = [(z > 0) - (z < 0) for z in (place(part, z)[1] for z in (start, end))]
-                seen = along > 0 or 0 not in across or (along < 0 and 0 not in signs)
-            except Unproved:  # a formula may have no value on a wide piece
-                seen = False
-            if not seen:
-                queue += [(a, (a + b) / 2), ((a + b) / 2, b)]
-            elif along < 0:
-                total += (signs[0] - signs[1]) // 2
-    need(total == 1, "admissible: the boundary does not run once round a chord, counterclockwise")

@@ -363,8 +363,6 @@ class Table:
         start, end = ([(part, I.of(at, p)) for part, at in bounce] for bounce in (start, end))
         (x, y, *_), (u, v, *_) = (self.at(*bounce[0], names, p) for bounce in (start, end))
         dx, dy, spent = u - x, v - y, 0
-        while self.turns:  # of a table of one's own, once
-            self.turns.pop()(self, (x + u) / 2, (y + v) / 2, names)
 
         def crossing(part, theta):
             qx, qy, tx, ty = self.at(part, theta, names, p)
@@ -389,6 +387,8 @@ class Table:
                 except Unproved:  # a formula may have no value on a wide piece
                     done = False
                 queue += [] if done else [(a, (a + b) / 2), ((a + b) / 2, b)]
+        while self.turns:  # of a table of one's own, once
+            self.turns.pop()(self, (x + u) / 2, (y + v) / 2, names)
 
 
 def newton(equations, box, p):

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-READER = ("check", "boundaries", "corner", "crisis", "formulas", "region", "tangency")
+READER = ("check", "boundaries", "corner", "crisis", "curves", "formulas", "region", "tangency")
 TESTS = (
     "test_crisis",
     "test_hypotheses",
@@ -23,7 +23,13 @@ TESTS = (
     "test_own_tables",
     "test_two_arithmetics",
 )
-OWN = {"boundaries": "own_tables", "crisis": "crisis", "formulas": "own_tables", "region": "region"}  # asked first
+OWN = {
+    "boundaries": "own_tables",
+    "crisis": "crisis",
+    "curves": "own_tables",
+    "formulas": "own_tables",
+    "region": "region",
+}  # asked first
 SLOW = ("bytes", "again", "empty_folder", "bay", "line_of_the_package", "short", "generated", "written")
 
 

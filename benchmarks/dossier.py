@@ -26,6 +26,7 @@ PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"
 KERNEL = "float64 llvm"
 RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one particle at a time": "numba"}
 PLAIN = "float64 the paper's way, in Python"
+SWEEP = "sweep"  # what rows of sweeps name in place of a table
 BOUNDS = 4, 8  # units of 2**-52: of the place and of the direction
 MANY = 100  # digits
 
@@ -74,8 +75,14 @@ def calls(bench):
 
 def elsewhere(bench):
     """What particles at rest cost on tables that are not the paper's, as ratios."""
-    rows = [row for row in bench["calls"] if row["scene"] not in SCENES]
+    rows = [row for row in bench["calls"] if row["scene"] not in (*SCENES, SWEEP)]
     return ", ".join(f"{row['scene']} {row['ratio']:.2g}" for row in rows), max(row["bar"] for row in rows)
+
+
+def sweeps(bench):
+    """What tasks take when several workers share a sweep, beside one alone, and how well its seconds were foretold."""
+    rows = [row for row in bench["calls"] if row["scene"] == SWEEP]
+    return ", ".join(f"{row['call']} {row['ratio']:.2f} (bar {row['bar']:.2f})" for row in rows)
 
 
 def kernels(benches):
@@ -232,8 +239,12 @@ def page():
         threads=threads(bench),
         kernels=kernels([bench, other]),
         other=other["machine"]["processor"],
+        one=bench["machine"]["processor"],
+        own_calls=calls(bench),
         calls=calls(other),
+        own_elsewhere=elsewhere(bench)[0],
         elsewhere="{} (bar {:g})".format(*elsewhere(other)),
+        sweeps=sweeps(bench),
         uncertified=f" (of {', '.join(loose)} a long run)" if loose else "",
         many=MANY,
         questions=questions(work, rows),

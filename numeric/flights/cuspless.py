@@ -89,31 +89,39 @@ class Cuspless(Cardioid):
         # from the arc: the cardioid's cubic, and on which side the line passes the joins
         cubic, Q, k, back = self.cubic(ops, (p, q), (c, s))
         reach = root3 * p
-        ahead, behind = (((cubic[3] * x + cubic[2]) * x + cubic[1]) * x + cubic[0] for x in (-reach, reach))
-        onwards, across = ahead < nought, behind < nought
+        reach2 = reach * reach
+        even, odd = cubic[2] * reach2 + cubic[0], (cubic[3] * reach2 + cubic[1]) * reach
+        ahead, behind = even - odd, even + odd
+        onwards, across = ahead < nought, (behind < nought) & ops.negated(from_wall)
         to_wall = ops.negated(onwards | across | from_wall)
-        # from the wall, at height y after a mirroring that lets it fly upwards: a quartic in tan(theta1/2), or, where
-        # the flight is near-grazing at the wall, or at the arc next to the join, in sqrt(3) - tan(theta1/2), so that
-        # nothing cancels
+        # mirrored where it passes on the other side of the cusp, so that the zero lies above -reach on every way
+        cubic[1], cubic[3] = (ops.select(across, -x, x) for x in (cubic[1], cubic[3]))
+        # from the wall, at height y after a mirroring that lets it fly upwards: a quartic in -tan(theta1/2)
         y, up, four = -ops.times_sign(p, s), modulus(s), ops.number(4.0)
         L, below = ops.fma(c, y, ops.number(QUARTER) * up), ops.number(QUARTER) * root3 - y
-        near_grazing = (c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625))
-        plain = [-two * up - L, four * c, two * (up - L), nought, -L]
-        turned = [ops.number(16.0) * c * below, four * c * (four * root3 * y - one)]
-        turned += [-ops.number(3.0) * up - ops.number(20.0) * c * y, four * root3 * L, -L]
-        quartic = [ops.select(near_grazing, -a, b) for a, b in zip(turned, plain, strict=True)]
-        # one polynomial for both, negative at low and positive at high
-        cubic = [ops.select(across, -b, b) for b in cubic] + [nought]
-        poly = [ops.select(from_wall, a, b) for a, b in zip(quartic, cubic, strict=True)]
-        low = ops.select(from_wall, ops.select(near_grazing, nought, -root3), ops.select(across, Q, -reach))
-        high = ops.select(from_wall, ops.select(near_grazing, two * root3, root3), ops.select(across, reach, Q))
-        start = ops.select(from_wall, nought, ops.select(across, reach, Q - c))
+        quartic = [two * up + L, four * c, two * (L - up), nought, L]
+        poly = [ops.select(from_wall, a, b) for a, b in zip(quartic, [*cubic, nought], strict=True)]
         base = ops.select(from_wall, one, p)
-        scale = ops.select(from_wall, ops.select(near_grazing, ops.number(TINY), one), p)
-        S = ops.polynomial_zero(poly, start, low, high, scale, self.steps, ops.negated(to_wall))
-        tangent = ops.select(
-            from_wall, -ops.times_sign(ops.select(near_grazing, root3 - S, S), s), ops.times_sign(S, k)
-        )
+        low = -root3 * base
+        high = ops.select(from_wall, root3, ops.select(across, -Q, Q))
+        guess = ops.number(1.3125) * c - ops.number(1.375) - ops.number(0.3125) * y  # off by 0.1 at most
+        start = ops.select(from_wall, guess, ops.select(across, low, Q - c))
+        near_grazing = from_wall & ((c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625)))
+        S = ops.polynomial_zero(poly, start, low, high, base, self.steps, ops.negated(to_wall | near_grazing))
+
+        def from_the_join() -> list[N]:
+            """The quartic in `sqrt(3) - tan(theta1/2)`: near-grazing at the wall, or at the arc next to the join.
+
+            Nothing cancels in it.
+            """
+            turned = [-ops.number(16.0) * c * below, -four * c * (four * root3 * y - one)]
+            turned += [ops.number(3.0) * up + ops.number(20.0) * c * y, -four * root3 * L, L]
+            tiny, far = ops.number(TINY), two * root3
+            rest = ops.polynomial_zero(turned, nought, nought, far, tiny, self.steps, near_grazing)
+            return [ops.select(near_grazing, rest - root3, S)]
+
+        (S,) = ops.when(near_grazing, [S], from_the_join)
+        tangent = ops.times_sign(ops.select(across, -S, S), ops.select(from_wall, s, k))
         back = ops.select(from_wall, -c, back[0]), ops.select(from_wall, s, back[1])
         landing = plane.normalised(ops, (base, tangent))
         # on the wall the angular momentum about the origin tells the height: no term is larger than the result needs

@@ -3,9 +3,9 @@
 from . import fields
 from .fields import attractors_of, basins, bifurcation, egg, parameter_space
 from .orbits import written
-from .run import UnfinishedError, connected, on_threads
+from .run import Results, UnfinishedError, connected, on_cluster, on_processes, on_threads
 from .store import Memory
-from .sweep import Array, Axis, Field, Measured, Part, Sweep, cores, floor_of, map_of, measured, text_of, versions
+from .sweep import Array, Axis, Field, Measured, Part, Sweep, Task, cores, floor_of, map_of, measured, text_of, versions
 from .workers import Lost, in_processes
 
 __all__ = [
@@ -16,7 +16,9 @@ __all__ = [
     "Measured",
     "Memory",
     "Part",
+    "Results",
     "Sweep",
+    "Task",
     "UnfinishedError",
     "attractors_of",
     "basins",
@@ -29,6 +31,8 @@ __all__ = [
     "in_processes",
     "map_of",
     "measured",
+    "on_cluster",
+    "on_processes",
     "on_threads",
     "parameter_space",
     "text_of",

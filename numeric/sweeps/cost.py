@@ -1,12 +1,13 @@
 """What a sweep will cost, before it begins: seconds, bytes of results, and memory.
 
-Its own task is run on thinned parts, spread over the grid: at two sizes each, so that what a part costs whatever its
-size is told from what each coordinate adds, and a first time, when its map is made. Measured is the processor's time,
-which other work hardly lengthens.
+Its own task is run on some of its parts, spread over the grid, until their mean is known: whole parts where these are
+short, else thinned ones at two sizes, so that what a part costs whatever its size is told from what each coordinate
+adds; and a first time, when its map is made. Measured is the processor's time, which other work hardly lengthens.
 """
 
 import time
 import tracemalloc
+from collections.abc import Callable, Iterator
 from math import prod
 from typing import Any, NamedTuple
 
@@ -16,16 +17,21 @@ from numeric.pinball.map import PinballMap
 from numeric.sweeps.run import AHEAD
 from numeric.sweeps.sweep import Part, Sweep, cores
 
-PROBES, RUNS = 5, 2  # parts that are looked at, and how often each is run
-ENOUGH = 1_500_000  # bounces of a thinned part: some hundredths of a second
+LEAST, CLOSE = 6, 0.03  # parts that are looked at, and the relative standard error of their mean at which it is enough
+ENOUGH = 1_500_000  # bounces of the first thinned part, which says how long they take: some hundredths of a second
 MOST = 20_000_000  # of the smallest thinned part; beyond, only the kernel's speed is measured
-PATIENCE = 3.0  # seconds, after which no other part is looked at
-PARTICLES, BOUNCES = 1024, 400
+SPAN = 0.5  # seconds of a part that is run whole, about
+SHARE, PATIENCE = 0.02, (3.0, 20.0)  # of all the seconds, and at least and at most how many, are spent on looking
+PARTICLES, BOUNCES, TURNS = 1024, 400, 3  # to measure the kernel's speed
+GOLDEN = (5**0.5 - 1) / 2  # its multiples are spread evenly over the unit interval, however many there are
+Clock = Callable[[], float]
 
 
 class Cost(NamedTuple):
     """`nanoseconds` are the processor's, for a bounce with all that goes with it; `memory` is in bytes, at most, about.
 
+    `error` is the relative standard error of the seconds, from the differences between the `looked` parts that were
+    run; None where only the kernel's speed was measured. `memory` comes on top of the program's own and its libraries'.
     At no time more than `workers` parts are worked on, so memory does not grow with the grid, but for results that go
     into no store.
     """
@@ -36,6 +42,8 @@ class Cost(NamedTuple):
     workers: int
     bytes: int
     memory: int
+    looked: int = 0
+    error: float | None = None
 
     @property
     def seconds(self) -> float:
@@ -48,9 +56,11 @@ class Cost(NamedTuple):
 
     def lines(self) -> list[str]:
         """The estimate, for people."""
+        known = "the kernel alone" if self.error is None else f"+- {self.error:.0%}, from {self.looked} parts"
         return [
             f"{self.parts} parts, {self.collisions:.3g} bounces",
-            f"about {duration(self.seconds)}: {self.nanoseconds:.1f} ns a bounce, measured, on {self.workers} cores",
+            f"about {duration(self.seconds)} on {self.workers} cores: {self.nanoseconds:.1f} ns a bounce, measured "
+            f"({known})",
             f"{size(self.bytes)} of results before compression",
             f"{size(self.memory)} of memory at most, about, for {self.workers} parts at a time",
         ]
@@ -71,40 +81,79 @@ def size(count: int) -> str:
     return f"{count} bytes"
 
 
-def cost(sweep: Sweep, workers: int | None = None, stored: bool = True) -> Cost:
-    """The cost of all parts of a sweep, whose results go into a store or stay in memory."""
-    workers = workers or cores()
-    indices = sweep.indices()
-    each, length = sweep.collisions / len(indices), prod(_cut(sweep).values())
-    few = max(1, min(length, round(length * ENOUGH / max(each, 1.0))))
-    more = min(length, 2 * few)
-    kept = AHEAD * workers * sweep.size // len(indices) + (0 if stored else sweep.size)
-    if each * few / length > MOST:
-        return Cost(len(indices), sweep.collisions, speed(sweep.map()), workers, sweep.size, kept)
-    chosen = [indices[len(indices) * (2 * i + 1) // (2 * PROBES)] for i in range(min(PROBES, len(indices)))]
-    ends = [(_thinned(sweep, at, few), _thinned(sweep, at, more)) for at in chosen]
-    if (
-        sweep.settings.get("attractors") == []
-    ):  # they are looked for later; to compare with none of them is another task
-        peak = _line(few, more, length, *(float(_peak(sweep, part)) for part in ends[0]))
-        return Cost(len(indices), sweep.collisions, speed(sweep.map()), workers, sweep.size, kept + int(workers * peak))
-    begun, first = time.process_time(), _seconds(sweep, ends[0][0])  # which compiles
-    found, once = list[float](), [0.0]
-    for small, large in ends:
-        if found and time.process_time() - begun > PATIENCE:
+def cost(sweep: Sweep, workers: int | None = None, stored: bool = True, clock: Clock = time.process_time) -> Cost:
+    """The cost of all parts of a sweep, whose results go into a store or stay in memory; `clock` counts seconds."""
+    workers, parts = workers or cores(), len(sweep.indices())
+    kept = AHEAD * workers * sweep.size // parts + (0 if stored else sweep.size)
+    each, length = max(sweep.collisions / parts, 1.0), prod(_cut(sweep).values())
+    few = max(1, min(length, round(length * ENOUGH / each)))
+    order = _spread(sweep)
+    only_speed = each * few / length > MOST
+    # attractors of basins are looked for later; to compare with none of them is another task
+    if only_speed or sweep.settings.get("attractors") == []:
+        peak = 0.0 if only_speed else _largest(sweep, next(order), few, min(length, 2 * few), length)
+        return Cost(parts, sweep.collisions, speed(sweep.map()), workers, sweep.size, kept + int(workers * peak))
+
+    def seconds(part: Part) -> float:
+        begun = clock()
+        sweep.task(part)
+        return clock() - begun
+
+    whole = prod(axis.size for axis in sweep.axes if axis.part > 1) * _scenes(sweep)
+    begun, first = clock(), next(order)
+    start = _thinned(sweep, first, few)
+    compiling = seconds(start)
+    short = max(seconds(start), 1e-9)
+    more = min(length, max(few, int(few * SPAN / short)))
+    few = more if more == length else max(1, more // 2)
+    found, once, places, total = list[float](), list[float](), list[int](), 0.0
+    for at in (first, *order):
+        small, large = _thinned(sweep, at, few), _thinned(sweep, at, more)
+        new, again = seconds(small), seconds(small)
+        most = again if few == more else seconds(large)
+        places.append(_places(sweep, sweep.part(at)))
+        found.append(_line(few, more, places[-1], again, most))
+        once += [max(0.0, new - again)] if len(found) > 1 else []
+        total = sum(found) / sum(places) * whole + float(np.median(once or [0.0])) * _scenes(sweep)
+        error = _error(found, places, parts)
+        patience = min(max(PATIENCE[0], SHARE * total), PATIENCE[1])
+        if (len(found) >= LEAST and error < CLOSE) or clock() - begun - compiling > patience:
             break
-        news, again = _seconds(sweep, small), min(_seconds(sweep, small) for _ in range(RUNS))
-        found.append(_line(few, more, length, again, min(_seconds(sweep, large) for _ in range(RUNS))))
-        once += [max(0.0, news - again)] if len(found) > 1 else []
-    total = float(np.mean(found)) * len(indices) + float(np.median(once[1:] or once)) * _scenes(sweep)
-    peak = _line(few, more, length, *(float(_peak(sweep, part)) for part in ends[0])) if first < PATIENCE else 0.0
-    nanoseconds = total / max(sweep.collisions, 1) * 1e9
-    return Cost(len(indices), sweep.collisions, nanoseconds, workers, sweep.size, kept + int(workers * peak))
+    peak = _largest(sweep, first, few, more, length) if compiling < PATIENCE[1] else 0.0
+    nanoseconds, memory = total / max(sweep.collisions, 1) * 1e9, kept + int(workers * peak)
+    return Cost(parts, sweep.collisions, nanoseconds, workers, sweep.size, memory, len(found), error)
+
+
+def _spread(sweep: Sweep) -> Iterator[tuple[int, ...]]:
+    """Every part once, each as far as may be from those before it, in step with no axis."""
+    indices = sweep.indices()
+    seen: set[int] = set()
+    for i in range(8 * len(indices)):
+        at = int((0.5 + i * GOLDEN) % 1.0 * len(indices))
+        if at not in seen:
+            seen.add(at)
+            yield indices[at]
+
+
+def _error(found: list[float], places: list[int], parts: int) -> float:
+    """The relative standard error of what some of so many parts take for each place; 0 when all were looked at."""
+    count = len(found)
+    if count >= parts:
+        return 0.0
+    if count < 2:
+        return 1.0
+    beyond = np.array(found) - sum(found) / sum(places) * np.array(places)
+    return float(np.sqrt(np.sum(beyond**2) / (count - 1) * count * (1 - count / parts)) / sum(found))
 
 
 def _scenes(sweep: Sweep) -> int:
     """How many times a part meets values of which it must prepare the map first: those taken one at a time."""
     return prod(axis.size for axis in sweep.axes if axis.part == 1)
+
+
+def _places(sweep: Sweep, part: Part) -> int:
+    """The places of a part on the axes that are cut in pieces."""
+    return prod(len(part.values[name]) for name in _cut(sweep))
 
 
 def speed(map: PinballMap) -> float:
@@ -113,7 +162,7 @@ def speed(map: PinballMap) -> float:
     theta = low + (high - low) * (np.arange(PARTICLES) + 0.5) / PARTICLES
     map.exponents(theta, 0.0 * theta, 1, threads=1)
     times = []
-    for _ in range(RUNS + 1):
+    for _ in range(TURNS):
         begun = time.process_time()
         map.exponents(theta, 0.0 * theta, BOUNCES, threads=1)
         times.append(time.process_time() - begun)
@@ -144,10 +193,10 @@ def _line(few: int, more: int, length: int, small: float, large: float) -> float
     return large + rise * (length - more)
 
 
-def _seconds(sweep: Sweep, part: Part) -> float:
-    begun = time.process_time()
-    sweep.task(part)
-    return time.process_time() - begun
+def _largest(sweep: Sweep, at: tuple[int, ...], few: int, more: int, length: int) -> float:
+    """Bytes that a whole part takes at once, from thinned ones."""
+    ends = [_peak(sweep, _thinned(sweep, at, count)) for count in (few, more)[: 1 + (few < more)]]
+    return _line(few, more, length, float(ends[0]), float(ends[-1]))
 
 
 def _peak(sweep: Sweep, part: Part) -> int:

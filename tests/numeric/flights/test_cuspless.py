@@ -124,10 +124,16 @@ def test_few_flights_need_the_bracket(unsettled):
     assert unsettled(cuspless(0.5), slap=True) <= 0.002
 
 
-def test_few_flights_are_sharpened(unsettled):
-    """Of 40,000 random particles 0.17 %."""
-    assert 0.001 <= unsettled(cuspless(0.5), branch=1) <= 0.0025
+def test_few_flights_from_the_wall_are_near_grazing(unsettled):
+    """At the wall or, next to a join, at the arc: of random particles 0.04 %."""
+    assert 0 < unsettled(cuspless(0.5), branch=1) <= 0.001
     assert unsettled(cuspless(0.5), slap=True, branch=1) == 0
+
+
+def test_few_flights_are_sharpened(unsettled):
+    """Of 40,000 random particles 0.17 %; the branch before it is the bracket of what is near-grazing."""
+    assert 0.001 <= unsettled(cuspless(0.5), branch=3) <= 0.0025
+    assert unsettled(cuspless(0.5), slap=True, branch=2) == 0
 
 
 def test_tangent_particles_stop_where_they_are():

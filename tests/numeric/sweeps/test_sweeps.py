@@ -2,7 +2,6 @@
 
 import errno
 import os
-import time
 import tracemalloc
 
 import numpy as np
@@ -200,31 +199,58 @@ def test_the_cost_is_that_of_all_bounces():
     assert expected.seconds == expected.collisions * expected.nanoseconds * 1e-9 / 2
 
 
-PREPARED = set()
+class Counted:
+    """A task on a clock of its own: seconds for each new `x`, and those that a law gives for a part; no time passes."""
+
+    def __init__(self, preparing, law):
+        self.preparing, self.law, self.now, self.known = preparing, law, 0.0, set()
+
+    def __call__(self, part):
+        x, count = part.values["x"][0], part.values["y"].size
+        self.now += self.preparing * (x not in self.known) + self.law(part.at, count)
+        self.known.add(x)
+        taken = np.ones((count, 1 << 14))
+        return {"sum": taken[None, :, 0]}
+
+    def cost(self, values, places=40, workers=1):
+        axes = Axis("x", np.arange(values), "1", "first", 1), Axis("y", np.arange(places), "1", "second", 20)
+        fields = (Field("sum", ("x", "y"), "float64", "1", "anything"),)
+        sweep = Sweep("counted", "", axes, fields, self, 1, "none", {}, values * places * 10**6, lambda: None)
+        exact = values * self.preparing + sum(self.law(at, 20) for at in sweep.indices())
+        return cost(sweep, workers, clock=lambda: self.now), exact
 
 
-def slowly(part):
-    """Takes time for each new `x`, for each part, and for each `y`; and a megabyte for each `y`."""
-    known = part.values["x"][0] in PREPARED
-    PREPARED.add(part.values["x"][0])
-    end = time.process_time() + 0.02 * (not known) + 0.002 + 0.0005 * part.values["y"].size
-    taken = np.ones((part.values["y"].size, 1 << 17))
-    while time.process_time() < end:
-        pass
-    return {"sum": taken[None, :, 0]}
+@pytest.mark.parametrize("each", [0.0005, 0.05], ids=["parts run whole", "parts thinned"])
+def test_the_cost_of_a_sweep_is_that_of_its_maps_its_parts_and_their_places(each):
+    expected, exact = Counted(0.02, lambda at, count: 0.002 + each * count).cost(30, workers=4)
+
+    assert abs(expected.seconds * 4 / exact - 1) < 1e-12
+    assert expected.error < 1e-12
+    assert expected.looked < 10
+
+
+def test_parts_are_looked_at_until_their_mean_is_known_and_in_step_with_no_axis():
+    """As an attractor changes along one axis, and where one slice of the other is dear, as contractions near 1 are."""
+    for law in (lambda at, count: count * (2 + np.sin(at[0] / 9)) / 5000, lambda at, count: count / (1 + 9 * at[1])):
+        expected, exact = Counted(0.0, law).cost(200, 100)
+
+        assert abs(expected.seconds / exact - 1) < 0.2
+        assert abs(expected.seconds / exact - 1) < 3 * expected.error
+
+
+def test_what_is_looked_at_is_a_small_share_of_a_long_sweep():
+    task = Counted(0.0, lambda at, count: count / (1 + 9 * (at[0] % 7)))
+    expected, exact = task.cost(3000)
+
+    assert task.now < 0.01 * exact
+    assert abs(expected.seconds / exact - 1) < 3 * expected.error  # which is large, and said
 
 
 @pytest.mark.parametrize("workers", [1, 4])
-def test_seconds_and_memory_of_a_sweep_are_foretold_within_a_fifth(workers):
-    axes = Axis("x", np.arange(9.0), "1", "first", 1), Axis("y", np.arange(40.0), "1", "second", 20)
-    fields = (Field("sum", ("x", "y"), "float64", "1", "anything"),)
-    PREPARED.clear()
-    sweep = Sweep("slow", "Slow", axes, fields, slowly, 1, "none", {}, 18 * 20 * 10**6, lambda: None)
-    expected = cost(sweep, workers)
-    exact = 9 * 0.02 + 18 * (0.002 + 20 * 0.0005)
+def test_the_memory_of_a_sweep_is_that_of_as_many_parts_as_there_are_workers(workers):
+    expected, _ = Counted(0.0, lambda at, count: count / 1000).cost(9, workers=workers)
 
-    assert abs(expected.seconds * workers / exact - 1) < 0.2
-    assert abs(expected.memory / (workers * 20 * 2**20) - 1) < 0.2
+    assert abs(expected.memory / (workers * 20 * 2**17) - 1) < 0.2
 
 
 def test_the_diagram_of_the_egg_doubles_its_period():

@@ -10,13 +10,14 @@ import pytest
 from rich.console import Console
 
 from numeric import PinballMap
+from numeric.sweeps.run import on_threads
 from symbolic import tables
 from verification.app.cli import main
 from verification.app.commands.bench import show_ratios, show_tables
 from verification.measure.extremes.by_hand import outline
 from verification.measure.extremes.orbits import cases, own_cases
 from verification.measure.work import bench as baselines
-from verification.measure.work import calls
+from verification.measure.work import calls, scaling
 from verification.measure.work.bench import LAWS, Row, frontier, multiprecision_rows
 from verification.measure.work.calls import Call
 from verification.measure.work.row import HEIGHT, WIDTH, diagram, magnitude
@@ -276,3 +277,30 @@ def test_balls_come_to_rest_on_tables_of_every_kind(monkeypatch):
 
     assert [row.scene for row in rows] == ["conic", "square", "regular6", "discs36"]
     assert {row.call for row in rows} == {"exponents, 20 bounces"}
+
+
+def watched_by(worker, *tasks):
+    """Results of a worker: when each task began and ended, how long it had waited by then, and what it spent."""
+    for began, ended, before, waited, spent in tasks:
+        row = dict(zip(scaling.NAMES, (worker, began, ended, before, waited, spent), strict=True))
+        yield (0,), {name: np.array([value]) for name, value in row.items()}
+
+
+def test_a_worker_loses_what_it_stands_still_and_not_what_it_waits_for_a_core():
+    """Of two seconds a task; one stands still for one, the other waits for three; first tasks do not count."""
+    first = watched_by(1, (0, 9, 0, 0, 2), (9, 11, 0, 0, 2), (12, 14, 0, 0, 2))
+    second = watched_by(2, (0, 2, 0, 0, 2), (2, 7, 0, 3, 2))
+    found = scaling.busy(iter([*first, *second]))
+
+    assert found == scaling.Busy(seconds=(14 - 9) + (7 - 2 - 3), spent=6.0, tasks=3)
+
+
+def test_watched_tasks_say_what_they_find_and_who_found_it():
+    sweep = scaling.watched(8)
+    results = dict(on_threads(sweep, sweep.indices(), 2))
+    found, plain = results[0, 0], sweep.task.task(sweep.part((0, 0)))
+
+    assert len(results) == scaling.TASKS
+    assert set(found) == {*plain, *scaling.NAMES}
+    assert all(np.array_equal(found[name], plain[name]) for name in plain)
+    assert found["began"] <= found["ended"]

@@ -58,6 +58,7 @@ def command(
     from verification.measure.work.bench import MISSING, baseline_rows, is_checkout
     from verification.measure.work.calls import call_rows, pieces_at_rest, table_rows
     from verification.measure.work.choice import earlier, moved, of_bench
+    from verification.measure.work.scaling import sweep_rows
 
     before = earlier(Path(compare)) if compare else []
     known = (*labelled.SCENES, *labelled.RADII)
@@ -68,7 +69,7 @@ def command(
     cases: list[Accuracy] = []
     whole: list[Call] = []
     chosen = scenes or known
-    with output.progress("Measuring", 3 * len(chosen) + (not scenes)) as step:
+    with output.progress("Measuring", 3 * len(chosen) + 2 * (not scenes)) as step:
         for name in chosen:
             step(f"{name}, float64")
             papers = name in labelled.SCENES
@@ -84,6 +85,8 @@ def command(
             step("tables beside the egg")
             pieces = list(table_rows(runs, baselines))
             whole += pieces_at_rest(min(runs, 3)) if calls else []
+            step("sweeps by several workers")
+            whole += sweep_rows() if calls else []
     facts = bench.machine_facts()
     measured = [row.as_data() for row in (*rows, *pieces)]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []

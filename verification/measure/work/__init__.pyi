@@ -7,6 +7,7 @@ from .choice import QUESTIONS, digits_for, earlier, for_orbit, moved, of_bench
 from .figure import drawn, image
 from .question import Question, measured
 from .row import diagram, duration, facts, footer, plain
+from .scaling import sweep_rows
 
 __all__ = [
     "BARS",
@@ -36,5 +37,6 @@ __all__ = [
     "of_bench",
     "pieces_at_rest",
     "plain",
+    "sweep_rows",
     "table_rows",
 ]

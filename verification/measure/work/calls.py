@@ -6,7 +6,6 @@ Seconds differ between machines, ratios hardly: the two times of a ratio are the
 seconds of the processor, which other work on the machine does not lengthen. All of it runs on one thread.
 """
 
-import time
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from functools import partial
@@ -20,7 +19,7 @@ from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from verification.measure.extremes.by_hand import discs, outline, spikes
 from verification.measure.extremes.orbits import SCENES, scene
-from verification.measure.work.bench import FORMULAS, LAWS, PARTICLES, SCALAR, Row, attracted, module, scalar_way
+from verification.measure.work.bench import FORMULAS, LAWS, PARTICLES, SCALAR, Row, attracted, best, module, scalar_way
 
 LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
 REST = 512, 1_000, 100_000  # particles at rest: how many, bounces of a short run, of a long one
@@ -73,16 +72,6 @@ class Call(NamedTuple):
     def as_data(self) -> dict[str, Any]:
         """The row for the JSON document."""
         return self._asdict() | {"ratio": self.ratio}
-
-
-def best(action: Callable[[], object], runs: int) -> float:
-    """The fewest seconds of the processor that an action took."""
-    times = []
-    for _ in range(runs):
-        start = time.process_time()
-        action()
-        times.append(time.process_time() - start)
-    return max(min(times), 1e-9)  # a clock that has not moved
 
 
 def taking_turns(one: Callable[[], object], other: Callable[[], object], runs: int) -> tuple[float, float]:

@@ -239,6 +239,19 @@ def shape(given: Document, dice: random.Random) -> None:
     given["scene"]["shape"]["alpha"] = dice.choice(("2/25", "3/40", "9/100", "1/10", "1/9", "0", "0.08", "801/10000"))
 
 
+def branch(given: Document, dice: random.Random) -> None:
+    """The other side of a saddle, another saddle, or another place from which cells grow."""
+    what = dice.randrange(4)
+    if what == 0:
+        given["side"] = dice.choice((-1, 0, 2))
+    elif what == 1:
+        given["saddle"]["start"] = [given["saddle"]["start"][0] + dice.choice((-1.0, -1e-4, -1e-7, 1e-7, 1e-4, 1.2))]
+    elif what == 2:
+        given["saddle"]["shift"] = dice.choice(([2, 3], [1, 2], [3, 3], [0, 3], [1, 6]))
+    else:
+        given["sink"][dice.randrange(2)] += dice.choice((-2.0, -0.1, -1e-3, 1e-3, 0.1, 2.0))
+
+
 DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
     digit, digit, exponent, bound, bound, moved, moved, order, scene, scene, scene,
     about, about, about, item, words, entry,
@@ -247,6 +260,7 @@ DAMAGE: tuple[Callable[[Document, random.Random], None], ...] = (
 
 OWN = (*DAMAGE, formula, formula, formula, formula)
 CELLS = (cells, cells, cells, cells, range_of_lam, range_of_lam, shape, scene, words, entry)
+CRISIS = (branch, branch, branch, branch, range_of_lam, range_of_lam, shape, scene, words, entry)
 TOUCHING = (digit, exponent, bound, moved, manifold, manifold, manifold, swapped, scene, item, words, entry)
 
 
@@ -254,10 +268,10 @@ def mutant(name: str, given: Document, k: int) -> Document:
     """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
     dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
     own = {"law", "polar", "component"} & {*given["scene"]}
-    kinds = {"tangency": TOUCHING, "trapping region": CELLS}
+    kinds = {"tangency": TOUCHING, "trapping region": CELLS, "boundary crisis": CRISIS}
     damage = dice.choice(kinds.get(given["kind"], OWN if own and name != "five-waves" else DAMAGE))
     damage(found, dice)
-    again = damage in (scene, formula, about, cells, range_of_lam, shape)
+    again = damage in (scene, formula, about, cells, range_of_lam, shape, branch)
     return repaired(found) if again and dice.random() < 0.5 else found
 
 
@@ -312,6 +326,10 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
         same = all(given[key] == original[key] for key in ("name", "lam", "columns", "rows", "runs"))
         same = same and given["scene"] | {"lam": ""} == original["scene"] | {"lam": ""}
         return line == f"proved: {given['name']}" and (same or trapping(given))
+    if given["kind"] == "boundary crisis":
+        rest = {"start", "columns", "rows", "parts"}  # no part of what is stated
+        same = all(given[key] == original[key] for key in given.keys() - rest)
+        return line == f"proved: {given['name']}" and (same or crisis(given))
     (name, value, error), (known, true, small) = told(line), told(first)
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
@@ -344,6 +362,18 @@ def trapping(given: Document) -> bool:
 
     try:  # its name has each number in lowest terms
         return all(Region.from_dict(given | {"parts": 8}).checks.values())
+    except ValueError:
+        return False
+
+
+def crisis(given: Document) -> bool:
+    """What the boxes of the package say of a boundary crisis, from their own orbit that leaves."""
+    from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket
+
+    try:
+        said = BoundaryCrisis.from_dict(given)
+        again = bracket(said.scene, said.saddle, said.side, said.lam, (1024, 512, 1))
+        return said.name == given["name"] and again.proved
     except ValueError:
         return False
 

@@ -97,15 +97,15 @@ def test_time_averages_of_a_dissipative_table_are_not_those_of_the_elastic_measu
 
 @pytest.mark.parametrize("ground", ["every_return", "splits"])
 @pytest.mark.parametrize(
-    ("judge", "name"),
+    ("judge", "name", "settled"),
     [
-        (on_chaos.global_near_one, "cuspless.global_near_one"),
-        (on_chaos.above_tenth, "cuspless.chaotic_above_tenth"),
-        (on_chaos.accumulates, "cuspless.accumulates_on_joins"),
+        (on_chaos.global_near_one, "cuspless.global_near_one", Verdict.SUPPORTED),  # one attractor is sampled
+        (on_chaos.above_tenth, "cuspless.chaotic_above_tenth", Verdict.SUPPORTED),
+        (on_chaos.accumulates, "cuspless.accumulates_on_joins", Verdict.CONFIRMED),
     ],
 )
-def test_chaos_of_the_cuspless_table_rests_on_every_return(monkeypatch, judge, name, ground):
-    assert verdict(judge, name) is Verdict.CONFIRMED
+def test_chaos_of_the_cuspless_table_rests_on_every_return(monkeypatch, judge, name, settled, ground):
+    assert verdict(judge, name) is settled
 
     monkeypatch.setattr(on_chaos, ground, lambda: UNPROVED)
     assert verdict(judge, name) is Verdict.OPEN

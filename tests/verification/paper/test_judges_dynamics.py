@@ -14,6 +14,7 @@ from symbolic.tables.table import lam
 from verification.arithmetic.balls import working
 from verification.cycles.recurrence import delayed
 from verification.paper.claims.claim import Verdict
+from verification.paper.claims.judges import answer
 from verification.paper.judges import attractors as on_attractors
 from verification.paper.judges import cardioid_attractor as on_defocusing
 from verification.paper.judges import exponents as on_exponents
@@ -39,9 +40,13 @@ def test_a_wrong_exponent_of_a_cycle_is_refuted():
     assert verdict(on_exponents.period32, "egg.exponent_period32", printed="-0.02") is Verdict.REFUTED
 
 
-def test_chaos_is_not_found_where_the_cascade_has_not_ended():
-    assert verdict(on_exponents.chaos_by, "egg.chaos_by") is Verdict.SUPPORTED
-    assert verdict(on_exponents.chaos_by, "egg.chaos_by", printed="0.39") is Verdict.OPEN
+def test_chaos_is_proved_at_contractions_that_round_to_the_printed_one_and_at_no_others(monkeypatch):
+    assert verdict(on_exponents.chaos_by, "egg.chaos_by") is Verdict.CONFIRMED
+    assert verdict(on_exponents.chaos_by, "egg.chaos_by", printed="0.3935") is Verdict.OPEN
+    assert verdict(on_exponents.chaos_by, "egg.chaos_by", printed="0.3938") is Verdict.OPEN
+    chaos, value = on_exponents.strange("0.08", "band-merging-16")
+    monkeypatch.setattr(on_exponents, "strange", lambda *_: (answer(None, chaos.reason), value))
+    assert verdict(on_exponents.chaos_by, "egg.chaos_by") is Verdict.OPEN
 
 
 def test_an_exponent_with_the_other_sign_is_not_supported(monkeypatch):

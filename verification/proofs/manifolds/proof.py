@@ -44,7 +44,7 @@ from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Orbit
-from verification.proofs.manifolds.tangency import Contact, Precision
+from verification.proofs.manifolds.tangency import Contact, Precision, multipliers_at
 from verification.proofs.manifolds.touching import Chain, Linear, Point, Touching, Vector
 from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
 
@@ -126,7 +126,7 @@ def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
     bend, speed = generic(system.linear(Point.of(image)), Point.of(image).along)
     checks |= {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}
     left = system.pairs[0].saddle
-    return Proof(image[-1], checks, bend, speed, (left.stable.real, left.unstable.real))
+    return Proof(image[-1], checks, bend, speed, multipliers_at(image[-1], left, map, precision))
 
 
 def admissible(map: PlaneMap) -> bool | None:

@@ -179,6 +179,13 @@ def one_cycle(around: Saddle, here: Saddle) -> bool:
     return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
 
 
+def multipliers_at(parameter: arb, around: Saddle, map: PlaneMap, precision: Precision) -> tuple[arb, arb]:
+    """Those of the saddle at one parameter: they are known better there than over all of the disc."""
+    at = enclosed_saddle(around.orbit, map.over(complex_balls(precision.bits)), acb(parameter))
+    found = at if one_cycle(around, at) else around
+    return found.stable.real, found.unstable.real
+
+
 def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Pair:
     """The pair near an exact parameter, with the saddle and the remainder proved for every parameter of the disc."""
     balls = map.over(complex_balls(precision.bits))

@@ -23,6 +23,7 @@ from flint import arb, arb_mat
 
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision
 from verification.arithmetic.series import Jet
+from verification.cycles.chain import dot
 from verification.maps.first_hit import unobstructed
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
@@ -133,12 +134,27 @@ class Linear:
         return arb_mat(upper + [[*bent, *row[1:], h] for bent, row, h in lower])
 
     def step(self, values: Vector, algorithm: Literal["approx", "precond"]) -> Vector:
-        """What Newton's method takes off the unknowns where the system has these values."""
+        """What Newton's method takes off the unknowns where the system has these values.
+
+        The derivative of the orbit's equations alone is singular at a tangency. Without its first column, and with that
+        by the parameter, it is not: two systems of half the size are solved, each for all matrices in its balls.
+        """
+        n = len(self.rows)
+        given = [[*row[1:], g] for row, g in zip(self.rows, self.by_parameter, strict=True)]
+        right = [[value, row[0]] for row, value in zip(self.rows, values[:n], strict=True)]
         try:
-            found = self.matrix().solve(arb_mat([[x] for x in values]), algorithm=algorithm)
+            found = arb_mat(given).solve(arb_mat(right), algorithm=algorithm)
+            fixed, free = ([found[i, k] for i in range(n)] for k in (0, 1))  # with the first unknown 0, and along it
+            lower = [[*bent[1:], h] for bent, h in zip(self.bent, self.bent_by_parameter, strict=True)]
+            column = [bent[0] - dot(row, free) for bent, row in zip(self.bent, lower, strict=True)]
+            left = [[value - dot(row, fixed)] for row, value in zip(lower, values[n:], strict=True)]
+            whole = [[*row[1:], c] for row, c in zip(self.rows, column, strict=True)]
+            last = arb_mat(whole).solve(arb_mat(left), algorithm=algorithm)
         except ZeroDivisionError as why:
             raise TooWideError("exists", "the linearised system may be singular") from why
-        return [found[i, 0] for i in range(len(values))]
+        first, rest = last[n - 1, 0], [last[i, 0] for i in range(n - 1)]
+        *orbit, parameter = (x - first * y for x, y in zip(fixed, free, strict=True))
+        return [first, *orbit, *rest, parameter]
 
 
 class Touching:

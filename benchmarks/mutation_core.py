@@ -35,7 +35,7 @@ from mutation_server import QUIET, append, ask, file_of, in_fork, warm
 CORE = ROOT / "benchmarks" / "records" / "mutation_core.toml"
 RESULTS = STATE / "core.jsonl"
 SLOW = ROOT / "tests" / "slow.txt"
-LONGEST = 1.5  # seconds, by slow.txt, of a test that is asked: what `make test` runs
+LONGEST, DEAREST = 1.5, 20.0  # seconds, by slow.txt: what `make test` runs, and all parameters of a test together
 NOTICED = ("killed", "timeout")
 LARGE = 16  # a whole number beyond is a budget, a precision, a size: one more proves the same
 BINARY = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*")}
@@ -236,11 +236,16 @@ class Guards:
         )
         self.seconds: dict[str, float] = {}
         lines = SLOW.read_text(encoding="utf-8").splitlines()
-        self.slow = {name for seconds, name in (line.split() for line in lines) if float(seconds) > LONGEST}
+        self.listed = {name: float(seconds) for seconds, name in (line.split() for line in lines)}
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items):
-        items[:] = [item for item in items if item.nodeid.partition("[")[0] not in self.slow]
+        items[:] = [item for item in items if not self.slow(item.nodeid)]
+
+    def slow(self, node):
+        """Whether a test takes too long to be measured: the list has the seconds of all its parameters together."""
+        name, bracket, _ = node.partition("[")
+        return self.listed.get(name, 0.0) > (DEAREST if bracket else LONGEST)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
@@ -277,7 +282,7 @@ def measured(group: Group) -> tuple[dict[str, float], dict[tuple[str, int], set[
         path = str(Path(file).relative_to(ROOT))
         for line, nodes in data.contexts_by_lineno(file).items():
             lines[path, line] = set(nodes)
-    return plugin.seconds, lines
+    return {node: spent for node, spent in plugin.seconds.items() if spent <= 2 * LONGEST}, lines  # coverage takes time
 
 
 def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float) -> dict[str, float]:

@@ -50,14 +50,34 @@ FAIL_AT_A_WITNESS = (
     "cuspless.coexistence",
 )
 
+SYMBOLIC = {claim.id: claim for claim in catalogue() if claim.kind != "numerical"}
+CORRECTED = """
+map.dissipative map.focusing_and_flat map.other_K map.zero_curvature_excluded
+ellipse.basin ellipse.complex_above ellipse.complex_near_one ellipse.dominated_splitting ellipse.elastic_elliptic
+ellipse.lambda_plus_outside ellipse.major_axis_eigenvalues ellipse.P2_sqrt2 ellipse.slap_stable_orbits
+ellipse.splitting_hyperbolic ellipse.stable_node
+cardioid.contraction_implies cardioid.slap_expanding_caption cardioid.slap_slow_caption
+cuspless.monodromy cuspless.noncompact cuspless.splitting_by_exponents
+egg.convex egg.curvature_max_location egg.curvature_min_location egg.monodromy egg.mu_not_one egg.no_period3_caption
+egg.period2_stable_below egg.period3_end_caption egg.period3_lambda_c egg.slap_critical_points egg.two_period3
+egg.vertex_period3_unstable egg.weak_dissipation_attracts
+appendix.cuspless_plane appendix.exponents_sum appendix.incoming_angle appendix.periodic_sign
+appendix.trigonometry_unavoidable
+""".split()
+
 NUMERAL = re.compile(r"(?<![A-Za-z_0-9.])\d+(?:\.\d+)?(?![A-Za-z_0-9.])")
 
 
 @cache
 def results() -> dict[str, Result]:
     """The symbolic claims, judged; the numerical ones have tests with the proofs that settle them."""
+    return {name: judged(name) for name in SYMBOLIC}
+
+
+@cache
+def judged(name: str) -> Result:
     next(verify("map.A"))  # enters the judges
-    return {claim.id: judge(claim) for claim in catalogue() if claim.kind != "numerical"}
+    return judge(SYMBOLIC[name])
 
 
 def claims(*kinds: str) -> list[Claim]:
@@ -122,10 +142,10 @@ def test_ids_are_unique_and_every_judge_has_a_claim():
     assert {name for home, name in JUDGES if home in {claim.home for claim in catalogue()}} == set(ids)
 
 
-def test_no_symbolic_claim_is_open():
-    left = [name for name, result in results().items() if result.verdict is Verdict.OPEN]
-
-    assert left == []
+@pytest.mark.parametrize("name", SYMBOLIC)
+def test_each_claim_that_symbols_settle_is_confirmed_but_for_those_that_are_corrected(name: str):
+    """The list of errata is the report's, which was read; an altered judge confirms too much, or too little."""
+    assert judged(name).verdict is (Verdict.CORRECTED if name in CORRECTED else Verdict.CONFIRMED)
 
 
 def test_whatever_is_corrected_or_refuted_says_which_symbol_is_wrong():

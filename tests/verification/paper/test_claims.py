@@ -51,19 +51,18 @@ FAIL_AT_A_WITNESS = (
 )
 
 SYMBOLIC = {claim.id: claim for claim in catalogue() if claim.kind != "numerical"}
-CORRECTED = """
-map.dissipative map.focusing_and_flat map.other_K map.zero_curvature_excluded
-ellipse.basin ellipse.complex_above ellipse.complex_near_one ellipse.dominated_splitting ellipse.elastic_elliptic
-ellipse.lambda_plus_outside ellipse.major_axis_eigenvalues ellipse.P2_sqrt2 ellipse.slap_stable_orbits
-ellipse.splitting_hyperbolic ellipse.stable_node
-cardioid.contraction_implies cardioid.slap_expanding_caption cardioid.slap_slow_caption
-cuspless.monodromy cuspless.noncompact cuspless.splitting_by_exponents
-egg.convex egg.curvature_max_location egg.curvature_min_location egg.monodromy egg.mu_not_one egg.no_period3_caption
-egg.period2_stable_below egg.period3_end_caption egg.period3_lambda_c egg.slap_critical_points egg.two_period3
-egg.vertex_period3_unstable egg.weak_dissipation_attracts
-appendix.cuspless_plane appendix.exponents_sum appendix.incoming_angle appendix.periodic_sign
-appendix.trigonometry_unavoidable
-""".split()
+ERRATA = {
+    "map": "dissipative focusing_and_flat other_K zero_curvature_excluded",
+    "ellipse": "basin complex_above complex_near_one dominated_splitting elastic_elliptic lambda_plus_outside "
+    "major_axis_eigenvalues P2_sqrt2 slap_stable_orbits splitting_hyperbolic stable_node",
+    "cardioid": "contraction_implies slap_expanding_caption slap_slow_caption",
+    "cuspless": "monodromy noncompact splitting_by_exponents",
+    "egg": "convex curvature_max_location curvature_min_location monodromy mu_not_one no_period3_caption "
+    "period2_stable_below period3_end_caption period3_lambda_c slap_critical_points two_period3 "
+    "vertex_period3_unstable weak_dissipation_attracts",
+    "appendix": "cuspless_plane exponents_sum incoming_angle periodic_sign trigonometry_unavoidable",
+}
+CORRECTED = {f"{table}.{thing}" for table, things in ERRATA.items() for thing in things.split()}
 
 NUMERAL = re.compile(r"(?<![A-Za-z_0-9.])\d+(?:\.\d+)?(?![A-Za-z_0-9.])")
 

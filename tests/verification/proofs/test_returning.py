@@ -180,6 +180,7 @@ def test_a_part_repels_or_contracts_by_its_derivative_once_round(slope, repels):
         ({"low": 0.0}, (1, 1), 0.5, False),  # reaches a vertex
         ({"high": math.pi / 3}, (1, 1), 0.5, False),  # or a flat point
         ({"second": 0.28}, (1, 1), 0.5, False),  # the hulls meet
+        ({"second": 0.3}, (1, 1), 0.5, False),  # in a point
     ],
 )
 def test_contracting_parts_have_one_hull_each_where_the_norm_contracts_over_all_of_it(

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey
+from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey, measured_on
 from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
@@ -45,7 +45,7 @@ def account(map: PinballMap, survey: Survey) -> Document:
     families = {group.attractor.family if group.attractor else -1 for group in settled}
     one = len(settled) == 1 or (len(families) == 1 and -1 not in families)
     together = np.concatenate([group.members for group in settled]) if one else None
-    whole = None if together is None else survey.count.measured(together)
+    whole = None if together is None else measured_on(survey.count, together, settled[0].attractor)
     return {
         **(of_cycle(settled[0].attractor) if one and is_cycle(settled[0]) else numbers(whole)),
         "orbits": int(survey.count.growth.theta.size),
@@ -128,7 +128,8 @@ def trace(group: Group, survey: Survey) -> list[Document]:
     while blocks < 2 * len(count.up):
         used = min(blocks, len(count.up))
         bounces = used * count.length
-        found.append({"collisions": bounces * int(group.members.size), **numbers(count.measured(group.members, used))})
+        each = measured_on(count, group.members, group.attractor, used)
+        found.append({"collisions": bounces * int(group.members.size), **numbers(each)})
         blocks *= 2
     return found
 

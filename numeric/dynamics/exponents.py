@@ -13,7 +13,7 @@ share of points with an angle below `x` falls like `x`. Paper: section 1.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -171,14 +171,14 @@ def surveyed(
     goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
     ended, target = "bounces", bounces
     cycles = {i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE}  # known from their multipliers
-    sampled = [members for index, members in _sorted(classified.label) if index not in cycles]
+    sampled = [(members, _attractor(classified, i)) for i, members in _sorted(classified.label) if i not in cycles]
     try:
         while True:
             for counted in count.until(target):
                 say(counted / goal)
             if until is None:
                 break
-            if worst(tuple(count.measured(m) for m in sampled)) <= until:
+            if worst(tuple(measured_on(count, *each) for each in sampled)) <= until:
                 ended = "error"
                 break
             if 2 * target > goal:
@@ -240,12 +240,37 @@ def _groups(map: PinballMap, count: Count, classified: Classified) -> tuple[Grou
     stopped = count.growth.code > 0
     groups = []
     for index, members in _sorted(np.where(changed, -2, np.where(stopped, -3, classified.label))):
-        attractor = classified.attractors[index] if index >= 0 else None
-        measured = count.measured(members)
+        attractor = _attractor(classified, index)
+        found = measured_on(count, members, attractor)
         if attractor is not None and attractor.kind is Kind.CHAOTIC:
-            measured = _remembering(map, count, members, measured)
-        groups.append(Group(_kind(index, attractor), attractor, members, measured))
+            found = _remembering(map, count, members, found)
+        groups.append(Group(_kind(index, attractor), attractor, members, found))
     return tuple(sorted(groups, key=lambda group: -group.members.size))
+
+
+def measured_on(count: Count, members: Labels, attractor: Attractor | None, blocks: int | None = None) -> Measured:
+    """The exponents over the particles of an attractor, from all blocks or from the first few.
+
+    Where vectors grow like a power of the time, `log(n)/n` is left of an exponent that is 0: the value is in its error.
+
+    >>> from numeric.pinball.sampling import interior_starts
+    >>> circle = PinballMap("circle", lam=1)
+    >>> upper = surveyed(circle, interior_starts(circle, 4, seed=1), 256, 100).groups[0].measured.upper
+    >>> 0 < upper.mean <= upper.error
+    True
+    """
+    found = count.measured(members, blocks)
+    if attractor is None or attractor.kind is not Kind.NEUTRAL or found.upper is None:
+        return found
+    left = abs(found.upper.mean)
+    upper, lower = replace(found.upper, error=max(found.upper.error, left)), found.lower
+    if lower is not None and found.total is not None:  # the sum less the upper one
+        lower = replace(lower, error=max(lower.error, left + np.nan_to_num(found.total.error)))
+    return found._replace(upper=upper, lower=lower)
+
+
+def _attractor(classified: Classified, index: int) -> Attractor | None:
+    return classified.attractors[index] if index >= 0 else None
 
 
 def _kind(index: int, attractor: Attractor | None) -> str:
@@ -259,7 +284,7 @@ def _kind(index: int, attractor: Attractor | None) -> str:
     return attractor.kind.name.lower()
 
 
-def _remembering(map: PinballMap, count: Count, members: Labels, measured: Measured) -> Measured:
+def _remembering(map: PinballMap, count: Count, members: Labels, found: Measured) -> Measured:
     """With the naive error, from the growth of single bounces of a few particles."""
     few, end = members[:WATCHED], count.growth
     watched = Growth(map.at(end.lam[few]), end.theta[few], end.phi[few], end.component[few])
@@ -271,9 +296,9 @@ def _remembering(map: PinballMap, count: Count, members: Labels, measured: Measu
         track[bounce] = watched.stretch
     steps = np.diff(track, axis=0)[:, watched.code == 0]
     if steps.size == 0:
-        return measured
+        return found
     naive = float(np.std(steps) / np.sqrt(count.bounces * members.size))
-    return measured._replace(naive=naive)
+    return found._replace(naive=naive)
 
 
 SETTLING = 60  # bounces in which a vector turns to its direction

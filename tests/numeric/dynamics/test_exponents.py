@@ -121,6 +121,22 @@ def test_the_diameters_of_the_circle_have_exponents_0_and_log_lam():
     assert group.measured.lower.mean == pytest.approx(np.log(0.5), abs=1e-12)
 
 
+@pytest.mark.parametrize("scene", [{"table": "circle"}, {"table": "ellipse", "a": 2}], ids=["circle", "ellipse"])
+@pytest.mark.parametrize("bounces", [64, 256, 1024])
+def test_where_vectors_grow_like_a_power_of_the_time_the_error_holds_the_exponent_0(scene, bounces):
+    """The elastic circle and ellipse: what is left after `n` bounces is `log(n)/n`, whatever orbits scatter by."""
+    map = PinballMap(**scene, lam=1)
+    for seed in range(5):
+        found = account(map, surveyed(map, interior_starts(map, 4, seed=seed), bounces, 500))
+        for group in found["groups"]:
+            assert group["kind"] == "neutral"
+            for name in ("nu_plus", "nu_minus"):
+                assert 0 < abs(group[name]) <= 2 * group[f"{name}_stderr"] + 1e-12
+            for step in group["trace"]:
+                assert 0 < abs(step["nu_plus"]) <= step["nu_plus_stderr"]
+        assert found["nu_plus"] <= found["nu_plus_stderr"]
+
+
 def test_two_attractors_are_never_averaged():
     map = PinballMap("cuspless", lam="0.09")
     found = surveyed(map, interior_starts(map, 60, seed=1), 500, 1000)

@@ -117,6 +117,16 @@ def test_whether_a_boundary_with_free_parameters_turns_once_is_asked_for_all_of_
     assert convex(family, (arb("0.3"),)) is None
 
 
+def test_a_family_of_circles_is_convex_run_through_once_and_not_twice():
+    """Both bend inwards for every radius, by signs alone."""
+    r = Symbol("r", positive=True)
+    for times, answer in ((1, True), (2, None)):
+        turned = r * cos(times * theta), r * sin(times * theta)
+        shape = Shape(r, Interval(1, 2), "is no circle of the family")
+        family = Table("circles", (Component("whole", turned, -pi, pi),), shapes=(shape,))
+        assert convex(family) is answer
+
+
 def test_corners_that_turn_right_or_all_the_way_round_are_not_those_of_a_convex_table():
     dented, folded = [*PENTAGON[:2], (0, 0), *PENTAGON[3:]], [(0, 0), (2, 0), (1, 0), (1, 1)]
 

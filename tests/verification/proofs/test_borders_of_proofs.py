@@ -141,6 +141,49 @@ def test_krawczyk_is_asked_of_small_boxes_on_one_side_of_where_a_law_jumps(monke
         assert cover._impossible(box, *at) is answer
 
 
+def test_a_ball_of_places_is_on_one_side_of_where_its_law_jumps_unless_it_reaches_over():
+    for law, answers in ((PAPERS_LAW, [True, True]), (MEASURED, [True, False])):
+        assert [newton.on_one_side(law, [arb(1), arb(middle, 0.1)]) for middle in (3.0, 3.1)] == answers
+
+
+@pytest.mark.parametrize("one_side", [True, False])
+@pytest.mark.parametrize("status", Status)
+def test_a_neighbourhood_of_a_known_cycle_needs_both_a_proof_and_one_side_of_the_jump(monkeypatch, one_side, status):
+    """Around each bounce of the cycle, and repeated where the period is a multiple of its own."""
+    monkeypatch.setattr(newton, "on_one_side", lambda *_: one_side)
+    monkeypatch.setattr(newton, "krawczyk", lambda *_: Enclosure(status, []))
+    cycle = SimpleNamespace(theta=[0.5, 3.0], period=2)
+    catalogue = SimpleNamespace(of=lambda n: [cycle])
+    held = newton.neighbourhoods(catalogue, Problem(egg(3).at(alpha=ALPHA), (0,) * 4, lam=arb("0.5")))
+
+    assert len(held) == (2 if one_side and status is Status.UNIQUE else 0)
+    for centre, radius in held:
+        assert radius == 0.2
+        turned = {tuple(np.round(np.remainder(np.subtract(centre, start), 2 * math.pi), 9)) for start in (0.5, 3.0)}
+        assert any(abs(x) < 1e-6 for places in turned for x in places)
+
+
+@pytest.mark.parametrize(
+    ("phi", "eta", "excluded"),
+    [
+        (0.1, -0.5, False),
+        (0.1, 0.5, True),  # an exit angle of the sign of the incidence angle
+        (-0.1, 0.5, True),  # an exit angle to the other side
+        (0.1, -0.19, True),  # more than the largest contraction leaves
+        (0.1, -0.21, False),
+        (0.4, -0.9, True),  # larger than any exit angle, and in the sum as well
+        (0.34, -0.9, True),  # in the sum alone
+    ],
+)
+def test_each_rule_alone_excludes_a_triangle_whose_angles_are_all_alike(phi, eta, excluded):
+    """With the ratio 1/2 the three exit angles are at most 1 together, in a box where the first gap is the largest."""
+    box = ((0.0, NEAR), (2.5, NEAR), (2.0, NEAR))
+    values = lambda *_: [arb(phi)] * 3 + [arb(eta)] * 3  # noqa: E731
+    slopes = lambda *_: [arb(x) for size in (phi, eta) for x in (size, 0, 0) * 3]  # noqa: E731
+    with working(64):
+        assert triangles._impossible(values, slopes, arb(1), arb("0.5"), 0.25, box) is excluded
+
+
 @pytest.mark.parametrize("middle", [-3.1, -1.0, 0.0, 3.0, 3.2, 9.4, -9.5])
 def test_a_ball_of_parameters_is_told_from_each_side_of_where_a_law_jumps(middle):
     """Each parameter of the ball is in one of the parts, up to whole turns, and within the ends there."""

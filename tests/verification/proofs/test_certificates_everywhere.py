@@ -9,17 +9,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Rational
 
+from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import cuspless, egg, ellipse, sinai
 from symbolic.tables.law import Law
-from verification.arithmetic.balls import working
+from symbolic.tables.table import lam as contraction
+from verification.arithmetic.balls import real_ball, working
 from verification.cycles.cascade import attractor, cycle_at, doubled
 from verification.cycles.newton import floats
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.cycles.search import Catalogue
 from verification.maps import first_hit
+from verification.named.locate import certify
 from verification.proofs.corner import return_map
-from verification.proofs.periodic import interval_newton, triangles
+from verification.proofs.periodic import bifurcation, interval_newton, triangles
 from verification.proofs.periodic.bifurcation import Stability, over_interval, stability
 from verification.proofs.periodic.interval_newton import Cover, Status, krawczyk, no_others, steepest
 
@@ -232,3 +235,32 @@ def test_the_exit_angles_asked_for_their_largest_are_those_at_every_incidence_an
 def test_the_largest_tilt_is_an_arc_cosine():
     for x in (Rational(0), Rational(2, 25), Rational(1, 2), Rational(-9, 10)):
         assert float(triangles.acos_of(x)) == pytest.approx(math.acos(x))
+
+
+@pytest.mark.parametrize("ends", [(0.25, 0.75), (0.75, 0.25)])
+def test_the_contractions_that_are_asked_cover_the_stretch_between_the_ends(monkeypatch, ends):
+    """Whatever the lengths of the steps are: some are refused until they are short."""
+    asked = []
+
+    def short(table, components, theta, middle, half, radii):
+        asked.extend([(middle, half)] * (half < 0.011))
+        return Stability.ATTRACTING if half < 0.011 else Stability.UNKNOWN
+
+    monkeypatch.setattr(bifurcation, "floats", lambda problem, start: [float(problem.lam)] * 2)
+    monkeypatch.setattr(bifurcation, "_proved", short)
+    found = over_interval(egg(3).at(alpha=Rational(2, 25)), (0, 0), [0.0, 3.0], ends, Stability.ATTRACTING)
+
+    assert found.proved
+    for lam in np.linspace(0.25, 0.75, 401):
+        assert any(abs(lam - middle) <= half + 1e-12 for middle, half in asked)
+    assert all(middle - half >= 0.25 - 1e-12 and middle + half <= 0.75 + 1e-12 for middle, half in asked)
+
+
+def test_a_doubling_is_supercritical_by_the_sign_that_its_certificate_has():
+    """At one contraction, by the formula for all of them; with the bend turned round it is not."""
+    for K, lam in ((3, "1/2"), (3, "1/5"), (5, "1/2")):
+        with working(bifurcation.BITS):
+            exact = real_ball(alpha_tilde(K).subs(contraction, Rational(lam)))
+        near = [0.0, math.pi, float(exact)]
+        proof = certify(Problem(egg(K), (0, 0), BifurcationKind.FLIP, "alpha", Rational(lam)), near, 15)
+        assert bifurcation._supercritical(K, real_ball(Rational(lam)), exact) is proof.supercritical

@@ -214,6 +214,9 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=120, help="for core and page: how many of what proves")
     parser.add_argument("--workers", type=int, default=1, help="modules at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
+    parser.add_argument(
+        "--longest", type=float, default=mutation_core.LONGEST, help="for core: seconds of a test asked"
+    )
     parser.add_argument("--near", action="store_true", help="a first sieve: the module's own tests alone")
     parser.add_argument("--again", default="", choices=["", "survived", "uncovered", "timeout", "all"])
     args = parser.parse_args()
@@ -225,7 +228,7 @@ def main() -> None:
         listing(args)
         mutation_core.listing(args.count, args.seed)
     elif args.verb == "core":
-        mutation_core.run(args.count, args.seed, args.budget, args.only, args.again)
+        mutation_core.run(args.count, args.seed, args.budget, args.only, args.again, args.longest)
     else:
         core = mutation_core.figures(args.count, args.seed)
         write_page(

@@ -6,6 +6,9 @@ on the package as it is: that measures which test executes which line and how lo
 `symbolic` and `numeric`, which stay. Then each mutant has a fork in which no module of `verification` is left, so that
 none remembers the unmutated one.
 
+Nothing false can come of a budget, of a count of boxes, of the bits that a ball is rounded to, of what is told of
+progress, or of a candidate that a proof then checks (`proposes`, in the same file): these have no mutants here.
+
 The sample is drawn by a seed, from each module in proportion to its mutants. Of 400 the first 200 are those of a sample
 of 200, so that a run may be cut short and taken up again with a larger count.
 """
@@ -37,6 +40,8 @@ RESULTS = STATE / "core.jsonl"
 SLOW = ROOT / "tests" / "slow.txt"
 LONGEST, DEAREST = 1.5, 20.0  # seconds, by slow.txt: what `make test` runs, and all parameters of a test together
 NOTICED = ("killed", "timeout")
+COUNTS = {"budget", "spent", "boxes"}  # how long a proof may take, and has taken
+HARMLESS = {"tick", "bits_of", "slope_bits"}  # calls that tell of progress, or say how many bits are rounded to
 LARGE = 16  # a whole number beyond is a budget, a precision, a size: one more proves the same
 BINARY = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*")}
 BINARY |= {ast.BitOr: ("|", "&"), ast.BitAnd: ("&", "|")}
@@ -66,6 +71,12 @@ class Group(NamedTuple):
 def groups() -> list[Group]:
     """What proves, and its guards."""
     return [Group(**entry) for entry in tomllib.loads(CORE.read_text())["group"]]
+
+
+@cache
+def proposing() -> dict[str, set[str]]:
+    """The functions of each module that only propose what a proof then checks."""
+    return {module: set(names) for module, names in tomllib.loads(CORE.read_text())["proposes"].items()}
 
 
 class Text:
@@ -99,7 +110,7 @@ class Text:
 
 
 def harmless(tree: ast.Module) -> Iterator[ast.AST]:
-    """What no proof hangs on: texts of errors, annotations, memos, `strict` of a zip, constants that are budgets."""
+    """What no proof hangs on: texts of errors, annotations, memos, `strict` of a zip, budgets, precisions, progress."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Raise | ast.JoinedStr):
             yield node
@@ -111,6 +122,19 @@ def harmless(tree: ast.Module) -> Iterator[ast.AST]:
                 yield node.returns
         elif isinstance(node, ast.arg | ast.AnnAssign) and node.annotation:
             yield node.annotation
+        elif isinstance(node, ast.AugAssign | ast.Compare) and COUNTS & set(
+            map(ast.unparse, ast.iter_child_nodes(node))
+        ):
+            yield node
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in HARMLESS:
+            yield node
+        elif isinstance(node, ast.arguments):
+            named = [*node.posonlyargs, *node.args][::-1]
+            pairs = [
+                *zip(named, node.defaults[::-1], strict=False),
+                *zip(node.kwonlyargs, node.kw_defaults, strict=True),
+            ]
+            yield from (default for arg, default in pairs if default and arg.arg in COUNTS)
         elif getattr(node, "arg", "") == "strict" or ast.unparse(getattr(node, "test", ast.Pass())) == "TYPE_CHECKING":
             yield node
     for node in tree.body:  # of the module itself
@@ -132,7 +156,8 @@ def mistakes(node: ast.AST, text: Text) -> Iterator[tuple[str, str]]:
     """Those of one node of the syntax tree."""
     if isinstance(node, ast.BinOp) and type(node.op) in BINARY:
         old, new = BINARY[type(node.op)]
-        yield "Arithmetic", text.between(node.left, node.right, old, new)
+        if ast.unparse(node.right) != "arb(0)":  # which makes a ball of a number, added or taken away
+            yield "Arithmetic", text.between(node.left, node.right, old, new)
     elif isinstance(node, ast.Compare):
         for (left, right), op in zip(pairwise([node.left, *node.comparators]), node.ops, strict=True):
             old, *others = COMPARISON[type(op)]
@@ -204,9 +229,11 @@ def population(path: str) -> list[Change]:
     """All mutants of a module that proves, in the order of its lines."""
     source = source_of(path)
     tree, counts, places = ast.parse(source), Counter(), {}
-    found = []
+    found, left_out = [], proposing().get(path, set())
     for kind, line, text in sorted(changes(source), key=lambda change: change[1]):
         function = places.setdefault(line, function_at(tree, line))
+        if function in left_out:
+            continue
         found.append(Change(path, kind, function, counts[function, kind], line, text))
         counts[function, kind] += 1
     return found
@@ -230,7 +257,8 @@ def sample(count: int, seed: str) -> dict[str, list[Change]]:
 class Guards:
     """A pytest plugin: which test executes which line of the modules, and its seconds of processor; no slow tests."""
 
-    def __init__(self, group: Group):
+    def __init__(self, group: Group, longest: float = LONGEST):
+        self.longest = longest
         self.coverage = coverage.Coverage(
             data_file=None, config_file=False, include=[str(ROOT / path) for path in group.modules]
         )
@@ -245,7 +273,7 @@ class Guards:
     def slow(self, node):
         """Whether a test takes too long to be measured: the list has the seconds of all its parameters together."""
         name, bracket, _ = node.partition("[")
-        return self.listed.get(name, 0.0) > (DEAREST if bracket else LONGEST)
+        return self.listed.get(name, 0.0) > (max(DEAREST, self.longest) if bracket else self.longest)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
@@ -266,9 +294,9 @@ def forget() -> None:
             del sys.modules[name]
 
 
-def measured(group: Group) -> tuple[dict[str, float], dict[tuple[str, int], set[str]]]:
+def measured(group: Group, longest: float) -> tuple[dict[str, float], dict[tuple[str, int], set[str]]]:
     """The guards' seconds, and which of them execute a line: found by running them."""
-    plugin = Guards(group)
+    plugin = Guards(group, longest)
     plugin.coverage.start()
     files = [*group.tests, *(path for path in group.modules if path.startswith("verification/"))]
     quiet = [option for option in QUIET if option != "--tb=no"]
@@ -282,7 +310,7 @@ def measured(group: Group) -> tuple[dict[str, float], dict[tuple[str, int], set[
         path = str(Path(file).relative_to(ROOT))
         for line, nodes in data.contexts_by_lineno(file).items():
             lines[path, line] = set(nodes)
-    return {node: spent for node, spent in plugin.seconds.items() if spent <= 2 * LONGEST}, lines  # coverage takes time
+    return {node: spent for node, spent in plugin.seconds.items() if spent <= 2 * longest}, lines  # coverage takes time
 
 
 def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float) -> dict[str, float]:
@@ -312,10 +340,10 @@ def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float
     return chosen
 
 
-def serve(group: Group, wanted: list[Change], budget: float) -> None:
+def serve(group: Group, wanted: list[Change], budget: float, longest: float = LONGEST) -> None:
     """Measures the guards of a group, then asks them about each mutant."""
     start = time.perf_counter()
-    seconds, lines = measured(group)
+    seconds, lines = measured(group, longest)
     forget()
     print(f"{len(seconds)} tests in {time.perf_counter() - start:.0f} s guard {', '.join(group.modules)}", flush=True)  # noqa: T201
     for number, change in enumerate(wanted, 1):
@@ -328,8 +356,11 @@ def serve(group: Group, wanted: list[Change], budget: float) -> None:
         print(f"{time.strftime('%H:%M:%S')} {number}/{len(wanted)} {status} {spent:.1f} s {place} {test}", flush=True)  # noqa: T201
 
 
-def run(count: int, seed: str, budget: float, only: str, again: str) -> None:
-    """Asks about what is not known of the sample, group by group; or again about what has the verdict `again`."""
+def run(count: int, seed: str, budget: float, only: str, again: str, longest: float) -> None:
+    """Asks about what is not known of the sample, group by group; or again about what has the verdict `again`.
+
+    Asked are tests of at most `longest` seconds, as far as a budget of seconds goes.
+    """
     known = results()
     os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
     os.environ["PINBALL_CACHE"] = str(STATE / "kernels")  # of float64: no module that is mutated writes there
@@ -340,7 +371,7 @@ def run(count: int, seed: str, budget: float, only: str, again: str) -> None:
         wanted = [m for m in found if (known.get(m.key, {"status": ""})["status"] == again)]
         if wanted:
             wanted.sort(key=lambda mutant: rank(mutant, seed))
-            os.waitpid(in_fork(lambda group=group, wanted=wanted: serve(group, wanted, budget)), 0)
+            os.waitpid(in_fork(lambda group=group, wanted=wanted: serve(group, wanted, budget, longest)), 0)
 
 
 def figures(count: int, seed: str) -> dict[str, dict]:

@@ -109,6 +109,14 @@ class Text:
         return self.spliced(first, last, self.whole[first:last].decode().replace(old, new, 1))
 
 
+def uncounted(node: ast.AST) -> bool:
+    """Whether a node counts the work, bounds it, tells of it, or says how many bits are rounded to."""
+    if isinstance(node, ast.Call):
+        return ast.unparse(node.func) in HARMLESS
+    named = map(ast.unparse, ast.iter_child_nodes(node)) if isinstance(node, ast.AugAssign | ast.Compare) else ()
+    return bool(COUNTS & set(named))
+
+
 def harmless(tree: ast.Module) -> Iterator[ast.AST]:
     """What no proof hangs on: texts of errors, annotations, memos, `strict` of a zip, budgets, precisions, progress."""
     for node in ast.walk(tree):
@@ -122,11 +130,7 @@ def harmless(tree: ast.Module) -> Iterator[ast.AST]:
                 yield node.returns
         elif isinstance(node, ast.arg | ast.AnnAssign) and node.annotation:
             yield node.annotation
-        elif isinstance(node, ast.AugAssign | ast.Compare) and COUNTS & set(
-            map(ast.unparse, ast.iter_child_nodes(node))
-        ):
-            yield node
-        elif isinstance(node, ast.Call) and ast.unparse(node.func) in HARMLESS:
+        elif uncounted(node):
             yield node
         elif isinstance(node, ast.arguments):
             named = [*node.posonlyargs, *node.args][::-1]

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic.balls import FLOAT64, working
 from verification.named.locate import locate
-from verification.proofs.corner import return_map
 from verification.proofs.corner.border_collision import (
     Kind,
     Piece,
@@ -278,85 +276,3 @@ def test_the_guess_of_a_landing_is_right_up_to_the_rounding_of_the_angle():
         start, phi = random.uniform(-1, 1), random.uniform(-1.2, 1.2)
         root = _falling_root(near, start, phi, start, start + 2 * math.pi)
         assert near(start, root - 1e-13)[0] > phi > near(start, root + 1e-13)[0]
-
-
-@pytest.mark.parametrize(
-    ("images", "on_wall", "or_lower"),
-    [
-        ([(WALL, 0)], True, True),
-        ([(WALL, 0), (WALL, 0)], True, True),
-        ([], True, True),
-        (None, False, False),
-        ([(ARC, -1)], False, True),
-        ([(ARC, 1)], False, False),
-        ([(ARC, 0)], False, False),
-        ([(WALL, 0), (ARC, -1)], False, True),
-        ([(WALL, 0), (ARC, 1)], False, False),
-        ([(WALL, "0.5")], False, True),  # below the lower corner
-        ([(WALL, "-0.5")], False, False),  # above the upper one
-    ],
-)
-def test_the_fourth_collision_is_on_the_wall_where_all_images_are(monkeypatch, images, on_wall, or_lower):
-    """The wall's parameter grows downwards; the lower half of the arc has negative ones."""
-    made = images if images is None else [return_map.Piece(part, arb(at), arb(1), arb(0)) for part, at in images]
-    monkeypatch.setattr(return_map.Flights, "iterated", lambda self, pieces, n: made if n == 4 else None)
-    with working(64):
-        assert return_map._lands_inside(arb(0), arb(0), False) is on_wall
-        assert return_map._lands_inside(arb(0), arb(0), True) is or_lower
-
-
-def course(component, second, fourth, by_theta=(-1, 1), by_lam=(0, 0)):
-    """One course with given distances and slopes, of the second bounce and of the fourth."""
-    slopes = zip(by_theta, by_lam, strict=True)
-    quantities = (
-        SimpleNamespace(whole=arb(x), centre=arb(x), slopes=[arb(a), arb(b)])
-        for x, (a, b) in zip((second, fourth), slopes, strict=True)
-    )
-    return return_map.Course(component, *quantities)
-
-
-@pytest.mark.parametrize(("left", "right", "held"), [(1, -1, True), (-1, -1, False), (1, 1, False), (0, -1, False)])
-def test_a_kink_is_enclosed_where_the_second_bounce_passes_the_corner_between_two_ends(monkeypatch, left, right, held):
-    """And not where it is on one side of the corner at both ends, or at the corner at one."""
-    monkeypatch.setattr(return_map, "_near", lambda lam: 0.5)
-
-    def courses(theta, lam):
-        there = left if theta < 0.5 else right if theta > 0.5 else 0
-        return [course(ARC, there, 3 + (lam - 2), by_theta=(-1, 2), by_lam=("0.5", -3))]
-
-    monkeypatch.setattr(return_map, "courses", courses)
-    if not held:
-        with pytest.raises(ArithmeticError, match="not enclosed"):
-            return_map.kink(arb(2, "0.01"))
-        return
-    found = return_map.kink(arb(2, "0.01"))
-    assert abs(found.speed - (-3 + 2 * 0.5)).contains(0)  # by lam, and by the kink that moves half as fast
-    assert found.value.overlaps(arb(3))
-    assert found.theta1.contains(arb("0.5"))
-    assert 0.0199 < float(found.value.rad()) < 0.0201 + 1e-9
-
-
-@pytest.mark.parametrize(
-    ("places", "speeds", "falls"),
-    [
-        ((1, 1, 1), (-1, -1, -1), True),
-        ((1, 1, 1), (-1, 0, -1), None),
-        ((1, 1, 1), (-1, 1, -1), None),
-        ((1, 5, 1), (-1, -1, -1), None),  # boxes that meet have no kink in common
-        ((5, 5, 5), (-1, -1, -1), None),  # at lambda-star it is elsewhere
-        ((1, 1, 5), (-1, -1, -1), None),
-    ],
-)
-def test_the_kink_falls_where_it_is_one_curve_from_the_corner_orbit_on(monkeypatch, places, speeds, falls):
-    lams = [arb(k, "0.6") for k in range(3)]
-    found = [
-        return_map.Kink(lam, arb(at, "0.1"), arb(0), arb(v)) for lam, at, v in zip(lams, places, speeds, strict=True)
-    ]
-    monkeypatch.setattr(return_map, "cuts", lambda *_: range(3))
-    monkeypatch.setattr(return_map, "kink", found.__getitem__)
-    for star, held in ((arb("0.1"), True), (arb("7"), False)):
-        monkeypatch.setattr(return_map, "enclosed", lambda star=star: (arb(1), star))
-        assert return_map.kink_falls(0.0, 1.0) is (falls if held else None)
-    monkeypatch.setattr(return_map, "enclosed", lambda: (arb(1), arb(2)))
-    monkeypatch.setattr(return_map, "kink", [*found[:2], replace(found[2], theta1=arb(5))].__getitem__)
-    assert return_map.kink_falls(0.0, 1.0) is None  # the kink of its own box is not the orbit's

@@ -5,6 +5,7 @@ at all. So there is no journal to lose, and whatever a killed sweep leaves behin
 the same bits whoever computes it: two drivers are kept apart by a lock, and without one only waste time.
 """
 
+import glob
 import itertools
 import json
 import os
@@ -151,8 +152,10 @@ def _made(sweep: Sweep, path: Path) -> None:
 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        draft = path.with_name(f".{path.name}.{os.getpid()}")
-        shutil.rmtree(draft, ignore_errors=True)
+        own = f".{path.name}.{os.getpid()}"
+        for late in path.parent.glob(f"{glob.escape(own)}.*"):  # of Zarr's writes when the disk was full
+            shutil.rmtree(late, ignore_errors=True)
+        draft = path.with_name(f"{own}.{next(_written)}")
         try:
             group = zarr.create_group(_whole_files()(draft), zarr_format=3, attributes=sweep.attributes())
             for axis in sweep.axes:

@@ -167,3 +167,17 @@ def test_a_clock_that_is_set_back_changes_nothing(whole, tmp_path, monkeypatch):
     run(table(), tmp_path / "store")
 
     assert files(tmp_path / "store") == whole
+
+
+def test_what_was_written_late_beside_a_store_that_could_not_be_made_goes_with_the_next(whole, tmp_path):
+    """Zarr writes on when it has said that the disk is full: such a draft is there again after it was taken away."""
+    store = tmp_path / "store"
+    assert TORTURE["interrupted"](lambda: run(table(), store, workers=1), "before", 1)
+    assert list(tmp_path.iterdir()) == []
+    for late in (tmp_path / f".store.{os.getpid()}.{k}" for k in (0, 10**6)):
+        late.mkdir()
+        (late / "zarr.json").write_text("{}")
+    run(table(), store)
+
+    assert files(store) == whole
+    assert [path.name for path in tmp_path.iterdir()] == ["store"]

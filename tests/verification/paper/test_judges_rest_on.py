@@ -8,7 +8,7 @@ import pytest
 from symbolic.expressions import signs
 from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.claims import judges
-from verification.paper.claims.claim import Judgement, Verdict
+from verification.paper.claims.claim import Judgement
 from verification.paper.claims.folder import judge_of
 from verification.paper.report.report import catalogue
 
@@ -18,6 +18,10 @@ STEPS = {
     for name in names.split()
 }
 OPEN = Finding(Outcome.UNKNOWN, "left open")
+SPARE = {  # steps that the verdict does not need
+    "ellipse.major_axis_eigenvalues": 1,  # what is printed is refuted at lam = 0, whatever the other inequality is
+    "egg.alternating_points": 1,  # that the radius is positive is asked for the polygon, and proved of the table
+}
 SYMBOLIC = {claim.id: claim for claim in catalogue() if claim.kind != "numerical"}
 
 
@@ -48,6 +52,8 @@ def test_a_verdict_rests_on_each_step_of_its_proof(name, monkeypatch):
     judged(name, taken, monkeypatch)
     asked.clear()  # of steps that are known those are not asked of which they consist
     whole = judged(name, taken, monkeypatch).verdict
+    spare = 0
     for left in {key for key in asked if known[key].outcome is not Outcome.UNKNOWN}:
         one = lambda word, given, left=left: OPEN if f"{word}{given!r}" == left else taken(word, given)  # noqa: E731
-        assert judged(name, one, monkeypatch).verdict is not whole or whole is Verdict.OPEN, left
+        spare += judged(name, one, monkeypatch).verdict is whole
+    assert spare == SPARE.get(name, 0)

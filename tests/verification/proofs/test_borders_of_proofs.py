@@ -341,9 +341,9 @@ def test_a_bounce_in_balls_holds_that_of_mpmath_and_is_as_narrow_as_its_start(na
     enclosed = EnclosedMap(map, Rational(2, 5), bits=100)
     for theta, phi in STARTS:
         mp = enclosed.exact
-        exact = mp.bounce(mp.ball(0, mp.middle(arb(theta)), mp.middle(arb(phi))))
+        exact = mp.bounce(mp.start(mp.middle(arb(theta)), mp.middle(arb(phi))))
         for size in (0.0, 1e-12):
-            found = enclosed.bounce(enclosed.ball(0, arb(theta, size), arb(phi, size)))
+            found = enclosed.bounce(enclosed.start(arb(theta, size), arb(phi, size)))
             assert found.component == exact.component
             for value, truth in zip(
                 (found.theta, found.phi, found.x, found.y, found.eta),

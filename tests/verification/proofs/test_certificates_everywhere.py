@@ -1,6 +1,7 @@
 """Cycles for every contraction of an interval: the paper's attracting and unstable ones."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ from verification.proofs.periodic.interval_newton import Cover, Status, krawczyk
 
 EGG = egg(3).at(alpha=Rational(2, 25))
 FLAT = [math.pi / 3, math.pi, 5 * math.pi / 3]
+FLAT_TERMS = SimpleNamespace(terms=SimpleNamespace(rows=None))
 VERTEX = [0.0, 2 * math.pi / 3, 4 * math.pi / 3]
 
 
@@ -264,3 +266,22 @@ def test_a_doubling_is_supercritical_by_the_sign_that_its_certificate_has():
         near = [0.0, math.pi, float(exact)]
         proof = certify(Problem(egg(K), (0, 0), BifurcationKind.FLIP, "alpha", Rational(lam)), near, 15)
         assert bifurcation._supercritical(K, real_ball(Rational(lam)), exact) is proof.supercritical
+
+
+@pytest.mark.parametrize("wrong", ["wide", "thin", "convex", "inside", "minimal", "slopes", ""])
+def test_a_cycle_over_an_interval_is_proved_by_all_of_its_steps(monkeypatch, wrong):
+    """Existence over the ball and at its middle, a convex table, bounces on their parts, the period, the slopes."""
+
+    def exists(problem, centre, radii, bits):
+        kind = "thin" if problem.lam.is_exact() else "wide"
+        return interval_newton.Enclosure(Status.UNKNOWN if wrong == kind else Status.UNIQUE, centre)
+
+    steps = {"convex": lambda *_: wrong != "convex" or None, "inside": lambda *_: wrong != "inside" or None}
+    steps |= {"minimal": lambda *_: wrong != "minimal" or None, "krawczyk": exists, "Linearised": lambda *_: FLAT_TERMS}
+    steps |= {"_slopes": lambda *_: None if wrong == "slopes" else (arb(0), arb(0))}
+    steps |= {"trace_and_determinant": lambda rows: (arb(0), arb(0))}
+    for name, step in steps.items():
+        monkeypatch.setattr(bifurcation, name, step)
+    found = bifurcation._proved(EGG, (0, 0), [0.0, 3.0], 0.5, 0.125, [0.1, 0.1])
+
+    assert found is (Stability.UNKNOWN if wrong else Stability.ATTRACTING)

@@ -30,7 +30,7 @@ def inside(table, x, y, names):
     """Proves that the boundary runs once round a point, counterclockwise; what runs round a hole is taken off.
 
     It is counted where it crosses a ray from the point: a piece that may meet the ray lies on its side of the point."""
-    total, p = 0, x.p
+    total, p = 0, (x - y).p if isinstance(x - y, I) else 64  # both may be fractions
     apart(table, names, p)
 
     def place(part, theta):

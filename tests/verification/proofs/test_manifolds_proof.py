@@ -32,7 +32,7 @@ from verification.proofs.manifolds.proof import (
     tangency_proved,
 )
 from verification.proofs.manifolds.saddle import Orbit, local, saddle
-from verification.proofs.manifolds.tangency import Contact, Gap, Precision, tangency
+from verification.proofs.manifolds.tangency import Contact, Gap, Precision, multipliers_at, tangency
 from verification.proofs.manifolds.touching import Point, Touching, flight
 
 EGG = table(SHAPE)
@@ -163,6 +163,29 @@ def test_the_matrix_of_the_system_holds_its_difference_quotients(seed):
         product = made.linear(Point.of(here)).matrix().mid() * arb_mat([[arb(float(r))] for r in random])
         for i, (high, low) in enumerate(zip(*beside, strict=True)):
             assert abs((high - low) / (2 * step) - product[i, 0].mid()) <= 1e-18
+
+
+def test_newtons_step_in_two_halves_solves_the_whole_system():
+    made, zero = system()
+    with working(Precision(20).bits):
+        linear = made.linear(Point.of([*zero.unknowns[:-1], made.parameter]))
+        values = [arb(k + 1) for k in range(2 * len(linear.rows))]
+        step = linear.step(values, "precond")
+        whole = linear.matrix().solve(arb_mat([[x] for x in values]), algorithm="precond")
+
+        assert all(whole[i, 0].overlaps(x) for i, x in enumerate(step))
+        assert max(x.rad() for x in step) < 1e-5 * max(abs(x.mid()) for x in step)
+
+
+def test_multipliers_at_the_tangency_are_known_better_and_are_those_of_the_same_cycle():
+    made, zero = system()
+    around, precision = made.pairs[0].saddle, Precision(20)
+    with working(precision.bits):
+        at = multipliers_at(zero.parameter, around, EGG, precision)
+        apart = replace(around, points=tuple(x + 1 for x in around.points))  # another cycle
+        assert all(wide.contains(x) for wide, x in zip((around.stable.real, around.unstable.real), at, strict=True))
+        assert all(x.rad() < wide.real.rad() for wide, x in zip((around.stable, around.unstable), at, strict=True))
+        assert multipliers_at(zero.parameter, apart, EGG, precision)[0].rad() == around.stable.real.rad()
 
 
 def test_the_vector_along_a_tangency_is_the_tangent_of_the_orbits_on_the_manifold():

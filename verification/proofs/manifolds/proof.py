@@ -23,10 +23,11 @@ believed.
 
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from flint import arb, arb_mat
+from flint import arb
 from sympy import Expr, Pow, Rational
 
 from symbolic import tables
@@ -38,18 +39,17 @@ from symbolic.tables.formula import number
 from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import balls, between, working
 from verification.arithmetic.iteration import Stop, iterated
-from verification.cycles.chain import dot
 from verification.cycles.recurrence import Closure
 from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact, Precision, multipliers_at
-from verification.proofs.manifolds.touching import Chain, Linear, Point, Touching, Vector
+from verification.proofs.manifolds.touching import Chain, Point, Touching, Vector, generic
 from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
 
 LEAST_DIGITS = 24
-NEWTON = 12
+NEWTON, LONG = 12, 60  # bounces beyond which a system is solved in halves first
 NEAR = Rational(1, 10**6)  # the law is proved to be one for parameters so near the contact's
 PIECES, PLACES = 2048, 64  # of incidence angles, and of the boundary under a law of the place
 SMALL = 1e-5  # beside the box, where Newton's method ends
@@ -93,7 +93,14 @@ def tangency_proved(contact: Contact, map: PlaneMap, value: str, digits: int = L
     with working(precision.bits):
         parameter = arb(value).mid()
         try:
-            return _proved(Touching(contact, map, parameter, precision), map, precision)
+            system = Touching(contact, map, parameter, precision)
+            if system.bounces > LONG:
+                system.halves = True
+                with suppress(ValueError, ArithmeticError):
+                    if (found := _proved(system, map, precision)).holds:
+                        return found
+                system.halves = False
+            return _proved(system, map, precision)
         except (ValueError, ArithmeticError) as why:
             known = ITEMS.index(why.item if isinstance(why, TooWideError) else "saddle")
             checks = {item: True if k < known else None for k, item in enumerate(ITEMS)}
@@ -133,9 +140,8 @@ def admissible(map: PlaneMap) -> bool | None:
     """True where any chord between two bounces meets the boundary nowhere on its way: in a convex table."""
     if not isinstance(map, Pinball):
         return True
-    seamless = len(map.table.components) > 1 or closes_smoothly(
-        map.table
-    )  # bounces may run over the end of the parameter
+    # bounces may run over the end of the parameter
+    seamless = len(map.table.components) > 1 or closes_smoothly(map.table)
     return convex(map.table) if seamless else None
 
 
@@ -161,15 +167,6 @@ def objection(contact: Contact, map: PlaneMap, parameter: float) -> str:
     low, high = (Rational(parameter) + side * NEAR for side in (-1, 1))
     finding = law.proof((max(low, Rational(0)), min(high, Rational(1))))
     return "" if finding else f"law = {law}: {finding.reason}"
-
-
-def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
-    """`g_zz` and `g_parameter` of the text above."""
-    rows = arb_mat([row[1:] for row in linear.rows[:-1]])
-    solved = rows.transpose().solve(arb_mat([[-x] for x in linear.rows[-1][1:]]), algorithm="precond")
-    left = [*(solved[i, 0] for i in range(solved.nrows())), arb(1)]
-    bend = dot(left, [dot(row, along) for row in linear.bent])
-    return bend, dot(left, linear.by_parameter)
 
 
 def _nonzero(x: arb) -> bool | None:

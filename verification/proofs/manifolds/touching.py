@@ -125,6 +125,7 @@ class Linear:
     bent: list[Vector]
     by_parameter: Vector
     bent_by_parameter: Vector
+    halves: bool = False
 
     def matrix(self) -> arb_mat:
         """The derivative of the whole system, by the unknowns in their order."""
@@ -137,8 +138,15 @@ class Linear:
         """What Newton's method takes off the unknowns where the system has these values.
 
         The derivative of the orbit's equations alone is singular at a tangency. Without its first column, and with that
-        by the parameter, it is not: two systems of half the size are solved, each for all matrices in its balls.
+        by the parameter, it is not: two systems of half the size are solved,
+        each for all matrices in its balls, where `halves` asks for it: faster, and not as close.
         """
+        if not self.halves:
+            try:
+                whole = self.matrix().solve(arb_mat([[x] for x in values]), algorithm=algorithm)
+            except ZeroDivisionError as why:
+                raise TooWideError("exists", "the linearised system may be singular") from why
+            return [whole[i, 0] for i in range(len(values))]
         n = len(self.rows)
         given = [[*row[1:], g] for row, g in zip(self.rows, self.by_parameter, strict=True)]
         right = [[value, row[0]] for row, value in zip(self.rows, values[:n], strict=True)]
@@ -148,8 +156,8 @@ class Linear:
             lower = [[*bent[1:], h] for bent, h in zip(self.bent, self.bent_by_parameter, strict=True)]
             column = [bent[0] - dot(row, free) for bent, row in zip(self.bent, lower, strict=True)]
             left = [[value - dot(row, fixed)] for row, value in zip(lower, values[n:], strict=True)]
-            whole = [[*row[1:], c] for row, c in zip(self.rows, column, strict=True)]
-            last = arb_mat(whole).solve(arb_mat(left), algorithm=algorithm)
+            again = [[*row[1:], c] for row, c in zip(self.rows, column, strict=True)]
+            last = arb_mat(again).solve(arb_mat(left), algorithm=algorithm)
         except ZeroDivisionError as why:
             raise TooWideError("exists", "the linearised system may be singular") from why
         first, rest = last[n - 1, 0], [last[i, 0] for i in range(n - 1)]
@@ -157,11 +165,20 @@ class Linear:
         return [first, *orbit, *rest, parameter]
 
 
+def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
+    """`g_zz` and `g_parameter`: how the contact bends, and how fast the manifolds move through each other."""
+    rows = arb_mat([row[1:] for row in linear.rows[:-1]])
+    solved = rows.transpose().solve(arb_mat([[-x] for x in linear.rows[-1][1:]]), algorithm="precond")
+    left = [*(solved[i, 0] for i in range(solved.nrows())), arb(1)]
+    bend = dot(left, [dot(row, along) for row in linear.bent])
+    return bend, dot(left, linear.by_parameter)
+
+
 class Touching:
     """The system of a contact near one parameter, with both manifolds enclosed."""
 
     def __init__(self, contact: Contact, map: PlaneMap, parameter: arb, precision: Precision) -> None:
-        self.contact = contact
+        self.contact, self.halves = contact, False
         self.map, self.parameter = map.over(balls(precision.bits)), parameter
         self.pairs: list[Pair] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
@@ -190,7 +207,7 @@ class Touching:
         """The equations at a point whose parameter is the middle one, or over a box around it."""
         out, into = ([made.at(i, z, at.parameter - self.parameter) for i in (0, 1)] for made, z in self._ends(at))
         m = len(at.orbit)
-        made = Linear([], [], [], [], [], [])
+        made = Linear([], [], [], [], [], [], self.halves)
         for i, near in enumerate(out):
             _ended(made, at, 1 + i, 0, 1, arb(0), near)
         for k in range(1, self.bounces + 1):

@@ -164,6 +164,7 @@ def test_each_item_of_a_tangency_is_what_its_own_step_proves(
     monkeypatch.setattr(proof, "admissible", lambda _: convex)
     monkeypatch.setattr(proof, "objection", lambda *_: objects)
     monkeypatch.setattr(proof, "generic", lambda *_: (bend, speed))
+    monkeypatch.setattr(proof, "multipliers_at", lambda _, saddle, *rest: (saddle.stable.real, saddle.unstable.real))
     found = proof._proved(system, CLAIM.map, tangency.Precision(20))
 
     assert found.checks == dict.fromkeys(ITEMS, True) | missing

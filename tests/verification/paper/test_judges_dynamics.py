@@ -122,7 +122,7 @@ def test_the_egg_is_the_only_smooth_table_with_chaos_by_proofs_on_both_sides(ste
     assert verdict(on_attractors.only_smooth, "egg.only_smooth_chaos") is Verdict.OPEN
 
 
-@pytest.mark.parametrize("step", ["two_cycles", "settles", "expands", "splits"])
+@pytest.mark.parametrize("step", ["two_cycles", "settles", "expands", "splits", "every_return"])
 def test_that_there_is_no_rotation_elsewhere_rests_on_each_proof(step, monkeypatch):
     assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.CORRECTED
     monkeypatch.setattr(on_attractors, step, lambda: Finding(Outcome.UNKNOWN, "a step is missing"))

@@ -35,6 +35,7 @@ from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown
 from verification.paper.judges.ellipse import settles, two_cycles
 from verification.proofs.global_dynamics.fates import Fate
+from verification.proofs.global_dynamics.returns import every_return
 from verification.proofs.manifolds.enclosed import attracting, complex_balls
 from verification.proofs.manifolds.known import TRIANGLE, boundary, table, touching
 from verification.proofs.manifolds.saddle import Orbit
@@ -142,10 +143,10 @@ def no_rotation(claim: Claim) -> Judgement:
     return Judgement(
         rotating(),
         "in the egg there are some, which attract; none for lam < 1 in the circle and the ellipses (lam > 0), where "
-        "every orbit tends to a cycle; none that attracts in the cardioid, and in the cuspless one for lam > 16/27, "
+        "every orbit tends to a cycle; none that attracts in the cardioid, and in the cuspless one for lam >= 1/10, "
         "where every orbit off the cusp and the joins stretches exponentially, as none does along or near a smooth "
         "curve with such a rotation; at lam = 1 the lines of the circle are such curves (theta -> theta + pi - 2*phi)",
-        by("the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits()),
+        by("the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits(), every_return()),
         "The behaviour that was not observed occurs in the egg: next to alpha = 0.06873034, lambda = 0.96378998 "
         "attracting invariant circles with an irrational rotation surround the points of a cycle of period 17.",
     )

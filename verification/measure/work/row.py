@@ -151,8 +151,8 @@ def plain(rows: Sequence[Row]) -> str:
 
 
 def markdown(rows: Sequence[Row], base: Row | None = None) -> str:
-    """The same as a table in Markdown."""
-    lines = [HEAD, ("---",) * len(HEAD), *table(rows, base)]
+    """The same as a table in Markdown, in which each column has a head: screens are read aloud by them."""
+    lines = [("front", *HEAD[1:-1], "broken"), ("---",) * len(HEAD), *table(rows, base)]
     return "\n".join(
         "| " + " | ".join(text.replace("|", "/").replace("*", "\\*") for text in line) + " |" for line in lines
     )

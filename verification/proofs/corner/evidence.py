@@ -157,9 +157,12 @@ def measured(distances: Sequence[float], bounces: int = 40_000) -> list[Attracto
     phi = np.full(len(lams), _exit_angle(theta1))
     orbit = map.orbit(start, phi, bounces)
     rates = map.exponents(start, phi, bounces, bounces // 10).nu_plus
+    half = map.arclength.perimeter / 2
+    from_middle = np.abs(np.remainder(map.arclength.s(orbit.theta, orbit.component) + half, 2 * half) - half)
+    fields = orbit.component, orbit.theta, orbit.phi, from_middle
     found = []
     for i, e in enumerate(distances):
-        near = [np.asarray(x[bounces // 4 :, i], float) for x in (orbit.component, orbit.theta, orbit.phi)]
+        near = [np.asarray(x[bounces // 4 :, i], float) for x in fields]
         if np.any(orbit.code[:, i]):
             raise ValueError(f"border: the orbit at lambda-star + {e} meets an undefined point")
         found.append(_attractor(lams[i], e, near, (theta1, _exit_angle(theta1)), float(rates[i])))
@@ -172,12 +175,15 @@ def _exit_angle(theta1: float) -> float:
 
 
 def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, float], rate: float) -> Attractor:
-    """The bounces near the corners, mirrored to the upper one; the bounce before each tells `u`."""
-    component, theta, phi = near
+    """The bounces near the corners, mirrored to the upper one; the bounce before each tells `u`.
+
+    The last of `near` is how far along the boundary a bounce is from the middle of the wall.
+    """
+    component, theta, phi, from_middle = near
     on_wall = component == WALL
     at = np.where(on_wall, np.abs(theta) > 0.2, np.abs(theta) > 1.2)
     upper = np.where(on_wall, -np.sign(theta), np.sign(theta))
-    v = np.where(on_wall, math.sqrt(3) / 4 - np.abs(theta), 4 * np.sin(np.abs(theta) / 2) - 2 * math.sqrt(3)) / e
+    v = (math.sqrt(3) / 4 - from_middle) / e
     chosen = np.flatnonzero(at[2:]) + 2
     u = (theta[chosen - 1] * upper[chosen] + orbit[0]) / e
     angles = (phi[chosen] * upper[chosen] - orbit[1]) / e

@@ -73,7 +73,7 @@ from sympy import (
     tan,
 )
 
-from symbolic.expressions.signs import Finding, Outcome, conjunction, defect, nonnegative, positive, vanishes
+from symbolic.expressions.signs import Finding, all_vanish, conjunction, defect, nonnegative, positive
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import curvature, velocity
@@ -130,7 +130,7 @@ def ends() -> tuple[Expr, Expr]:
 def chord_defects() -> list[Expr]:
     """`t**2`, `t*cos(phi0)` and `t*cos(eta1)` of a chord, minus closed forms in `c0, c1, delta`: zeros.
 
-    >>> all(vanishes(each) for each in chord_defects())
+    >>> bool(all_vanish({"": chord_defects()}))
     True
     """
     c0, c1 = ends()
@@ -153,7 +153,7 @@ def direction_defects() -> list[Expr]:
     In the frame of tangent and normal it is `2*sin(delta)*(c0*(cos, sin)(delta) + c1*(cos, sin)(2*delta))`; so its
     cross products with these two directions are `2*sin(delta)**2` times `c1` and `c0`, both positive.
 
-    >>> all(vanishes(each) for each in direction_defects())
+    >>> bool(all_vanish({"": direction_defects()}))
     True
     """
     c0, c1 = ends()
@@ -178,7 +178,7 @@ def apart_defects() -> list[Expr]:
     In turn: `sin(delta)**2` in `c0`, `c1` and `C`; the sum of `t*cos(phi0)` and `t*cos(eta1)` over `2*sin(delta)**2`, a
     product with `1 + 2*C`, so that `C > -1/2`; and `3*c1**2 - sin(delta)**2`, not negative for `c1 >= c0`.
 
-    >>> all(vanishes(each) for each in apart_defects())
+    >>> bool(all_vanish({"": apart_defects()}))
     True
     """
     (c0, c1), C = ends(), cos(delta)
@@ -279,11 +279,8 @@ def expands() -> Finding:
         "one of two successive bounces is away from the cusp": apart_defects(),
         "t - D0 - d1 and the gain as sums of squares": square_defects(),
     }
-    failed = [name for name, defects in steps.items() if not all(map(vanishes, defects))]
-    if failed:
-        return Finding(Outcome.UNKNOWN, f"not reduced to 0: {', '.join(failed)}")
-    found = signs()
-    return Finding(Outcome.PROVED, "; ".join(steps)) if found else found
+    found = all_vanish(steps)
+    return found and signs() and found
 
 
 def away() -> Expr:

@@ -10,7 +10,7 @@ in the box (the Bernstein criterion), else the box is halved. Faces that belong 
 judged by the same rule, one variable fewer, so ends of ranges are never lost and never assumed.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import comb
@@ -104,6 +104,19 @@ def conjunction(*findings: Finding) -> Finding:
             if finding.outcome is wanted:
                 return finding
     return Finding(Outcome.PROVED, "; ".join(dict.fromkeys(f.reason for f in findings)))
+
+
+def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> Finding:
+    """Are the defects of every named step zeros? Names the steps, or those that are not reduced to 0.
+
+    >>> x = Symbol("x")
+    >>> all_vanish({"a square": [(x + 1) ** 2 - x**2 - 2 * x - 1]}).reason, all_vanish({"a guess": [x]}).reason
+    ('a square', 'not reduced to 0: a guess')
+    """
+    failed = [name for name, defects in steps.items() if not all(map(vanishes, defects))]
+    if failed:
+        return Finding(Outcome.UNKNOWN, f"not reduced to 0: {', '.join(failed)}")
+    return Finding(Outcome.PROVED, "; ".join(steps))
 
 
 def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:

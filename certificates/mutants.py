@@ -378,6 +378,18 @@ def crisis(given: Document) -> bool:
         return False
 
 
+def remembered(known: dict[Any, Any], key: Any, find: Callable[[], Any]) -> Any:
+    """What the reader finds, or its reason to find nothing, once for each key."""
+    if key not in known:
+        try:
+            known[key] = find()
+        except check.Unproved as why:
+            known[key] = why
+    if isinstance(known[key], check.Unproved):
+        raise known[key]
+    return known[key]
+
+
 def remember_images() -> None:
     """Makes the reader keep where each cell lands: a thousand mutants of one region have most of them in common."""
     inside, known = check.beside("region").Inside, dict[Any, Any]()
@@ -388,15 +400,7 @@ def remember_images() -> None:
             numbers = [*self.table.letters.values(), self.lam, self.top]
             formulas = [ast.dump(node) for part in self.table.parts for node in part]
             self.asked = self.columns, self.rows, *formulas, *((x.lo, x.hi, x.p) for x in numbers)
-        key = self.asked, square
-        if key not in known:
-            try:
-                known[key] = image(self, *square)
-            except check.Unproved as why:
-                known[key] = why
-        if isinstance(known[key], check.Unproved):
-            raise known[key]
-        return known[key]
+        return remembered(known, (self.asked, square), lambda: image(self, *square))
 
     inside.image = kept
 
@@ -410,14 +414,7 @@ def remember_manifolds() -> None:
         numbers = [*table.letters.values(), lam]
         formulas = [ast.dump(node) for part in table.parts for node in part]
         key = json.dumps(given), back, *formulas, *table.letters, *((x.lo, x.hi, x.p) for x in numbers)
-        if key not in known:
-            try:
-                known[key] = manifold(table, given, lam, back)
-            except check.Unproved as why:
-                known[key] = why
-        if isinstance(known[key], check.Unproved):
-            raise known[key]
-        return known[key]
+        return remembered(known, key, lambda: manifold(table, given, lam, back))
 
     tangency.Manifold = kept
 

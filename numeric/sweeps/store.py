@@ -124,6 +124,7 @@ def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
         for left in path.rglob(f".*{PARTIAL}") if alone else ():  # of a driver that was killed
             with suppress(OSError):
                 left.unlink()
+        _mended(sweep, path)
         yield Stored(sweep, path)
 
 
@@ -148,8 +149,6 @@ def _alone(path: Path) -> Iterator[bool]:
 
 def _made(sweep: Sweep, path: Path) -> None:
     """An empty store, which appears at once."""
-    import zarr
-
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         own = f".{path.name}.{os.getpid()}"
@@ -157,23 +156,7 @@ def _made(sweep: Sweep, path: Path) -> None:
             shutil.rmtree(late, ignore_errors=True)
         draft = path.with_name(f"{own}.{next(_written)}")
         try:
-            group = zarr.create_group(_whole_files()(draft), zarr_format=3, attributes=sweep.attributes())
-            for axis in sweep.axes:
-                labels: dict[str, Any] = {"units": axis.units, "long_name": axis.about}
-                array = group.create_array(
-                    axis.name,
-                    shape=axis.values.shape,
-                    dtype=axis.values.dtype,
-                    chunks=(max(1, axis.size),),
-                    dimension_names=(axis.name,),
-                    attributes=labels,
-                )
-                array[:] = axis.values
-            for field in sweep.fields:
-                _field(group, sweep, field)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # Zarr's, that version 3 has no rule for it; xarray asks for it
-                zarr.consolidate_metadata(group.store)
+            _laid_out(sweep, _whole_files()(draft))
             draft.replace(path)
         finally:
             shutil.rmtree(draft, ignore_errors=True)
@@ -181,6 +164,52 @@ def _made(sweep: Sweep, path: Path) -> None:
         if path.is_dir() and any(path.iterdir()):
             return  # another process was quicker
         raise ValueError(f"--store {path} cannot be made: {error.strerror or error}") from None
+
+
+def _laid_out(sweep: Sweep, place: Any) -> None:
+    """Axes, fields without values, and what is said of them, in one of Zarr's stores."""
+    import zarr
+
+    group = zarr.create_group(place, zarr_format=3, attributes=sweep.attributes())
+    for axis in sweep.axes:
+        labels: dict[str, Any] = {"units": axis.units, "long_name": axis.about}
+        array = group.create_array(
+            axis.name,
+            shape=axis.values.shape,
+            dtype=axis.values.dtype,
+            chunks=(max(1, axis.size),),
+            dimension_names=(axis.name,),
+            attributes=labels,
+        )
+        array[:] = axis.values
+    for field in sweep.fields:
+        _field(group, sweep, field)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Zarr's, that version 3 has no rule for it; xarray asks for it
+        zarr.consolidate_metadata(group.store)
+
+
+def _mended(sweep: Sweep, path: Path) -> None:
+    """Writes again what lies in an empty store, where it is not as it was written: axes have no checksum."""
+    from zarr.storage import MemoryStore
+
+    own: dict[str, Any] = {}
+    _laid_out(sweep, MemoryStore(own))
+    damaged: list[Path] = []
+    for name, value in own.items():
+        try:
+            if (path / name).read_bytes() == value.to_bytes():
+                continue
+        except OSError:
+            pass
+        damaged.append(path / name)
+        try:
+            _written_whole(path / name, value.to_bytes())
+        except OSError as error:
+            reason = error.strerror or error
+            raise ValueError(f"--store {path}: {path / name} is damaged and cannot be mended: {reason}") from None
+    if damaged:
+        warnings.warn(f"{len(damaged)} damaged files are written again, {damaged[0]} among them", stacklevel=4)
 
 
 def _field(group: Any, sweep: Sweep, field: Field) -> None:
@@ -231,20 +260,24 @@ def _whole_files() -> Any:
     from zarr.storage import LocalStore
 
     class WholeFiles(LocalStore):  # type: ignore[misc, unused-ignore]
-        """Each value goes to a temporary file beside its place, to the disk, and then to its place."""
+        """Each value goes to its place when it is whole."""
 
         async def set(self, key: str, value: Any) -> None:
-            place = Path(self.root) / key
-            place.parent.mkdir(parents=True, exist_ok=True)
-            partial = place.with_name(f".{place.name}.{os.getpid()}.{next(_written)}{PARTIAL}")  # this writer's own
-            try:
-                with partial.open("wb") as file:
-                    file.write(value.to_bytes())
-                    file.flush()
-                    os.fsync(file.fileno())
-                partial.replace(place)
-            except BaseException:
-                partial.unlink(missing_ok=True)
-                raise
+            _written_whole(Path(self.root) / key, value.to_bytes())
 
     return WholeFiles
+
+
+def _written_whole(place: Path, value: bytes) -> None:
+    """A file that appears at once: written beside its place, to the disk, and then put there."""
+    place.parent.mkdir(parents=True, exist_ok=True)
+    partial = place.with_name(f".{place.name}.{os.getpid()}.{next(_written)}{PARTIAL}")  # this writer's own
+    try:
+        with partial.open("wb") as file:
+            file.write(value)
+            file.flush()
+            os.fsync(file.fileno())
+        partial.replace(place)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise

@@ -1,10 +1,8 @@
 """The cuspless table's step: arc and wall, from and to each, and what rounding does near the joins."""
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
+from attacks.joins import past_joins
 
 from numeric import PinballMap, Status
 from numeric.backends.scalars import ArrayBackend
@@ -13,7 +11,6 @@ from numeric.flights.cuspless import Cuspless
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)
 LAWS = [0, 0.3, 1]
 JOIN = 2 * np.pi / 3
-TORTURE = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "torture.py"))
 TOP = np.sqrt(3) / 4
 
 
@@ -35,7 +32,7 @@ def test_anywhere(lam, wall, rounding):
 @pytest.mark.parametrize("near", [False, True])
 def test_no_flight_past_a_join_lands_on_the_wrong_side_and_only_those_near_one_stop(near):
     """Missed by up to thirty units; `benchmarks/torture.py joins` does the same with millions."""
-    found = TORTURE["past_joins"](20_000, 30, near, kernels=False, seed=7)
+    found = past_joins(20_000, 30, near, kernels=False, seed=7)
 
     assert not np.any(found.wrong)
     assert 0.05 < np.mean(found.stopped) < 0.5

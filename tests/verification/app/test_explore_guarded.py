@@ -1,17 +1,14 @@
 """The live table answers this machine only, whatever is asked of it, and forgets those who left."""
 
-import runpy
 import socket
-from pathlib import Path
 
 import pytest
-
-TORTURE = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "torture.py"))
+from attacks.sessions import answer, left, live_server
 
 
 def websocket(port, origin):
     """What a page of some origin is told when it asks for the live connection."""
-    return TORTURE["answer"](
+    return answer(
         port,
         f"GET /ws HTTP/1.1\nHost: 127.0.0.1:{port}\nUpgrade: websocket\nConnection: Upgrade\nOrigin: {origin}\n"
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\nSec-WebSocket-Version: 13\n\n",
@@ -21,7 +18,7 @@ def websocket(port, origin):
 @pytest.fixture(scope="module")
 def served():
     """A server in a process of its own, started in an environment that would open it to others."""
-    with TORTURE["live_server"]() as found:
+    with live_server() as found:
         yield found
 
 
@@ -40,4 +37,4 @@ def test_other_addresses_of_this_machine_get_no_answer(served):
 
 def test_those_who_left_are_forgotten(served):
     """`benchmarks/torture.py visitors` opens and leaves a hundred."""
-    assert TORTURE["left"](served, 8) == (8, 8, 0)
+    assert left(served, 8) == (8, 8, 0)

@@ -1,4 +1,4 @@
-"""How often error bars hold the truth, in cases where it is known: parts of `benchmarks/torture.py`.
+"""How often error bars hold the truth, in cases where it is known: a subject of `benchmarks/torture.py`.
 
 95 per cent intervals have to hold it in 93 to 97 of 100; those of a cycle or of a polygon, which are exact, always.
 """
@@ -6,7 +6,7 @@
 import math
 from typing import Any
 
-from torture import Outcome
+from attacks.outcome import Outcome
 
 SLAP_EXPONENT = 0.368340799475763256  # of the cardioid, proved in balls: docs/exponents.md
 

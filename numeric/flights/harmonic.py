@@ -2,21 +2,14 @@
 
 State: the unit numbers `u = exp(i*theta)` and `v`, the particle's direction. The programs that a flight
 needs come from `symbolic.motion.flight` through the table IR.
-
-A conic about the origin, `1/r = p + Q.n` with `n = (cos(theta), sin(theta))`, is an ellipse of which the origin is a
-focus. Its flight is the ellipse's, in the eccentric parameter `E`; people are told the polar angle. With `e = |Q|/p`
-and angles from the direction of `Q`, `tan(theta/2) = sqrt((1 + e)/(1 - e))*tan(E/2)`.
 """
 
 from collections.abc import Sequence
-from typing import ClassVar, Generic, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import ClassVar
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair
-from numeric.flights.family import SLAP, Array, Boundary, Family, Frame, Landing, Status, grazing, reflected
+from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing, Status, grazing, reflected
 
 FAR = 2.0**30  # tan(delta) of any chord lies within
 MOST_KNOWN = 256  # tables of which it is remembered whether they are convex
@@ -141,7 +134,7 @@ class Ellipse(Harmonic):
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.ir.has("support")
+        return boundary.ir.has("support") and not boundary.ir.has("focus")
 
     def elliptic(self) -> float | None:
         ops, shape = self.boundary.ops, self.boundary.shape
@@ -181,89 +174,6 @@ class Ellipse(Harmonic):
     def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.velocity(ops, *position, *shape)
         return [-dy, dx]
-
-
-class Focus(NamedTuple, Generic[N]):
-    """The numbers of a conic about the origin, in some arithmetic."""
-
-    ahead: Pair[N]  # the direction of `Q`, from which its angles are counted
-    p: N
-    size: N  # of `Q`
-    gap: N  # `p - |Q|` to its last bit
-    ratio: N  # `sqrt((1 + e)/(1 - e))`
-
-
-class Conic(Ellipse):
-    """An ellipse by its radius about a focus: no difference of its radius, which loses digits at the far tip."""
-
-    name, path = "conic", "closed form in unit numbers of the eccentric parameter"
-
-    @classmethod
-    def matches(cls, boundary: Boundary) -> bool:
-        return boundary.ir.has("focus")
-
-    def __init__(self, boundary: Boundary) -> None:
-        super().__init__(boundary)
-        self.tells = not boundary.shape  # `place` would make constants of the numbers of one shape
-
-    def elliptic(self) -> float | None:
-        return None
-
-    def focus(self, ops: Backend[N, M]) -> Focus[N]:
-        """The conic's numbers."""
-        x, y, p, size, left = self.boundary.ir.program("focus")(
-            ops, *(ops.number(float(a)) for a in self.boundary.shape)
-        )
-        return Focus((x, y), p, size, left / (p + size), (p + size) / ops.sqrt(left))
-
-    def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
-        focus = self.focus(ops)
-        n = ops.cos(theta), ops.sin(theta)
-        x, y = plane.half(ops, plane.dot(focus.ahead, n), plane.exact_cross(ops, focus.ahead, n))
-        return list(plane.unit(ops, plane.squared(plane.normalised(ops, (focus.ratio * x, y)))))
-
-    def unit_of_theta(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
-        focus = self.focus(ops)
-        x, y = plane.half(ops, position[0], position[1])
-        return plane.times(focus.ahead, plane.squared(plane.normalised(ops, (x, focus.ratio * y))))
-
-    def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
-        n = self.unit_of_theta(ops, position)
-        return ops.number(0.0), ops.atan2(n[1], n[0])
-
-    def _seen(self, theta: Array) -> tuple[Array, Array, Pair[Array]]:
-        """`1/r`, and size and direction of `p*n + Q`, which points out of the table along its normal."""
-        ops, focus = self.boundary.ops, self.focus(self.boundary.ops)
-        u = np.cos(theta), np.sin(theta)
-        c, s = plane.dot(focus.ahead, u), plane.exact_cross(ops, focus.ahead, u)
-        behind = c < 0
-        short = s * s / (1 + np.abs(c))  # 1 + c behind the focus
-        inverse = np.where(behind, focus.gap + focus.size * short, focus.p + focus.size * c)
-        along = np.where(behind, focus.p * short - focus.gap, focus.p * c + focus.size)
-        across = focus.p * s
-        size = np.hypot(along, across)
-        return inverse, size, plane.times(focus.ahead, (along / size, across / size))
-
-    def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
-        inverse, _, (x, y) = self._seen(theta)
-        return Frame(np.cos(theta) / inverse, np.sin(theta) / inverse, -y, x)
-
-    def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
-        inverse, size, _ = self._seen(theta)
-        return size / (inverse * inverse)
-
-    def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
-        inverse, size, _ = self._seen(theta)
-        u = self.enter(self.boundary.ops, component.astype(float), theta)
-        rate = np.hypot(*self.velocity(self.boundary.ops, *u, *self.boundary.numbers))
-        return rate, -self.focus(self.boundary.ops).p * (inverse / size) ** 3
-
-    def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
-        focus = self.focus(ops)  # a law that depends on the place: dtheta/dE = sqrt(1 - e*e)/(1 - e*cos E)
-        e = focus.size / focus.p
-        one = ops.number(1.0)
-        rate: N = (one + e) / (focus.ratio * (one - e * landing.position[0]))
-        return drift * below * rate
 
 
 class Fourier(Harmonic):

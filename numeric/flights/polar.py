@@ -21,8 +21,9 @@ origin one is.
 
 A march ends where `K' < 0` and `2*L*K <= HALT*K'*K'` with `|w| + |K| <= L` near by: there a zero lies ahead by
 Kantorovich's theorem, and Newton's method converges to it. It takes the last steps, on the flight equation with its
-known zero divided out (see `Secant`), so that short flights are as exact as long ones. Where the radius has no words
-but the four operations and roots, the last residual has twice the digits: what is left is the rounding of the landing.
+known zero divided out (see `Secant`), so that short flights are as exact as long ones. The last residual is that of the
+equation as it stands, with more digits (see `Doubles`): what is left is the rounding of the landing. Where the radius
+has words whose ten bits more would not do for a short flight, that one stays with the divided equation.
 
 Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: what passes a bulge of the wall, or cuts it, by less than
 this may be taken for the other; its incidence is within 1e-7 of a tangent. A march that does not end has met a
@@ -32,17 +33,16 @@ tangency, and is said to (`Status.GRAZING`).
 """
 
 from functools import lru_cache
-from typing import Generic, NamedTuple, cast
+from typing import Generic, NamedTuple
 
 import numpy as np
 
 from numeric.backends import functions as plane
-from numeric.backends.doubled import WORDS, Double, Doubles
+from numeric.backends.doubled import OTHERS, WORDS, Doubles
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing
 from numeric.flights.harmonic import Harmonic
-from symbolic.expressions.numbers import NumberSystem
 
 CELLS = 4096  # intervals that cover the turn
 STEEP = 2.0**10  # radius times W beyond which marches are long: then every piece is searched instead
@@ -50,8 +50,9 @@ HALT = 2.0**-12
 FLOOR = 2.0**-50  # rounding of K*h*r*r, in units of r*r
 SHALLOW = 2.0**-20  # departures flatter than its root take care of cancellation
 MOST = 400  # steps of a march
+SHORT = 2.0**-8  # between two unit vectors: below, ten bits more than doubles say less than the divided equation
 HALF = 2.0**-27  # radians: beyond, a last correction is no rounding
-LONG = 200  # lines of a radius that is not computed with twice the digits: it would take seconds to compile
+LONG = 200  # sums of a radius that is not computed with more digits than doubles have: it would take seconds to compile
 GROWTH = 8.0  # from one step to the next, of a flight that begins along the wall
 
 
@@ -65,7 +66,9 @@ class Polar(Harmonic):
         super().__init__(boundary)
         program = boundary.ir.program("radius")
         self.alone, self.radius, self.bent = program.only(0), program.only(0, 1), program.only(0, 1, 2)
-        self.refines = {word for word, *_ in self.radius.lines} <= WORDS and len(self.radius.lines) <= LONG
+        words = [word for word, *_ in self.radius.lines]
+        self.doubled = set(words) <= set(WORDS)  # to the last of twice the digits?
+        self.refines = sum((WORDS | OTHERS)[word] for word in words) <= LONG
         self.bounds = bounds(boundary)
 
     @classmethod
@@ -235,7 +238,7 @@ class Flight(Generic[N, M]):
         return at(x)
 
     def refined(self, u: Pair[N], normal: bool) -> tuple[Pair[N], Pair[N]]:
-        """The landing after one more step of Newton's method, whose residual has twice the digits; the velocity there.
+        """The landing after one more step of Newton's method, whose residual has more digits; the velocity there.
 
         What is left is the rounding of the landing. The velocity is that of the landing before it is rounded, and its
         direction feels no cancellation among harmonics either. So is the direction of a flight along the `normal`.
@@ -245,19 +248,22 @@ class Flight(Generic[N, M]):
         if not family.refines or not ops.doubles:  # with more digits there is no need
             return u, plane.times((slope, r), u)
         words = Doubles(ops)
-        doubles = cast(NumberSystem[Double[N, M]], words)  # the radius has no other words than these
         shape = [words.of(x) for x in self.shape]
         (c0, s0), (c, s) = words.unit(self.u0), words.unit(u)
-        (start, slope0), (far, rise) = (family.radius(doubles, *at, *shape) for at in ((c0, s0), (c, s)))
+        start, *slope0 = (family.radius if normal else family.alone)(words, c0, s0, *shape)
+        far, rise = family.radius(words, c, s, *shape)
         x, y = far * c - start * c0, far * s - start * s0
         along = words.of(v[0]), words.of(v[1])
         if normal:
-            along = -(slope0 * s0 + start * c0), slope0 * c0 - start * s0
+            along = -(slope0[0] * s0 + start * c0), slope0[0] * c0 - start * s0
             v = along[0].high, along[1].high
         value = along[0] * y - along[1] * x
         d = (rise * c - far * s).high, (rise * s + far * c).high
         step = -(value.high / plane.exact_cross(ops, v, d))
         known = modulus(step) < ops.number(HALF)  # else a tangency
+        if not family.doubled:  # of a short flight the divided equation knows more
+            gap = u[0] - self.u0[0], u[1] - self.u0[1]
+            known = known & (ops.number(SHORT * SHORT) < plane.dot(gap, gap))
         step = ops.select(known, step, ops.number(0.0))
         ax, ay = plane.times((bent - r, slope + slope), u)
         moved = c.high + (c.low - step * s.high), s.high + (s.low + step * c.high)

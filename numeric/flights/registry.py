@@ -12,12 +12,12 @@ FAMILIES = (
     ("circle", "Circle", "circle"),
     ("cardioid", "Cardioid", "cardioid"),
     ("cuspless", "Cuspless", "cuspless"),
-    ("harmonic", "Conic", ""),
     ("harmonic", "Ellipse", ""),
     ("harmonic", "Fourier", ""),
     ("many", "Many", ""),
     ("pieces", "Pieces", ""),
     ("spline", "Spline", ""),
+    ("conic", "Conic", ""),
     ("polar", "Polar", ""),
     ("general", "General", ""),
 )

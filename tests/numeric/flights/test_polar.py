@@ -1,5 +1,7 @@
 """Tables given by their radius: the march jumps over no zero, and lands as exactly as the paper's own tables."""
 
+import itertools
+
 import mpmath
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from numeric import PinballMap, Status
 from numeric.backends.doubled import Doubles
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.scalars import ArrayBackend, ScalarBackend
+from numeric.flights import polar as polar_flights
 from numeric.flights.general import General
 from numeric.flights.polar import STEEP, Polar, bounds, rounded_up
 from numeric.kernels.machine import KernelSpec
@@ -100,11 +103,13 @@ def test_random_landings_are_the_exact_ones(exactly):
     assert np.all(direction <= np.maximum(8, 4 * (1 + matrix[:, 1].sum(axis=-1))))
 
 
-@pytest.mark.parametrize("name", ["limacon", "star"])
-@pytest.mark.parametrize("lam", [0, 0.95])
-def test_landings_with_large_condition_numbers_are_right_to_the_last_bits(name, lam):
-    """The worst of four hundred: without a residual of twice the digits they are off by half a condition number."""
-    map = PinballMap(tables.polar(RADII[name]), lam=lam, kernels=False)
+@pytest.mark.parametrize(
+    ("name", "lam", "kernels"),
+    [*itertools.product(["limacon", "star", "peanut", "words"], [0, 0.95], [False]), ("peanut", 0.95, True)],
+)
+def test_landings_with_large_condition_numbers_are_right_to_the_last_bits(name, lam, kernels):
+    """The worst of four hundred: without a residual with more digits they are off by half a condition number."""
+    map = PinballMap(tables.polar(RADII[name]), lam=lam, kernels=kernels)
     theta, phi = anywhere(400, 8)
     phi = phi if lam else 0 * phi
     matrix = 1 + np.abs(map.derivative(theta, phi))[:, 0].sum(axis=-1)
@@ -115,6 +120,20 @@ def test_landings_with_large_condition_numbers_are_right_to_the_last_bits(name, 
     assert not code.any()
     assert np.max(position) <= 1
     assert np.max(direction) <= 8
+
+
+def test_a_short_flight_stays_with_the_divided_equation_where_words_have_ten_bits_more(monkeypatch):
+    """Else it is off by those ten bits over its length: 2**-63/1e-9 in place of a condition number."""
+    map, theta = PinballMap(tables.polar(RADII["peanut"]), lam=0.9, kernels=False), np.array([-2.8, -0.9, 0.3, 1.6])
+    phi = np.full(4, np.pi / 2 - 1e-9)
+
+    def largest():
+        own, found, _ = flown(map, theta, phi)
+        return errors(map, ExactMap(map, 30), own, found)[0].max()
+
+    assert largest() <= 40
+    monkeypatch.setattr(polar_flights, "SHORT", 0.0)
+    assert largest() >= 1000
 
 
 def test_programs_run_with_twice_the_digits():

@@ -311,6 +311,12 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
         aim = map.states.angle_to_normal(zero, back.theta, x - back.x, y - back.y) + side * tiny
         good = np.abs(aim) < 1.57
         yield Case(f"{name}, tangent to a bulge", map, zero[good], back.theta[good], aim[good])
+    if map.ir.has("focus"):  # of an ellipse about the origin
+        x, y, *_ = map.ir.program("focus")(map.states.ops)
+        theta = np.arctan2(y, x) + rng.integers(0, 2, count) * np.pi + side * tiny
+        theta = np.remainder(theta + np.pi, 2 * np.pi) - np.pi
+        for lam in (0, 1):
+            yield Case(f"{name}, from a tip, lam = {lam}", scene(name, lam), zero, theta, angle * lam)
 
 
 def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:

@@ -10,6 +10,7 @@
     shares      how often those of a basin's share hold one half, where a mirror maps one basin to another
     dimensions  how often those of a boundary's dimension hold that of random fractal graphs
     known       how often intervals hold exponents that follow from the table
+    aarch64     kernels compiled for AArch64 and run in QEMU, against those of this machine, bit by bit
     joins       on which side of a join flights of the cuspless table land that pass it within rounding
 
 Each part prints one line: what was tried, how often, and how much of it failed. The exit status is 1 when anything
@@ -21,6 +22,7 @@ import sys
 import time
 from collections.abc import Callable
 
+from attacks.aarch64 import aarch64
 from attacks.calibration import dimensions, intervals, known, shares
 from attacks.faults import disks, restarts
 from attacks.joins import joins
@@ -48,6 +50,7 @@ PARTS: dict[str, Callable[[float], Outcome]] = {
     "shares": lambda share: shares(seeds(share)),
     "dimensions": lambda share: dimensions(seeds(share)),
     "known": lambda share: known(seeds(share)),
+    "aarch64": lambda share: aarch64(max(16, int(256 * share))),
     "joins": lambda share: joins(int(10_800_000 * share)),
 }
 

@@ -337,21 +337,23 @@ def _entered(code: bytes) -> tuple[int, Untyped] | None:
     return engine.get_function_address("run"), engine
 
 
-def optimised(text: str) -> Untyped:
-    """The module after LLVM's passes."""
+def optimised(text: str, target: Untyped = None) -> Untyped:
+    """The module after LLVM's passes, for this machine or for a target of LLVM's."""
     llvm = _llvm()
+    target = target or _target()
     module = llvm.parse_assembly(text)
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=2)
     options.loop_unrolling = False
-    passes = llvm.create_pass_builder(_target(), options).getModulePassManager()
-    passes.run(module, llvm.create_pass_builder(_target(), options))
+    passes = llvm.create_pass_builder(target, options).getModulePassManager()
+    passes.run(module, llvm.create_pass_builder(target, options))
     return module
 
 
-def object_code(text: str) -> bytes:
-    """The object file for this machine."""
-    return bytes(_target().emit_object(optimised(text)))
+def object_code(text: str, target: Untyped = None) -> bytes:
+    """The object file for this machine, or for a target of LLVM's."""
+    target = target or _target()
+    return bytes(target.emit_object(optimised(text, target)))
 
 
 def assembly(text: str) -> str:

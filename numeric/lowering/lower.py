@@ -16,7 +16,7 @@ from symbolic import tables
 from symbolic.expressions.signs import Box, vanishes
 from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
-from symbolic.tables.curves import LONG, highest, size, waves
+from symbolic.tables.curves import LONG, highest, size, varies, waves
 from symbolic.tables.formula import levels
 from symbolic.tables.geometry import Symmetry, group, velocity
 from symbolic.tables.law import Law, lengths
@@ -380,7 +380,7 @@ def _piece(component: Component, ranges: Box) -> tuple[str, list[Expr]] | None:
         return "line", [*component.at(S.Zero), *slope, S.Zero, S.Zero, *corner, S.Zero, S.One, low, high, low, high]
     if sum(map(size, component.point)) > LONG:  # no arc of an ellipse is as long, and nothing longer is multiplied out
         return None
-    centre = [expand(coordinate + coordinate.diff(theta, 2)) for coordinate in (x, y)]
+    centre = [c if varies(c) else expand(c) for c in (v + v.diff(theta, 2) for v in (x, y))]
     if any(c.has(theta) for c in centre):
         focal = flight.focal_arc(component, ranges) if max(map(levels, component.point)) <= DEEP else None
         return ("focal", focal) if focal else None

@@ -39,6 +39,7 @@ Pair = tuple[Fraction, Fraction]  # real and imaginary part
 Waves = dict[int, Pair]  # of exp(i*k*theta), by k; none of them 0
 PRODUCTS = 150_000  # of two coefficients, in one formula: about a second
 ZERO = Fraction(0)
+DIGITS = 30  # by which two values are told apart
 LONG = 200  # operations, names and numbers: what is longer is not multiplied out by SymPy
 
 
@@ -150,6 +151,24 @@ def is_periodic(expression: Expr) -> bool:
 def size(expression: Expr) -> int:
     """How many operations, names and numbers an expression has, a repeated one each time."""
     return 1 + sum(size(part) for part in expression.args)
+
+
+PLACES = Rational(1, 3), Rational(13, 11)  # of a parameter, where a value is looked at
+
+
+def varies(value: Expr) -> bool:
+    """Is a value seen to differ at two parameters? Then it is no constant; asked before anything is multiplied out.
+
+    False says nothing: letters are given the value 1/20, at which there may be no such value.
+
+    >>> varies(cos(theta)), varies(cos(theta) ** 2 + sin(theta) ** 2)
+    (True, False)
+    """
+    given = dict.fromkeys(value.free_symbols, Rational(1, 20))
+    one, other = (value.subs(given | {theta: place}).evalf(DIGITS) for place in PLACES)
+    if not (one.is_Float and other.is_Float):
+        return False
+    return bool(abs(one - other) > (abs(one) + abs(other)) / 10 ** (DIGITS // 2))
 
 
 def alone(expression: Expr, x: Symbol = theta) -> bool:

@@ -53,7 +53,7 @@ def test_wide_registers_that_are_switched_off_are_not_used(features):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_kernels_compile_for_aarch64(name):
-    """As text and object file, on vector registers and without a call to any library; they are not run here."""
+    """On vector registers and without a call to any library; `benchmarks/torture.py aarch64` runs them."""
     llvm = machine._llvm()
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()

@@ -15,9 +15,12 @@ from symbolic.tables.table import theta
 HARMONICS = "1+" + "+".join(f"cos({k}*theta)/{1000 * k * k}" for k in range(1, 41))
 FACTORS = "1+" + "*".join(f"(1+cos({k}*theta)/50)" for k in range(1, 31)) + "/100"
 LEVELS = "1+" + "cos(" * 30 + "theta" + ")" * 30 + "/40"
+QUOTIENTS = "1/(3+" * 12 + "cos(theta)" + ")" * 12
 
 
-@pytest.mark.parametrize("text", [HARMONICS, FACTORS, LEVELS], ids=["harmonics", "factors", "levels"])
+@pytest.mark.parametrize(
+    "text", [HARMONICS, FACTORS, LEVELS, QUOTIENTS], ids=["harmonics", "factors", "levels", "quotients"]
+)
 def test_point_velocity_and_acceleration_are_those_of_the_formula(text):
     rho = parse(text)
     table, started = tables.polar(rho, "own"), time.process_time()

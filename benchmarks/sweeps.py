@@ -1,9 +1,11 @@
 """Two sweeps against the kernel alone, for as many bounces with exponents: seconds of both on all cores, and the ratio.
 
-python benchmarks/sweeps.py [--quick]
+    python benchmarks/sweeps.py [--quick]
+    python benchmarks/sweeps.py --workers 4 8 16   # what it costs to keep so many busy
 
 The sweeps are the paper's parameter space at 100 x 100 pairs with 100 starts of 2000 bounces, and a picture of
 1000 x 1000 basins of the cuspless table at lam = 0.09. Sweep and kernel take turns, so that both meet the same machine.
+With `--workers` tasks only wait, for a second each, so that more workers than cores are asked too.
 """
 
 import sys
@@ -18,6 +20,7 @@ from numeric.sweeps.fields import basins, egg, parameter_space
 from numeric.sweeps.run import on_threads
 from numeric.sweeps.sweep import cores, map_of, spread, text_of
 from symbolic import Scene
+from verification.measure.work.scaling import waiting_rows
 
 TURNS = 10
 
@@ -77,6 +80,10 @@ def ratio(name, sweep, particles, bounces):
 
 
 def main(arguments):
+    if "--workers" in arguments:
+        for row in (row for workers in map(int, arguments[1:]) for row in waiting_rows(workers)):
+            sys.stdout.write(f"{row.call:<56}{row.seconds:.3f} s, efficiency {100 / row.ratio:.1f} %\n")
+        return
     quick = "--quick" in arguments
     ratio("parameter space", *parameter_space_of(20 if quick else 100))
     ratio("basins", *basins_of(400 if quick else 1000))

@@ -57,7 +57,7 @@ def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
 def on_processes(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
     """The results of each part, by processes of this machine."""
     tasks = ([sweep.part(index)] for index in indices)
-    for part, found in in_processes(sweep.task, tasks, workers, [type(sweep.task).__module__]):
+    for part, found in in_processes(sweep.task, tasks, workers, [type(sweep.task).__module__], ahead=AHEAD - 1):
         if isinstance(found, Lost):
             raise UnfinishedError(f"the part at {part.at}: {found}")
         yield part.at, found

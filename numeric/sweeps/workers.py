@@ -14,7 +14,8 @@ from multiprocessing import get_all_start_methods, get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
-from threading import current_thread, main_thread
+from queue import SimpleQueue
+from threading import Thread, current_thread, main_thread
 from typing import Any, Generic, TypeVar
 
 Item = TypeVar("Item")
@@ -47,11 +48,16 @@ class _Worker(Generic[Item]):
 
 
 def in_processes(
-    work: Callable[[Item], Answer], tasks: Iterable[Sequence[Item]], jobs: int | None, modules: Sequence[str] = ()
+    work: Callable[[Item], Answer],
+    tasks: Iterable[Sequence[Item]],
+    jobs: int | None,
+    modules: Sequence[str] = (),
+    ahead: int = 0,
 ) -> Generator[tuple[Item, Answer | Lost], None, None]:
     """Each item with what `work` makes of it, as answers come; a task's items go to one process, in order.
 
-    There are `jobs` processes, or one for each core.
+    There are `jobs` processes, or one for each core. With `ahead` a process has so many more items in hand as long as
+    there is more to do than processes: none stands still while answers are written, and the last are shared out singly.
     `work`, items and answers must be picklable; `modules` are those that every worker needs, imported once where the
     system can fork. What `work` raises is raised here. However this ends, by Ctrl-C as well, the workers end with it.
     """
@@ -78,14 +84,14 @@ def in_processes(
                         with _undisturbed():
                             workers.append(_started(context, work))
                     continue
-                if worker.ready:
-                    if isinstance(told, BaseException):
-                        raise told
-                    yield worker.waiting.popleft(), told
+                if worker.ready and isinstance(told, BaseException):
+                    raise told
+                answered = [(worker.waiting.popleft(), told)] if worker.ready else []
                 worker.ready = True
-                if not worker.waiting and queue:
-                    worker.waiting.extend(queue[0])
+                while queue and len(worker.waiting) <= (ahead if len(queue) > len(workers) else 0):
+                    worker.waiting.extend(queue[0])  # before the answer is looked at
                     worker.pipe.send(queue.popleft())
+                yield from answered
                 if not worker.waiting:
                     workers.remove(worker)
                     worker.pipe.close()  # which ends it
@@ -142,10 +148,12 @@ def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[It
 def _serve(pipe: "Connection", work: Callable[[Any], Any]) -> None:
     """What a worker does: answers until nobody asks. Ctrl-C is for the one that asks."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tasks: SimpleQueue[Any] = SimpleQueue()
+    Thread(target=_received, args=(pipe, tasks), daemon=True).start()
     try:
         pipe.send(None)  # it has started
-        while True:
-            for item in pipe.recv():
+        while (task := tasks.get()) is not None:
+            for item in task:
                 try:
                     answer = work(item)
                 except Exception as error:
@@ -153,6 +161,15 @@ def _serve(pipe: "Connection", work: Callable[[Any], Any]) -> None:
                 pipe.send(answer)
     except (EOFError, OSError):
         return
+
+
+def _received(pipe: "Connection", tasks: "SimpleQueue[Any]") -> None:
+    """Takes tasks from the pipe as they come: else each end might wait for the other to take what it sends."""
+    try:
+        while True:
+            tasks.put(pipe.recv())
+    except (EOFError, OSError):
+        tasks.put(None)
 
 
 def _mourned(

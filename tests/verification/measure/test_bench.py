@@ -282,8 +282,7 @@ def test_balls_come_to_rest_on_tables_of_every_kind(monkeypatch):
 def watched_by(worker, *tasks):
     """Results of a worker: when each task began and ended, how long it had waited by then, and what it spent."""
     for began, ended, before, waited, spent in tasks:
-        row = dict(zip(scaling.NAMES, (worker, began, ended, before, waited, spent), strict=True))
-        yield (0,), {name: np.array([value]) for name, value in row.items()}
+        yield (0,), {"notes": np.array([worker, began, ended, before, waited, spent], dtype=float)}
 
 
 def test_a_worker_loses_what_it_stands_still_and_not_what_it_waits_for_a_core():
@@ -301,6 +300,12 @@ def test_watched_tasks_say_what_they_find_and_who_found_it():
     found, plain = results[0, 0], sweep.task.task(sweep.part((0, 0)))
 
     assert len(results) == scaling.TASKS
-    assert set(found) == {*plain, *scaling.NAMES}
+    assert set(found) == {*plain, "notes"}
     assert all(np.array_equal(found[name], plain[name]) for name in plain)
-    assert found["began"] <= found["ended"]
+    assert found["notes"].flat[1] <= found["notes"].flat[2]
+
+
+@pytest.mark.parametrize("python", [False, True])
+def test_tasks_that_wait_go_the_whole_way_of_a_sweep_into_a_store(python):
+    """By threads and by processes: each task takes what it waits at least, and its arrays fit the store."""
+    assert scaling.by_waiting(scaling.waiting(2, python, seconds=0.05), 2) >= 0.05

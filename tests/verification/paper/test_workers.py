@@ -51,6 +51,22 @@ def test_what_work_raises_is_raised_here_and_the_other_processes_end():
     assert not any(process.is_alive() for process in processes)
 
 
+def mark(path):
+    """Work that leaves a file behind."""
+    Path(path).touch()
+
+
+def test_a_process_goes_on_with_the_next_task_while_its_answer_is_looked_at(tmp_path):
+    first, second = str(tmp_path / "first"), str(tmp_path / "second")
+    answers, latest = in_processes(mark, [[first], [second]], 1), time.monotonic() + 30
+
+    assert next(answers) == (first, None)
+    while not Path(second).exists() and time.monotonic() < latest:  # nobody asks for an answer meanwhile
+        time.sleep(0.01)
+    assert Path(second).exists()
+    assert list(answers) == [(second, None)]
+
+
 SECONDS = re.compile(r"(?:\"seconds\": |seconds: |claims took |quiet\">)[\d.]+(?: s; [\d.]+ s with)?")
 
 

@@ -11,14 +11,16 @@ from difflib import get_close_matches
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from symbolic.tables.families import NAMES
+
 if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from symbolic.tables.table import Shape, Table
 
 PAPER = {"circle": (), "ellipse": ("a",), "cardioid": (), "cuspless": (), "egg": ("alpha",)}
-GALLERY = (  # tables of symbolic.tables.gallery; their lengths have values of their own
-    "square", "triangle", "stadium", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "diamond",
+GALLERY = (  # tables of symbolic.tables.gallery and of families; their lengths have values of their own
+    "square", "triangle", "stadium", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "diamond", *NAMES,
 )  # fmt: skip
 POINTS = 3  # of the paper's egg
 UNIFORM = "-lam*eta"  # the paper's law

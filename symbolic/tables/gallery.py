@@ -8,15 +8,16 @@ Every table of straight sides and arcs is exact, closed and counterclockwise by 
 so that the inside of the table lies to the left of every component.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from importlib import import_module
 from inspect import signature
 from itertools import pairwise
-from types import MappingProxyType
 from typing import TypeAlias
 
 from sympy import Expr, Interval, Rational, S, cos, oo, pi, sin, sqrt
 
+from symbolic.tables.families import NAMES
 from symbolic.tables.formula import parse
 from symbolic.tables.table import Component, Mark, Shape, Table, a, alpha, exact_number, theta
 from symbolic.tables.validity import closed_and_finite, counterclockwise_and_simple, positive_radius, validated
@@ -169,7 +170,7 @@ def regular(n: int, radius: Number = 1) -> Table:
     """
     if n < 3:
         raise ValueError(f"regular: n = {n!r} is no number of sides; accepted: integers from 3")
-    r = _positive("regular: radius", radius)
+    r = positive("regular: radius", radius)
     angles = [-pi / 2 - pi / n + 2 * pi * k / n for k in range(n)]
     corners = [(r * cos(a), r * sin(a)) for a in angles]
     return Table(f"regular{n}", tuple(_sides(corners)))  # convex, so that nothing need be proved of it
@@ -181,8 +182,8 @@ def square(side: Length = 1) -> Table:
     >>> square().components[2].at(S.Zero)
     (1, 1)
     """
-    a = _positive("square: side", side)
-    return polygon((0, 0), (a, 0), (a, a), (0, a), name="square", shapes=_free(side))
+    a = positive("square: side", side)
+    return polygon((0, 0), (a, 0), (a, a), (0, a), name="square", shapes=free(side))
 
 
 def triangle(side: Length = 1) -> Table:
@@ -191,8 +192,8 @@ def triangle(side: Length = 1) -> Table:
     >>> triangle(2).components[2].at(S.Zero)
     (1, sqrt(3))
     """
-    a = _positive("triangle: side", side)
-    return polygon((0, 0), (a, 0), (a / 2, a * sqrt(3) / 2), name="triangle", shapes=_free(side))
+    a = positive("triangle: side", side)
+    return polygon((0, 0), (a, 0), (a / 2, a * sqrt(3) / 2), name="triangle", shapes=free(side))
 
 
 def stadium(straight: Length = 2, radius: Length = 1) -> Table:
@@ -201,14 +202,14 @@ def stadium(straight: Length = 2, radius: Length = 1) -> Table:
     >>> stadium().components[0].at(S.Zero)
     (2, 0)
     """
-    half, r = _positive("stadium: straight", straight) / 2, _positive("stadium: radius", radius)
+    half, r = positive("stadium: straight", straight) / 2, positive("stadium: radius", radius)
     return piecewise(
         round_arc("right", (half, 0), r, -pi / 2, pi / 2),
         arc("top", -theta, r, -half, half),
         arc("left", -half - r * cos(theta), -r * sin(theta), -pi / 2, pi / 2),
         arc("bottom", theta, -r, -half, half),
         name="stadium",
-        shapes=_free(straight, radius),
+        shapes=free(straight, radius),
     )
 
 
@@ -218,11 +219,11 @@ def reuleaux(radius: Length = 1) -> Table:
     >>> reuleaux().components[0].at(S.Zero)
     (1, 0)
     """
-    r = _positive("reuleaux: radius", radius)
+    r = positive("reuleaux: radius", radius)
     corners = [(S.Zero, S.Zero), (r, S.Zero), (r / 2, r * sqrt(3) / 2)]
     starts = [S.Zero, 2 * pi / 3, -2 * pi / 3]
     arcs = [round_arc(f"arc{i}", corners[i - 1], r, starts[i - 1], starts[i - 1] + pi / 3) for i in (1, 2, 3)]
-    return piecewise(*arcs, name="reuleaux", shapes=_free(radius))
+    return piecewise(*arcs, name="reuleaux", shapes=free(radius))
 
 
 def lemon(half_angle: Length = "1/3") -> Table:
@@ -239,7 +240,7 @@ def lemon(half_angle: Length = "1/3") -> Table:
         round_arc("right", (-shift, 0), S.One, -angle, angle),
         arc("left", shift - cos(theta), -sin(theta), -angle, angle),
         name="lemon",
-        shapes=_free(half_angle),
+        shapes=free(half_angle),
     )
 
 
@@ -249,9 +250,9 @@ def semi_ellipse(a: Length = 2) -> Table:
     >>> semi_ellipse().components[0].at(pi / 2)
     (0, 1)
     """
-    half = _positive("semi_ellipse: a", a)
+    half = positive("semi_ellipse: a", a)
     top = arc("top", half * cos(theta), sin(theta), S.Zero, pi)
-    return piecewise(top, arc("base", theta, S.Zero, -half, half), name="semi_ellipse", shapes=_free(a))
+    return piecewise(top, arc("base", theta, S.Zero, -half, half), name="semi_ellipse", shapes=free(a))
 
 
 def mushroom(stem: Length = "1/2", foot: Length = 1) -> Table:
@@ -260,7 +261,7 @@ def mushroom(stem: Length = "1/2", foot: Length = 1) -> Table:
     >>> mushroom().components[3].at(S.Zero)
     (0, -1)
     """
-    w, h = _positive("mushroom: stem", stem), _positive("mushroom: foot", foot)
+    w, h = positive("mushroom: stem", stem), positive("mushroom: foot", foot)
     if not _within("mushroom: stem", stem)[2] < 1:
         raise ValueError(f"mushroom: stem = {stem} is wider than the cap; accepted: numbers between 0 and 1")
     return piecewise(
@@ -271,7 +272,7 @@ def mushroom(stem: Length = "1/2", foot: Length = 1) -> Table:
         arc("right side", w, theta, -h, 0),
         arc("right brim", theta, 0, w, 1),
         name="mushroom",
-        shapes=_free(stem, foot),
+        shapes=free(stem, foot),
     )
 
 
@@ -281,11 +282,11 @@ def sinai(radius: Length = "1/4") -> Table:
     >>> [part.name for part in sinai().components]
     ['side1', 'side2', 'side3', 'side4', 'disc']
     """
-    r = _positive("sinai: radius", radius)
+    r = positive("sinai: radius", radius)
     if not _within("sinai: radius", radius)[2] < HALF:
         raise ValueError(f"sinai: radius = {radius} is too large for the cell; accepted: numbers between 0 and 1/2")
     sides = _sides([(-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF)])
-    return piecewise(*sides, disc("disc", (0, 0), r), name="sinai", shapes=_free(radius))
+    return piecewise(*sides, disc("disc", (0, 0), r), name="sinai", shapes=free(radius))
 
 
 def diamond() -> Table:
@@ -340,24 +341,40 @@ def _within(label: str, given: Length) -> tuple[Expr, Expr, Expr]:
     return value, value, value
 
 
-def _positive(label: str, given: Length) -> Expr:
+def positive(label: str, given: Length) -> Expr:
+    """A length, refused where it is not positive."""
     value, low, _ = _within(label, given)
     if not low.is_positive:
         raise ValueError(f"{label} = {low} is no length; accepted: positive numbers")
     return value
 
 
-def _free(*lengths: Length) -> list[Shape]:
+def free(*lengths: Length) -> list[Shape]:
     """Those that stay free."""
     return [length for length in lengths if isinstance(length, Shape)]
 
 
-GALLERY: Mapping[str, Callable[..., Table]] = MappingProxyType(
-    {
-        make.__name__: make
-        for make in (square, triangle, stadium, reuleaux, lemon, semi_ellipse, mushroom, sinai, diamond)
-    }
-)
+OWN = (square, triangle, stadium, reuleaux, lemon, semi_ellipse, mushroom, sinai, diamond)
+
+
+class Gallery(Mapping[str, Callable[..., Table]]):
+    """Tables by name: those of this file, and those of `families`, a file each."""
+
+    def __getitem__(self, name: str) -> Callable[..., Table]:
+        own = {make.__name__: make for make in OWN}
+        if name not in own and name in NAMES:
+            make: Callable[..., Table] = getattr(import_module(f"symbolic.tables.families.{name}"), name)
+            return make
+        return own[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*(make.__name__ for make in OWN), *NAMES))
+
+    def __len__(self) -> int:
+        return len(OWN) + len(NAMES)
+
+
+GALLERY = Gallery()
 
 
 def of_gallery(name: str, lengths: Mapping[str, Number]) -> Table:

@@ -11,6 +11,7 @@
     dimensions  how often those of a boundary's dimension hold that of random fractal graphs
     known       how often intervals hold exponents that follow from the table
     aarch64     kernels compiled for AArch64 and run in QEMU, against those of this machine, bit by bit
+    processors  the whole report with fewer instructions: the same bytes
     joins       on which side of a join flights of the cuspless table land that pass it within rounding
 
 Each part prints one line: what was tried, how often, and how much of it failed. The exit status is 1 when anything
@@ -28,6 +29,7 @@ from attacks.faults import disks, restarts
 from attacks.joins import joins
 from attacks.machine_code import images
 from attacks.outcome import Outcome
+from attacks.processors import processors
 from attacks.sessions import visitors
 from attacks.statements import falsehoods, fields
 
@@ -51,6 +53,7 @@ PARTS: dict[str, Callable[[float], Outcome]] = {
     "dimensions": lambda share: dimensions(seeds(share)),
     "known": lambda share: known(seeds(share)),
     "aarch64": lambda share: aarch64(max(16, int(256 * share))),
+    "processors": lambda share: processors("*" if share >= 1 else "egg.*"),
     "joins": lambda share: joins(int(10_800_000 * share)),
 }
 

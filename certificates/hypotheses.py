@@ -21,12 +21,13 @@ TESTS = (
     "test_region",
     "test_second_reader",
     "test_own_tables",
+    "test_simple_curves",
     "test_two_arithmetics",
 )
 OWN = {
     "boundaries": "own_tables",
     "crisis": "crisis",
-    "curves": "own_tables",
+    "curves": "simple_curves",
     "formulas": "own_tables",
     "region": "region",
 }  # asked first

@@ -8,6 +8,7 @@ that takes more than `DEAR` is `slow`. `make quick` runs what is quick, `make te
 the rest. They go file by file: what a file computes for several tests is computed once, and the dearest files begin.
 """
 
+import os
 import re
 from collections import Counter
 from pathlib import Path
@@ -45,6 +46,8 @@ def pytest_ignore_collect(collection_path, config):
     return True if ">>>" not in text and not any(level in marks(name) for name in tests) else None
 
 
+for name in ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "NPY_ENABLE_CPU_FEATURES", "GLIBC_TUNABLES"):
+    os.environ.pop(name, None)  # what tests start has all instructions of the machine, unless they say otherwise
 WIDE = ("AVX512", "X86_V4")  # what begins the names of all that needs registers of 512 bits
 USED = {name: name.startswith(WIDE) for name in np._core._multiarray_umath.__cpu_dispatch__}  # other ones every year
 

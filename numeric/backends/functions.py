@@ -11,7 +11,7 @@ so that no lane's result depends on its neighbours.
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from numeric.backends.protocol import Backend, Low, M, N, Pair, bound, modulus
 
@@ -356,45 +356,3 @@ def polynomial_zero(
     for _ in range(steps[0]):
         x = halley(p, x)
     return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)
-
-
-class DoubleBackend(Backend[N, M], Protocol[N, M]):
-    """What backends of float64 have in common: their elementary functions and zeros are those of this module."""
-
-    doubles: bool = True
-
-    def angle(self, y: N, x: N) -> N:
-        """`atan2(y, x)` for `x >= 0`."""
-        return angle(self, y, x)
-
-    def turn(self, x: N, quarters: int = 2) -> Pair[N]:
-        """`(cos x, sin x)`."""
-        return turn(self, x, quarters)
-
-    def zero(
-        self,
-        function: Callable[[N], Pair[N]],
-        x: N,
-        low: Low[N],
-        high: N,
-        scale: N,
-        newton: int,
-        wanted: M | None = None,
-        accepts: Callable[[N], M] | None = None,
-    ) -> N:
-        """The only zero in `[low, high]`."""
-        return bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
-
-    def polynomial_zero(
-        self,
-        p: Sequence[N],
-        x: N,
-        low: Low[N],
-        high: N,
-        scale: N,
-        steps: tuple[int, int],
-        wanted: M | None = None,
-        accepts: Callable[[N], M] | None = None,
-    ) -> N:
-        """That of a polynomial."""
-        return polynomial_zero(self, p, x, low, high, scale, steps, wanted, accepts)

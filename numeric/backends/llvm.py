@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from numeric.backends import functions, memory
-from numeric.backends.functions import DoubleBackend
+from numeric.backends.doubles import DoubleBackend
 
 Fold = float | None
 
@@ -270,10 +270,6 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         magic = self._bits("or", self._bits("lshr", field, "splat (i64 52)"), f"splat (i64 {0x433 << 52})")
         return inverse, self._double(magic) - self.number(2.0**52 + 1023)
 
-    def atan2(self, y: LLVMVector, x: LLVMVector) -> LLVMVector:
-        """The angle of a point anywhere in the plane, from that of its mirror image on the right."""
-        return self.select(x < self.number(0.0), self.with_sign(self.pi, y) - (near := self.angle(y, abs(x))), near)
-
     def sin(self, x: LLVMVector) -> LLVMVector:
         """The sine, of angles up to 2**30."""
         return self.turn(self._within_a_turn(x))[1]
@@ -281,34 +277,6 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     def cos(self, x: LLVMVector) -> LLVMVector:
         """The cosine, of angles up to 2**30."""
         return self.turn(self._within_a_turn(x))[0]
-
-    def exp(self, x: LLVMVector) -> LLVMVector:
-        """The exponential."""
-        return functions.exponential(self, x)
-
-    def log(self, x: LLVMVector) -> LLVMVector:
-        """The natural logarithm."""
-        return functions.logarithm(self, x)
-
-    def atan(self, x: LLVMVector) -> LLVMVector:
-        """The arc tangent."""
-        return self.angle(x, self.number(1.0))
-
-    def sinh(self, x: LLVMVector) -> LLVMVector:
-        """The hyperbolic sine."""
-        return functions.hyperbolic(self, x, "sinh")
-
-    def cosh(self, x: LLVMVector) -> LLVMVector:
-        """The hyperbolic cosine."""
-        return functions.hyperbolic(self, x, "cosh")
-
-    def tanh(self, x: LLVMVector) -> LLVMVector:
-        """The hyperbolic tangent."""
-        return functions.hyperbolic(self, x, "tanh")
-
-    def root(self, x: LLVMVector, n: int) -> LLVMVector:
-        """The positive `n`-th root of a positive number."""
-        return functions.root(self, x, n)
 
     def two_to(self, k: LLVMVector) -> LLVMVector:
         """`2**k` for whole `k` from -1022 to 1023."""

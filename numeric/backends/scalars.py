@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import functions
-from numeric.backends.functions import DoubleBackend, value_and_slope
+from numeric.backends.doubles import DoubleBackend
+from numeric.backends.functions import value_and_slope
 from numeric.backends.protocol import Backend, Low, N, Pair, Words, bound, modulus
 
 Array = NDArray[np.float64]
@@ -52,15 +53,8 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         return self.number(2 * functions.HALF_PI_LOW)
 
     sqrt = staticmethod(cast(Unary, np.sqrt))
-    atan2 = staticmethod(cast(Binary, np.arctan2))
     sin = staticmethod(cast(Unary, np.sin))
     cos = staticmethod(cast(Unary, np.cos))
-    exp = staticmethod(cast(Unary, np.exp))
-    log = staticmethod(cast(Unary, np.log))
-    atan = staticmethod(cast(Unary, np.arctan))
-    sinh = staticmethod(cast(Unary, np.sinh))
-    cosh = staticmethod(cast(Unary, np.cosh))
-    tanh = staticmethod(cast(Unary, np.tanh))
     select = staticmethod(cast(Callable[[Masks, Array, Array], Array], np.where))
     maximum = staticmethod(cast(Binary, np.maximum))
     rounded = staticmethod(cast(Unary, np.rint))
@@ -82,10 +76,6 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         back = total - product
         total_low = (product - (total - back)) + (z - back)
         return total + (product_low + total_low)
-
-    def root(self, x: Array, n: int) -> Array:
-        """The positive `n`-th root of a positive number."""
-        return functions.root(self, x, n)
 
     def two_to(self, k: Array) -> Array:
         """`2**k` for whole `k`."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey, measured_on
 from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Attractor, Kind
@@ -169,11 +170,12 @@ def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
     orbit = map.orbit(particles.theta, particles.phi, bounces, particles.component)
     exit, lam = orbit.phi[1:], np.broadcast_to(map.lam, particles.theta.shape)
     if map.law == FORMULA:
-        inner = np.sum(np.log(np.abs(map.slopes(orbit.eta[1:], orbit.theta[1:], orbit.component[1:])[0])), axis=0)
+        slope, _ = map.slopes(orbit.eta[1:], orbit.theta[1:], orbit.component[1:])
+        inner = np.sum(elementary.log(np.abs(slope)), axis=0)
     else:
         inner, exit = np.zeros(lam.shape), lam * orbit.eta[1:]
-    inner = inner + np.sum(np.log(np.cos(exit) / np.cos(orbit.eta[1:])), axis=0)
-    return np.asarray(inner + np.log(np.cos(orbit.phi[0]) / np.cos(orbit.phi[-1])))
+    inner = inner + np.sum(elementary.log(np.cos(exit) / np.cos(orbit.eta[1:])), axis=0)
+    return np.asarray(inner + elementary.log(np.cos(orbit.phi[0]) / np.cos(orbit.phi[-1])))
 
 
 def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> Check:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.phase_points import Array, PhasePoints, gathered, phase_points, together
 from numeric.dynamics.recognition import (
     UNSETTLED,
@@ -286,7 +287,7 @@ def calm(bounces: int) -> float:
     >>> round(calm(1000), 4)
     0.0207
     """
-    return float(3 * np.log(bounces + 1) / bounces)
+    return float(3 * elementary.log(bounces + 1) / bounces)
 
 
 def find(

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.attractors import classify, wilson
 from numeric.dynamics.phase_points import Array, PhasePoints, phase_points
 from numeric.dynamics.recognition import UNSETTLED, Attractor, Labels, Share, at_clouds, at_cycles
@@ -55,7 +56,7 @@ def starts_at(map: PinballMap, s: ArrayLike, sin_phi: ArrayLike) -> PhasePoints:
     along, height = np.broadcast_arrays(np.asarray(s, dtype=float), np.asarray(sin_phi, dtype=float))
     height = np.where(np.abs(height) > 1, np.sign(height) * 2 - height, height) * (1 - 1e-12)
     component, theta = boundary(map, along.ravel())
-    return phase_points(theta, np.arcsin(height.ravel()), component)
+    return phase_points(theta, elementary.arcsin(height.ravel()), component)
 
 
 def labels(
@@ -166,7 +167,7 @@ def entropies(label: Labels, count: int) -> Array:
     [0.693147, 0.0]
     """
     shares = np.stack([np.mean(label == i, axis=1) for i in range(-1, count)])
-    return np.asarray(np.sum(-shares * np.log(np.where(shares > 0, shares, 1)), axis=0)) + 0.0
+    return np.asarray(np.sum(-shares * elementary.log(np.where(shares > 0, shares, 1)), axis=0)) + 0.0
 
 
 def _of(eps: float, entropy: Array) -> Mixing:

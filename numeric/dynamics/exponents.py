@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.attractors import Attractor, Classified, classify
 from numeric.dynamics.phase_points import Array, PhasePoints, advanced
 from numeric.dynamics.recognition import Kind, at_cycles
@@ -317,12 +318,16 @@ def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int
     orbit = map.orbit(begin.theta, begin.phi, steps, begin.component)
     slopes = [map.derivative(orbit.theta[i], orbit.phi[i], orbit.component[i]) for i in range(steps)]
     expanded = _carried(slopes, np.array([0.6, 0.8]))
-    contracted = _carried(
-        [np.asarray(np.linalg.inv(slope), dtype=float) for slope in reversed(slopes)], np.array([0.8, -0.6])
-    )[::-1]
+    contracted = _carried([_adjugate(slope) for slope in reversed(slopes)], np.array([0.8, -0.6]))[::-1]
     e, f = expanded[SETTLING : SETTLING + bounces], contracted[SETTLING : SETTLING + bounces]
     sine = np.abs(e[..., 0] * f[..., 1] - e[..., 1] * f[..., 0])
-    return np.asarray(np.arcsin(np.minimum(sine, 1.0))).ravel()
+    return np.asarray(elementary.arcsin(np.minimum(sine, 1.0))).ravel()
+
+
+def _adjugate(slope: Array) -> Array:
+    """The inverse matrices up to a factor, which turns no direction. LAPACK's last bit depends on the processor."""
+    rows = np.array([[slope[:, 1, 1], -slope[:, 0, 1]], [-slope[:, 1, 0], slope[:, 0, 0]]])
+    return np.moveaxis(rows, 2, 0)
 
 
 def _carried(slopes: list[Array], vector: Array) -> Array:

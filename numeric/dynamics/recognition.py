@@ -12,13 +12,14 @@ Recognising attractors: the cycle that a particle is at, the cloud it lies in, t
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from math import sqrt
+from math import copysign, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from numeric import PinballMap, Status
+from numeric.backends import elementary
 from numeric.dynamics.phase_points import Array, PhasePoints, advanced, embedded, phase_points, together
 
 
@@ -101,7 +102,7 @@ class Cycle:
     def exponents(self) -> tuple[float, float]:
         """Both Lyapunov exponents, per bounce; their sum is exactly the mean of `log |det DT|`."""
         with np.errstate(divide="ignore"):
-            plus = float(np.log(abs(self.multipliers[0])) / self.period)
+            plus = float(elementary.log(abs(self.multipliers[0])) / self.period)
         return plus, self.volume - plus
 
 
@@ -170,7 +171,7 @@ def shortest(map: PinballMap, cycle: PhasePoints) -> Cycle:
     once = once.turned(int(order[0]))
     slopes = map.derivative(once.theta, once.phi, once.component)
     with np.errstate(divide="ignore"):
-        volume = float(np.mean(np.log(np.abs(np.linalg.det(slopes))))) if map.law != "slap" else -np.inf
+        volume = float(np.mean(elementary.log(np.abs(determinants(slopes))))) if map.law != "slap" else -np.inf
     return Cycle(once, eigenvalues(slopes), volume)
 
 
@@ -180,18 +181,30 @@ def multipliers(map: PinballMap, cycle: PhasePoints) -> tuple[complex, complex]:
 
 
 def eigenvalues(slopes: Array) -> tuple[complex, complex]:
-    """Those of the product of the matrices; the smaller one from the product of the determinants.
+    """Those of the product of the matrices, the larger one first, from its trace and the determinants' product.
 
     >>> [mu.real for mu in eigenvalues(np.array([[[2.0, 0.0], [0.0, 1.0]], [[4.0, 0.0], [0.0, 0.5]]]))]
     [8.0, 0.5]
+    >>> eigenvalues(np.array([[[0.0, -1.0], [1.0, 0.0]]]))
+    (1j, -1j)
     """
     product = np.eye(2)
     for matrix in slopes:
-        product = matrix @ product
-    first, second = sorted((complex(x) for x in np.linalg.eigvals(product)), key=lambda mu: -abs(mu))
-    if first.imag == 0 and first != 0:
-        second = complex(np.prod(np.linalg.det(slopes)) / first.real)
-    return first, second
+        product = np.sum(matrix[:, :, None] * product, axis=1)
+    half, determinant = float(product[0, 0] + product[1, 1]) / 2, float(np.prod(determinants(slopes)))
+    size = max(abs(half), sqrt(abs(determinant))) or 1.0  # nothing overflows, however long the cycle
+    mean = half / size
+    discriminant = mean * mean - determinant / size / size
+    if discriminant < 0:
+        first = complex(half, size * sqrt(-discriminant))
+        return first, first.conjugate()
+    larger = size * (mean + copysign(sqrt(discriminant), mean))
+    return complex(larger), complex(determinant / larger if larger else 0.0)
+
+
+def determinants(slopes: Array) -> Array:
+    """Of matrices with two rows: LAPACK's last bit depends on the processor."""
+    return np.asarray(slopes[..., 0, 0] * slopes[..., 1, 1] - slopes[..., 0, 1] * slopes[..., 1, 0])
 
 
 def by_parameter(map: PinballMap, here: PhasePoints, after: PhasePoints) -> Array:
@@ -326,7 +339,7 @@ def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
     many = together(*[cycle.points] * (1 + 63 // cycle.period))
     speed = map.states.speed(many.component, many.theta)
     size = max(abs(cycle.multipliers[0]), 1e-3)
-    turns = min(int(np.ceil(np.log(0.03) / np.log(size))) + 4, 20_000 // cycle.period + 1)
+    turns = min(int(np.ceil(elementary.log(0.03) / elementary.log(size))) + 4, 20_000 // cycle.period + 1)
     ends = np.array(map.states.ends)[many.component]
     for radius in REACHES:
         angle = rng.uniform(0, 2 * np.pi, many.size)

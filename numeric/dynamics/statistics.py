@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.basins import TRANSIENT, Window, labels, random_points, starts_at, whole
 from numeric.dynamics.phase_points import Array
 from numeric.dynamics.recognition import UNSETTLED, Attractor
@@ -223,7 +224,7 @@ def fitted(distances: Array, different: NDArray[np.bool_], rng: np.random.Genera
         nothing = float("nan")
         return Uncertainty(distances, counts, size, nothing, nothing, (nothing, nothing), nothing, nothing)
     draws = np.array([different[:, rng.integers(0, size, size)].sum(axis=1) for _ in range(RESAMPLED)])
-    (slope, bend), *drawn = power_laws(np.log(distances), np.vstack([counts, draws]), size)
+    (slope, bend), *drawn = power_laws(elementary.log(distances), np.vstack([counts, draws]), size)
     errors, ends = np.nanstd(np.array(drawn), axis=0), distances[used]
     return Uncertainty(
         distances, counts, size, slope, float(errors[0]), (bend, float(errors[1])), float(max(ends)), float(min(ends))
@@ -237,7 +238,8 @@ def power_laws(x: Array, counts: NDArray[np.int64], of: int) -> list[tuple[float
     knows. Logarithms of counts, the small ones left out, make the slope too small by a third of its error.
     """
     slopes = _most_likely(x, counts, of, 1)[:, 0]
-    bends = 2 * np.log(10) * _most_likely(x, counts, of, 2)[:, 0] if x.size > 2 else np.full(len(counts), np.nan)
+    decade, curved = 2 * elementary.log(10), x.size > 2
+    bends = decade * _most_likely(x, counts, of, 2)[:, 0] if curved else np.full(len(counts), np.nan)
     return [(float(slope), float(bend)) for slope, bend in zip(slopes, bends, strict=True)]
 
 
@@ -247,9 +249,9 @@ def _most_likely(x: Array, counts: NDArray[np.int64], of: int, degree: int) -> A
     share = np.maximum(counts, 0.5) / of
     for _ in range(NEWTON):
         weight = of * share / (1 - share)
-        wanted = weight * (np.log(share) + (counts / of - share) / share)
+        wanted = weight * (elementary.log(share) + (counts / of - share) / share)
         normal = np.einsum("ri,ij,ik->rjk", weight, powers, powers)
         right = np.einsum("ri,ij->rj", wanted, powers)
         found: Array = np.einsum("rjk,rk->rj", np.linalg.pinv(normal, hermitian=True), right)
-        share = np.clip(np.exp(found @ powers.T), 1e-300, 1 - 1 / (2 * of))
+        share = np.clip(elementary.exp(found @ powers.T), 1e-300, 1 - 1 / (2 * of))
     return found

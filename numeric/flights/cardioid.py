@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Boundary, Family, Frame, Landing, Status, grazing
@@ -75,7 +76,7 @@ class Cardioid(Family):
         return ops.number(4.0) * position[1]
 
     def parameter(self, component: int, s: Array) -> Array | None:
-        return np.asarray(2 * np.arcsin(np.clip(s / 4, -1, 1)))
+        return np.asarray(2 * elementary.arcsin(np.clip(s / 4, -1, 1)))
 
     def cubic(self, ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> tuple[list[N], N, N, Pair[N]]:
         """The flight equation in `S`, mirrored so that `k >= 0`; then `sin(theta0/2)` so mirrored, `k`, and `-v`."""

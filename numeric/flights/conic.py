@@ -120,7 +120,8 @@ class Conic(Ellipse):
         inverse, size, _ = self._seen(theta)
         u = self.enter(self.boundary.ops, component.astype(float), theta)
         rate = np.hypot(*self.velocity(self.boundary.ops, *u, *self.boundary.numbers))
-        return rate, -self.focus(self.boundary.ops).p * (inverse / size) ** 3
+        share = inverse / size
+        return rate, -self.focus(self.boundary.ops).p * share * share * share
 
     def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         focus = self.focus(ops)  # a law that depends on the place: dtheta/dE = sqrt(1 - e*e)/(1 - e*cos E)

@@ -7,6 +7,7 @@ from typing import Generic, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import Array, Boundary, Family, Landing
@@ -106,7 +107,7 @@ def convex(boundary: Boundary, pieces: list[Piece[float]], loop: list[int], afte
         sine = float(plane.cross(arriving, leaving))
         if sine < -TURNS or (abs(sine) <= TURNS and plane.dot(arriving, leaving) < 0):
             return False
-        turning += float(np.arctan2(sine, plane.dot(arriving, leaving)))
+        turning += float(elementary.arctan2(sine, plane.dot(arriving, leaving)))
         low, high = boundary.ends[j]
         turning += high - low if pieces[j].kind == CIRCLE else _turned(boundary, j, pieces[j])
     return abs(turning - 2 * np.pi) < 1e-6
@@ -140,12 +141,12 @@ def _turned(boundary: Boundary, j: int, piece: Piece[float]) -> float:
     low, high = boundary.ends[j]
     theta = np.linspace(low, high, 257)
     if piece.kind == FOCAL:  # its tangent may turn all at once
-        half = np.arctan2(piece.half[0], piece.half[1]) % (2 * np.pi)
-        E = np.arctan2(piece.middle[1], piece.middle[0]) + np.linspace(-half, half, 257)
+        half = elementary.arctan2(piece.half[0], piece.half[1]) % (2 * np.pi)
+        E = elementary.arctan2(piece.middle[1], piece.middle[0]) + np.linspace(-half, half, 257)
         dx, dy = (np.cos(E) * b - np.sin(E) * a for a, b in zip(piece.A, piece.B, strict=True))
     else:
         _, _, dx, dy, _, _ = boundary.curve(np.full(theta.shape, j), theta)
-    return float(np.ptp(np.unwrap(np.arctan2(dy, dx))))
+    return float(np.ptp(np.unwrap(elementary.arctan2(dy, dx))))
 
 
 class Coordinates(Family):
@@ -208,7 +209,7 @@ class Coordinates(Family):
         at = self.enter(ops, component.astype(float), theta)
         speed = np.hypot(*self.tangent(ops, shape, at))
         D = self._turning(ops, self.pieces(ops, shape), at[0])
-        return np.where(focal, speed, rate), np.where(focal, -D / speed**3, curvature)
+        return np.where(focal, speed, rate), np.where(focal, -D / (speed * speed * speed), curvature)
 
     def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         component, p, _ = landing.position

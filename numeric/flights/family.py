@@ -106,7 +106,7 @@ class Boundary:
         """`ds/dtheta`, and the paper's signed curvature, negative where the boundary focuses."""
         _, _, dx, dy, ax, ay = self.curve(component, theta)
         speed = np.hypot(dx, dy)
-        return speed, -(dx * ay - dy * ax) / speed**3
+        return speed, -(dx * ay - dy * ax) / (speed * speed * speed)
 
 
 SLAP, ELASTIC, PINBALL, FORMULA = "slap", "elastic", "pinball", "formula"  # lam = 0, 1, between; any other law

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from numeric.backends import elementary
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
@@ -215,7 +216,7 @@ def pieces(boundary: Boundary) -> list[tuple[int, float, float]]:
         theta = np.linspace(low, high, GRID + 1)
         _, _, dx, dy, ax, ay = boundary.curve(np.full(theta.shape, index), theta)
         turning = dx * ay - dy * ax
-        angle = np.unwrap(np.arctan2(dy, dx))
+        angle = np.unwrap(elementary.arctan2(dy, dx))
         cuts, start = [low], angle[0]
         for i in range(1, GRID):
             flips = turning[i - 1] * turning[i] < 0

@@ -300,5 +300,5 @@ def rounded_up(x: float) -> float:
     >>> rounded_up(1.01)
     1.0625
     """
-    unit = 2.0 ** (np.floor(np.log2(x)) - 4)
+    unit = np.ldexp(1.0, np.frexp(x)[1] - 5)
     return float(np.ceil(x / unit) * unit)

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from numeric.backends import elementary
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.corners import halved
@@ -367,9 +368,9 @@ def convex(boundary: Boundary) -> bool:
             return False
         if np.hypot(*(row[:2, -1] - after[:2, 0])) > SAME * size:
             return False  # a second curve begins
-        angle = np.unwrap(np.arctan2(row[3], row[2]))
+        angle = np.unwrap(elementary.arctan2(row[3], row[2]))
         u, v = (row[2, -1], row[3, -1]), (after[2, 0], after[3, 0])
-        corner = np.arctan2(plane.cross(u, v), plane.dot(u, v))
+        corner = elementary.arctan2(plane.cross(u, v), plane.dot(u, v))
         if corner < -BEND:
             return False
         total += float(angle[-1] - angle[0] + corner)

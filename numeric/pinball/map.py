@@ -217,7 +217,7 @@ class PinballMap:
         found = self.engine.run(KernelSpec(law, exponents=True), particles, np.tile(lam, 2), self.shape, 1, tangent)
         rows = {name: row.reshape(2, count) for name, row in found.rows.items()}
         rate, curvature = states.bending(*states.place([rows[name][0] for name in self.family.position]))
-        moved = -np.exp2(rows["growth"]) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
+        moved = -np.ldexp(1.0, rows["growth"].astype(np.int64)) / rows["down"] * (rows["shift"] / rows["n0"] * rate)
         bent = curvature * moved - omega.reshape(2, count)
         turned = lam * bent
         if law == FORMULA:

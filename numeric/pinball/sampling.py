@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from numeric.backends import elementary
 from numeric.flights.family import FORMULA, SLAP
 from numeric.kernels.machine import TANGENT, KernelSpec, starting
 from numeric.pinball.states import counted
@@ -108,7 +109,7 @@ def phase_grid(map: "PinballMap", columns: int, rows: int) -> Grid:
     component, theta = boundary(map, s)
     x, y = map.states.point(component, theta)
     across = (np.tile(field, rows) for field in (x, y))
-    phi = np.repeat(np.arcsin(sin_phi), columns)
+    phi = np.repeat(elementary.arcsin(sin_phi), columns)
     return Grid(s, sin_phi, Starts(np.tile(component, rows), np.tile(theta, rows), phi, *across))
 
 
@@ -141,7 +142,7 @@ def _uniform(map: "PinballMap", count: int, rng: "np.random.Generator") -> Start
     low, high = _spans(map)
     component = rng.choice(np.arange(low.size), size=count, p=(high - low) / np.sum(high - low))
     s = low[component] + (high - low)[component] * rng.uniform(1 - INSIDE, INSIDE, count)
-    phi = np.arcsin(rng.uniform(-1, 1, count) * INSIDE)
+    phi = elementary.arcsin(rng.uniform(-1, 1, count) * INSIDE)
     theta = map.arclength.theta(s, component)
     return Starts(component, theta, phi, *map.states.point(component, theta))
 
@@ -188,7 +189,7 @@ class Growth:
         Of a law that is no uniform contraction, `volume` has the slopes already.
         """
         with np.errstate(divide="ignore"):
-            return np.zeros_like(self.lam) if self.law == FORMULA else np.log(self.lam)
+            return np.zeros_like(self.lam) if self.law == FORMULA else elementary.log(self.lam)
 
     def began(self) -> None:
         """Starts the sums anew, with the generic vector."""
@@ -216,9 +217,9 @@ class Growth:
         moved = rows["shift"] / rows["n0"] * speed
         turned = rows["omega"] - curvature * moved
         with np.errstate(divide="ignore"):
-            stretch = np.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * np.log(2.0)
-            ends = np.log(speed / self.speed) + np.log(self.n0 / rows["n0"])
-            volume = np.log(rows["up"] / rows["down"]) + rows["volume"] * np.log(2.0) + ends
+            stretch = elementary.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * elementary.log(2.0)
+            ends = elementary.log(speed / self.speed) + elementary.log(self.n0 / rows["n0"])
+            volume = elementary.log(rows["up"] / rows["down"]) + rows["volume"] * elementary.log(2.0) + ends
         self.stretch = np.where(going, stretch, self.stretch)
         self.volume = np.where(going, volume, self.volume)
         made = bounces - (rows["lost"].astype(np.int64) if "lost" in rows else 0)

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.pinball.sampling import Growth, Starts, interior_starts
 from symbolic.tables.scene import Scene
 
@@ -309,7 +310,7 @@ def floor_of(bounces: int) -> float:
     >>> round(floor_of(1000), 4)
     0.0138
     """
-    return float(2 * np.log(bounces) / bounces)
+    return float(2 * elementary.log(bounces) / bounces)
 
 
 def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, threads: int | None = None) -> Measured:

@@ -98,7 +98,7 @@ def turned(given: dict, piece: int, **entries: str) -> dict:
     [
         ("scatterer", 0, {"y": "-1/2 - theta/10**60"}, "the boundary is not closed: piece 1 "),
         ("scatterer", 1, {"from": "1/10**60"}, "the boundary is not closed: piece 1 "),
-        ("scatterer", 2, {"x": "1/2 - theta - theta*(1 - theta)"}, ""),  # between its ends a piece is as it likes
+        ("scatterer", 2, {"x": "1/2 - theta - theta*(1 - theta)/2"}, ""),  # between its ends a piece is as it likes
         ("scatterer", 0, {"from": "1", "to": "0", "x": "1/2 - theta"}, "piece 1 does not run forward"),
         ("scatterer", 0, {"from": "5", "to": "1"}, "piece 1 does not run forward"),
         ("scatterer", 0, {"to": "0"}, "piece 1 does not run forward"),
@@ -287,7 +287,7 @@ ROUND = {"name": "round", "x": "2 + 5*cos(theta)", "y": "5*sin(theta)", "from": 
         ([DISC, OTHER, ROUND | {"y": "-5*sin(theta)"}], "not proved: admissible: the boundary does not run once round"),
         ([DISC, OTHER], "not proved: admissible: the boundary does not run once round"),
         ([DISC, OTHER, ROUND | {"x": "20 + 5*cos(theta)"}], "not proved: admissible: the boundary does not run once"),
-        ([DISC, OTHER, ROUND, ROUND | {"y": "6*sin(theta)"}], "not proved: admissible: the boundary does not run once"),
+        ([DISC, OTHER, ROUND, ROUND | {"y": "6*sin(theta)"}], "not proved: admissible: the boundary may cross itself"),
         ([DISC | {"y": "-7*sin(theta)"}, OTHER, ROUND], "not proved: admissible: two curves of the boundary may meet"),
         (
             [DISC, OTHER, ROUND, ROUND | {"x": "2 + 6*cos(theta)", "y": "6*sin(theta)"}],

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import Orbit, PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.attractors import Kind, find
 from numeric.dynamics.basins import labels, starts_at
 from numeric.dynamics.phase_points import phase_points
@@ -157,7 +158,7 @@ def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float
     px, py = (float(value[0]) for value in map.states.point(where, theta))
     tx, ty = (float(value[0]) for value in map.states.tangent(where, theta))
     vx, vy = towards[0] - px, towards[1] - py
-    phi = float(np.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
+    phi = float(elementary.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
     return Particle(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
 
 
@@ -191,7 +192,7 @@ def phase(map: PinballMap, orbit: Orbit) -> Curve:
 def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> Particle:
     """The particle at a point of phase space."""
     component, theta = boundary(map, np.array([s]))
-    phi = float(np.arcsin(np.clip(sin_phi, -0.999, 0.999)))
+    phi = float(elementary.arcsin(np.clip(sin_phi, -0.999, 0.999)))
     return Particle(int(component[0]), float(theta[0]), phi)
 
 

@@ -71,8 +71,12 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     import numpy as np
 
-    words = {word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS}
-    return globals().setdefault(name, replace(FLOAT64, root=lambda x, n: np.power(x, 1 / n), **words))
+    from numeric.backends import elementary
+
+    named = {word: "arctan" if word == "atan" else word for word in FUNCTIONS}
+    words = {word: getattr(elementary, named[word], None) or getattr(np, word) for word in FUNCTIONS}
+    words["root"] = elementary.root
+    return globals().setdefault(name, replace(FLOAT64, **words))
 
 
 def multiprecision(context: Any) -> Arithmetic:

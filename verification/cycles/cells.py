@@ -25,6 +25,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS
@@ -123,11 +124,11 @@ def spectrum(terms: Terms[Array], closure: Closure) -> Spectrum:
     """The three numbers, from determinants of the ring: none cancels where a multiplier nears 1 or -1."""
     lower, _, upper = terms.slope
     n = len(lower)
-    sign_u, log_u = np.prod(np.sign(upper)), np.sum(np.log(np.abs(upper)))
+    sign_u, log_u = np.prod(np.sign(upper)), np.sum(elementary.log(np.abs(upper)))
     at = []
     for s in (1, -1):
         sign, log = _determinant(ring_matrix(terms, closure, s))
-        at.append(float(s * closure.turn * (-1) ** (n + 1) * sign * sign_u * np.exp(min(log - log_u, 700.0))))
+        at.append(float(s * closure.turn * (-1) ** (n + 1) * sign * sign_u * elementary.exp(min(log - log_u, 700.0))))
     return Spectrum(at[0], at[1], float(np.prod(lower / upper)))
 
 
@@ -142,7 +143,7 @@ def _determinant(matrix: Any) -> tuple[float, float]:
         return 0.0, -np.inf
     diagonal = factors.U.diagonal()
     sign = np.prod(np.sign(diagonal)) * _parity(factors.perm_r) * _parity(factors.perm_c)
-    return float(sign), float(np.sum(np.log(np.abs(diagonal))))
+    return float(sign), float(np.sum(elementary.log(np.abs(diagonal))))
 
 
 def _parity(permutation: Array) -> int:

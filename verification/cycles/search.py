@@ -18,6 +18,7 @@ from sympy import Expr
 from sympy import pi as half_turn
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from symbolic.tables.table import eta as angle
@@ -219,7 +220,7 @@ def _orbits(map: PinballMap, rng: np.random.Generator, bounces: int) -> Orbits:
     ends = np.array(map.states.ends)
     parts = rng.integers(0, len(ends), PARTICLES)
     theta = ends[parts, 0] + (ends[parts, 1] - ends[parts, 0]) * rng.uniform(0, 1, PARTICLES)
-    phi = np.arcsin(rng.uniform(-0.999, 0.999, PARTICLES))
+    phi = elementary.arcsin(rng.uniform(-0.999, 0.999, PARTICLES))
     orbit = map.orbit(theta, phi, bounces, parts)
     alive = np.all(orbit.code == 0, axis=0)
     return orbit.component[1:, alive], orbit.theta[1:, alive], orbit.phi[1:, alive]

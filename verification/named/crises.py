@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import Exponents, PinballMap
+from numeric.backends import elementary
 
 BALLS, PART, TRANSIENT = 4096, 200, 2000
 SEED = 1
@@ -136,7 +137,7 @@ def power(points: tuple[tuple[float, float], ...]) -> Scaling:
     """
     if len(points) < BLOCKS:
         raise ValueError(f"scaling: {len(points)} finite points are too few; accepted: {BLOCKS} or more")
-    x, y = np.log(np.array(points)).T
+    x, y = elementary.log(np.array(points)).T
     blocks = np.array_split(np.arange(x.size), BLOCKS)
     slopes = [_slope(np.delete(x, block), np.delete(y, block)) for block in blocks]
     error = np.sqrt((BLOCKS - 1) * np.mean((np.array(slopes) - np.mean(slopes)) ** 2))

@@ -14,6 +14,7 @@ import numpy as np
 from sympy import Expr
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from symbolic.tables import egg
 from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import ARRAYS, FLOAT64
@@ -227,7 +228,7 @@ def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed:
     shares = []
     for alpha in alphas:
         theta = rng.uniform(-np.pi, np.pi, (side, starts))
-        phi = np.arcsin(rng.uniform(-0.99, 0.99, (side, starts)))
+        phi = elementary.arcsin(rng.uniform(-0.99, 0.99, (side, starts)))
         map = PinballMap("egg", lam=np.repeat(lams[:, None], starts, 1), K=K, alpha=alpha)
         found = map.exponents(theta, phi, bounces, transient=bounces)
         shares.append((found.nu_plus > POSITIVE).mean(axis=1))

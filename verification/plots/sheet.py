@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -169,7 +171,7 @@ def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array
     >>> ink(np.array([[0, 9]]))[..., 3].tolist()
     [[0.0, 1.0]]
     """
-    dense = np.log1p(counts) / np.log1p(max(1, counts.max()))
+    dense = elementary.log(1 + counts) / elementary.log(1 + max(1, counts.max()))
     alpha = np.where(counts > 0, PALE + (1 - PALE) * dense, 0.0)
     return np.concatenate([np.broadcast_to(colour, (*counts.shape, 3)), alpha[..., None]], axis=-1)
 

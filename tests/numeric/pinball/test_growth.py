@@ -71,7 +71,7 @@ def test_sums_stop_with_their_ball(kernels):
 
     assert growth.bounces.tolist() == [5, 0]
     assert growth.code.tolist() == [0, 2]
-    assert growth.theta[1] == aimed
+    assert abs(growth.theta[1] - aimed) <= 2 * 2.0**-52 * aimed  # it comes back from its half angle's direction
     assert growth.stretch[0] != first[0][0]
     assert np.array_equal([growth.stretch[1], growth.volume[1]], [first[0][1], first[1][1]])
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.pinball.sampling import interior_starts
 from symbolic.cycles.cycle import egg_diameter, is_double_normal
 from symbolic.expressions.signs import Finding
@@ -154,7 +155,7 @@ def apart(lam: tuple[Fraction, Fraction] = APART) -> Finding:
         angle = table(EXACT_SHAPE).over(balls(BITS)).angle(before, here)[0]
     map = PinballImages(Scene("egg", alpha=SHAPE), lam)
     kept = kept_apart(map, CELLS_APART, [(arb(0), arb(0)), (before, angle)])
-    near = kept is not None and bool(np.all(np.abs(np.arcsin(np.sin(kept))) < NEAR))
+    near = kept is not None and bool(np.all(np.abs(elementary.arcsin(np.sin(kept))) < NEAR))
     return by(
         f"{said} the boxes that grow from an end of a diameter, and from the saddle of a tangency there, are a "
         f"trapping region, within {NEAR} radians of that diameter, and apart from its copies turned by thirds. What is "
@@ -268,9 +269,9 @@ def transient(claim: Claim) -> Judgement:
     start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, STARTS))
     early, later, last = (map.exponents(start[0], start[1], 300, after) for after in (200, 1000, 3000))
     counts = [int(np.sum(end.nu_plus > 0)) for end in (early, later, last)]
-    still = later.nu_plus > 0  # these stay for the 200 bounces that are looked at
-    orbit = map.orbit(early.theta[still], early.phi[still], 200)
-    heights = float(np.quantile(np.abs(np.sin(orbit.phi)), 0.95))
+    orbit = map.orbit(early.theta, early.phi, 200)
+    still = map.exponents(orbit.theta[-1], orbit.phi[-1], 300, 0).nu_plus > 0  # after the bounces that are looked at
+    heights = float(np.quantile(np.abs(np.sin(orbit.phi[:, still])), 0.95))
     known = PinballMap("egg", lam=before, alpha=SHAPE)
     settled = known.exponents(start[0], start[1], 500, 500)
     old = float(np.quantile(np.abs(np.sin(known.orbit(settled.theta, settled.phi, 200).phi)), 0.95))

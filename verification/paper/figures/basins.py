@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.attractors import classify
 from numeric.dynamics.recognition import Kind
 from numeric.pinball.sampling import phase_grid
@@ -37,7 +38,7 @@ def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
         orbit = orbit_on(map, attractor, count)
         shown = by_angle(orbit) if angle else by_arc_length(map, orbit)
         curves[names[-1]] = cycle_points(map, attractor)[0] if angle and attractor.period else shown
-    x = np.arctan2(particles.y, particles.x)[: grid.s.size] if angle else grid.s
+    x = elementary.arctan2(particles.y, particles.x)[: grid.s.size] if angle else grid.s
     order = np.argsort(x)
     table = label.reshape(grid.sin_phi.size, grid.s.size)[:, order]
     raster = Raster(x[order], grid.sin_phi, np.where(table < 0, len(names), table), (*names, "unsettled"))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import Orbit, PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.attractors import find
 from numeric.dynamics.recognition import Attractor, Kind
 from numeric.pinball.sampling import interior_starts
@@ -322,7 +323,7 @@ def cycle_points(map: PinballMap, attractor: Attractor) -> tuple[Curve, Curve]:
     """A cycle's bounces in `(theta, sin(phi))`, and its closed polygon in the plane."""
     where, theta, phi = attractor.points
     x, y = map.states.point(where, theta)
-    return Curve(np.arctan2(y, x), np.sin(phi)), Curve(np.append(x, x[0]), np.append(y, y[0]))
+    return Curve(elementary.arctan2(y, x), np.sin(phi)), Curve(np.append(x, x[0]), np.append(y, y[0]))
 
 
 def shares(named: dict[str, Attractor]) -> dict[str, float]:

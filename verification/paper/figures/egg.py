@@ -10,6 +10,7 @@ import numpy as np
 from sympy import Rational
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.pinball.sampling import phase_starts
 from numeric.sweeps.run import on_threads
 from numeric.sweeps.store import Memory
@@ -182,7 +183,7 @@ def along(curve: Curve, k: int) -> Curve:
     [0.0, 1.0, nan]
     """
     x, y = curve
-    direction = np.arctan2(np.diff(y), np.diff(x))
+    direction = elementary.arctan2(np.diff(y), np.diff(x))
     chosen = np.flatnonzero(np.round(np.nan_to_num(direction, nan=9.0) / (np.pi / 3)) % 3 == k)[:SHOWN]
     gaps = np.full(chosen.size, np.nan)
     return Curve(*(np.stack([z[chosen], z[chosen + 1], gaps], axis=1).ravel() for z in (x, y)))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import Orbit, PinballMap
+from numeric.backends import elementary
 from numeric.pinball.sampling import boundary, interior_starts
 from verification.plots import results
 from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Fact, Panel, Panels, cloud, scaled, sheet
@@ -71,7 +72,7 @@ def polar(map: PinballMap, theta: Array) -> Array:
     [0.4636]
     """
     x, y = map.states.point(np.zeros(theta.shape, dtype=np.int64), theta)
-    return np.asarray(np.arctan2(y, x))
+    return np.asarray(elementary.arctan2(y, x))
 
 
 def by_arc_length(map: PinballMap, orbit: Orbit) -> Curve:
@@ -81,7 +82,7 @@ def by_arc_length(map: PinballMap, orbit: Orbit) -> Curve:
 
 def by_angle(orbit: Orbit) -> Curve:
     """The bounces as points `(theta, sin(phi))`, `theta` the polar angle."""
-    return Curve(np.arctan2(orbit.y, orbit.x).ravel(), np.sin(orbit.phi).ravel())
+    return Curve(elementary.arctan2(orbit.y, orbit.x).ravel(), np.sin(orbit.phi).ravel())
 
 
 def flights(orbit: Orbit) -> Curve:

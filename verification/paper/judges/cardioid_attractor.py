@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from sympy import Rational, S, log, simplify, sin
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.pinball.sampling import Growth, interior_starts
 from symbolic.cycles.almost_every import largest_exponent, two_rates
 from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
@@ -127,7 +128,7 @@ def nearing() -> str:
     told, powers = [], []
     for contraction in ("0", "3/10", "8/10"):
         first, last = np.median(approaches(contraction)[[64, 4096]], axis=1)
-        powers.append(f"{np.log(last / first) / np.log(64):.2f}")
+        powers.append(f"{elementary.log(last / first) / elementary.log(64):.2f}")
         told.append(f"{first:.1e} after 64 bounces and {last:.1e} after 4096 at lam = {contraction}")
     return (
         f"sampled, the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to "

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sympy import Expr, Rational, S, log, pi, sqrt
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.dynamics.phase_points import phase_points
 from numeric.pinball.sampling import Growth, interior_starts, phase_starts
 from symbolic import tables
@@ -81,7 +82,7 @@ def spectrum(table: str, lams: tuple[float, ...], particles: int = BALLS, bounce
     growth = settled(table, np.maximum(lams, 1e-300), particles)  # no log(0)
     growth.advance(bounces)
     plus = growth.stretch / bounces
-    minus = growth.volume / bounces + np.log(growth.lam) - plus
+    minus = growth.volume / bounces + elementary.log(growth.lam) - plus
     return Spectrum(np.array(lams), *(x.reshape(len(lams), particles) for x in (plus, minus)))
 
 
@@ -179,7 +180,7 @@ def jumps(claim: Claim) -> Judgement:
     points = ("0.09", "0.092", "0.093", "0.0933", "0.095")
     exact = float(lambda_c())
     gaps, shares = [exact - float(x) for x in points[:4]], [1 - averaged(x)[2] for x in points[:4]]
-    power = float(np.polyfit(np.log(gaps), np.log(shares), 1)[0])
+    power = float(np.polyfit(elementary.log(gaps), elementary.log(shares), 1)[0])
     said = (
         f"sampled, the average has no jump at lambda_c = {exact:.4f}: the flip is subcritical, so the basin of period "
         f"2 shrinks to nothing there, like (lambda_c - lam)^{power:.2f}, and its nu_+ = log|mu_-|/2 tends to 0: "

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sympy import Matrix, Rational, S
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from numeric.pinball.sampling import phase_starts
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.splitting import grazing, radius_defects, rate, splits
@@ -162,7 +163,7 @@ def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float
     [2.841593, 0.15]
     """
     z, tangent = _boundary(theta, alpha)
-    v = 1j * tangent / np.abs(tangent) * np.exp(-1j * phi)  # the inward normal, turned by phi towards the tangent
+    v = 1j * tangent / np.abs(tangent) * _turned(-phi)  # the inward normal, turned by phi towards the tangent
     landing = theta + np.pi - 2 * phi  # as in the circle; then Newton's method
     for _ in range(MOST):
         there, along = _boundary(landing, alpha)
@@ -172,7 +173,7 @@ def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float
             break
     _, along = _boundary(landing, alpha)
     sliding = np.clip((np.conj(along) * v).real / np.abs(along), -1, 1)  # minus the sine of eta
-    return np.remainder(landing + np.pi, 2 * np.pi) - np.pi, lam * np.arcsin(sliding)
+    return np.remainder(landing + np.pi, 2 * np.pi) - np.pi, lam * elementary.arcsin(sliding)
 
 
 def ends_of_period(
@@ -189,8 +190,12 @@ def ends_of_period(
 
 
 def _boundary(theta: Array, alpha: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    turn, rho = np.exp(1j * theta), 1 + alpha * np.cos(3 * theta)
+    turn, rho = _turned(theta), 1 + alpha * np.cos(3 * theta)
     return rho * turn, (-3 * alpha * np.sin(3 * theta) + 1j * rho) * turn
+
+
+def _turned(angle: Array) -> NDArray[np.complex128]:
+    return np.asarray(np.cos(angle) + 1j * np.sin(angle))
 
 
 def _cross(a: NDArray[np.complex128], b: NDArray[np.complex128]) -> Array:

@@ -6,6 +6,7 @@ import numpy as np
 from sympy import Derivative, Function, Matrix, Rational, S, Symbol, cos, integrate, log, pi, sin, sqrt, zeta
 
 from numeric import PinballMap
+from numeric.backends import elementary
 from symbolic import tables
 from symbolic.expressions.signs import Finding
 from symbolic.motion.collision import birkhoff_matrix, derivative_matrix
@@ -45,7 +46,7 @@ def mean_free_path(claim: Claim) -> Judgement:
 def starts(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Places on the first component and angles, spread as `cos(phi) dphi`."""
     rng = np.random.default_rng(SEED)
-    return rng.random(count), np.arcsin(rng.uniform(-1, 1, count))
+    return rng.random(count), elementary.arcsin(rng.uniform(-1, 1, count))
 
 
 @judges("stadium.ergodic")
@@ -118,7 +119,7 @@ def from_disc_to_disc(radius: str) -> tuple[float, float]:
     place, angle = starts(ORBITS)
     found = PinballMap(tables.sinai(radius), lam=1).exponents(place, angle, BOUNCES, 1000)
     growth = found.nu_plus * (4 + 2 * np.pi * size) / (2 * np.pi * size)
-    return float(np.mean(growth) + 2 * np.log(size)), float(np.std(growth) / np.sqrt(ORBITS))
+    return float(np.mean(growth) + 2 * elementary.log(size)), float(np.std(growth) / np.sqrt(ORBITS))
 
 
 def measured() -> tuple[str, list[tuple[float, float, float]]]:
@@ -126,7 +127,9 @@ def measured() -> tuple[str, list[tuple[float, float, float]]]:
     found = {radius: from_disc_to_disc(radius) for radius in ("1/25", "1/50", "1/100")}
     said = ", ".join(f"{value:.3f} +- {error:.3f} at R = {radius}" for radius, (value, error) in found.items())
     sizes = [float(Rational(radius)) for radius in found]
-    return said, [(*pair, size * np.log(size) ** 2) for pair, size in zip(found.values(), sizes, strict=True)]
+    return said, [
+        (*pair, size * float(elementary.log(size)) ** 2) for pair, size in zip(found.values(), sizes, strict=True)
+    ]
 
 
 @judges("sinai.small_disc")

@@ -20,6 +20,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
+
 Array = NDArray[np.float64]
 ROUNDING = 2.0**-52  # twice the largest relative error of one operation
 GROWTH = 1.0 + 2.0**-48  # covers sixteen roundings of a radius
@@ -198,7 +200,7 @@ class ArrayOps:
     def log(self, x: BallArray) -> BallArray:
         """The logarithm: a guess `w`, and `y - 1` with `y = x*exp(-w)`, within `(y - 1)**2` while that is small."""
         with np.errstate(all="ignore"):
-            w = np.log(np.asarray(x.m, dtype=float))
+            w = elementary.log(np.asarray(x.m, dtype=float))
             gap = x * self.exp(BallArray(-w)) - 1
             size = gap.magnitude()
         return BallArray(w + 0 * size, np.where(size <= 0.5, size**2 * GROWTH, np.inf)) + gap
@@ -234,7 +236,7 @@ class ArrayOps:
     def _root(self, x: BallArray, n: int) -> BallArray:
         """A guess `w`, times `(1 + d)**(1/n)` with `1 + d = x/w**n`, within `d**2` of `1 + d/n` while `d` is small."""
         with np.errstate(all="ignore"):
-            w = power = BallArray(np.asarray(x.m, dtype=float) ** (1 / n))
+            w = power = BallArray(elementary.root(x.m, n))
             for _ in range(n - 1):
                 power = power * w
             d = x / power - 1
@@ -269,7 +271,7 @@ def direction(c: BallArray, s: BallArray) -> BallArray:
     The guess is any double `w`. Turned by `-w`, the vector has a small angle, the arc tangent of a quotient `x`, which
     lies within `|x|**3/3` of `x`.
     """
-    w = np.arctan2(s.m, c.m)
+    w = elementary.arctan2(s.m, c.m)
     cw, sw = turned(BallArray(w))
     across, along = s * cw - c * sw, c * cw + s * sw
     x = across / along

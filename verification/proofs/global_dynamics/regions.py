@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from numeric.backends import elementary
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Images, hull
 from verification.proofs.global_dynamics.graph import (
@@ -322,7 +323,7 @@ def _factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> Arra
         size = (np.abs(stretch.m) - stretch.r) * (1 - 1e-14)
         size = np.where(np.isfinite(stretch.r) & (size > 0), size, 0.0)
         least = np.full(count, np.inf)
-        np.minimum.at(least, found.source, np.log(size))
+        np.minimum.at(least, found.source, elementary.log(size))
     return least
 
 

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
 from verification.arithmetic.balls import ARRAYS, FLOAT64
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Local, Orbit, local, saddle
@@ -86,7 +87,7 @@ def _piece(local: Local, side: int, low: float, high: float, spacing: float, tur
     for _ in range(PASSES):
         dx, dy = np.diff(made.x), np.diff(made.y)
         far = np.hypot(dx, dy) > spacing
-        turn = np.abs(np.angle(np.exp(1j * np.diff(np.arctan2(dy, dx))))) > turning
+        turn = np.abs(np.remainder(np.diff(elementary.arctan2(dy, dx)) + np.pi, 2 * np.pi) - np.pi) > turning
         small = np.hypot(dx, dy) < spacing / 1000
         bent = np.concatenate([turn, [False]]) | np.concatenate([[False], turn])
         where = np.nonzero(far | (bent & ~small))[0]
@@ -107,7 +108,7 @@ def _points(local: Local, side: int, logarithm: Array) -> Branch:
     here, following = np.full(logarithm.size, np.nan), np.full(logarithm.size, np.nan)
     for count in np.unique(rounds):
         those = rounds == count
-        here[those], following[those] = far(local, side * np.exp(logarithm[those]), int(count))
+        here[those], following[those] = far(local, side * elementary.exp(logarithm[those]), int(count))
     x, y = local.saddle.map.over(ARRAYS).plane(here, following)
     return Branch(here, following, logarithm, np.asarray(x), np.asarray(y))
 
@@ -186,7 +187,7 @@ def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterat
 
     Parameters on the manifold, how many bounces were made, and where the points are then, with what follows there.
     """
-    grid = np.exp(np.linspace(-math.log(abs(out.saddle.unstable)), 0, POINTS))
+    grid = elementary.exp(np.linspace(-math.log(abs(out.saddle.unstable)), 0, POINTS))
     for z in (grid, -grid):
         here, following = out.points(z)
         for count in range(1, bounces + 1):

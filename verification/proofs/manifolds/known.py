@@ -45,6 +45,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import Expr, Rational
 
+from numeric.backends import elementary
 from symbolic.tables import egg
 from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import FLOAT64
@@ -149,7 +150,7 @@ def log_stay(distance: float, stable: float, unstable: float) -> float:
 def exponent(distances: Array, unit: float, stable: float, unstable: float) -> float:
     """The power that a straight line through the logarithms at these distances would show."""
     logs = [log_stay(float(d) / unit, stable, unstable) for d in distances]
-    return -float(np.polyfit(np.log(distances), logs, 1)[0])
+    return -float(np.polyfit(elementary.log(distances), logs, 1)[0])
 
 
 def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) -> tuple[float, float]:
@@ -157,8 +158,8 @@ def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) 
 
     The steps lie at `unit*stable**n`; units are sought from the largest distance up to 1, all that a contraction has.
     """
-    distances, logs = np.array(points)[:, 0], np.log(np.array(points)[:, 1])
-    tried = np.geomspace(distances.max(), 1, TRIED)
+    distances, logs = np.array(points)[:, 0], elementary.log(np.array(points)[:, 1])
+    tried = elementary.exp(np.linspace(float(elementary.log(distances.max())), 0.0, TRIED))
     left = []
     for one in tried:
         off = logs - np.array([log_stay(float(d) / one, stable, unstable) for d in distances])

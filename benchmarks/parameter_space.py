@@ -13,8 +13,8 @@ import sys
 import numpy as np
 
 from numeric.pinball.sampling import interior_starts
-from numeric.sweeps.fields import egg, parameter_space
 from numeric.sweeps.run import run
+from numeric.sweeps.space import egg, parameter_space
 from numeric.sweeps.sweep import map_of, measured
 
 WIDE = np.round(np.arange(0.051, 0.0600, 0.001), 6), np.round(np.arange(0.3, 0.96, 5e-4), 6)

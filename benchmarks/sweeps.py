@@ -16,8 +16,9 @@ import numpy as np
 
 from numeric.dynamics.basins import starts_at
 from numeric.kernels.machine import KernelSpec, starting
-from numeric.sweeps.fields import basins, egg, parameter_space
+from numeric.sweeps.fields import basins
 from numeric.sweeps.run import on_threads
+from numeric.sweeps.space import egg, parameter_space
 from numeric.sweeps.sweep import cores, map_of, spread, text_of
 from symbolic import Scene
 from verification.measure.work.scaling import waiting_rows

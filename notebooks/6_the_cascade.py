@@ -43,7 +43,7 @@ from verification.plots.results import Marked, drawn
 
 sweep = bifurcation(text_of(Scene("egg", alpha=SHAPE)), np.linspace(0.35, 0.4, 400), 20, 100, 2000, 4000, 1)
 lines = [Marked(float(each.value), f"doubling {n}") for n, each in doublings.items()]
-Image(drawn("results.bifurcation", (run(sweep), lines), ".png"))
+Image(drawn("grids.bifurcation", (run(sweep), lines), ".png"))
 # -
 
 # ## The end of the cascade

@@ -1,17 +1,14 @@
-"""What sweeps measure: basins of attraction, bifurcation diagrams, exponents by attractor, where chaos is.
+"""What sweeps measure: basins of attraction, bifurcation diagrams, exponents by attractor.
 
 Basins (paper: appendix): the attractors are found once, from random starts; then each cell's centre is a particle,
 and its label is the number of the attractor that it reaches. Bifurcation diagrams (section 6.6): where random
 particles are after a long time, against the contraction or another parameter. Exponents (sections 4.1 and 5.3):
 orbits that share an attractor make a group, and groups are never averaged together; the groups of one value are
 numbered from the one with the most orbits on, and the same number at two values need not be the same branch.
-Parameter space (section 6.5): from each pair of a shape and a contraction random particles are started as in the
-paper's appendix, and those are counted whose exponent is positive beyond its error (`numeric.sweeps.sweep`).
 """
 
 import json
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -32,18 +29,14 @@ from numeric.sweeps.sweep import (
     Part,
     Sweep,
     against,
-    at_value,
     fixed,
     map_of,
     measured,
     missing_value,
     parameter_axis,
     said,
-    spread,
     spread_over,
-    text_of,
 )
-from symbolic.tables.scene import Scene
 
 PARTICLES = 1 << 15  # of a task, about; a fraction of a second for a thousand bounces
 FIELDS = (Field("label", ("sin_phi", "s"), "int16", "1", "number of the attractor, -1 for none of those found"),)
@@ -307,90 +300,4 @@ def exponents(
         settings={"orbits": orbits, "bounces": bounces, "transient": transient} | fixed(parameter, lam),
         collisions=len(lams) * orbits * (bounces + transient),
         map=partial(map_of, scene, 0.5),
-    )
-
-
-PAIR_PARTICLES = 20_000  # of a task, at most; what a core does in a second or less
-
-SPACE_FIELDS = (
-    Field("chaotic", ("lam",), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
-    Field("regular", ("lam",), "int32", "orbits", "orbits with no positive exponent; the rest is undecided or stopped"),
-    Field("nu_max", ("lam",), "float64", "1/bounce", "largest nu_plus of all orbits"),
-    Field("nu_max_error", ("lam",), "float64", "1/bounce", "its standard error, over blocks of the orbit"),
-    Field("nu_min", ("lam",), "float64", "1/bounce", "smallest nu_plus of all orbits"),
-)
-
-
-@dataclass(frozen=True)
-class Pairs:
-    """The task: all orbits of a range of `lam` at a few shapes."""
-
-    scene: str
-    parameter: str
-    starts: int
-    bounces: int
-    transient: int
-
-    def __call__(self, part: Part) -> dict[str, Array]:
-        rng = np.random.default_rng(part.seed)
-        values = part.values[self.parameter]
-        seeds = rng.integers(0, 2**63, values.size)
-        rows = [self.row(float(a), part.values["lam"], int(s)) for a, s in zip(values, seeds, strict=True)]
-        return {field.name: np.array([row[field.name] for row in rows]) for field in SPACE_FIELDS}
-
-    def row(self, value: float, lams: Array, seed: int) -> dict[str, Array]:
-        """The fields for one shape."""
-        map, starts = spread(at_value(self.scene, self.parameter, value), lams, self.starts, seed)
-        found = measured(map, starts, self.bounces, self.transient, threads=1)
-        kept = found.nu_plus, found.nu_plus_error, found.chaotic, found.regular
-        nu, error, chaotic, regular = (x.reshape(lams.size, self.starts) for x in kept)
-        best = np.argmax(nu, axis=1)[:, None]
-        return {
-            "chaotic": chaotic.sum(axis=1),
-            "regular": regular.sum(axis=1),
-            "nu_max": np.take_along_axis(nu, best, 1)[:, 0],
-            "nu_max_error": np.take_along_axis(error, best, 1)[:, 0],
-            "nu_min": nu.min(axis=1),
-        }
-
-
-def egg(K: int, alpha: float) -> str:
-    """The scene of one shape, the decimal that `alpha` shows."""
-    return text_of(Scene("egg", alpha=Fraction(repr(float(alpha))), K=K))
-
-
-def parameter_space(
-    alphas: Array,
-    lams: Array,
-    starts: int = 100,
-    bounces: int = 2000,
-    transient: int = 2000,
-    K: int = 3,
-    seed: int = 1,
-    scene: str | None = None,
-    parameter: str = "alpha",
-) -> Sweep:
-    """The sweep over all pairs: shapes of the egg, or values of a `parameter` of another `scene`, by contractions.
-
-    >>> sweep = parameter_space(np.array([0.02, 0.09]), np.array([0.1, 0.3]), starts=3)
-    >>> sweep.task(sweep.part((1, 0)))["chaotic"].tolist()
-    [[0, 3]]
-    """
-    whole = egg(K, 0.08 * 10 / (1 + K * K)) if scene is None else scene
-    pairs = Pairs(whole, parameter, starts, bounces // BLOCKS * BLOCKS, transient)
-    name, what = (f"the {K}-pointed egg", "shape of the egg") if scene is None else ("the scene", "shape of the table")
-    return Sweep(
-        name="parameter-space",
-        about=f"Chaos or none in {name}, from {starts} random orbits for each pair",
-        axes=(
-            Axis(parameter, np.asarray(alphas, dtype=np.float64), "1", what, 1),
-            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PAIR_PARTICLES // starts)),
-        ),
-        fields=against(parameter, SPACE_FIELDS),
-        task=pairs,
-        seed=seed,
-        scene=f"egg, K = {K}" if scene is None else scene,
-        settings={"starts": starts, "bounces": pairs.bounces, "transient": transient, "blocks": BLOCKS},
-        collisions=len(alphas) * len(lams) * starts * (pairs.bounces + transient),
-        map=partial(map_of, whole, 0.5),
     )

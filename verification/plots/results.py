@@ -4,7 +4,7 @@ Many points are drawn as densities, whose opacity is the logarithm of a count. T
 holes or without, are drawn like others; so are laws, which no picture depends on.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -23,13 +23,10 @@ from verification.plots.sheet import (
     figure,
     image,
     ink,
-    shaded,
-    sides,
     styled,
 )
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -41,8 +38,6 @@ if TYPE_CHECKING:
 OUTLINE_POINTS = 721  # of a component
 DOTS = 2000  # points that are drawn one by one; more are a density
 FLIGHTS = 600  # of an orbit or of a chaotic attractor, drawn in the table
-ACROSS = 6.2  # inches of the axes of a wide figure
-ROWS = 500  # of the density of a bifurcation diagram, at least; it has a column for each value
 SMALL = 12  # tables on a sheet of cycles
 LABELLED = 10  # attractors and iterates that a legend names
 MARK = "#b3261e"
@@ -61,11 +56,6 @@ def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
     module, _, name = kind.partition(".")
     with styled():
         return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
-
-
-def fine(made: "Figure", columns: int) -> None:
-    """Dots enough for as many columns side by side."""
-    made.set_dpi(max(made.dpi, columns / ACROSS))
 
 
 def outline(map: PinballMap) -> tuple[Array, Array]:
@@ -216,80 +206,6 @@ def exponents(document: Mapping[str, Any]) -> "Figure":
     return made
 
 
-def basins(found: "xr.Dataset") -> "Figure":
-    """The attractor that each start reaches, a colour for each; what reaches none of them is left blank."""
-    from matplotlib.colors import to_rgba
-    from matplotlib.patches import Patch
-
-    from numeric.sweeps.fields import attractors_of
-
-    label, known = np.asarray(found.label.values), attractors_of(found.attrs["settings"])
-    paint = np.array([to_rgba(PALETTE[i % len(PALETTE)]) for i in range(len(known))] + [(0.0, 0.0, 0.0, 0.0)])
-    made = figure(7.0, 4.0)
-    fine(made, label.shape[1])
-    axes = made.add_subplot()
-    edges = [sides(np.asarray(found[name].values)) for name in ("s", "sin_phi")]
-    axes.imshow(paint[label], extent=(*edges[0], *edges[1]), **CELLS)
-    axes.set_xlabel(AXES["s"])
-    axes.set_ylabel(AXES["sin_phi"])
-    axes.set_title(found.attrs.get("title", ""), loc="left")
-    names = [f"period {one['period']}" if one["period"] else one["kind"] for one in known]
-    shown = list(enumerate(names))[:LABELLED]
-    handles = [Patch(color=PALETTE[i], label=f"{name}, {np.mean(label == i):.1%}") for i, name in shown]
-    made.legend(handles=handles, loc="outside lower center", ncols=min(4, max(1, len(handles))))
-    return made
-
-
-def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
-    """The attractors against the parameter as a density, proved values as lines, and the exponents below."""
-    parameter = str(found.chaotic.dims[0])
-    values = np.asarray(found[parameter].values)
-    one = int(found.component.max()) == 0
-    place = np.asarray((found.theta if one else found.s).values).reshape(values.size, -1)
-    place = np.where(np.isfinite(found.s.values.reshape(place.shape)), place, np.nan)
-    made = figure(7.0, 5.2)
-    fine(made, values.size)
-    top, bottom = made.subplots(2, 1, sharex=True, height_ratios=(2.8, 1))
-    ends = (-np.pi, np.pi) if one else (float(np.nanmin(place)), float(np.nanmax(place)))
-    place = np.remainder(place + np.pi, 2 * np.pi) - np.pi if one else place
-    columns = np.broadcast_to(np.arange(values.size)[:, None], place.shape)
-    kept = np.isfinite(place)
-    ranges = (ends, (-0.5, values.size - 0.5))
-    rows = max(ROWS, values.size * 5 // 8)
-    counts, _, _ = np.histogram2d(place[kept], columns[kept], bins=(rows, values.size), range=ranges)
-    edges = sides(values)
-    top.imshow(ink(counts), extent=(*edges, *ends), **CELLS)
-    top.set_ylabel(AXES["theta" if one else "s"])
-    if one:
-        top.set_yticks([-np.pi, 0, np.pi], [r"$-\pi$", "$0$", r"$\pi$"])
-    nu, error = np.asarray(found.nu_plus.values), np.asarray(found.nu_plus_error.values)
-    largest = np.nanargmax(np.where(np.isfinite(nu), nu, -np.inf), axis=1)
-    upper, width = (np.take_along_axis(x, largest[:, None], 1)[:, 0] for x in (nu, error))
-    bottom.axhline(0, **FAINT)
-    bottom.plot(values, np.nanmin(np.where(np.isfinite(nu), nu, np.inf), axis=1), color="0.6", lw=0.7, label="smallest")
-    bottom.fill_between(values, upper - 2 * width, upper + 2 * width, color=INK, alpha=0.25, lw=0)
-    bottom.plot(values, upper, color=INK, lw=0.8, label="largest of the orbits, with twice its error")
-    bottom.set_ylim(max(float(np.nanmin(nu)), -2.0) - 0.05, None)
-    bottom.set_xlabel(AXES.get(parameter, parameter))
-    bottom.set_ylabel(r"$\nu_+$")
-    bottom.legend(loc="lower right")
-    labelled(top, bottom, sorted(mark for mark in marks if edges[0] <= mark.value <= edges[1]), edges)
-    top.set_xlim(*edges)
-    return made
-
-
-def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[float, float]) -> None:
-    """Lines at values of the parameter, and their words above them, moved apart where they would lie on each other."""
-    near, at = 0.022 * (ends[1] - ends[0]), -np.inf
-    for value, words in marks:
-        for axes in (top, bottom):
-            axes.axvline(value, color=MARK, lw=0.5, alpha=0.7)
-        at = max(value, at + near)
-        coords: dict[str, Any] = dict.fromkeys(("xycoords", "textcoords"), ("data", "axes fraction"))
-        look: dict[str, Any] = {"rotation": 60, "fontsize": 7, "color": MARK, "annotation_clip": False}
-        top.annotate(words, (value, 1.0), (at, 1.02), **coords, **look)
-
-
 def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "Slap") -> "Figure":
     """The slap map's iterates over arc length, the diagonal, and the slope of the map."""
     s, ends = position(map, np.asarray(map.arclength.s(theta, component)))
@@ -357,35 +273,4 @@ def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":
         axes.set_title(f"{one.period}:  $|\\mu| = {largest:.3g}$", fontsize=8)
     more = f", the first {SMALL} shown" if len(found) > SMALL else ""
     made.suptitle(f"{len(found)} cycles{more}: period, and the larger multiplier; dashed: unstable", fontsize=9)
-    return made
-
-
-def parameter_space(found: "xr.Dataset") -> "Figure":
-    """The largest exponent over a shape and the contraction, red where positive; a line where some are chaotic."""
-    shape = str(found.chaotic.dims[0])
-    made = figure(7.0, 4.4)
-    fine(made, found.lam.size)
-    nu, chaotic = np.asarray(found.nu_max.values, dtype=float), np.asarray(found.chaotic.values > 0, dtype=float)
-    shaded(made, np.asarray(found.lam.values), np.asarray(found[shape].values), nu, chaotic, shape)
-    return made
-
-
-def by_attractor(found: "xr.Dataset") -> "Figure":
-    """Both exponents of each attractor against the parameter, with twice their standard errors."""
-    parameter = str(found.orbits.dims[0])
-    values = np.asarray(found[parameter].values)
-    made = figure(7.0, 3.8)
-    axes = made.add_subplot()
-    axes.axhline(0, **FAINT)
-    for name, colour, words in (("nu_plus", "#c8691c", r"$\nu_+$"), ("nu_minus", "#1f4e79", r"$\nu_-$")):
-        label: str | None = words
-        for group in range(found.group.size):
-            nu, error = (np.asarray(found[key].isel(group=group).values) for key in (name, f"{name}_error"))
-            kept = (found.orbits.isel(group=group).values > 0) & np.isfinite(nu)
-            look: dict[str, Any] = {"fmt": "o", "ms": 2.5, "mew": 0, "color": colour, "elinewidth": 0.7, "capsize": 1.5}
-            axes.errorbar(values[kept], nu[kept], 2 * np.nan_to_num(error[kept]), label=label, **look)
-            label = None
-    axes.set_xlabel(AXES.get(parameter, parameter))
-    axes.set_ylabel("exponents, per bounce")
-    axes.legend()
     return made

@@ -176,11 +176,13 @@ def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array
     return np.concatenate([np.broadcast_to(colour, (*counts.shape, 3)), alpha[..., None]], axis=-1)
 
 
-def shaded(made: "Figure", lams: Array, shapes: Array, nu: Array, chaotic: Array, name: str) -> "Axes":
+def shaded(
+    made: "Figure", lams: Array, shapes: Array, nu: Array, chaotic: Array, name: str, axes: "Axes | None" = None
+) -> "Axes":
     """Axes with the largest exponent over contractions and shapes, red where positive; a line where chaos begins."""
     from matplotlib.colors import TwoSlopeNorm
 
-    axes = made.add_subplot()
+    axes = axes or made.add_subplot()
     most = max(1e-3, float(np.nanmax(nu)))
     shown = axes.imshow(
         nu,
@@ -195,7 +197,7 @@ def shaded(made: "Figure", lams: Array, shapes: Array, nu: Array, chaotic: Array
         axes.contour(lams, shapes, chaotic, [0.5], colors="black", linewidths=0.4)
     axes.set_xlabel(AXES["lam"])
     axes.set_ylabel(AXES.get(name, name))
-    made.colorbar(shown, label=r"largest $\nu_+$ of the orbits", pad=0.01)
+    made.colorbar(shown, ax=axes, label=r"largest $\nu_+$ of the orbits", pad=0.01)
     return axes
 
 

@@ -11,8 +11,9 @@ from sympy import S
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
 from numeric.dynamics.recognition import wilson
-from numeric.sweeps.fields import basins, bifurcation, parameter_space
+from numeric.sweeps.fields import basins, bifurcation
 from numeric.sweeps.run import run
+from numeric.sweeps.space import parameter_space
 from numeric.sweeps.sweep import text_of
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene

@@ -11,9 +11,10 @@ from sympy import Rational, cos
 
 from numeric import PinballMap
 from numeric.sweeps.cost import cost
-from numeric.sweeps.fields import bifurcation, parameter_space
+from numeric.sweeps.fields import bifurcation
 from numeric.sweeps.orbits import memory, record
 from numeric.sweeps.run import UnfinishedError, run
+from numeric.sweeps.space import parameter_space
 from numeric.sweeps.store import opened
 from numeric.sweeps.sweep import Axis, Field, Sweep, text_of
 from symbolic import Scene, tables
@@ -334,3 +335,11 @@ def test_the_memory_that_writing_an_orbit_takes_is_said_before(tmp_path):
     tracemalloc.stop()
 
     assert peak < memory(egg, 500, names, piece) < 2 * peak < 8 * 500 * 2500 * 3
+
+
+def test_the_period_of_a_pair_is_that_of_the_cycle_which_attracts_there():
+    """Egg at alpha = 2/25, paper section 6: period 4 at 0.25 and 0.32, and the triangle alone at 0.9."""
+    sweep = parameter_space(np.array([0.05, 0.08]), np.array([0.25, 0.32, 0.9]), starts=3, bounces=200, transient=2000)
+    found = run(sweep, workers=1)
+
+    assert found.period.values.tolist() == [[2, 2, 2], [4, 4, 3]]

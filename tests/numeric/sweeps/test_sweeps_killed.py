@@ -20,8 +20,8 @@ import pytest
 import xarray as xr
 from distributed.comm.core import CommClosedError
 
-from numeric.sweeps.fields import parameter_space
 from numeric.sweeps.run import run
+from numeric.sweeps.space import parameter_space
 from verification.app.cli import main
 
 ROOT = Path(__file__).parents[3]

@@ -12,8 +12,8 @@ from matplotlib import image as images
 from numeric import PinballMap
 from symbolic import tables
 from verification.app.cli import main
-from verification.plots import results
-from verification.plots.sheet import FORMATS
+from verification.plots import grids, results
+from verification.plots.sheet import FORMATS, image, styled
 
 MAGIC = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF", ".webp": b"RIFF"}
 EGG = ("egg", "--alpha", "0.08")
@@ -194,3 +194,31 @@ def test_a_density_counts_every_point_in_its_cell():
     rows, columns = shown.shape
     assert shown[: rows // 4, 3 * columns // 4 :].any()
     assert shown.sum() == shown[: rows // 4, 3 * columns // 4 - 1 :].sum()
+
+
+def test_every_cell_of_a_fine_grid_has_a_dot_of_its_own():
+    """Rows that alternate are all there: with fewer dots than rows one of the two would be lost in places."""
+    import xarray as xr
+
+    label = np.repeat(np.arange(900)[:, None] % 2, 4, axis=1)
+    settings = json.dumps({"attractors": [{"period": 2, "kind": "cycle"}, {"period": 0, "kind": "chaotic"}]})
+    axes = {"sin_phi": np.linspace(-1, 1, 900), "s": np.arange(4.0)}
+    found = xr.Dataset({"label": (("sin_phi", "s"), label)}, axes, {"settings": settings})
+    with styled():
+        made = grids.basins(found)
+        drawn = images.imread(BytesIO(image(made, ".png")))
+    column = drawn[:, drawn.shape[1] // 2, 0]
+    low, high = ({"C0": 0x1F, "C1": 0xFF}[name] / 255 for name in ("C0", "C1"))
+    seen = column[(np.abs(column - low) < 0.01) | (np.abs(column - high) < 0.01)]
+    assert np.count_nonzero(np.diff(seen)) >= 899 - 4  # but for those under the frame
+
+
+def test_parameter_space_is_painted_by_period_and_by_exponent(tmp_path):
+    path = tmp_path / "space.png"
+
+    asked = "--alphas 0.04:0.09:3 --lams 0.1:0.9:5 --starts 2 --bounces 64 --transient 64"
+    assert main(["sweep", "parameter-space", *asked.split(), "--plot", str(path)]) == 0
+    painted = grids.periods(np.array([[2, 8, 0, 30]]), np.array([[-1.0, -1.0, 0.5, -0.1]]))
+    assert painted[0, 0].tolist() == pytest.approx([1, 0x7F / 255, 0x0E / 255])
+    assert painted[0, 1:].tolist() == [[0, 0, 0], [0.5, 0.5, 0.5], [0.85, 0.85, 0.85]]
+    assert path.stat().st_size > 3000

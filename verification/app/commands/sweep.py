@@ -113,7 +113,7 @@ def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
 @click.option("--starts", type=click.IntRange(1, 10**7), default=1000, show_default=True, help="To find attractors.")
 @click.option("--transient", type=click.IntRange(10, 10**8), default=1000, show_default=True, help="Bounces of each.")
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the starts.")
-@plot_option("results.basins", "the basins, a colour for each attractor")
+@plot_option("grids.basins", "the basins, a colour for each attractor")
 @sweep_options
 def basins_command(
     scene: Scene,
@@ -193,7 +193,7 @@ MANY = 64  # distinct points; more are not counted
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="For the exponents.")
 @seed_option
 @click.option("--mark", "marks", multiple=True, metavar="FILE", help="A certificate, checked and drawn by --plot.")
-@plot_option("results.bifurcation", "the attractors as a density, and the exponents")
+@plot_option("grids.bifurcation", "the attractors as a density, and the exponents")
 @sweep_options
 def bifurcation_command(
     scene: Scene,
@@ -286,7 +286,7 @@ def command() -> None:
 @click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
-@plot_option("results.parameter_space", "the largest exponent over both parameters")
+@plot_option("grids.parameter_space", "the largest exponent over both parameters")
 @sweep_options
 def parameter_space(
     scene: Scene | None,
@@ -306,7 +306,7 @@ def parameter_space(
     """
     import numpy as np
 
-    from numeric.sweeps import fields as space
+    from numeric.sweeps import space
     from numeric.sweeps.sweep import map_of, text_of
 
     if (axis is None) == (alphas is None) or (scene is None) != (axis is None):
@@ -348,7 +348,7 @@ def picture(found: "xr.Dataset") -> list[str]:
 @click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
 @click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
-@plot_option("results.by_attractor", "the exponents with their errors")
+@plot_option("grids.by_attractor", "the exponents with their errors")
 @sweep_options
 def exponents(
     scene: Scene,

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from numeric.sweeps.cost import cost
-from numeric.sweeps.fields import parameter_space
 from numeric.sweeps.run import Results, on_cluster, on_processes, on_threads, run
+from numeric.sweeps.space import parameter_space
 from numeric.sweeps.sweep import Array, Field, Part, Sweep, Task
 from verification.measure.work.calls import Call
 

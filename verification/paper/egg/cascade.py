@@ -6,8 +6,8 @@ import numpy as np
 from flint import fmpq
 from sympy import Integer, Rational
 
-from numeric.sweeps.fields import parameter_space
 from numeric.sweeps.run import run
+from numeric.sweeps.space import parameter_space
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import tilt
 from symbolic.expressions.signs import Finding, Outcome, positive

@@ -15,9 +15,9 @@ from sympy import Rational, S
 from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
 from numeric.pinball.sampling import interior_starts
-from numeric.sweeps.fields import egg as shaped
-from numeric.sweeps.fields import parameter_space
 from numeric.sweeps.run import run
+from numeric.sweeps.space import egg as shaped
+from numeric.sweeps.space import parameter_space
 from numeric.sweeps.sweep import Measured, map_of, measured
 from symbolic.cycles.cycle import egg_diameter, trace_and_determinant
 from symbolic.cycles.polygons import saddle_node

@@ -282,7 +282,7 @@ def parameter_space(fine: float = 1.0) -> Panels:
     Each sign counts beyond twice its error (`numeric.sweeps.sweep`); a pair with no chaotic orbit and one whose
     sign its error leaves open is undecided.
     """
-    from numeric.sweeps.fields import parameter_space as sweep
+    from numeric.sweeps.space import parameter_space as sweep
     from symbolic.expressions.text import kernel, load
     from verification.arithmetic.balls import ARRAYS
 
@@ -321,7 +321,7 @@ def draw_parameter_space(panels: Panels) -> "Figure":
 def swept(sweep: Sweep) -> dict[str, Array]:
     """The fields of a sweep by name.
 
-    >>> from numeric.sweeps.fields import parameter_space
+    >>> from numeric.sweeps.space import parameter_space
     >>> import numpy as np
     >>> int(swept(parameter_space(np.array([0.0]), np.array([0.5]), 3, 40, 40))["chaotic"][0, 0])
     0

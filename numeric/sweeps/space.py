@@ -1,0 +1,136 @@
+"""Parameter space: over pairs of a shape and a contraction, where chaos is, and which periods. Paper: section 6.5.
+
+From each pair random particles are started as in the paper's appendix, and those are counted whose exponent is
+positive beyond its error (`numeric.sweeps.sweep`). The one with the smallest exponent is watched for as many bounces
+more as a cycle may have that it comes back on.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from numeric.pinball.sampling import Starts
+from numeric.sweeps.sweep import (
+    BLOCKS,
+    Array,
+    Axis,
+    Field,
+    Part,
+    Sweep,
+    against,
+    at_value,
+    map_of,
+    measured,
+    spread,
+    text_of,
+)
+from symbolic.tables.scene import Scene
+
+LONGEST = 24  # period
+BACK = 1e-6  # of the perimeter, and of a radian
+PAIR_PARTICLES = 20_000  # of a task, at most; what a core does in a second or less
+
+SPACE_FIELDS = (
+    Field("chaotic", ("lam",), "int32", "orbits", "orbits whose largest exponent is positive beyond its error"),
+    Field("regular", ("lam",), "int32", "orbits", "orbits with no positive exponent; the rest is undecided or stopped"),
+    Field("nu_max", ("lam",), "float64", "1/bounce", "largest nu_plus of all orbits"),
+    Field("nu_max_error", ("lam",), "float64", "1/bounce", "its standard error, over blocks of the orbit"),
+    Field("nu_min", ("lam",), "float64", "1/bounce", "smallest nu_plus of all orbits"),
+    Field("period", ("lam",), "int16", "bounces", "period of the orbit with that one; 0 where it did not come back"),
+)
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """The task: all orbits of a range of `lam` at a few shapes."""
+
+    scene: str
+    parameter: str
+    starts: int
+    bounces: int
+    transient: int
+
+    def __call__(self, part: Part) -> dict[str, Array]:
+        rng = np.random.default_rng(part.seed)
+        values = part.values[self.parameter]
+        seeds = rng.integers(0, 2**63, values.size)
+        rows = [self.row(float(a), part.values["lam"], int(s)) for a, s in zip(values, seeds, strict=True)]
+        return {field.name: np.array([row[field.name] for row in rows]) for field in SPACE_FIELDS}
+
+    def row(self, value: float, lams: Array, seed: int) -> dict[str, Array]:
+        """The fields for one shape."""
+        here = at_value(self.scene, self.parameter, value)
+        map, starts = spread(here, lams, self.starts, seed)
+        found = measured(map, starts, self.bounces, self.transient, threads=1)
+        kept = found.nu_plus, found.nu_plus_error, found.chaotic, found.regular
+        nu, error, chaotic, regular = (x.reshape(lams.size, self.starts) for x in kept)
+        best = np.argmax(nu, axis=1)[:, None]
+        quiet = np.arange(lams.size) * self.starts + np.argmin(np.where(np.isfinite(nu), nu, np.inf), axis=1)
+        going = found.code[quiet] == 0
+        return {
+            "chaotic": chaotic.sum(axis=1),
+            "regular": regular.sum(axis=1),
+            "nu_max": np.take_along_axis(nu, best, 1)[:, 0],
+            "nu_max_error": np.take_along_axis(error, best, 1)[:, 0],
+            "nu_min": nu.min(axis=1),
+            "period": np.where(going, periods(map_of(here, lams), found.ended(quiet)), 0),
+        }
+
+
+def periods(map: PinballMap, starts: Starts) -> NDArray[np.int64]:
+    """The first bounce, up to `LONGEST`, after which each particle is where it was; 0 where it did not come back.
+
+    >>> diameters = Starts(*(np.array(x) for x in ([0, 0], [0.5, 0.5], [0.0, 0.2], [0.0, 0.0], [0.0, 0.0])))
+    >>> periods(PinballMap("circle", lam=1), diameters).tolist()
+    [2, 0]
+    """
+    orbit = map.orbit(starts.theta, starts.phi, LONGEST, starts.component, threads=1)
+    moved = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) / map.arclength.perimeter
+    back = (orbit.code[1:] == 0) & (moved < BACK) & (np.abs(orbit.phi[1:] - orbit.phi[0]) < BACK)
+    return np.where(back.any(axis=0), np.argmax(back, axis=0) + 1, 0)
+
+
+def egg(K: int, alpha: float) -> str:
+    """The scene of one shape, the decimal that `alpha` shows."""
+    return text_of(Scene("egg", alpha=Fraction(repr(float(alpha))), K=K))
+
+
+def parameter_space(
+    alphas: Array,
+    lams: Array,
+    starts: int = 100,
+    bounces: int = 2000,
+    transient: int = 2000,
+    K: int = 3,
+    seed: int = 1,
+    scene: str | None = None,
+    parameter: str = "alpha",
+) -> Sweep:
+    """The sweep over all pairs: shapes of the egg, or values of a `parameter` of another `scene`, by contractions.
+
+    >>> sweep = parameter_space(np.array([0.02, 0.09]), np.array([0.1, 0.3]), starts=3)
+    >>> sweep.task(sweep.part((1, 0)))["chaotic"].tolist()
+    [[0, 3]]
+    """
+    whole = egg(K, 0.08 * 10 / (1 + K * K)) if scene is None else scene
+    pairs = Pairs(whole, parameter, starts, bounces // BLOCKS * BLOCKS, transient)
+    name, what = (f"the {K}-pointed egg", "shape of the egg") if scene is None else ("the scene", "shape of the table")
+    return Sweep(
+        name="parameter-space",
+        about=f"Chaos or none in {name}, from {starts} random orbits for each pair",
+        axes=(
+            Axis(parameter, np.asarray(alphas, dtype=np.float64), "1", what, 1),
+            Axis("lam", np.asarray(lams, dtype=np.float64), "1", "contraction", max(1, PAIR_PARTICLES // starts)),
+        ),
+        fields=against(parameter, SPACE_FIELDS),
+        task=pairs,
+        seed=seed,
+        scene=f"egg, K = {K}" if scene is None else scene,
+        settings={"starts": starts, "bounces": pairs.bounces, "transient": transient, "blocks": BLOCKS},
+        collisions=len(alphas) * len(lams) * starts * (pairs.bounces + transient),
+        map=partial(map_of, whole, 0.5),
+    )

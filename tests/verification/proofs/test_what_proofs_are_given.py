@@ -1,0 +1,63 @@
+"""What a proof is given holds what it is said to be about: no end, no place and no value is left out."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from flint import arb
+
+from symbolic.tables import circle, egg
+from symbolic.tables.law import PAPERS_LAW
+from symbolic.tables.scene import Scene
+from verification.cycles.problem import Problem
+from verification.proofs.global_dynamics.boxes import BallArray
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.periodic import bifurcation
+from verification.proofs.periodic.interval_newton import Cover, stays_below
+
+
+@pytest.mark.parametrize("half", [2.0**-10, 1 / 300, 2.0**-20])
+def test_a_step_along_a_parameter_is_proved_up_to_its_ends_and_a_little_beyond(monkeypatch, half):
+    """Steps end at rounded numbers: two that only touched would leave a gap of a rounding between them."""
+    given, table = [], egg(3).at(alpha=Fraction(2, 25))
+
+    def problem(*parts, lam):
+        given.append(lam)
+        return Problem(*parts, lam=lam)
+
+    monkeypatch.setattr(bifurcation, "Problem", problem)
+    bifurcation._proved(table, (0, 0, 0), [1.05, 3.14, 5.24], 0.97, half, [1e-3] * 3)
+    wide, thin = given
+
+    assert wide.contains_interior(arb(0.97) - arb(half))
+    assert wide.contains_interior(arb(0.97) + arb(half))
+    assert thin == arb(0.97)
+
+
+def test_the_papers_law_contracts_by_lam_wherever_a_particle_lands():
+    """`phi = -lam*eta`: minus its slope in `eta` is `lam`, and in the place it has none."""
+    map = PinballImages(Scene("egg", alpha="0.08", lam="1/2"))
+    eta, theta = (BallArray(np.array(middle), np.array(radius)) for middle, radius in (([0.3], [0.1]), ([2.0], [0.5])))
+    slope, drift = map.slopes(eta, theta)
+
+    assert (float(slope.m), float(drift.m), float(np.max(drift.r))) == (0.5, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(("lam", "answer"), [("0", True), ("1/2", True), ("99/100", True), ("1", False)])
+def test_exit_angles_stay_below_a_right_angle_exactly_where_the_law_contracts(lam, answer):
+    assert stays_below(PAPERS_LAW, lam, circle) is answer
+
+
+def test_boxes_whose_gaps_no_cycle_has_are_settled_without_another_look():
+    """A last gap below the least, one that is longer than the first, and what may be a cycle."""
+
+    def unasked(*_):
+        raise AssertionError
+
+    cover = Cover(Problem(circle, (0, 0, 0), lam=arb(1) / 2), unasked, unasked, 0.5, [])
+    turn = 2 * float(arb.pi())
+
+    assert cover.settled([(0.0, 1.0), (turn / 2, 0.01), (turn / 2 - 0.3, 0.01)], 1)  # 0.3 is left
+    assert cover.settled([(0.0, 1.0), (1.0, 0.01), (2.0, 0.01)], 1)  # both others are longer
+    with pytest.raises(AssertionError):
+        cover.settled([(0.0, 1.0), (turn / 3, 0.25), (turn / 3, 0.25)], 1)

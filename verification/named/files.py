@@ -244,6 +244,8 @@ def claim_of(given: Mapping[str, Any]) -> Claim | CornerClaim:
         if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
             raise ValueError(f"certificate: bits = {bits} or digits = {digits} is out of range")
         centre, radius = tuple(_ball(pair) for pair in given["centre"]), _ball(given["radius"])
+        if not centre:
+            raise ValueError("certificate: centre has no unknowns; accepted: one for each bounce and free parameter")
         said = _of_first(given) if given["schema"] == FIRST else given
         lam = number(said["scene"]["lam"], "lam") if "lam" in said["scene"] else None
         if lam is not None and not 0 <= lam <= 1:

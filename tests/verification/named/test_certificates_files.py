@@ -235,6 +235,7 @@ def test_a_contraction_beyond_one_is_refused():
         ("scene", EGG | {"file": "/etc/passwd"}, "'file' is unknown"),
         ("scene", None, "."),
         ("centre", [["1", "0"]], "1 entries for 4 unknowns"),
+        ("centre", [], "no unknowns"),
         ("centre", [["x", "0"]] * 4, "."),
         ("radius", ["1", "999999999999"], "out of range"),
         ("kind", "crisis", "."),

@@ -173,12 +173,10 @@ def axes_alone(box: Box) -> Finding:
     difference = chord.dot(tangents[0]) - chord.dot(tangents[1])
     diameter = 4 * sin(B) * cos(B) * (a**2 * sin(m) ** 2 + cos(m) ** 2)
     axes = 4 * sin(B) ** 2 * (a**2 - 1) * sin(m) * cos(m)
-    gaps = [(total - s1 * diameter, difference - s2 * axes) for s1 in (1, -1) for s2 in (1, -1)]
-    factored = next((found for gap in gaps if (found := zero("", *gap))), zero("", *gaps[0]))
     return by(
         "normal at both ends means sin(B)*cos(B)*(a^2 sin(m)^2 + cos(m)^2) = 0 and "
         "sin(B)^2*(a^2 - 1)*sin(m)*cos(m) = 0, so cos(B) = 0 and m is a multiple of pi/2",
-        factored,
+        zero("", total - diameter, difference - axes),
         positive(a**2 - 1, box),
     )
 

@@ -52,8 +52,10 @@ def said(given):
     need(fit, "saddle: a round is not one bounce and a turn of the table", Wrong)
     fit = given["side"] in (1, -1) and all(type(x) is float and abs(x) < 10 for x in numbers) and len(numbers) == 4
     fit = fit and len(ends) == 2 and all(str(Fraction(x)) == x for x in ends)
+    fit = fit and all(type(given[key]) is int and 1 <= given[key] <= 8192 for key in ("columns", "rows", "parts"))
     low, high = map(Fraction, ends)
-    need(fit and 0 < low < high < 1, "side, lam, start or sink is out of range", Wrong)
+    need(fit and 0 < low < high < 1, "side, lam, start, sink or the grid is out of range", Wrong)
+    read_scene(scene, "", BITS)  # its own lam says nothing here, and must be one
     return {key: x for key, x in scene.items() if key != "lam"}, (turns, q), low, high
 
 

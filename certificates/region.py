@@ -112,7 +112,12 @@ class Inside:
                 self.cell(x, y, size / 2, more - 1)
 
     def image(self, column, row, size):
-        """Where a square lands, and the angles at which it is left then, for every lam: by the mean-value theorem.
+        """Where a square lands, and the angles at which it is left then, for every lam."""
+        landing, psi = self.landing(column, row, size)
+        return landing, psi * self.lam
+
+    def landing(self, column, row, size):
+        """Where a square lands, and minus the angles at which it arrives: by the mean-value theorem.
 
         The angle of arrival is `-(phi + tau(landing) - tau(theta) - pi)`, where the tangent has the angle `tau`."""
         part = lambda k, n: I.of(k / n * 2 - 1, self.p).hull(I.of((k + size) / n * 2 - 1, self.p))  # noqa: E731
@@ -132,7 +137,7 @@ class Inside:
         need(landing.lo <= landing.hi, "images_enclosed: the middle does not land where the square does")
         turn = bend(self.table, landing)
         psi = psi - (turn * a - bend(self.table, theta)) * u - (turn * b + 1) * v
-        return landing, psi * self.lam
+        return landing, psi
 
     def covered(self, theta, phi):
         """Do the cells hold a rectangle and all that is next to it?"""

@@ -73,6 +73,15 @@ def test_no_number_comes_from_a_function_whose_bits_depend_on_the_processor(path
     assert not attributes(path) & DISPATCHED
 
 
+@pytest.mark.parametrize("path", [path for path in FEEDING if "numeric" in path.parts], ids=named)
+def test_no_array_is_raised_to_a_power_but_the_square_and_the_root(path):
+    """NumPy has these as a product and a square root; other powers of arrays are its `power`. Literals have any."""
+    nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.BinOp)]
+    powers = [(ast.unparse(node.left), ast.unparse(node.right)) for node in nodes if isinstance(node.op, ast.Pow)]
+
+    assert [(x, n) for x, n in powers if n not in ("2", "0.5") and not re.fullmatch(r"-?[\d.]+", x)] == []
+
+
 @pytest.mark.parametrize("path", CODE, ids=named)
 def test_precision_is_never_set_for_others(path):
     assert not re.search(r"\b(mp|iv|fp|ctx)\.(dps|prec)\s*[-+*]?=[^=]", path.read_text())

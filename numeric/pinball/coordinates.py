@@ -228,7 +228,7 @@ class Waves(NamedTuple):
         while True:
             theta = 2 * np.pi * np.arange(count) / count - np.pi
             values = speed(theta)
-            c = np.fft.rfft(values) / count * (-1.0) ** np.arange(count // 2 + 1)
+            c = np.fft.rfft(values) / count * (1 - 2 * (np.arange(count // 2 + 1) % 2))
             if settled(c, values) or count >= MOST:
                 break
             count *= 2

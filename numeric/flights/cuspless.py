@@ -33,7 +33,7 @@ class Cuspless(Cardioid):
     cusped = False
     pairs = 1, 3  # the first is a height on the wall
     position = ("wall", "p", "q")
-    steps = 3, 1
+    steps = 2, 1
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
@@ -104,8 +104,12 @@ class Cuspless(Cardioid):
         base = ops.select(from_wall, one, p)
         low = -root3 * base
         high = ops.select(from_wall, root3, ops.select(across, -Q, Q))
-        guess = ops.number(1.3125) * c - ops.number(1.375) - ops.number(0.3125) * y  # off by 0.1 at most
-        start = ops.select(from_wall, guess, ops.select(across, low, Q - c))
+        # starts that are off by 0.15 at most, past a join by 0.2: two steps of Halley's method then do
+        size, turn = modulus(k), ops.number(2.125)
+        turn = ops.fma(ops.fma(ops.number(1.8125), size, ops.number(-3.0625)), size, turn)
+        past = ops.number(1.5) - ops.number(3.25) * c - ops.number(4.375) * size
+        guess = ops.number(1.3125) * c - ops.number(1.375) - ops.number(0.3125) * y
+        start = ops.select(from_wall, guess, ops.select(across, past, Q - c * turn))
         near_grazing = from_wall & ((c < ops.number(0.015625)) | (c < ops.number(0.125)) & (below < ops.number(0.0625)))
         S = ops.polynomial_zero(poly, start, low, high, base, self.steps, ops.negated(to_wall | near_grazing))
 

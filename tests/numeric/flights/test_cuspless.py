@@ -7,6 +7,7 @@ from attacks.joins import past_joins
 from numeric import PinballMap, Status
 from numeric.backends.scalars import ArrayBackend
 from numeric.flights.cuspless import Cuspless
+from numeric.pinball.sampling import phase_starts
 
 SIGN = np.where(np.arange(24) % 2 == 0, 1, -1)
 LAWS = [0, 0.3, 1]
@@ -27,6 +28,23 @@ def test_anywhere(lam, wall, rounding):
 
     assert place <= 3
     assert direction <= 8
+
+
+@pytest.mark.parametrize("lam", [0.95, 1])
+def test_the_steps_of_halleys_method_leave_hardly_a_flight_to_be_bracketed(lam, monkeypatch):
+    """Blocks of 32 lanes need not go there: of 16,000 flights from everywhere at most one in a thousand does."""
+    bracketed, whole = [], ArrayBackend.repeat
+
+    def counted(self, condition, body, state, limit, steady=False):
+        bracketed.append(np.sum(condition(state)))
+        return whole(self, condition, body, state, limit, steady)
+
+    monkeypatch.setattr(ArrayBackend, "repeat", counted)
+    map = cuspless(lam)
+    starts = phase_starts(map, 4000, seed=11)
+    map.orbit(starts.theta, starts.phi, 4, starts.component)
+
+    assert np.sum(bracketed) <= 16
 
 
 @pytest.mark.parametrize("near", [False, True])

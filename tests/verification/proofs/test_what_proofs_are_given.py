@@ -61,3 +61,12 @@ def test_boxes_whose_gaps_no_cycle_has_are_settled_without_another_look():
     assert cover.settled([(0.0, 1.0), (1.0, 0.01), (2.0, 0.01)], 1)  # both others are longer
     with pytest.raises(AssertionError):
         cover.settled([(0.0, 1.0), (turn / 3, 0.25), (turn / 3, 0.25)], 1)
+
+
+@pytest.mark.parametrize(("last", "answer"), [(2.0, True), (2.0 + 2.0**-51, False)])
+def test_a_box_whose_centre_was_rounded_is_no_box_about_a_known_cycle(last, answer):
+    """The angles are sums of gaps: 1, 3.25, and 5.25 or a little more, which takes a bit more than a float has."""
+    known = [([1.0, 3.25, 5.25], 1.0)]
+    cover = Cover(Problem(circle, (0, 0, 0), lam=arb(1) / 2), None, None, 0.5, known)
+
+    assert cover.settled([(1.0, 0.01), (2.25, 0.01), (last, 0.01)], 1) is answer

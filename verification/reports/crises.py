@@ -2,7 +2,8 @@
 
 A crisis is such a tangency. Each is sought in float64 and then proved in balls. That the attractor changes at the one
 that was located, and not beside it, is what sampling shows, and no proof; so a tangency is not called a crisis here.
-The boundary has to be one smooth formula; where it is not convex each flight is proved to meet nothing on its way.
+The boundary has to be one smooth formula; where it is not convex each flight is proved to meet nothing on its way. Of
+other tables only the changes are told (`parted`).
 """
 
 import math
@@ -33,6 +34,7 @@ from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Block, Effort, Known, Listing, Number, Words
 from verification.reports.dynamics import density
 from verification.reports.lives import mark
+from verification.reports.parted import near_changes, told_of
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
 Document = dict[str, Any]
@@ -45,10 +47,6 @@ TRIED = 6  # places on it from which a tangency is sought
 LEAST, SHOWN = 1e-12, 5e-6  # of an error in float64; of a multiplier, half a unit of its last digit
 DIGITS = 10  # of a multiplier
 SAME = 1e-6  # parameters of bounces that a symmetry exchanges, found in float64
-ASKED = (
-    "Tangencies are looked for on tables of one smooth formula, under laws that say nothing of arc length: manifolds "
-    "that cross a join, a cusp or a corner are not followed here."
-)
 
 
 def askable(scene: Scene) -> bool:
@@ -59,10 +57,11 @@ def askable(scene: Scene) -> bool:
 
 def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found:
     """The tangencies near the changes that the diagram shows, sought in float64; nothing of them is proved yet."""
-    if not askable(asked.scene):
-        return [Words(ASKED)], [], {}
     arrays = parts.arrays("diagram-0")
     changes = changed(arrays["counts"], arrays["chaotic"])
+    if not askable(asked.scene):
+        rows = near_changes(asked, [closer(asked, parts, arrays["values"], j) for j in changes])
+        return [told_of(asked, rows)], [Effort("changes of attractors", f"{len(rows)} changes", 0.0)], {"parted": rows}
     found: list[Document] = []
     for j in changes:
         low, high = closer(asked, parts, arrays["values"], j)

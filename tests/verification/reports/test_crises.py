@@ -18,7 +18,8 @@ from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import shadow
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Known, Number, Words
-from verification.reports.crises import ASKED, crises, plane_map, proved, round_of, told
+from verification.reports.crises import crises, plane_map, proved, round_of, told
+from verification.reports.parted import NONE, least_angle
 
 ROOT = Path(__file__).parents[3]
 
@@ -95,7 +96,34 @@ def test_tangencies_are_proved_under_another_law(tmp_path):
     assert found["certified"]
 
 
-def test_where_no_crisis_is_looked_for_the_report_says_so(tmp_path):
-    asked = Asked(Scene("cardioid"))
+def parted(tmp_path, name, values, lost):
+    """What a report says of a table in pieces whose made-up diagram loses chaos after some of its columns."""
+    asked, counts = Asked(Scene(name)), np.ones((240, 7), int)
+    for j in lost:
+        counts[50:, j:] = 0
+    parts = Parts(tmp_path, asked.digest)
+    parts.made(asked)
+    parts.keep("diagram-0", {"values": np.linspace(*values, 7), "counts": counts, "chaotic": np.ones(7)})
+    (block,), _, data = crises(asked, parts)
+    assert told(asked, {"crises": {"data": data}}).events == []  # nothing is claimed to touch
+    return block, data["parted"]
 
-    assert crises(asked, Parts(tmp_path, asked.digest)) == ([Words(ASKED)], [], {})
+
+def test_where_no_attractor_changes_the_report_says_that_there_is_no_tangency_to_seek(tmp_path):
+    assert parted(tmp_path, "cardioid", (0.3, 0.4), ()) == (Words(NONE), [])
+
+
+def test_the_attractor_of_the_cuspless_table_changes_far_from_a_tangency(tmp_path):
+    """Near lambda-c, paper: section 5.2. From 1/10 on a cone of directions is proved to keep apart from the other."""
+    block, ((row),) = parted(tmp_path, "cuspless", (0.10, 0.13), (3,))
+
+    angle, error, points = row["angle"]
+    assert angle > 0.2 > error
+    assert points > 10_000
+    assert block.rows[0][2].known is Known.SAMPLED
+
+
+def test_an_angle_near_a_tangency_is_small():
+    """On the egg just below its boundary crisis, 0.66214: manifolds of the triangle touch, so do others near by."""
+    angle, _, _ = least_angle(Asked(Scene("egg", alpha="2/25")), 0.66)
+    assert angle < 0.01

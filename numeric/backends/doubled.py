@@ -29,6 +29,14 @@ SIN = tuple((-1) ** n / math.factorial(2 * n + 1) for n in range(3, 11))  # of s
 COS = tuple((-1) ** n / math.factorial(2 * n) for n in range(3, 11))  # of cos(r) from r**6 on
 
 
+LONG = 200  # sums of programs that run with more digits: more would take seconds to compile
+
+
+def affordable(*programs: Sequence[tuple[str, *tuple[int, ...]]]) -> bool:
+    """Do programs, given by their lines, cost little enough?"""
+    return sum((WORDS | OTHERS)[word] for lines in programs for word, *_ in lines) <= LONG
+
+
 class Double(Generic[N, M]):
     """`high + low` with `|low|` at most half a unit of `high`.
 

@@ -13,13 +13,15 @@ import numpy as np
 
 from numeric.backends import elementary
 from numeric.backends import functions as plane
+from numeric.backends.doubled import Double, Doubles, affordable
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
-from numeric.flights.family import NEAR, Boundary, Family, Landing, Status, grazing, reflected
+from numeric.flights.family import NEAR, SLAP, Boundary, Family, Landing, Status, grazing, reflected
 from numeric.lowering.program import LawIR
 
 UNSURE = 2.0**-49  # how far a line is moved sideways by rounding, as a share of the numbers it is made of
 GRID = 4096  # points on which a component's turning is examined
 OVERLAP = 2.0**-46  # beyond the end of a closed curve, lest a zero fall between two roundings of its end
+NEWTON = 2.0**-27  # of the way to the tangent, beyond which a last step is no rounding
 LONG = 2.0**20  # a parameter, whose rounding moves the point
 FAR = 2.0**100  # as far as nothing was met
 TURN = np.pi / 2  # of the tangent on one piece, at most
@@ -41,6 +43,8 @@ class General(Family):
         self.ends = boundary.ends
         self.closing = boundary.ends[0]
         self.pieces = pieces(boundary)  # constants of the kernels
+        self.points = [part.curve.only(0, 1, 2, 3) for part in self.parts]
+        self.refines = affordable(*(program.lines for program in self.points))
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
@@ -88,14 +92,14 @@ class General(Family):
             piece = number(float(index)), number(low), number(high), number(high - low)
             curve = self._curve_of(ops, shape, index)
             best = self._hits(ops, curve, piece, (component, theta), (x0, y0), v, best)
-        return self._landed(ops, shape, best, v, (component, x0, y0))
+        return self._landed(ops, shape, law, best, v, (component, theta, x0, y0))
 
     def _curve_of(self, ops: Backend[N, M], shape: Fields[N], index: int) -> Callable[[N], list[N]]:
         """Point, velocity and acceleration on one component."""
         return lambda at: self.parts[index].curve(ops, at, *shape)
 
     def _landed(
-        self, ops: Backend[N, M], shape: Fields[N], best: list[N], v: Pair[N], start: tuple[N, N, N]
+        self, ops: Backend[N, M], shape: Fields[N], law: str, best: list[N], v: Pair[N], start: tuple[N, N, N, N]
     ) -> Landing[N]:
         """The landing at the nearest of all arrivals: length, component and parameter.
 
@@ -105,13 +109,16 @@ class General(Family):
         """
         t, where, at = best
         far = ops.number(FAR)
-        x, y, dx, dy, _, _ = self.curve(ops, shape, where, at)
+        x, y, dx, dy, ax, ay = self.curve(ops, shape, where, at)
+        if self.refines and ops.doubles:
+            step = self._step(ops, shape, law, (start[0], start[1]), v, (where, at), (dx, dy))
+            dx, dy, at = dx + step * ax, dy + step * ay, at + step
         across, along = dx * v[0] + dy * v[1], dy * v[0] - dx * v[1]
         nought = ops.number(0.0)
         code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
         speed = ops.sqrt(dx * dx + dy * dy)
         own = modulus(where - start[0]) < ops.number(0.25)
-        size = modulus(start[1]) + modulus(start[2]) + modulus(x) + modulus(y) + modulus(at) * speed
+        size = modulus(start[2]) + modulus(start[3]) + modulus(x) + modulus(y) + modulus(at) * speed
         doubt = ops.number(UNSURE) * size
         straight = ops.select(own, speed, modulus(along))
         if not ops.doubles:  # with more digits, which leave no such doubt: one distance
@@ -129,6 +136,37 @@ class General(Family):
         )  # what is lost between two components is at a join
         code = ops.select(t < far, code, nowhere)
         return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy)}, {"t": t})
+
+    def _step(
+        self,
+        ops: Backend[N, M],
+        shape: Fields[N],
+        law: str,
+        start: Pair[N],
+        v: Pair[N],
+        end: Pair[N],
+        d: Pair[N],
+    ) -> N:
+        """One more step of Newton's method, whose residual has more digits: what is left is the rounding of a landing.
+
+        Its direction, and that of a flight along the normal, are those before anything is rounded.
+        """
+        words = Doubles(ops)
+        (x0, y0, dx, dy), (x1, y1, *_) = (self.doubled(words, shape, *place) for place in (start, end))
+        along = (-dy, dx) if law == SLAP else (words.of(v[0]), words.of(v[1]))
+        across = plane.exact_cross(ops, (along[0].high, along[1].high), d)
+        step = -((along[0] * (y1 - y0) - along[1] * (x1 - x0)).high / across)
+        known = modulus(step * plane.dot(d, d)) < ops.number(NEWTON) * modulus(across)  # else a tangency, or no landing
+        return ops.select(known, step, ops.number(0.0))
+
+    def doubled(self, words: Doubles[N, M], shape: Fields[N], component: N, theta: N) -> list[Double[N, M]]:
+        """Point and velocity with more digits, chosen lane by lane among the components."""
+        given = [words.of(theta), *(words.of(x) for x in shape)]
+        values = self.points[0](words, *given)
+        for index, program in enumerate(self.points[1:], start=1):
+            here = words.ops.number(index - 0.5) < component
+            values = [words.select(here, new, old) for new, old in zip(program(words, *given), values, strict=True)]
+        return values
 
     def _hits(
         self,

@@ -38,7 +38,7 @@ from typing import Generic, NamedTuple
 import numpy as np
 
 from numeric.backends import functions as plane
-from numeric.backends.doubled import OTHERS, WORDS, Doubles
+from numeric.backends.doubled import WORDS, Doubles, affordable
 from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing
@@ -52,7 +52,6 @@ SHALLOW = 2.0**-20  # departures flatter than its root take care of cancellation
 MOST = 400  # steps of a march
 SHORT = 2.0**-8  # between two unit vectors: below, ten bits more than doubles say less than the divided equation
 HALF = 2.0**-27  # radians: beyond, a last correction is no rounding
-LONG = 200  # sums of a radius that is not computed with more digits than doubles have: it would take seconds to compile
 GROWTH = 8.0  # from one step to the next, of a flight that begins along the wall
 
 
@@ -66,9 +65,8 @@ class Polar(Harmonic):
         super().__init__(boundary)
         program = boundary.ir.program("radius")
         self.alone, self.radius, self.bent = program.only(0), program.only(0, 1), program.only(0, 1, 2)
-        words = [word for word, *_ in self.radius.lines]
-        self.doubled = set(words) <= set(WORDS)  # to the last of twice the digits?
-        self.refines = sum((WORDS | OTHERS)[word] for word in words) <= LONG
+        self.doubled = {word for word, *_ in self.radius.lines} <= set(WORDS)  # to the last of twice the digits?
+        self.refines = affordable(self.radius.lines)
         self.bounds = bounds(boundary)
 
     @classmethod

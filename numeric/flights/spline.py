@@ -16,6 +16,7 @@ import numpy as np
 
 from numeric.backends import elementary
 from numeric.backends import functions as plane
+from numeric.backends.doubled import Double, Doubles
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.corners import halved
 from numeric.flights.family import Boundary, Landing
@@ -37,6 +38,13 @@ class Spline(General):
         super().__init__(boundary)
         programs = [program for _, program in boundary.ir.programs]
         self.rows = [[float(x) for x in program(boundary.ops, *boundary.numbers)] for program in programs]
+        exact = [
+            program(Doubles(boundary.ops), *map(Doubles(boundary.ops).of, boundary.numbers)) for program in programs
+        ]
+        self.lows = [
+            [float(x.high - y + x.low) for x, y in zip(*row, strict=True)] for row in zip(exact, self.rows, strict=True)
+        ]
+        self.refines = True
         self.closed = False
         self.convex = convex(boundary)
         self.boxes = [] if self.convex else boxed(boundary, self.pieces, self.rows)
@@ -77,6 +85,15 @@ class Spline(General):
     def curve(self, ops: Backend[N, M], shape: Fields[N], component: N, theta: N) -> list[N]:
         return evaluated(ops, self._row(ops, component), theta)
 
+    def doubled(self, words: Doubles[N, M], shape: Fields[N], component: N, theta: N) -> list[Double[N, M]]:
+        rows = (words.ops.look_up_row(table, component) for table in (self.rows, self.lows))
+        row = [Double(words.ops, high, low) for high, low in zip(*rows, strict=True)]
+        u, values = words.of(theta), []
+        for a, b, c, d in (row[:4], row[4:]):
+            two, three = c + c, d + d + d
+            values.append((((d * u + c) * u + b) * u + a, (three * u + two) * u + b))
+        return [value for pair in zip(*values, strict=True) for value in pair]
+
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
         component, theta = position
         row = self._row(ops, component)
@@ -89,7 +106,7 @@ class Spline(General):
             best = self._first(ops, *flight)
         else:
             best = self._nearest(ops, *flight)
-        return self._landed(ops, shape, best, v, (component, x0, y0))
+        return self._landed(ops, shape, law, best, v, (component, theta, x0, y0))
 
     def _across(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
         """Length, component and parameter of the only landing on a convex curve."""

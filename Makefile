@@ -85,7 +85,7 @@ mutation: $(VENV)/test.stamp $(VENV)/mutation.stamp
 	$(BIN)/python benchmarks/mutation.py core --count 120 --seed 3
 	$(BIN)/python benchmarks/mutation.py page --count 120 --seed 3
 
-# Half an hour of attacks on two free cores; see docs/reliability.md.
+# Half an hour of attacks on two free cores, without `processors`, which is asked by name; see docs/reliability.md.
 torture: $(VENV)/test.stamp
 	$(BIN)/python benchmarks/torture.py
 

@@ -27,6 +27,16 @@ KERNEL = "float64 llvm"
 RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one particle at a time": "numba"}
 PLAIN = "float64 the paper's way, in Python"
 SWEEP = "sweep"  # what rows of sweeps name in place of a table
+ASKED = {  # by the beginnings of their names
+    "told": "orbits, angles and points",
+    "length": "orbits, with arc length",
+    "step": "step of one",
+    "derivative": "derivative of one",
+    "single": "orbit of one",
+    "steps": "step of 100,000",
+    "batched": "derivative of 100,000",
+    "rest": "exponents",
+}
 BOUNDS = 4, 8  # units of 2**-52: of the place and of the direction
 MANY = 100  # digits
 
@@ -71,6 +81,18 @@ def calls(bench):
         bars[what] = duration(row["bar"] * row["reference"]) if what[1] else f"{row['bar']:g}"
     lines = [[call, bars[call, by], *(found.get(((call, by), s), "") for s in SCENES)] for call, by in bars]
     return table(["call", "bar", *SCENES], lines)
+
+
+def spans(bench):
+    """From the least to the most of the paper's tables, of calls by their beginnings: times, and ratios."""
+    found = {}
+    for name, call in ASKED.items():
+        own = [row for row in bench["calls"] if row["scene"] in SCENES and row["call"].startswith(call)]
+        own = [row for row in own if name != "rest" or row["scene"] == "ellipse"]
+        for key, words in (("seconds", duration), ("ratio", "{:.2g}".format)):
+            ends = dict.fromkeys(words(end(row[key] for row in own)) for end in (min, max))
+            found[name if key == "seconds" else f"{name}_ratio"] = " to ".join(ends)
+    return found
 
 
 def elsewhere(bench):
@@ -245,6 +267,7 @@ def page():
         own_elsewhere=elsewhere(bench)[0],
         elsewhere="{} (bar {:g})".format(*elsewhere(other)),
         sweeps=sweeps(bench),
+        **spans(bench),
         uncertified=f" (of {', '.join(loose)} a long run)" if loose else "",
         many=MANY,
         questions=questions(work, rows),

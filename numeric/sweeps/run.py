@@ -42,14 +42,18 @@ def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
     waiting = iter(indices)
     with ThreadPoolExecutor(workers) as pool:
         running: dict[Future[dict[str, Array]], Index] = {}
+
+        def hand_out() -> None:
+            for index in islice(waiting, AHEAD * workers - len(running)):
+                running[pool.submit(sweep.task, sweep.part(index))] = index
+
         try:
-            while True:
-                for index in islice(waiting, AHEAD * workers - len(running)):
-                    running[pool.submit(sweep.task, sweep.part(index))] = index
-                if not running:
-                    return
+            hand_out()
+            while running:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    yield running.pop(future), future.result()
+                    index = running.pop(future)
+                    hand_out()  # before the answer is written
+                    yield index, future.result()
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 

@@ -147,7 +147,8 @@ def _stub(room: str, used: dict[str, set[str]], files: dict[str, Path]) -> str:
     """The text of one stub."""
     own = {module.rpartition(".")[2] for module in files if module.rpartition(".")[0] == room}
     lines, names = list[str](), set[str]()
-    if whole := sorted(used.pop(room, set()) & own):
+    asked, typed = used.pop(room, set()), annotated(files[room])
+    if whole := sorted(asked & own):
         lines, names = [f"from . import {', '.join(whole)}"], {*whole}
     for module in sorted(used):
         found = sorted((used[module] & defined(files[module])) - own - names, key=rank)
@@ -155,6 +156,9 @@ def _stub(room: str, used: dict[str, set[str]], files: dict[str, Path]) -> str:
         line = f"from .{module.removeprefix(room + '.')} import {', '.join(found)}"
         broken = [line.partition("import ")[0] + "import (", *(f"    {name}," for name in found), ")"]
         lines += [] if not found else [line] if len(line) <= COLUMNS else broken
+    if said := sorted(asked & typed.keys(), key=rank):
+        lines += [*([""] if lines else []), *(f"{name}: {typed[name]}" for name in said)]
+        names.update(said)
     listed = [f"    {name!r}," for name in sorted(names, key=rank)]
     if not lines:
         return f"{STUB}\n\n__all__ = []\n"
@@ -173,6 +177,13 @@ def defined(path: Path) -> set[str]:
     targets += [node.target for node in body if isinstance(node, ast.AnnAssign)]
     stored = {name.id for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)}
     return stored | {node.name for node in body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+
+
+def annotated(path: Path) -> dict[str, str]:
+    """The names that a module defines with their types, which a stub can say."""
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    own = [node for node in body if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)]
+    return {ast.unparse(node.target): ast.unparse(node.annotation) for node in own}
 
 
 def write() -> None:

@@ -5,4 +5,4 @@ Nothing else has to hear of a new file: commands, scene files, `PinballMap` and 
 
 import pkgutil
 
-NAMES = tuple(sorted(module.name for module in pkgutil.iter_modules(__path__)))
+NAMES: tuple[str, ...] = tuple(sorted(module.name for module in pkgutil.iter_modules(__path__)))

@@ -8,13 +8,14 @@ from functools import cache
 from itertools import starmap
 
 import pytest
-from sympy import Interval, expand, simplify
+from sympy import Interval, S, expand, simplify
 
 from symbolic.cycles.polygons import COSINE
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.formula import parse
 from symbolic.tables.table import a, alpha, lam
 from verification.paper.claims.claim import Verdict
+from verification.paper.claims.judges import greater
 from verification.paper.judges import ellipse, map
 from verification.paper.report.report import catalogue, judge, verify
 
@@ -131,3 +132,12 @@ def test_no_finding_that_a_judge_asks_for_is_idle(name):
     for number, outcome in enumerate(outcomes):
         if outcome is Outcome.PROVED:
             assert disturbed(name, number)[0] is not verdict, number
+
+
+def test_no_number_is_greater_than_itself():
+    assert greater(S(2), S(2)).outcome is Outcome.REFUTED
+
+
+def test_the_areas_that_grow_are_said_to_grow_at_the_contraction_that_they_were_computed_with():
+    undisturbed()
+    assert judge(CLAIMS["map.dissipative"]).witness == {"lam": "9/10"}

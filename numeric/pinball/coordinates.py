@@ -258,7 +258,7 @@ def in_powers(sines: Array) -> list[float]:
     return [float(Fraction(x, WHOLE)) for x in total]
 
 
-def settled(coefficients: Array, values: Array) -> bool:
+def settled(coefficients: Array | NDArray[np.complex128], values: Array) -> bool:
     """Whether the last third of the coefficients is what rounding leaves of such values."""
     last = coefficients[2 * (len(coefficients) - 1) // 3 :]
     return bool(np.max(np.abs(last)) < ROUNDING * np.max(values))

@@ -329,9 +329,10 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
         return line == f"proved: {given['name']}" and (same or trapping(given))
     if given["kind"] == "boundary crisis":
         rest = {"start", "columns", "rows", "parts", "scene"}  # no part of what is stated, as is the scene's lam
-        same = all(given[key] == original[key] for key in given.keys() - rest)
-        same = same and given["scene"] | {"lam": ""} == original["scene"] | {"lam": ""}
-        return line == f"proved: {given['name']}" and (same or crisis(given))
+        told_as, plain = given["name"], in_lowest_terms(given)
+        same = all(plain[key] == original[key] for key in plain.keys() - rest)
+        same = same and plain["scene"] | {"lam": ""} == original["scene"] | {"lam": ""}
+        return line == f"proved: {told_as}" and (same or crisis(plain))
     (name, value, error), (known, true, small) = told(line), told(first)
     if given["kind"] == original["kind"] == "corner" and given["free"] != original["free"]:
         return abs(value - told(undamaged(name))[1]) <= error  # the other value of the same orbit, rightly named
@@ -366,6 +367,13 @@ def trapping(given: Document) -> bool:
         return all(Region.from_dict(given | {"parts": 8}).checks.values())
     except ValueError:
         return False
+
+
+def in_lowest_terms(given: Document) -> Document:
+    """The same statement with its shape as the package spells it: 0.08 is 2/25."""
+    text = given["scene"]["shape"]["alpha"]
+    name = given["name"].replace(f"alpha = {text},", f"alpha = {Fraction(text)},")
+    return given | {"name": name, "scene": given["scene"] | {"shape": {"alpha": str(Fraction(text))}}}
 
 
 def crisis(given: Document) -> bool:

@@ -14,7 +14,7 @@ double up to `2**30`; tests/numeric/backends/test_doubled.py holds them against 
 import math
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Generic
+from typing import Any, Generic
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, M, N, Pair, modulus
@@ -50,7 +50,7 @@ class Double(Generic[N, M]):
         self.ops, self.high, self.low = ops, high, low
 
     def __add__(self, other: "Double[N, M]") -> "Double[N, M]":
-        total, rest = _sum_and_error(self.high, other.high)
+        total, rest = sum_and_error(self.high, other.high)
         return _ordered(self.ops, total, rest + (self.low + other.low))
 
     def __sub__(self, other: "Double[N, M]") -> "Double[N, M]":
@@ -69,7 +69,10 @@ class Double(Generic[N, M]):
         return Double(self.ops, -self.high, -self.low)
 
 
-def _sum_and_error(x: N, y: N) -> Pair[N]:
+Two = tuple[Double[N, M], Double[N, M]]
+
+
+def sum_and_error(x: N, y: N) -> Pair[N]:
     """`x + y` rounded, and the rounding error, exactly, whichever is larger."""
     total = x + y
     back = total - x
@@ -82,6 +85,45 @@ def _ordered(ops: Backend[N, M], high: N, low: N) -> Double[N, M]:
     return Double(ops, total, low - (total - high))
 
 
+class Sum(Generic[N, M]):
+    """A sum of numbers and products of at most about `size`, a power of two, to `2**-85` of it.
+
+    Its leading part is kept above a large number, which rounds it to multiples of `2**-36*size`: these add up exactly,
+    and what each term has beside is added up as it is. So a product takes four operations.
+    """
+
+    def __init__(self, ops: Backend[N, M], size: float) -> None:
+        self.ops, self.base = ops, ops.number(1.5 * 2.0**16 * size)
+        self.total, self.low = self.base, ops.number(0.0)
+
+    def add(self, x: Double[N, M]) -> None:
+        """A number more."""
+        total = self.total + x.high
+        self.low = self.low + (x.high - (total - self.total)) + x.low
+        self.total = total
+
+    def add_product(self, x: N, y: N) -> None:
+        """A product more."""
+        if self.ops.same(y, self.ops.number(0.0)):
+            return
+        total = self.ops.fma(x, y, self.total)
+        self.low = self.low + self.ops.fma(x, y, self.total - total)
+        self.total = total
+
+    def value(self) -> Double[N, M]:
+        """The sum so far."""
+        return Double(self.ops, self.total - self.base, self.low)
+
+
+def short_of(ops: Backend[N, M], u: Pair[N]) -> N:
+    """Half of what the square of a vector's length lacks of one, to its own last bits."""
+    found = Sum(ops, 1.0)
+    for x in u:
+        found.add_product(-x, x)
+    square = found.value()
+    return ops.number(0.5) * ((ops.number(1.0) + square.high) + square.low)
+
+
 class Doubles(Generic[N, M]):
     """The number system of `Double`, over some backend."""
 
@@ -91,6 +133,10 @@ class Doubles(Generic[N, M]):
     def of(self, x: N) -> Double[N, M]:
         """A number of the backend, exactly."""
         return Double(self.ops, x, self.ops.number(0.0))
+
+    def known(self, x: Double[Any, Any]) -> Double[N, M]:
+        """A constant, computed before."""
+        return Double(self.ops, self.ops.number(float(x.high)), self.ops.number(float(x.low)))
 
     def q(self, p: int, n: int) -> Double[N, M]:
         """The rational `p/n`."""
@@ -143,8 +189,8 @@ class Doubles(Generic[N, M]):
         """`x - j*c` for a whole number `j` and a constant that is the sum of the two doubles `c`."""
         ops = self.ops
         product, error = plane.product_and_error(ops, -j, ops.number(c[0]))
-        total, rest = _sum_and_error(x.high, product)
-        return Double(ops, *_sum_and_error(total, ops.fma(-j, ops.number(c[1]), rest + (x.low + error))))
+        total, rest = sum_and_error(x.high, product)
+        return Double(ops, *sum_and_error(total, ops.fma(-j, ops.number(c[1]), rest + (x.low + error))))
 
     def exp_less_one(self, x: Double[N, M]) -> tuple[N, Double[N, M]]:
         """`(2**k, p)` with `exp(x) = 2**k*(1 + p)`, `|p| < 0.42` and off by `UNIT` of itself, for `|x| <= 708`."""

@@ -1,7 +1,8 @@
 """Sides and arcs in a row: their numbers and coordinates, which follows which, and what a flight may pass there."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import Generic, NamedTuple
 
 import numpy as np
@@ -9,15 +10,20 @@ from numpy.typing import NDArray
 
 from numeric.backends import elementary
 from numeric.backends import functions as plane
+from numeric.backends.doubled import Double, Doubles, Sum, Two, short_of
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import Array, Boundary, Family, Landing
-from numeric.flights.general import UNSURE
+from numeric.flights.general import NEWTON, UNSURE
 from numeric.lowering.program import Program
 
 LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
 FOCAL = "focal"  # an arc of an ellipse by its radius about a focus
 MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
+STEEP = 8.0
 TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
+
+
+Axes = list[Two[N, M]]  # `C`, `A` and `B` of a piece with twice the digits, `C + p*A + q*B` being its points
 
 
 class Piece(NamedTuple, Generic[N]):
@@ -156,6 +162,7 @@ class Coordinates(Family):
     """
 
     kinds: list[str]
+    extent: float  # a power of two above all numbers of pieces, give or take
     programs: list[Program]
 
     @abstractmethod
@@ -223,6 +230,29 @@ class Coordinates(Family):
     def _pair(self, ops: Backend[N, M], component: N, pairs: list[Pair[N]]) -> Pair[N]:
         return chosen(ops, component, [x for x, _ in pairs]), chosen(ops, component, [y for _, y in pairs])
 
+    @cached_property
+    def exactly(self) -> list[Axes[NDArray[np.float64], NDArray[np.bool_]]]:
+        """The axes of every piece with twice the digits, where there are no parameters."""
+        words = Doubles(self.boundary.ops)
+        return [exact_axes(made(words), kind, words) for made, kind in zip(self.programs, self.kinds, strict=True)]
+
+    def exact_axes_at(self, ops: Backend[N, M], shape: Fields[N], component: N) -> Axes[N, M]:
+        """Those of the particle's piece."""
+        words = Doubles(ops)
+        if self.boundary.shape:
+            letters = [words.of(x) for x in shape]
+            made = [
+                exact_axes(p(words, *letters), kind, words) for p, kind in zip(self.programs, self.kinds, strict=True)
+            ]
+        else:
+            made = [[(words.known(x), words.known(y)) for x, y in axes] for axes in self.exactly]
+
+        def one(vector: int, i: int) -> Double[N, M]:
+            columns = ([axes[vector][i].high for axes in made], [axes[vector][i].low for axes in made])
+            return Double(ops, *(chosen(ops, component, column) for column in columns))
+
+        return [(one(k, 0), one(k, 1)) for k in range(3)]
+
     def _axes(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
         """`A` and `B` of the particle's piece."""
         return [
@@ -240,6 +270,47 @@ class Coordinates(Family):
         A, B = self._axes(ops, self.pieces(ops, shape), component)
         return p * B[0] - q * A[0], p * B[1] - q * A[1]
 
+    @cached_property
+    def steep(self) -> float:
+        """The square of `|d|/(v x d)` from which on a landing is refined: before, doubles do on few straight sides."""
+        if self.boundary.shape or any(kind != LINE for kind in self.kinds):
+            return 0.0
+        corners = [[float(x.high) for x in axes[0] + axes[1]] for axes in self.exactly]
+        longest = max(sum(map(abs, numbers)) / np.hypot(numbers[2], numbers[3]) for numbers in corners)
+        return STEEP * STEEP if longest <= STEEP else 0.0
+
+    def refined(self, flight: "Flight[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
+        """`p` and `q` of a landing after its last step, and the velocity there before they are rounded."""
+        ops, (_, p, q, along, _) = flight.ops, best
+        if not self.steep:
+            return self._moved(flight, shape, best, d)
+        far = plane.dot(d, d) < ops.number(self.steep) * along * along
+        old = [p, q, *d]
+
+        def moved() -> list[N]:
+            return [ops.select(far, x, y) for x, y in zip(old, self._moved(flight, shape, best, d), strict=True)]
+
+        return list(ops.when(ops.negated(far), old, moved))
+
+    def _moved(self, flight: "Flight[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
+        ops, (_, p, q, along, where) = flight.ops, best
+        start, end = (self.exact_axes_at(ops, shape, at) for at in (flight.component, where))
+        short = (nought := ops.number(0.0)), nought
+        arcs = [kind != LINE for kind in self.kinds]
+        lines = [chosen_mask(ops, at, [not arc for arc in arcs]) for at in (flight.component, where)]
+        if any(arcs):
+            lacks = short_of(ops, (flight.p, flight.q)), short_of(ops, (p, q))
+            short = ops.select(lines[0], nought, lacks[0]), ops.select(lines[1], nought, lacks[1])
+        step = last_step(flight, start, end, (p, q, along), short, self.extent)
+        known = modulus(step * plane.dot(d, d)) < ops.number(NEWTON) * along
+        step = ops.select(known, step, ops.number(0.0))
+        (ax, ay), (bx, by) = ((pair[0].high, pair[1].high) for pair in end[1:])
+        d = p * bx - q * ax, p * by - q * ay  # of a side to its own last bits
+        turned = step * p, step * q
+        change = turned[0] * ax + turned[1] * bx, turned[0] * ay + turned[1] * by
+        change = ops.select(lines[1], nought, change[0]), ops.select(lines[1], nought, change[1])
+        return [p - turned[1], ops.select(lines[1], q, q + turned[0]), d[0] - change[0], d[1] - change[1]]
+
 
 class Flight(NamedTuple, Generic[N, M]):
     """The line along which a particle leaves: its piece, point and direction, and `d x v` there."""
@@ -251,6 +322,49 @@ class Flight(NamedTuple, Generic[N, M]):
     rate: N
     p: N  # of the point
     q: N
+    normal: bool = False  # does every particle leave along the normal?
+
+
+def exact_axes(piece: Sequence[Double[N, M]], kind: str, words: Doubles[N, M]) -> Axes[N, M]:
+    """From the numbers of a piece's program; of an arc about a focus `C` is the centre."""
+    centre, A, B = ((piece[i], piece[i + 1]) for i in (0, 2, 4))
+    if kind == FOCAL:
+        e = words.q(1, 1) - piece[9]
+        centre = centre[0] - e * A[0], centre[1] - e * A[1]
+    return [centre, A, B]
+
+
+def last_step(
+    flight: Flight[N, M], start: Axes[N, M], end: Axes[N, M], landing: Sequence[N], short: Pair[N], size: float
+) -> N:
+    """One more step of Newton's method, whose residual has twice the digits, from a landing at `p`, `q` and `v x d`.
+
+    `short` is what the two vectors `(p, q)` lack of their length. A flight along the normal is that before it is
+    rounded.
+    """
+    ops, (p, q, along), sums = flight.ops, landing, []
+    ends = (end, (p, q), short[1]), (start, (-flight.p, -flight.q), short[0])
+    for i in (0, 1):
+        found, beside = Sum(ops, size), ops.number(0.0)
+        for (_, A, B), (x, y), lack in ends:
+            found.add_product(x, A[i].high)
+            found.add_product(y, B[i].high)
+            beside = beside + (x * A[i].low + y * B[i].low) + lack * (x * A[i].high + y * B[i].high)
+        found.add(end[0][i])
+        found.add(-start[0][i])
+        w = found.value()
+        sums.append((w.high, w.low + beside))
+    (x, x_low), (y, y_low) = sums
+    v, low = flight.v, (ops.number(0.0), ops.number(0.0))
+    if flight.normal:
+        P, Q = (Double(ops, each, short[0] * each) for each in (flight.p, flight.q))
+        d = [P * start[2][i] - Q * start[1][i] for i in (0, 1)]
+        v, low = (-d[1].high, d[0].high), (-d[1].low, d[0].low)
+        across = p * end[2][0].high - q * end[1][0].high, p * end[2][1].high - q * end[1][1].high
+        along = plane.exact_cross(ops, v, across)
+    value, rest = plane.cross_and_error(ops, v, (x, y))
+    rest = rest + (plane.cross(v, (x_low, y_low)) + plane.cross(low, (x, y)))
+    return -(value + rest) / along
 
 
 def passing(flight: Flight[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:

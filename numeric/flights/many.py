@@ -26,7 +26,7 @@ from numeric.flights.corners import (
     passing,
     span,
 )
-from numeric.flights.family import Boundary, Landing
+from numeric.flights.family import SLAP, Boundary, Landing
 from numeric.flights.general import UNSURE
 from numeric.flights.grid import laid, met
 from numeric.flights.pieces import FAR, Pieces
@@ -76,7 +76,7 @@ class Many(Pieces):
         component, p, q = position
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0, d0 = self.point(ops, pieces, position), self.tangent(ops, shape, position)
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q)
+        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
         far = ops.number(FAR) + nought * component
         best = [far, component]
         if self.outer:
@@ -92,7 +92,7 @@ class Many(Pieces):
             if kind in self.kinds:
                 best = self._where(flight, kind, where, best)
         ends = self._sides(flight, self._row(ops, where)[6:])
-        return self._landed(flight, pieces, [t, *best, where], [*ends, *passed])
+        return self._landed(flight, shape, pieces, [t, *best, where], [*ends, *passed])
 
     def _where(self, flight: Flight[N, M], kind: str, where: N, best: list[N]) -> list[N]:
         """`p`, `q` and `v x d` of the landing, where it is on a piece of this kind; else `best`."""

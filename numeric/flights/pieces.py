@@ -28,7 +28,10 @@ State: the piece, `p`, `q`, and the direction `v`.
 from collections.abc import Iterator
 from functools import cached_property
 
+import numpy as np
+
 from numeric.backends import functions as plane
+from numeric.backends.doubled import affordable
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.corners import (
     CIRCLE,
@@ -51,7 +54,7 @@ from numeric.flights.corners import (
     piece_of,
     span,
 )
-from numeric.flights.family import Boundary, Landing, Status, grazing, reflected
+from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing, reflected
 from numeric.flights.general import UNSURE, refuse_long
 from numeric.lowering.program import LawIR
 
@@ -87,6 +90,8 @@ class Pieces(Coordinates):
         first = loops(self.following)[0]
         self.outer = first if convex(boundary, known, first, self.following) else []
         self.passed = [j for j in range(len(known)) if passable(boundary, known, j, self.following)]
+        self.extent = 2.0 ** np.ceil(np.log2(np.max(np.abs(np.array(self.numbers())[:, :6]))))
+        self.refines = not boundary.shape or affordable(*(program.lines for program in self.programs))
         if len(self.outer) == len(known) > MANY and not boundary.shape:
             self.halving = self.constants = self.numbers()
 
@@ -98,7 +103,7 @@ class Pieces(Coordinates):
     @property
     def identity(self) -> str:
         told = self.kinds, self.following, self.closed, self.wide, self.outer, self.bulges, self.passed, self.halving
-        return repr(told)
+        return repr((*told, self.extent))
 
     def numbers(self) -> list[list[float]]:
         """The numbers of every piece."""
@@ -152,7 +157,7 @@ class Pieces(Coordinates):
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0 = self.point(ops, pieces, position)
         d0 = self.tangent(ops, shape, position)
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q)
+        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
         corners = [piece.start for piece in pieces]
         best: list[N] | None = None
         if self.halving:
@@ -164,7 +169,7 @@ class Pieces(Coordinates):
             first, last, where, below, above = halved(ops, component, len(pieces), side)
             where = ops.select((first < nought) & (nought <= last), where, component)
             best = [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
-            return self._landed(flight, pieces, best, [first, last, below, above])
+            return self._landed(flight, shape, pieces, best, [first, last, below, above])
         sides = [plane.cross(v, (corner[0] - z0[0], corner[1] - z0[1])) for corner in corners]
         if self.outer:
             best = self._round(flight, pieces, sides)
@@ -189,7 +194,7 @@ class Pieces(Coordinates):
                 new = t, p, q, along, here
                 best = [x if x is y else ops.select(nearer, x, y) for x, y in zip(new, best, strict=True)]
         assert best is not None
-        return self._landed(flight, pieces, best, sides)
+        return self._landed(flight, shape, pieces, best, sides)
 
     def _round(self, flight: Flight[N, M], pieces: list[Piece[N]], sides: Fields[N]) -> list[N]:
         """Where a flight lands on the convex curve round all others."""
@@ -284,13 +289,14 @@ class Pieces(Coordinates):
         gap = piece.half[0] * c - piece.half[1] * s
         return ops.select(ops.number(0.0) < c, ops.number(1.0), gap) if wide else gap
 
-    def _landed(self, flight: Flight[N, M], pieces: list[Piece[N]], best: Fields[N], sides: Fields[N]) -> Landing[N]:
+    def _landed(
+        self, flight: Flight[N, M], shape: Fields[N], pieces: list[Piece[N]], best: Fields[N], sides: Fields[N]
+    ) -> Landing[N]:
         ops, v, (t, p, q, along, where) = flight.ops, flight.v, best
         nought = ops.number(0.0)
         A, B = self._axes(ops, pieces, where)
         d = p * B[0] - q * A[0], p * B[1] - q * A[1]
-        across = plane.dot(d, v)
-        code = ops.select(grazing(ops, across, along), ops.number(float(Status.GRAZING.code)), nought)
+        code = ops.select(grazing(ops, plane.dot(d, v), along), ops.number(float(Status.GRAZING.code)), nought)
         farthest = self._farthest(ops, pieces)
         near: M | None = None
         if any(self.bulges):
@@ -303,6 +309,11 @@ class Pieces(Coordinates):
         if not self.outer:  # what passes between two pieces is at a join
             code = ops.select(t < ops.number(FAR), code, ops.number(float(Status.JOIN.code)))
         D = self._turning(ops, pieces, where)
+        if self.refines and ops.doubles:
+            p, q, *new = self.refined(flight, shape, best, d)
+            d = new[0], new[1]
+            along = plane.cross(v, d)
+        across = plane.dot(d, v)
         return Landing([where, p, q], across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
 
     def _doubt(self, flight: Flight[N, M], pieces: list[Piece[N]], best: Fields[N], d: Pair[N], sides: Fields[N]) -> N:

@@ -90,7 +90,7 @@ class Pieces(Coordinates):
         first = loops(self.following)[0]
         self.outer = first if convex(boundary, known, first, self.following) else []
         self.passed = [j for j in range(len(known)) if passable(boundary, known, j, self.following)]
-        self.extent = 2.0 ** np.ceil(np.log2(np.max(np.abs(np.array(self.numbers())[:, :6]))))
+        self.extent = 2.0 ** np.ceil(np.log2(np.max(np.abs([row[:6] for row in self.numbers()]))))
         self.refines = not boundary.shape or affordable(*(program.lines for program in self.programs))
         if len(self.outer) == len(known) > MANY and not boundary.shape:
             self.halving = self.constants = self.numbers()

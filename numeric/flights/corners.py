@@ -162,7 +162,7 @@ class Coordinates(Family):
     """
 
     kinds: list[str]
-    extent: float  # a power of two above all numbers of pieces, give or take
+    extent: float  # a power of two above all numbers of pieces
     programs: list[Program]
 
     @abstractmethod

@@ -25,10 +25,9 @@ off by `UNSURE*S` along the arc, and the line moves sideways by `UNSURE` times i
 State: the piece, `p`, `q`, and the direction `v`.
 """
 
+import math
 from collections.abc import Iterator
 from functools import cached_property
-
-import numpy as np
 
 from numeric.backends import functions as plane
 from numeric.backends.doubled import affordable
@@ -90,7 +89,7 @@ class Pieces(Coordinates):
         first = loops(self.following)[0]
         self.outer = first if convex(boundary, known, first, self.following) else []
         self.passed = [j for j in range(len(known)) if passable(boundary, known, j, self.following)]
-        self.extent = 2.0 ** np.ceil(np.log2(np.max(np.abs([row[:6] for row in self.numbers()]))))
+        self.extent = 2.0 ** math.frexp(max(abs(x) for row in self.numbers() for x in row[:6]))[1]
         self.refines = not boundary.shape or affordable(*(program.lines for program in self.programs))
         if len(self.outer) == len(known) > MANY and not boundary.shape:
             self.halving = self.constants = self.numbers()

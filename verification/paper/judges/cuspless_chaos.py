@@ -6,14 +6,19 @@ Not shown is that what attracts has one dense orbit: claims that there is a chao
 one attracts globally, or that it is the only one, are not.
 """
 
+from flint import arb
+
 from symbolic.cycles.returns import HIGHEST, LOWEST
 from symbolic.cycles.splitting import least_rate, splits
 from symbolic.expressions.signs import Finding
+from verification.arithmetic.balls import real_ball
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, judges, sampled
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
 from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled
 from verification.paper.judges.hyperbolicity import PROVED_TO, chaos
+from verification.paper.judges.located import certified, value
 from verification.proofs.global_dynamics.returns import every_return
+from verification.proofs.starts.mean import HIGH, LOW, MULTIPLIER, RATE, average
 
 NEAR_ONE = ("0.7", "0.8", "0.9", "0.95", "0.99")
 ABOVE = ("0.0935", "0.1", "0.15", "0.25", "0.4", "0.6", "0.8", "0.95")
@@ -102,6 +107,31 @@ def chaotic_above_star(claim: Claim) -> Judgement:
         f"for lambda* < lam <= {PROVED_TO} an open set of angles at the join leads to a chaotic attractor next to the "
         f"corner orbit; for {LOWEST} <= lam < 1 every orbit is attracted by a compact set, and each that misses the "
         f"joins is unstable; {ONE_PIECE}; at lam = 1, which is taken not to be meant, areas are kept",
+    )
+
+
+@judges("cuspless.nu_crosses_zero")
+def crosses_zero(claim: Claim) -> Judgement:
+    """Nearly all starts are proved to end on period 2 when the chaotic attractor appears."""
+    found, born = average(), real_ball(value("lambda-star"), 20)
+    first, last = (arb(end.numerator) / end.denominator for end in (LOW, HIGH))
+    settled = all(found.checks.values())
+    negative = answer(
+        settled and found.mean < 0 and bool(first < born) and bool(born < last),
+        f"for every lam from {float(LOW)} to {float(HIGH)} at most {found.share:.3f} of the starts are not proved to "
+        f"end on period 2, where nu_+ < log({MULTIPLIER})/2, and nu_+ < {float(RATE)} of every orbit: the mean is at "
+        f"most {found.mean:.4f}, of starts uniform in the table, the first bounce elastic or not, or uniform in s and "
+        "sin(phi)",
+    )
+    argument = "lambda* = 0.07122 lies inside a range of contractions at each of which the average is negative"
+    changes = f"it changes its sign between {float(HIGH)} and {LOWEST}"
+    return Judgement(
+        counterexample(argument, negative, certified("lambda-star")),
+        f"the average is negative for {float(LOW)} <= lam <= {float(HIGH)}, lambda* among them, and positive at lam = "
+        f"{LOWEST}: {changes}, not where the attractor appears",
+        by("negative by the shares of the basins, positive since every orbit is unstable", negative, unstable()),
+        "nu_+ does not cross 0 when the chaotic attractor appears: next to lambda* nearly all starts end on period 2, "
+        f"so that the average over starts is negative; {changes}.",
     )
 
 

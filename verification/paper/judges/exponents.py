@@ -161,19 +161,6 @@ def listed(contractions: tuple[str, ...]) -> str:
     return "; ".join(f"{m:+.4f} +- {e:.0e} at {x} ({c:.1%} chaotic)" for x, m, e, c in rows)
 
 
-@judges("cuspless.nu_crosses_zero")
-def crosses_zero(claim: Claim) -> Judgement:
-    """The chaotic basin is born with size 0: the average turns positive well after the attractor appears."""
-    points = ("0.0713", "0.073", "0.075", "0.0765")
-    said = (
-        "sampled, it does not: the chaotic attractor appears at lambda* = 0.07122 with nu_+ = 0.25 and a basin of size "
-        f"0, so the average over starts stays negative there and turns positive near 0.0757: {listed(points)}"
-    )
-    signs = [averaged(x)[0] / averaged(x)[1] for x in points]
-    agrees = signs[0] > -3  # the first lies 0.1 per cent above lambda*
-    return sampled("it crosses 0 near lam = 0.0757, not at lambda* = 0.07122", said, agrees)
-
-
 @judges("cuspless.nu_jump")
 def jumps(claim: Claim) -> Judgement:
     """The basin of period 2 shrinks to nothing, so the average rises steeply, and joins on."""

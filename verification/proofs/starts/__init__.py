@@ -1,0 +1,5 @@
+"""Random starts: how many are proved to end on a cycle, and the mean of their exponents."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

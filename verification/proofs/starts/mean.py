@@ -1,0 +1,104 @@
+"""The mean of `nu_plus` over random starts on the cuspless table is negative where a chaotic attractor is born.
+
+With the share `u` of starts that are not proved to end on period 2, the exponent `nu < 0` of that cycle and a bound
+`M` for every orbit, the mean is at most `(1 - u)*nu + u*M`. All hold for every contraction from `LOW` to `HIGH`, and
+`lambda*` lies between. Paper: section 5.3.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+from flint import arb
+from sympy import Expr, Interval, Rational, S, integrate, log, pi
+
+from symbolic import Scene
+from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
+from symbolic.expressions.signs import Finding, conjunction, positive
+from symbolic.tables.geometry import velocity
+from symbolic.tables.table import Table, lam, theta
+from verification.arithmetic.balls import enclose, working
+from verification.proofs.global_dynamics.boxes import hull
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.core import Core, attracts
+from verification.proofs.starts.strips import bounded, strips, unsettled
+
+LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
+GATES = (0.405, 0.003), (0.4, 0.006), (0.38, 0.012), (0.36, 0.03)
+CORE = Core(chart=1, slope=0.0707, cubic=-0.0233, width=0.0006, inner=0.05, outer=0.41, cells=410, gates=GATES)
+MULTIPLIER = Rational(928, 1000)  # both multipliers of period 2 are smaller in modulus
+RATE, BOUNCES, WEIGHT = Fraction("0.52"), 2, 0.05  # nu_plus of every orbit is smaller; the norm that says so
+COLUMNS, ROWS = (512, 64), 48  # strips at first
+MESH = 2000  # points of each component, between which the diameter is measured
+ENOUGH = 0.98  # of the measure at which the mean would be 0
+BITS = 64
+SLACK = 1 + 2.0**-40
+
+
+@dataclass(frozen=True)
+class Average:
+    """What is proved of the mean: of each step whether it is, and bounds."""
+
+    checks: dict[str, bool]
+    share: float
+    mean: float
+    strips: int
+
+
+def area(table: Table) -> Expr:
+    """The area of a table, by Green's theorem.
+
+    >>> from symbolic import tables
+    >>> area(tables.cuspless)
+    15*sqrt(3)/16 + pi
+    """
+    total = S.Zero
+    for component in table.components:
+        (x, y), (dx, dy) = component.point, velocity(component)
+        total += integrate((x * dy - y * dx).expand(), (theta, component.start, component.end)) / 2
+    return total.expand()
+
+
+def diameter(map: PinballImages) -> float:
+    """A bound for the distance of two points of the boundary: of a mesh, and what lies between its points.
+
+    >>> cuspless = PinballImages(Scene("cuspless", lam="1/2"))
+    >>> 0 < diameter(cuspless) - 1.5 * 3**0.5 < 0.01
+    True
+    """
+    places, gap = [], 0.0
+    for chart, ends in enumerate(map.charts):
+        theta = np.linspace(*ends.x, MESH + 1)
+        on = np.full(MESH, chart)
+        x, y, *_ = map.place(np.full(MESH + 1, chart), hull(theta, theta))
+        places.append(np.stack([x.m, y.m]))
+        _, _, dx, dy, *_ = map.place(on, hull(theta[:-1], theta[1:]))
+        gap = max(gap, float(np.max(map.ops.sqrt(dx * dx + dy * dy).upper() * np.diff(theta))))
+    x, y = np.concatenate(places, axis=1)
+    most = max(float(np.max(np.sqrt((x - a) * (x - a) + (y - b) * (y - b)))) for a, b in zip(x, y, strict=True))
+    return (most + gap) * SLACK
+
+
+def stable(trace: Expr, det: Expr, low: Fraction, high: Fraction) -> Finding:
+    """Are both multipliers smaller than `MULTIPLIER` in modulus, for every contraction of the range? By Jury."""
+    r, box = MULTIPLIER, {lam: Interval(Rational(str(low)), Rational(str(high)))}
+    return conjunction(*(positive(x, box) for x in (r**2 - trace * r + det, r**2 + trace * r + det, r**2 - det)))
+
+
+@cache
+def average(low: Fraction = LOW, high: Fraction = HIGH) -> Average:
+    """The bound for every contraction of a range about `lambda*`; the mean is infinite where a step is not proved."""
+    map = PinballImages(Scene("cuspless", lam=str(high)), (low, high))
+    trace, det = trace_and_determinant(cuspless_horizontal())
+    checks = attracts(map, CORE)
+    checks["no orbit grows faster"] = bounded(map, float(RATE), BOUNCES, WEIGHT)
+    checks["period 2 is as stable"] = bool(stable(trace, det, low, high))
+    nu, rate = float(enclose(log(MULTIPLIER) / 2).real.upper()), float(RATE)
+    with working(BITS):
+        ratio = float((arb(diameter(map)) / (2 * enclose(pi * area(map.map.table)).real)).upper())
+    enough = -nu / (rate - nu) / ratio * ENOUGH
+    left = unsettled(map, CORE, strips(map, COLUMNS, ROWS), enough)
+    share = left.measure * ratio * SLACK
+    mean = ((1 - share) * nu + share * rate) if share < 1 and all(checks.values()) else np.inf
+    return Average(checks, share, mean + 1e-12, left.strips)

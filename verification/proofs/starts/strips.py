@@ -1,0 +1,307 @@
+"""How many random starts are proved to end on a cycle, and what this makes of the mean of their exponents.
+
+A start is a chord that meets the boundary at `theta`, with incidence `eta`. Points uniform in a table of area `A`, with
+uniform directions, give chords the density `l*cos(eta)/(2*pi*A)` in `ds*deta`, with their length `l` (Santalo's
+formula): at most `D/(2*pi*A)` times `cos(eta)`, with the diameter `D`. Elastic bounces keep `cos(eta)*ds*deta`, so the
+bound holds at the second landing too, when the first bounce is elastic (the paper's appendix). It holds for starts
+uniform in `s` and `sin(eta)` as well, of density `1/(2*L)` with the perimeter `L`: by `L <= pi*D` and `4*pi*A <= L*L`
+of a convex table, `pi*A <= D*L`. So one number bounds the three shares of starts that are *not* proved to end on
+the cycle: the measure `cos(eta)*ds*deta` of what is left, times `D/(2*pi*A)`.
+
+The plane of `theta` and `eta` is cut into strips between two straight lines, which lean as stable curves do, so that a
+strip stays thin. One is settled when every parallelogram of its images comes to the core of the cycle, or a gate of it;
+the others are cut in two. The table is its own mirror image in the axis through the cycle: `eta >= 0` is enough.
+
+Of any orbit `nu_plus`, the upper limit, is at most the logarithm of the largest norm of the derivative of two bounces,
+over two. Starts that ever come to a join have measure 0, since the map's determinant vanishes nowhere for `lam > 0`.
+All this is proved for every contraction of a range. Paper: section 5.3 and the appendix.
+"""
+
+from math import exp
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from numeric import PinballMap
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull, turned
+from verification.proofs.global_dynamics.images import PinballImages, incidence, turn_between
+from verification.proofs.starts.core import Core, matrix
+from verification.proofs.starts.parallelograms import Chords, Parallelograms, carried
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+SLACK = 1 + 2.0**-40  # covers the roundings of a sum
+WIDE = 0.05  # distance of these orbits, at most
+WIDEST = 0.3  # a parallelogram that is wider is given up
+BLOCK = 1 << 15  # strips at once
+LEAN = 5  # bounces after which strips that lean as they do are thinnest
+STEEPEST = 0.3  # of lines, in theta by eta
+LOOKS = (-1.0, 0.0, 1.0)  # places across and along a strip, at which orbits are looked at before anything is proved
+SHARE = 1.0  # how much wider than the distances of these orbits a gate has to be
+BENT = 1.0  # how much more than its first side a parallelogram may owe to the rest, before a strip is cut across
+EARLY = 1  # the bounce after which that is looked at
+BOUNCES = 30
+FIRST = 256, 16  # parts of a component over which the norm is asked first
+QUARTER = 1.5707963267948968  # above pi/2
+
+
+class Strips(NamedTuple):
+    """Sets `left + left_lean*u <= theta <= right + right_lean*u` for `eta = middle + u`, `|u| <= half`."""
+
+    chart: Indices
+    left: Array
+    right: Array
+    left_lean: Array
+    right_lean: Array
+    middle: Array
+    half: Array
+
+    def some(self, chosen: Mask | Indices | slice) -> "Strips":
+        """Some of the strips."""
+        chart, *fields = self
+        return Strips(chart[chosen], *(field[chosen] for field in fields))
+
+    def cut(self, across: Mask) -> "Strips":
+        """Each cut in two: by a line in its middle, or where `across` says so at its middle `eta`."""
+        down, flat = self.some(~across), self.some(across)
+        line, lean = (down.left + down.right) / 2, (down.left_lean + down.right_lean) / 2
+        parts = [down._replace(right=line, right_lean=lean), down._replace(left=line, left_lean=lean)]
+        for sign in (-0.5, 0.5):
+            step = sign * flat.half
+            left, right = flat.left + step * flat.left_lean, flat.right + step * flat.right_lean
+            parts.append(flat._replace(left=left, right=right, middle=flat.middle + step, half=flat.half / 2))
+        return joined(parts)
+
+    def started(self, map: PinballImages) -> Parallelograms:
+        """Parallelograms about the phase points after the bounce, `phi = -lam*eta`."""
+        lean, lam = (self.left_lean + self.right_lean) / 2, map.lam
+        middle, exit = (self.left + self.right) / 2, -(lam * BallArray(self.middle))
+        wide, tall = (self.right - self.left) / 2 * (1 + 1e-12), self.half * (1 + 1e-12)
+        sides, rest = np.zeros((2, 2, middle.size)), np.zeros((2, middle.size))
+        sides[0, 0], sides[0, 1], sides[1, 1] = wide, lean * tall, -float(lam.m) * tall
+        rest[0] = np.abs(self.right_lean - self.left_lean) / 2 * tall * SLACK + 1e-14
+        rest[1] = exit.r + (float(lam.r) + 1e-16) * tall * SLACK + 1e-15
+        return Parallelograms(self.chart, np.stack([middle, exit.m]), sides, rest)
+
+    def measures(self, map: PinballImages) -> Array:
+        """Bounds for the integrals of `cos(eta)*ds*deta` over the strips."""
+        sway = [np.abs(lean) * self.half for lean in (self.left_lean, self.right_lean)]
+        first = np.minimum(self.left - sway[0], self.right - sway[1])
+        whole = hull(first, np.maximum(self.left + sway[0], self.right + sway[1]))
+        _, _, dx, dy, *_ = map.place(self.chart, whole)
+        speed = map.ops.sqrt(dx * dx + dy * dy).upper()
+        low = np.maximum(np.abs(self.middle) - self.half, 0.0)
+        cosine = turned(BallArray(low))[0].upper()
+        wide = self.right - self.left
+        wide = np.where(np.abs(self.right_lean - self.left_lean) * self.half < wide, wide, np.inf)  # lines do not cross
+        return np.asarray(wide * 2 * self.half * speed * cosine * SLACK)
+
+
+def joined(parts: list[Strips]) -> Strips:
+    """All strips of a list."""
+    chart, *fields = (np.concatenate(field) for field in zip(*parts, strict=True))
+    return Strips(chart, *fields)
+
+
+def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
+    """Strips that cover all `theta` and `0 <= eta <= pi/2`; how they lean is a guess from float64 orbits."""
+    pieces: list[Strips] = []
+    edges = np.linspace(0.0, QUARTER, rows + 1)
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2 * (1 + 1e-9)
+    for chart, count in enumerate(columns):
+        low, high = map.charts[chart].x
+        line = np.linspace(low, high, count + 1)
+        for eta, tall in zip(middle, half, strict=True):
+            lean = _leaning(map.map, chart, line, float(eta))
+            lean[0] = lean[-1] = 0.0
+            most = np.diff(line) / tall * 0.9
+            for _ in range(2):  # lines do not cross
+                for i in range(1, lean.size):
+                    lean[i] = np.clip(lean[i], lean[i - 1] - most[i - 1], lean[i - 1] + most[i - 1])
+                lean, most = lean[::-1], most[::-1]
+                lean[0] = 0.0
+            fields = line[:-1], line[1:], lean[:-1], lean[1:]
+            pieces.append(Strips(np.full(count, chart), *fields, *(np.full(count, x) for x in (eta, tall))))
+    return joined(pieces)
+
+
+def _leaning(map: PinballMap, chart: int, theta: Array, eta: float) -> Array:
+    """`d theta/d eta` of curves that a few bounces make short."""
+    lam = float(np.max(map.lam))
+    inside = np.clip(theta, theta[0] + 1e-6, theta[-1] - 1e-6)
+    at, phi, on = inside, np.full(theta.size, -lam * eta), np.full(theta.size, chart)
+    product = np.tile(np.eye(2), (theta.size, 1, 1))
+    for _ in range(LEAN):
+        product = map.derivative(at, phi, on) @ product
+        step = map.step(at, phi, on)
+        at, phi, on = step.theta, step.phi, step.component
+    dx, dy = (np.gradient(z, inside) for z in map.states.point(np.full(theta.size, chart), inside))
+    lean = lam * product[:, 0, 1] / product[:, 0, 0] / np.sqrt(dx * dx + dy * dy)
+    return np.asarray(np.clip(np.nan_to_num(lean), -STEEPEST, STEEPEST))
+
+
+def hopeful(map: PinballMap, core: Core, given: Strips) -> tuple[Mask, Mask]:
+    """Which strips may be settled, by nine float64 orbits of each; and which others had rather be cut across.
+
+    What is hopeful is looked at closely; a wrong guess costs time.
+    """
+    lam, count = float(np.max(map.lam)), given.left.size
+    across, along = (x.ravel()[:, None] for x in np.meshgrid(LOOKS, LOOKS, indexing="ij"))
+    u = along * given.half
+    left, right = given.left + given.left_lean * u, given.right + given.right_lean * u
+    theta, phi = (left + right + across * (right - left)) / 2, -lam * (given.middle + u)
+    low, high = (np.array([end[k] for end in map.states.ends])[given.chart] for k in (0, 1))
+    orbit = map.orbit(np.clip(theta, low, high).ravel(), phi.ravel(), BOUNCES, np.tile(given.chart, 9))
+    at = orbit.theta.reshape(BOUNCES + 1, 9, count)
+    exit = orbit.phi.reshape(at.shape)
+    one = np.ptp(orbit.component.reshape(at.shape), axis=1) == 0
+    spread = np.ptp(at, axis=1)
+    aside = np.abs(exit - (core.slope + core.cubic * at**2) * at)
+    inside = np.zeros((BOUNCES + 1, count), dtype=bool)
+    for outer, width in ((core.outer, core.width), *core.gates):
+        near = np.max(np.abs(at), axis=1) + SHARE * spread < outer
+        thin = np.max(aside, axis=1) + SHARE * np.ptp(aside, axis=1) < width
+        inside |= near & thin
+    inside &= orbit.component.reshape(at.shape)[:, 0] == core.chart
+    fine = np.logical_and.accumulate(one & (spread < WIDE), axis=0)
+    good = np.any(inside & fine, axis=0)
+    last = np.clip(np.sum(fine, axis=0), 1, BOUNCES)
+    places = at.reshape(BOUNCES + 1, 3, 3, count)
+    sides = [np.max(np.ptp(places, axis=k), axis=1)[last, np.arange(count)] for k in (1, 2)]
+    return good, np.asarray(sides[1] > sides[0])
+
+
+def settled(map: PinballImages, core: Core, given: Strips) -> tuple[Mask, Mask]:
+    """Which strips are proved to come to the core; and which of the others had rather be cut across."""
+    sets, owner = given.started(map), np.arange(given.left.size)
+    failed, flat, entered = (np.zeros(owner.size, dtype=bool) for _ in range(3))
+    for bounce in range(BOUNCES):
+        home = core.enters(sets)
+        entered[owner[home]] = True
+        open_ = ~home & ~failed[owner]
+        sets, owner = sets[open_], owner[open_]
+        if not owner.size:
+            return entered & ~failed, flat
+        source, images = carried(map, sets)
+        with np.errstate(invalid="ignore"):
+            lost = ~images.known | ~(images.reach() < WIDEST)
+        sets, owner = images, owner[source]
+        failed[owner[lost]] = True
+        if bounce == EARLY:
+            flat[owner] = np.abs(sets.sides[0, 1]) + sets.rest[0] > BENT * np.abs(sets.sides[0, 0])
+    failed[owner] = True
+    return entered & ~failed, flat
+
+
+class Left(NamedTuple):
+    """What is not settled: a bound for the measure `cos(eta)*ds*deta`, and how many strips were looked at closely."""
+
+    measure: float
+    strips: int
+
+
+def unsettled(map: PinballImages, core: Core, first: Strips, enough: float, rounds: int = 24) -> Left:
+    """Cuts strips until what is not settled has at most the measure `enough`, of all `eta`, or `rounds` are over.
+
+    A strip that is left, or not looked at in the last round, counts whole.
+    """
+    cells, asked, left = first, 0, np.inf
+    for _ in range(rounds):
+        sizes = 2 * SLACK * cells.measures(map)
+        open_, across = np.ones(sizes.size, dtype=bool), np.zeros(sizes.size, dtype=bool)
+        for start in range(0, sizes.size, BLOCK):
+            some = cells.some(slice(start, start + BLOCK))
+            good, flat = hopeful(map.map, core, some)
+            chosen = np.flatnonzero(good)
+            if chosen.size:
+                done, flat[chosen] = settled(map, core, some.some(chosen))
+                open_[start + chosen[done]] = False
+            across[start : start + BLOCK] = flat
+            asked += chosen.size
+            left = float(np.sum(sizes[open_])) * SLACK
+            if left <= enough:
+                return Left(left, asked)
+        cells = cells.some(open_).cut(across[open_])
+    return Left(left, asked)
+
+
+def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> Array:
+    """For each box a bound for the norm of the derivative of some bounces, in `max(abs(ds), abs(dphi)/weight)`.
+
+    Infinite where nothing is known. Where landings lie on both sides of a join each of them is asked.
+    """
+    found = np.zeros(boxes.chart.size)
+    one, nought = BallArray(np.ones(found.size)), BallArray(np.zeros(found.size))
+    first = np.asarray(_speed(map, boxes.chart, hull(*boxes.x)).lower())
+    _steepest(map, boxes, np.arange(found.size), [[one, nought], [nought, one]], bounces, found, (first, weight))
+    return found
+
+
+def _speed(map: PinballImages, chart: Indices, theta: BallArray) -> BallArray:
+    _, _, dx, dy, *_ = map.place(chart, theta)
+    return map.ops.sqrt(dx * dx + dy * dy)
+
+
+def _steepest(
+    map: PinballImages,
+    boxes: Boxes,
+    owner: Indices,
+    product: list[list[BallArray]],
+    bounces: int,
+    found: Array,
+    norm: tuple[Array, float],
+) -> None:
+    """Goes on from boxes in which some bounces have ended; `product` is the derivative up to there."""
+    if not owner.size:
+        return
+    with np.errstate(all="ignore"):
+        if not bounces:
+            last, (first, weight) = np.asarray(_speed(map, boxes.chart, hull(*boxes.x)).upper()), norm
+            size = [[entry.magnitude() for entry in row] for row in product]
+            along = last * (size[0][0] / first[owner] + weight * size[0][1])
+            turn = size[1][0] / first[owner] / weight + size[1][1]
+            most = np.maximum(along, turn) * SLACK
+            np.maximum.at(found, owner, np.where(np.isfinite(most), most, np.inf))
+            return
+        seen = np.zeros(owner.size, dtype=bool)
+        whole = Chords(map, boxes)
+        for piece in whole.pieces(*whole.arcs()):
+            on = piece.on
+            if not on.size:
+                continue
+            seen[on] = True
+            arc = hull(piece.low, piece.high)
+            flights = Chords(map, Boxes(boxes.chart[on], *((a[on], b[on]) for a, b in (boxes.x, boxes.y))))
+            every = np.arange(on.size)
+            entries = matrix(flights.slopes(every, piece.chart, arc))
+            bent = turn_between(flights.tangent(every, flights.thetas), map.place(piece.chart, arc)[2:4])
+            exit = map.exit(incidence(flights.phis + bent), arc)
+            low, high = np.maximum(exit.lower(), -map.top), np.minimum(exit.upper(), map.top)
+            known = np.isfinite(exit.r) & np.isfinite(arc.r)
+            found[owner[on[~known]]] = np.inf
+            go = np.flatnonzero(known & (low <= high))
+            image = Boxes(piece.chart[go], (arc.lower()[go], arc.upper()[go]), (low[go], high[go]))
+            before = [[entry[on] for entry in row] for row in product]
+            after = [[entries[i][0] * before[0][j] + entries[i][1] * before[1][j] for j in (0, 1)] for i in (0, 1)]
+            _steepest(map, image, owner[on[go]], [[x[go] for x in row] for row in after], bounces - 1, found, norm)
+        found[owner[~seen]] = np.inf
+
+
+def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvings: int = 8) -> bool:
+    """Is `nu_plus` at most `rate` for every orbit? The norm of so many bounces says so, over boxes cut as needed."""
+    goal = exp(rate * bounces) / SLACK
+    for chart, ends in enumerate(map.charts):
+        sides = [(np.array([low - 1e-14]), np.array([high + 1e-14])) for low, high in (ends.x, ends.y)]
+        boxes = Boxes(np.array([chart]), *sides).parts(*FIRST)[0]
+        for _ in range(halvings):
+            open_ = ~(steepest(map, boxes, bounces, weight) <= goal)
+            if not np.any(open_):
+                break
+            (left, right), (below, above) = boxes.x, boxes.y
+            kept = (left[open_], right[open_]), (below[open_], above[open_])
+            boxes = Boxes(boxes.chart[open_], *kept).parts(2, 2)[0]
+        else:
+            return False
+    return True

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
 
-from sympy import Derivative, Expr, Function, Interval, Symbol, atan, diff, oo
+from sympy import Derivative, Expr, Function, Interval, Symbol, atan, cos, diff, oo, sin
 
 from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
 from symbolic.expressions.text import Kernel, kernel
@@ -210,6 +210,40 @@ def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
         values |= {f"{name}_{side}": e.xreplace(own) for name, e in staged.values.items()}
     about = f"Angles from the inward normals to the sides at {corners} corners, with derivatives to order {order}."
     return kernel(f"polygon_{corners}_{order}", at, values, definitions, about)
+
+
+@cache
+def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
+    """The angles of `polygon_kernel` to order 0 on a table of one polar curve, from the gaps between corners too.
+
+    A function of the parameters at the corners and of the gaps to the next one, the last gap back to the first. With
+    `q` the radius here by that there, the chord leaves at `atan(sin(gap)/(q - cos(gap)))` from the ray to the origin
+    and the normal at `atan(rho'/rho)`. What turns with all corners cancels, so that in balls a gap is as wide as it
+    is and not as its two ends. The first results are the angles, which hold where the last ones, `q - cos(gap)`, are
+    positive.
+
+    >>> from symbolic.tables import circle
+    >>> polar_polygon_kernel(circle, 3).results[5:7]
+    ('angle_from2to1', 'ahead_from0to1')
+    """
+    radius = table.components[0].radius
+    if len(table.components) > 1 or radius is None:
+        raise ValueError(f"polar_polygon_kernel: {table.name} is not one polar curve")
+    at = [Symbol(f"theta{i}", real=True) for i in range(corners)]
+    gaps = [Symbol(f"gap{i}", real=True) for i in range(corners)]
+    rho, tilt = ([Symbol(f"{name}{i}", real=True) for i in range(corners)] for name in ("rho", "tilt"))
+    definitions = {r: radius.subs(theta, place) for r, place in zip(rho, at, strict=True)}
+    turned = atan(diff(radius, theta) / radius)
+    definitions |= {r: turned.subs(theta, place) for r, place in zip(tilt, at, strict=True)}
+    values, ahead = {}, {}
+    for step in (1, -1):
+        for here in range(corners):
+            there = (here + step) % corners
+            gap = gaps[here] if step == 1 else -gaps[there]
+            side = ahead[f"ahead_from{here}to{there}"] = rho[here] / rho[there] - cos(gap)
+            values[f"angle_from{here}to{there}"] = atan(sin(gap) / side) - tilt[here]
+    about = f"Angles from the inward normals to the sides at {corners} corners, from the gaps between these."
+    return kernel(f"polar_polygon_{corners}", [*at, *gaps], values | ahead, definitions, about)
 
 
 @cache

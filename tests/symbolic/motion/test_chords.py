@@ -1,5 +1,7 @@
 """The collision rule in boundary parameters: exact on the paper's cycles, and the same map."""
 
+import random
+
 import mpmath
 import pytest
 from flint import arb
@@ -21,7 +23,14 @@ from symbolic.cycles.cycle import (
 )
 from symbolic.expressions.signs import vanishes
 from symbolic.expressions.text import load
-from symbolic.motion.chords import chord_angle, chord_kernel, collision_kernel, collision_rule, polygon_kernel
+from symbolic.motion.chords import (
+    chord_angle,
+    chord_kernel,
+    collision_kernel,
+    collision_rule,
+    polar_polygon_kernel,
+    polygon_kernel,
+)
 from symbolic.motion.chords import theta0 as t0
 from symbolic.motion.chords import theta1 as t1
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
@@ -158,6 +167,36 @@ def test_the_sides_of_a_polygon_have_the_angles_of_their_chords(table, order):
             assert (found - value).contains(0)
             assert abs(found - value) < 1e-25
             assert around.contains(value)
+
+
+@pytest.mark.parametrize("table", [circle, egg(3).at(alpha=Rational(1, 12)), egg(2).at(alpha=Rational(1, 8))])
+def test_a_polygon_in_a_polar_curve_has_the_same_angles_from_its_gaps_and_closer(table):
+    """A corner that is seen backwards from the ray of another has no angle there."""
+    chance, ahead = random.Random(3), 0
+    with working(100):
+        plain, polar = load(polygon_kernel(table, 3, 0), balls(100)), load(polar_polygon_kernel(table, 3), balls(100))
+        for _ in range(40):
+            first, one, two = (arb(chance.uniform(*range_)) for range_ in ((-3, 3), (0.2, 3), (0.2, 3)))
+            at, gaps = [first, first + one, first + one + two], [one, two, 2 * arb.pi() - one - two]
+            around = [x + arb(0, 0.01) for x in (first, one, two)]
+            wide = [around[0], around[0] + around[1], sum(around[1:], around[0])]
+            values, exact = polar(*at, *gaps), plain(*at)
+            boxes, others = polar(*wide, *around[1:], 2 * arb.pi() - around[1] - around[2]), plain(*wide)
+            for found, side, value, box, there, other in zip(
+                values[:6], values[6:], exact, boxes[:6], boxes[6:], others, strict=True
+            ):
+                if side > 0:
+                    ahead += 1
+                    assert abs(found - value) < 1e-25
+                if there > 0:
+                    assert box.contains(value)
+                    assert not other.is_finite() or box.rad() < other.rad()
+    assert ahead > 200
+
+
+def test_a_table_that_is_not_one_polar_curve_is_refused():
+    with pytest.raises(ValueError, match="cuspless is not one polar curve"):
+        polar_polygon_kernel(cuspless, 3)
 
 
 def test_one_third_goes_in_exactly():

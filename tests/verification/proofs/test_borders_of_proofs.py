@@ -184,6 +184,25 @@ def test_each_rule_alone_excludes_a_triangle_whose_angles_are_all_alike(phi, eta
         assert triangles._impossible(values, slopes, arb(1), arb("0.5"), 0.25, box) is excluded
 
 
+def test_an_angle_comes_from_the_gaps_only_where_that_holds():
+    """From the parameters where a corner may be seen backwards, if only just, or where it is infinite."""
+    inf, ahead = arb(0, "inf"), [arb(1), arb(0), arb(-1), arb(0, 1), arb(1), arb(1)]
+    near = [arb(10 + i) for i in range(5)] + [inf]
+    closer, angles = lambda *_: [*near, *ahead], lambda *_: [arb(i) for i in range(6)]
+
+    assert [float(x) for x in triangles._from_gaps(angles, closer, [], [])] == [10, 1, 2, 3, 14, 5]
+
+
+def test_each_gap_is_that_from_its_corner_to_the_next():
+    given = []
+    closer = lambda *z: given.append(z) or [arb(-1)] * 6 + [arb(1)] * 6  # noqa: E731
+
+    assert triangles._impossible(None, None, arb(1), arb("0.5"), 0.25, ((0.5, NEAR), (2.5, NEAR), (2.0, NEAR)), closer)
+    ((a, b, c, *gaps),) = given
+    assert all(gap.overlaps(d) for gap, d in zip(gaps, (b - a, c - b, a + 2 * arb.pi() - c), strict=True))
+    assert all(gap.rad() < 3 * NEAR for gap in gaps)
+
+
 @pytest.mark.parametrize("middle", [-3.1, -1.0, 0.0, 3.0, 3.2, 9.4, -9.5])
 def test_a_ball_of_parameters_is_told_from_each_side_of_where_a_law_jumps(middle):
     """Each parameter of the ball is in one of the parts, up to whole turns, and within the ends there."""

@@ -1,11 +1,14 @@
 """Where the fourth collision falls, step by step: what is decided of courses and landings that are given."""
 
+import random
+
 import pytest
 from flint import arb
 
+from verification.arithmetic.balls import working
 from verification.proofs.corner import corner, half_return, return_map
 from verification.proofs.corner.corner import ARC, WALL, Quantity
-from verification.proofs.corner.return_map import Course, Fourth, Kink
+from verification.proofs.corner.return_map import Course, Flights, Fourth, Kink, Piece
 
 OPEN = arb(0, 1)
 
@@ -242,3 +245,29 @@ def test_boxes_of_a_half_return_are_halved_along_the_longer_of_two_sides_up_to_s
     for v, e in [(arb(i) / 8, arb(k) / 8) for i in range(-8, 9) for k in range(-8, 9)]:
         assert any(a.contains(v) and b.contains(e) for _, a, b in done)
     assert all(u == 5 for u, _, _ in done)
+
+
+@pytest.mark.parametrize("component", [ARC, WALL])
+def test_where_a_piece_lands_holds_where_its_points_land_and_is_not_much_wider(component):
+    """The points are taken at the ends of the piece and inside, with angles and contractions of the balls given."""
+    chance, landed = random.Random(8), 0
+    with working(corner.BITS):
+        wide, thin = Flights(arb(0.3, 0.02)), [Flights(arb(x)) for x in (0.28, 0.3, 0.32)]
+        for _ in range(60):
+            at, phi = chance.uniform(-1, 1) * (1.5 if component == ARC else 0.4), chance.uniform(-0.6, 0.6)
+            half, spread = 10 ** chance.uniform(-6, -1.7), 10 ** chance.uniform(-6, -2)
+            images = wide.landing(Piece(component, arb(at, half), arb(1), arb(phi, spread)))
+            if images is None or len(images) > 1:
+                continue
+            (image,), starts = images, [at + x * half for x in (-0.999, -0.4, 0, 0.7, 0.999)]
+            for flights, start in zip(thin * 2, starts, strict=False):
+                for leaving in (phi - 0.999 * spread, phi, phi + 0.999 * spread):
+                    (point,) = flights.landing(Piece(component, arb(start), arb(1), arb(leaving))) or [None]
+                    assert point.component == image.component
+                    assert image.theta.contains(point.theta)
+                    assert image.slope.contains(point.slope)
+                    assert image.phi.contains(point.phi)
+            landed += 1
+            if spread < half / 50 and half < 1e-3:
+                assert image.theta.rad() < 1.3 * abs(image.slope).upper() * half
+    assert landed > 30

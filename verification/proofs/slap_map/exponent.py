@@ -206,7 +206,7 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
     The mirror `y -> -y` takes `theta` to `-theta` and commutes with `T0`: solutions are sought on the upper half alone.
 
     >>> [(c, round(a, 2), round(b, 2)) for c, a, b in periodic_points(2).stretches or []]
-    [(0, -1.12, -0.99), (0, -0.02, 0.02), (0, 0.99, 1.12), (1, -0.01, 0.01)]
+    [(0, -1.07, -1.02), (0, -0.02, 0.02), (0, 1.02, 1.07), (1, -0.01, 0.01)]
     """
     with working(BITS):
         slap = Flights()

@@ -1,10 +1,12 @@
 """Numbers that are sums of two doubles: ten bits more than doubles in every word."""
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
 
-from numeric.backends.doubled import OTHERS, UNIT, WORDS, Double, Doubles
+from numeric.backends.doubled import OTHERS, UNIT, WORDS, Double, Doubles, Sum, short_of
 from numeric.backends.scalars import ArrayBackend
 from numeric.lowering.program import VOCABULARY
 
@@ -56,3 +58,29 @@ def test_a_root_has_twice_the_digits(n):
 def test_every_word_of_programs_has_its_cost():
     assert WORDS.keys() | OTHERS.keys() == VOCABULARY
     assert OTHERS.keys() == POINTS.keys()
+
+
+@pytest.mark.parametrize("size", [2.0**-20, 1.0, 2.0**20])
+def test_a_sum_above_a_large_number_is_right_to_its_small_share_of_the_size(size):
+    """Numbers and products that cancel to a millionth, as in the residual of a landing."""
+    random = np.random.default_rng(7)
+    x, u, z = size * random.uniform(-1, 1, 50), random.uniform(-1, 1, 50), doubled(size * random.uniform(-1, 1, 50))
+    rest = -(x * u + z.high) * (1 + 1e-6)
+    found = Sum(OPS, size)
+    found.add_product(x, u)
+    found.add(z)
+    found.add(Double(OPS, rest, 0 * rest))
+    value = found.value()
+    for high, low, *terms in zip(value.high, value.low, x, u, z.high, z.low, rest, strict=True):
+        a, b, c, d, e = map(Fraction, terms)
+
+        assert abs(Fraction(high) + Fraction(low) - (a * b + c + d + e)) <= Fraction(size) / 2**85
+
+
+def test_what_a_unit_vector_lacks_of_its_length_is_known_to_its_last_bits():
+    angle = np.linspace(-3, 3, 101)
+    u = np.cos(angle), np.sin(angle)
+    for lack, x, y in zip(short_of(OPS, u), *u, strict=True):
+        truth = (1 - Fraction(x) ** 2 - Fraction(y) ** 2) / 2
+
+        assert abs(Fraction(lack) - truth) <= Fraction(1, 2**85)

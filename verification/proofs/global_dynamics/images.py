@@ -225,7 +225,8 @@ class Flights:
         square, (c, s) = dx * dx + dy * dy, turned(phi)
         speed = self.map.ops.sqrt(square)
         v, w = (s * dx - c * dy) / speed, (s * dy + c * dx) / speed
-        return {"x": x, "y": y, "speed": speed, "bend": (dx * ddy - dy * ddx) / square, "v": v, "w": w, "cos": c}
+        curve = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy}
+        return curve | {"speed": speed, "bend": (dx * ddy - dy * ddx) / square, "v": v, "w": w, "cos": c}
 
     def sides(self, end: End) -> BallArray:
         """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""

@@ -36,6 +36,7 @@ WIDER = 1.5  # a parallelogram may be so much wider than the rectangle, for what
 ENDS = 1e-14  # more than the rounding of an end of a component
 TRIES = 4  # doublings of what is added to an arc
 REACH = 3.0  # about the length of a flight
+CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # of a boundary point
 FIELDS = "chart", "middle", "sides", "rest"
 
 
@@ -115,7 +116,7 @@ class Chords(Flights):
         ops, mid = self.map.ops, BallArray(np.asarray(arc.m))
         beside = BallArray(0.0 * arc.m, arc.r)
         there, start = self.map.place(chart, arc), {name: value[on] for name, value in self.whole.items()}
-        here = self.map.place(self.chart[on], self.thetas[on])
+        here = [start[name] for name in CURVE]
         gap = [there[k] - start[name] for k, name in ((0, "x"), (1, "y"))]
         rough = ops.sqrt(gap[0] * gap[0] + gap[1] * gap[1])
         t = [side / rough for side in gap]
@@ -127,12 +128,12 @@ class Chords(Flights):
         given = (start["bend"], self.chart[on]), (turn_rate(there), chart)
         bends = [closer(bend, self.map, where) for bend, where in given]
         speeds = [
-            speed(ops, self.map.place(self.chart[on], self.theta[on]), here, self.reach[0][on]),
+            speed(ops, [centre[name] for name in CURVE], here, self.reach[0][on]),
             speed(ops, middle, there, beside),
         ]
-        turn = turn_between(self.tangent(on, self.theta), middle[2:4])
+        turn = turn_between([centre["dx"], centre["dy"]], middle[2:4])
         eta = self.phi[on] + turn + bends[1] * beside - bends[0] * self.reach[0][on] + self.reach[1][on]
-        whole = incidence(self.phis[on] + turn_between(self.tangent(on, self.thetas), there[2:4]))
+        whole = incidence(self.phis[on] + turn_between(here[2:4], there[2:4]))
         eta = common_part(incidence(eta), whole)
         cosine = turned(eta)[0]
         across = speeds[1] * cosine

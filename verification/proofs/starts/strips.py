@@ -42,7 +42,7 @@ LOOKS = (-1.0, 0.0, 1.0)  # places across and along a strip, at which orbits are
 SHARE = 1.0  # how much wider than the distances of these orbits a gate has to be
 BENT = 1.0  # how much more than its first side a parallelogram may owe to the rest, before a strip is cut across
 EARLY = 1  # the bounce after which that is looked at
-BOUNCES = 30
+BOUNCES = 20
 FIRST = 256, 16  # parts of a component over which the norm is asked first
 QUARTER = 1.5707963267948968  # above pi/2
 

@@ -136,7 +136,7 @@ def test_by_processes_interrupted_or_by_this_one_the_graphs_are_the_same(found, 
 
 def test_a_part_at_which_processes_die_is_named_and_what_is_done_is_kept(found, tmp_path, monkeypatch):
     part = found[0].part((1, 0, 0, 0, 0, 0))
-    monkeypatch.setattr("numeric.sweeps.run.in_processes", lambda *_: iter([(part, Lost(-9))]))
+    monkeypatch.setattr("numeric.sweeps.run.in_processes", lambda *_, **_also: iter([(part, Lost(-9))]))
     with pytest.raises(UnfinishedError, match=r"part at \(1, 0.*signal 9.*0 of 2 parts are in"):
         run(found[0], tmp_path / "graphs.zarr", workers=2)
 

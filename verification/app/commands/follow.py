@@ -290,16 +290,10 @@ def show_curve(console: "Console", row: dict[str, Any]) -> None:
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:
-    """Some points of a branch, and its events."""
+    """The events of a branch, then some of its points."""
     points, parameter = document["points"], document["parameter"]
     stride = max(1, len(points) // ROWS)
     console.print(f"{document['cycle']}: {len(points)} points")
-    console.print(f"  {parameter:<14}  multipliers                            stable  event")
-    for i, point in enumerate(points):
-        if i % stride and not point["event"] and i != len(points) - 1:
-            continue
-        shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
-        console.print(f"  {point[parameter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
     for event in document["events"]:
         proof = event["certificate"]
         said = (
@@ -309,6 +303,12 @@ def show(console: "Console", document: dict[str, Any]) -> None:
         )
         side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
         console.print(f"  {event['event']} at {parameter} = {said}{side}")
+    console.print(f"  {parameter:<14}  multipliers                            stable  event")
+    for i, point in enumerate(points):
+        if i % stride and not point["event"] and i != len(points) - 1:
+            continue
+        shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
+        console.print(f"  {point[parameter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
 
 
 def said_stable(point: dict[str, Any]) -> str:

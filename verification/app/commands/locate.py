@@ -8,6 +8,7 @@ import os
 import time
 from dataclasses import replace
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -195,7 +196,8 @@ def show(output: Output, found: "Located") -> None:
     if found.steps:
         notes["newton"] = ", ".join(f"1e{step.correction:.0f} ({step.digits} digits)" for step in found.steps)
     for item, text in notes.items():
-        output.console.print(f"  {item.replace('_', ' '):28} {text}")
+        for i, line in enumerate(wrap(str(text), 80 - 31)):
+            output.console.print(f"  {'' if i else item.replace('_', ' '):28} {line}")
 
 
 def writable(path: str) -> None:

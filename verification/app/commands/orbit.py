@@ -13,6 +13,7 @@ import click
 from symbolic.tables.definition import UNIFORM
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option, plot_option
+from verification.app.lines import of_bounces
 from verification.app.scene import scene_options, start_of, table_options
 
 if TYPE_CHECKING:
@@ -134,21 +135,12 @@ def in_float64(map: Any, theta: float, phi: float, bounces: int, index: int = 0)
 
 
 def show(console: "Console", entries: list[dict[str, Any]], how: str) -> None:
-    """The first bounces, a line each."""
-    rows = [list(KEYS), *([_text(entry[key]) for key in KEYS] for entry in entries[:MOST])]
-    wide = [max(len(text) for text in column) + 2 for column in zip(*rows, strict=True)]
-    for i, row in enumerate(rows):
-        texts = "".join(text.ljust(width) for text, width in zip(row, wide, strict=True))
-        console.print(f"{i - 1 if i else 'bounce':<8}{texts.rstrip()}")
+    """The first bounces, as many columns wide as the terminal."""
+    for line in of_bounces(entries[:MOST], KEYS, console.width):
+        console.print(line)
     if len(entries) > MOST:
         console.print(f"... and {len(entries) - MOST} more; --json FILE has them all")
     console.print(f"{len(entries) - 1} bounces ({how})")
-
-
-def _text(value: Any) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.16g}" if isinstance(value, float) else str(value)
 
 
 ROWS = 33  # points shown to people

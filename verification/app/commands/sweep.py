@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numeric.sweeps.sweep import Sweep
 
 
-COLUMNS, ROWS = 96, 24  # of the picture in letters
+COLUMNS, ROWS = 80, 24  # of the picture in letters
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 Command = Callable[..., Any]
 Lines = Callable[["xr.Dataset"], list[str]]

@@ -9,8 +9,8 @@ PLACES = range(6, 1, -1)  # decimals of float64, as many as fit
 def of_bounces(entries: Sequence[Mapping[str, Any]], keys: Sequence[str], width: int) -> list[str]:
     """A line for each bounce, with all digits where `width` letters hold them.
 
-    Elsewhere numbers of float64 are rounded, and a component or a status that all bounces share is said once; numbers of
-    more digits, which were asked for, have a line each.
+    Elsewhere numbers of float64 are rounded, and a component or a status that all bounces share is said once.
+    Numbers of more digits, which were asked for, have a line each.
 
     >>> rows = [{"component": "egg", "theta": x, "status": "regular"} for x in (0.1, -2.25)]
     >>> of_bounces(rows, ("component", "theta", "status"), 80)[1:]

@@ -220,13 +220,12 @@ class Flights:
         self.whole = self._leaving(self.thetas, self.phis)
 
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
-        """Start, velocity of the boundary, its speed and bend, and the direction of flight."""
+        """Start, velocity and acceleration of the boundary, its speed and bend, and the direction of flight."""
         x, y, dx, dy, ddx, ddy = self.map.place(self.chart, theta)
         square, (c, s) = dx * dx + dy * dy, turned(phi)
-        speed = self.map.ops.sqrt(square)
-        v, w = (s * dx - c * dy) / speed, (s * dy + c * dx) / speed
-        curve = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy}
-        return curve | {"speed": speed, "bend": (dx * ddy - dy * ddx) / square, "v": v, "w": w, "cos": c}
+        v, w = (s * dx - c * dy) / (speed := self.map.ops.sqrt(square)), (s * dy + c * dx) / speed
+        found = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy, "v": v, "w": w, "cos": c, "speed": speed}
+        return found | {"bend": (dx * ddy - dy * ddx) / square}
 
     def sides(self, end: End) -> BallArray:
         """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""

@@ -195,6 +195,6 @@ def test_a_dry_run_says_what_it_costs_and_does_nothing(tmp_path, capsys):
     document = json.loads(capsys.readouterr().out)
     assert document["parts"] == PARTS
     assert document["collisions"] == PARTS * 3 * 4 * (400 + 2000)
-    assert document["bytes"] == PARTS * 3 * (2 * 4 + 3 * 8) + (PARTS + 3) * 8
+    assert document["bytes"] == PARTS * 3 * (2 * 4 + 3 * 8 + 2) + (PARTS + 3) * 8  # the period has two
     assert document["seconds"] > 0
     assert not (tmp_path / "store").exists()

@@ -18,7 +18,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any
+from typing import Any, cast
 
 import mpmath
 import numpy as np
@@ -76,6 +76,11 @@ class Wide(ArrayBackend):
     def turn(self, x: Any, quarters: int = 2) -> tuple[Any, Any]:
         """`(cos x, sin x)`."""
         return np.cos(x), np.sin(x)
+
+    # the library's functions, of 64 bits: those of arrays are of doubles
+    atan2, exp, log, atan = (staticmethod(cast(Any, f)) for f in (np.arctan2, np.exp, np.log, np.arctan))
+    sinh, cosh, tanh = (staticmethod(cast(Any, f)) for f in (np.sinh, np.cosh, np.tanh))
+    root = staticmethod(cast(Any, lambda x, n: x ** (np.longdouble(1) / n)))
 
     def zero(
         self,

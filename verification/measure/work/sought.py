@@ -19,7 +19,16 @@ from sympy import Symbol, sqrt
 from numeric import PinballMap
 from symbolic.cycles.cardioid_slap import LAUNCH_Q2, q, slope_squared
 from symbolic.expressions.text import Kernel, kernel, load
-from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, balls, bits_of, multiprecision, working
+from verification.arithmetic.balls import (
+    ARRAYS,
+    FLOAT64,
+    FUNCTIONS,
+    Arithmetic,
+    balls,
+    bits_of,
+    multiprecision,
+    working,
+)
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.critical import corner
 from verification.cycles.newton import (
@@ -47,6 +56,7 @@ LONG: Arithmetic = replace(
     pi=LONG_PI,
     q=lambda p, n: np.longdouble(p) / np.longdouble(n),
     root=lambda x, n: x ** (np.longdouble(1) / n),
+    **{word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS},  # those of arrays are of doubles
 )
 ROUNDINGS = 16  # of a residual and of what is read, in units of the last place
 

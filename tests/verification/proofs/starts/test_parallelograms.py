@@ -61,13 +61,14 @@ def test_derivatives_hold_those_of_the_kernels() -> None:
     """Also where a flight goes from the arc to the wall or back."""
     images, map = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH)), PinballMap("cuspless", lam="0.07126")
     boxes, rng = drawn(images, 3, 2000, 0.004), np.random.default_rng(4)
-    theta, phi = (a + (b - a) * rng.random(2000) for a, b in (boxes.x, boxes.y))
+    theta, phi = (a + (b - a) * rng.random(boxes.chart.size) for a, b in (boxes.x, boxes.y))
     step, told = map.step(theta, phi, boxes.chart), map.derivative(theta, phi, boxes.chart)
     speed = [
         np.where(chart == 0, 2 * np.cos(at / 2), 1.0)
         for chart, at in ((boxes.chart, theta), (step.component, step.theta))
     ]
-    told = told * np.array([[1 / speed[1] * speed[0], 1 / speed[1]], [speed[0], np.ones(2000)]]).transpose(2, 0, 1)
+    factors = np.array([[speed[0] / speed[1], 1 / speed[1]], [speed[0], np.ones_like(theta)]])
+    told = told * factors.transpose(2, 0, 1)
     flights, asked = Chords(images, boxes), 0
     for on, chart, low, high, _ in flights.pieces(*flights.arcs()):
         arc = hull(low, high)

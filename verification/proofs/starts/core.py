@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
-from verification.proofs.global_dynamics.images import PinballImages, Slopes
-from verification.proofs.starts.parallelograms import Parallelograms, carried
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.parallelograms import Matrix, Parallelograms, carried, matrix, times
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -129,7 +129,7 @@ def _converges(map: PinballImages, core: Core) -> bool:
     return bool(np.all(most @ vector < vector * NEARLY))
 
 
-def derivative(map: PinballImages, boxes: Boxes) -> list[list[BallArray]] | None:
+def derivative(map: PinballImages, boxes: Boxes) -> Matrix | None:
     """The derivative of two bounces over boxes; None where one lands on both sides of a join."""
     total = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
     sets = Parallelograms.about(boxes)
@@ -140,12 +140,5 @@ def derivative(map: PinballImages, boxes: Boxes) -> list[list[BallArray]] | None
         if len(found) != 1 or not all(np.array_equal(on, every) for on in (found[0][0].on, source)):
             return None
         sets, one = images, matrix(found[0][1])
-        total = [[one[i][0] * total[0][j] + one[i][1] * total[1][j] for j in (0, 1)] for i in (0, 1)]
+        total = times(one, total)
     return total
-
-
-def matrix(slopes: Slopes) -> list[list[BallArray]]:
-    """The derivative in `(theta, phi)`."""
-    by_theta, by_phi, here, there, law, drift = slopes
-    turn = [there * by_theta - here, there * by_phi + 1]
-    return [[by_theta, by_phi], [drift * by_theta - law * turn[0], drift * by_phi - law * turn[1]]]

@@ -22,7 +22,7 @@ from verification.arithmetic.balls import enclose, working
 from verification.proofs.global_dynamics.boxes import hull
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.core import Core, attracts
-from verification.proofs.starts.strips import bounded, strips, unsettled
+from verification.proofs.starts.strips import bounded, speeds, strips, unsettled
 
 LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
 GATES = (0.405, 0.003), (0.4, 0.006), (0.38, 0.012), (0.36, 0.03)
@@ -73,8 +73,7 @@ def diameter(map: PinballImages) -> float:
         on = np.full(MESH, chart)
         x, y, *_ = map.place(np.full(MESH + 1, chart), hull(theta, theta))
         places.append(np.stack([x.m, y.m]))
-        _, _, dx, dy, *_ = map.place(on, hull(theta[:-1], theta[1:]))
-        gap = max(gap, float(np.max(map.ops.sqrt(dx * dx + dy * dy).upper() * np.diff(theta))))
+        gap = max(gap, float(np.max(speeds(map, on, hull(theta[:-1], theta[1:])).upper() * np.diff(theta))))
     x, y = np.concatenate(places, axis=1)
     most = max(float(np.max(np.sqrt((x - a) * (x - a) + (y - b) * (y - b)))) for a, b in zip(x, y, strict=True))
     return (most + gap) * SLACK

@@ -33,6 +33,7 @@ Mask = NDArray[np.bool_]
 OUTWARDS = 1 + 2.0**-46  # more than the roundings of a sum of six doubles
 PAD = 1e-300
 WIDER = 1.5  # a parallelogram may be so much wider than the rectangle, for what it keeps of directions
+Matrix = list[list[BallArray]]
 ENDS = 1e-14  # more than the rounding of an end of a component
 TRIES = 4  # doublings of what is added to an arc
 REACH = 3.0  # about the length of a flight
@@ -166,6 +167,24 @@ class Chords(Flights):
             told &= ~open_
         return hull(*found), told
 
+    def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
+        """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""
+        turn = turn_between(self.tangent(on, self.thetas), self.map.place(chart, arc)[2:4])
+        exit, top = self.map.exit(incidence(self.phis[on] + turn), arc), self.map.top
+        return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
+
+
+def matrix(slopes: Slopes) -> Matrix:
+    """The derivative in `(theta, phi)`."""
+    by_theta, by_phi, here, there, law, drift = slopes
+    turn = [there * by_theta - here, there * by_phi + 1]
+    return [[by_theta, by_phi], [drift * by_theta - law * turn[0], drift * by_phi - law * turn[1]]]
+
+
+def times(first: Matrix, second: Matrix) -> Matrix:
+    """The product of two matrices of two rows."""
+    return [[first[i][0] * second[0][j] + first[i][1] * second[1][j] for j in (0, 1)] for i in (0, 1)]
+
 
 def turn_rate(place: list[BallArray]) -> BallArray:
     """How fast the tangent turns, by the parameter."""
@@ -271,21 +290,15 @@ def _image(
     And which of them have one: where an arc is a part of what may be met, no landing in it may have such an angle.
     """
     map = flights.map
-    turn = turn_between(flights.tangent(on, flights.thetas), map.place(chart, arc)[2:4])
-    exit, top = map.exit(incidence(flights.phis[on] + turn), arc), map.top
-    low, high = np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
-    none = (high < low) & np.isfinite(exit.r)
+    known, low, high = flights.exits(on, chart, arc)
+    none = known & (high < low)
     whole = Parallelograms.about(Boxes(chart, (arc.lower(), arc.upper()), (np.where(none, np.nan, low), high)))
     if not smooth:
         return whole, ~none
-    by_theta, by_phi, here, there, law, drift = flights.slopes(on, chart, arc)
+    derivative = matrix(flights.slopes(on, chart, arc))
     place = flights.midpoint(on, chart, arc)
     turn = turn_between(flights.tangent(on, flights.theta), map.place(chart, place)[2:4])
     landing = [place, map.exit(incidence(flights.phi[on] + turn), place)]
-    derivative = [
-        [by_theta, by_phi],
-        [drift * by_theta - law * (there * by_theta - here), drift * by_phi - law * (there * by_phi + 1)],
-    ]
     middle, sides, rest = np.empty_like(sets.middle), np.empty_like(sets.sides), np.empty_like(sets.rest)
     aside = [np.abs(sets.middle[k] - (flights.theta, flights.phi)[k].m[on]) * OUTWARDS + sets.rest[k] for k in (0, 1)]
     for row, (value, entries) in enumerate(zip(landing, derivative, strict=True)):

@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull, turned
-from verification.proofs.global_dynamics.images import PinballImages, incidence, turn_between
-from verification.proofs.starts.core import Core, matrix
-from verification.proofs.starts.parallelograms import Chords, Parallelograms, carried
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.core import Core
+from verification.proofs.starts.parallelograms import ENDS, Chords, Matrix, Parallelograms, carried, matrix, times
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -81,7 +81,7 @@ class Strips(NamedTuple):
         wide, tall = (self.right - self.left) / 2 * (1 + 1e-12), self.half * (1 + 1e-12)
         sides, rest = np.zeros((2, 2, middle.size)), np.zeros((2, middle.size))
         sides[0, 0], sides[0, 1], sides[1, 1] = wide, lean * tall, -float(lam.m) * tall
-        rest[0] = np.abs(self.right_lean - self.left_lean) / 2 * tall * SLACK + 1e-14
+        rest[0] = np.abs(self.right_lean - self.left_lean) / 2 * tall * SLACK + ENDS
         rest[1] = exit.r + (float(lam.r) + 1e-16) * tall * SLACK + 1e-15
         return Parallelograms(self.chart, np.stack([middle, exit.m]), sides, rest)
 
@@ -90,8 +90,7 @@ class Strips(NamedTuple):
         sway = [np.abs(lean) * self.half for lean in (self.left_lean, self.right_lean)]
         first = np.minimum(self.left - sway[0], self.right - sway[1])
         whole = hull(first, np.maximum(self.left + sway[0], self.right + sway[1]))
-        _, _, dx, dy, *_ = map.place(self.chart, whole)
-        speed = map.ops.sqrt(dx * dx + dy * dy).upper()
+        speed = speeds(map, self.chart, whole).upper()
         low = np.maximum(np.abs(self.middle) - self.half, 0.0)
         cosine = turned(BallArray(low))[0].upper()
         wide = self.right - self.left
@@ -234,12 +233,13 @@ def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> A
     """
     found = np.zeros(boxes.chart.size)
     one, nought = BallArray(np.ones(found.size)), BallArray(np.zeros(found.size))
-    first = np.asarray(_speed(map, boxes.chart, hull(*boxes.x)).lower())
+    first = np.asarray(speeds(map, boxes.chart, hull(*boxes.x)).lower())
     _steepest(map, boxes, np.arange(found.size), [[one, nought], [nought, one]], bounces, found, (first, weight))
     return found
 
 
-def _speed(map: PinballImages, chart: Indices, theta: BallArray) -> BallArray:
+def speeds(map: PinballImages, chart: Indices, theta: BallArray) -> BallArray:
+    """How fast the boundary's parameters run, in arc length."""
     _, _, dx, dy, *_ = map.place(chart, theta)
     return map.ops.sqrt(dx * dx + dy * dy)
 
@@ -248,7 +248,7 @@ def _steepest(
     map: PinballImages,
     boxes: Boxes,
     owner: Indices,
-    product: list[list[BallArray]],
+    product: Matrix,
     bounces: int,
     found: Array,
     norm: tuple[Array, float],
@@ -258,7 +258,7 @@ def _steepest(
         return
     with np.errstate(all="ignore"):
         if not bounces:
-            last, (first, weight) = np.asarray(_speed(map, boxes.chart, hull(*boxes.x)).upper()), norm
+            last, (first, weight) = np.asarray(speeds(map, boxes.chart, hull(*boxes.x)).upper()), norm
             size = [[entry.magnitude() for entry in row] for row in product]
             along = last * (size[0][0] / first[owner] + weight * size[0][1])
             turn = size[1][0] / first[owner] / weight + size[1][1]
@@ -273,18 +273,13 @@ def _steepest(
                 continue
             seen[on] = True
             arc = hull(piece.low, piece.high)
-            flights = Chords(map, Boxes(boxes.chart[on], *((a[on], b[on]) for a, b in (boxes.x, boxes.y))))
-            every = np.arange(on.size)
-            entries = matrix(flights.slopes(every, piece.chart, arc))
-            bent = turn_between(flights.tangent(every, flights.thetas), map.place(piece.chart, arc)[2:4])
-            exit = map.exit(incidence(flights.phis + bent), arc)
-            low, high = np.maximum(exit.lower(), -map.top), np.minimum(exit.upper(), map.top)
-            known = np.isfinite(exit.r) & np.isfinite(arc.r)
+            known, low, high = whole.exits(on, piece.chart, arc)
+            known &= np.isfinite(arc.r)
             found[owner[on[~known]]] = np.inf
             go = np.flatnonzero(known & (low <= high))
             image = Boxes(piece.chart[go], (arc.lower()[go], arc.upper()[go]), (low[go], high[go]))
             before = [[entry[on] for entry in row] for row in product]
-            after = [[entries[i][0] * before[0][j] + entries[i][1] * before[1][j] for j in (0, 1)] for i in (0, 1)]
+            after = times(matrix(whole.slopes(on, piece.chart, arc)), before)
             _steepest(map, image, owner[on[go]], [[x[go] for x in row] for row in after], bounces - 1, found, norm)
         found[owner[~seen]] = np.inf
 
@@ -293,7 +288,7 @@ def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvin
     """Is `nu_plus` at most `rate` for every orbit? The norm of so many bounces says so, over boxes cut as needed."""
     goal = exp(rate * bounces) / SLACK
     for chart, ends in enumerate(map.charts):
-        sides = [(np.array([low - 1e-14]), np.array([high + 1e-14])) for low, high in (ends.x, ends.y)]
+        sides = [(np.array([low - ENDS]), np.array([high + ENDS])) for low, high in (ends.x, ends.y)]
         boxes = Boxes(np.array([chart]), *sides).parts(*FIRST)[0]
         for _ in range(halvings):
             open_ = ~(steepest(map, boxes, bounces, weight) <= goal)

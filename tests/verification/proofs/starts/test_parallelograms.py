@@ -10,8 +10,7 @@ from numeric import PinballMap
 from symbolic import Scene, tables
 from verification.proofs.global_dynamics.boxes import Boxes, hull
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.core import matrix
-from verification.proofs.starts.parallelograms import Chords, Parallelograms, carried, constant_bends
+from verification.proofs.starts.parallelograms import Chords, Parallelograms, carried, constant_bends, matrix
 
 LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
 Array = NDArray[np.float64]

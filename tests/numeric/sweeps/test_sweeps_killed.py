@@ -28,7 +28,7 @@ ROOT = Path(__file__).parents[3]
 PARTS = 12
 GRID = ["parameter-space", "--alphas", f"0.07:0.1:{PARTS}", "--lams", "0.3:0.6:3"]
 SPACE = [*GRID, "--starts", "4", "--bounces", "400"]
-SECONDS = [*GRID, "--starts", "64", "--bounces", "40000"]  # so long that an interruption is never too late
+SECONDS = [*GRID, "--starts", "64", "--bounces", "160000"]  # so long that an interruption is never too late
 
 
 def started(arguments, prepare=None):

@@ -33,7 +33,8 @@ from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
 from verification.proofs.global_dynamics.branch import unstable_branch
-from verification.proofs.global_dynamics.images import PinballImages, Slopes
+from verification.proofs.global_dynamics.flights import matrix
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import smooth
 from verification.proofs.manifolds.saddle import Orbit
@@ -102,12 +103,6 @@ def attracts(map: PinballImages, disc: Disc, turn: float) -> bool:
     norm = float(np.max(_length(e + h, g - f) + _length(e - h, f + g))) / 2 * (1 + SLACK)
     moved = [row[0] * off[0] + row[1] * off[1] for row in frame]
     return bool(norm < 1 and norm * disc.radius + float(np.max(_length(*moved))) < disc.radius * (1 - SLACK))
-
-
-def matrix(s: Slopes) -> tuple[tuple[BallArray, BallArray], tuple[BallArray, BallArray]]:
-    """The derivative of a bounce in `(theta, phi)`."""
-    by_theta = s.drift * s.by_theta - s.law * (s.bend_there * s.by_theta - s.bend_here)
-    return (s.by_theta, s.by_phi), (by_theta, s.drift * s.by_phi - s.law * (s.bend_there * s.by_phi + 1))
 
 
 def _length(x: BallArray, y: BallArray) -> Array:

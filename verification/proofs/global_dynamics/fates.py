@@ -38,8 +38,9 @@ from scipy.sparse.csgraph import connected_components
 
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
+from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.graph import Cells, Grid, Transitions, refined
-from verification.proofs.global_dynamics.images import PinballImages, Slopes
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import carried
 
 Array = NDArray[np.float64]
@@ -152,10 +153,9 @@ def _reach(ends: Array, source: Indices, count: int) -> Array:
 
 def _contraction(s: Slopes, where: Indices, walks: csr_matrix) -> float:
     """The least `q` found with `|M|*v <= q*v'` along all walks; `where` is the cluster of each entry."""
-    by_theta = s.drift * s.by_theta - s.law * (s.bend_there * s.by_theta - s.bend_here)
-    by_phi = s.drift * s.by_phi - s.law * (s.bend_there * s.by_phi + 1)
+    (a, b), (c, d) = matrix(s)
     size = np.zeros((4, walks.shape[0]))
-    for entry, x in zip(size, (s.by_theta, s.by_phi, by_theta, by_phi), strict=True):
+    for entry, x in zip(size, (a, b, c, d), strict=True):
         np.maximum.at(entry, where, np.where(np.isfinite(x.r), x.magnitude(), np.inf))
     if not np.all(np.isfinite(size)):
         return np.inf

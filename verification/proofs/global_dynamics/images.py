@@ -16,7 +16,6 @@ Where the arc holds a join, the image is given for both sides of it. Paper: sect
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,47 +32,18 @@ from verification.proofs.global_dynamics.boxes import (
     Chart,
     Images,
     Row,
-    centred,
     collected,
     common_part,
-    direction,
     exactly,
     hull,
     spread,
-    turned,
 )
+from verification.proofs.global_dynamics.flights import Flights, Piece, Slopes
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-TRIES = 7  # widenings of a guessed arc
 STEPS, PLACES = 1 << 12, 1 << 6  # pieces of the incidence angles, and of each component under a law of the place
 QUARTER = 1.5707963267948966  # below pi/2
-CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
-
-
-class Piece(NamedTuple):
-    """Boxes, and for each a part of its arc of landings, on one component; `smooth` if it is all of the arc."""
-
-    on: Indices
-    chart: Indices
-    low: Array
-    high: Array
-    smooth: bool
-
-
-class Slopes(NamedTuple):
-    """The landing's derivatives by `theta` and `phi`, how fast the tangent turns at start and landing, the law's slope.
-
-    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = drift*d theta1 - law*d eta1`;
-    `drift` is 0 for a law that is the same everywhere.
-    """
-
-    by_theta: BallArray
-    by_phi: BallArray
-    bend_here: BallArray
-    bend_there: BallArray
-    law: BallArray
-    drift: BallArray = BallArray(0.0)
 
 
 class PinballImages:
@@ -174,7 +144,7 @@ class PinballImages:
                 whole.m[on], whole.r[on] = value.m, value.r
         return made
 
-    def flights(self, boxes: Boxes) -> "Flights":
+    def flights(self, boxes: Boxes) -> Flights:
         """The flights that leave a block of boxes."""
         return Flights(self, boxes)
 
@@ -202,199 +172,3 @@ class PinballImages:
         with np.errstate(all="ignore"):
             pieces = (flights := self.flights(boxes)).pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]
-
-
-End = tuple[Indices, Array]  # component and parameter of boundary points
-Places = dict[str, BallArray]
-Landing = tuple[Piece, BallArray, BallArray, BallArray | None]  # where, the incidence, the exit if place and law mix
-
-
-class Flights:
-    """What a block of boxes needs more than once."""
-
-    def __init__(self, map: PinballImages, boxes: Boxes) -> None:
-        self.map, self.boxes, self.chart = map, boxes, boxes.chart
-        (theta, phi), self.reach, (self.thetas, self.phis) = centred(boxes)
-        self.theta, self.phi = theta, phi
-        self.centre = self._leaving(theta, phi)
-        self.whole = self._leaving(self.thetas, self.phis)
-
-    def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
-        """Start, velocity and acceleration of the boundary, its speed and bend, and the direction of flight."""
-        x, y, dx, dy, ddx, ddy = self.map.place(self.chart, theta)
-        square, (c, s) = dx * dx + dy * dy, turned(phi)
-        v, w = (s * dx - c * dy) / (speed := self.map.ops.sqrt(square)), (s * dy + c * dx) / speed
-        found = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy, "v": v, "w": w, "cos": c, "speed": speed}
-        return found | {"bend": (dx * ddy - dy * ddx) / square}
-
-    def sides(self, end: End) -> BallArray:
-        """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""
-        x, y, *_ = self.map.place(end[0], BallArray(end[1]))
-        at, all_of = self.centre, self.whole
-        value = at["v"] * (y - at["y"]) - at["w"] * (x - at["x"])
-        along = all_of["v"] * (x - all_of["x"]) + all_of["w"] * (y - all_of["y"])
-        by_theta = all_of["cos"] * all_of["speed"] - all_of["bend"] * along
-        return value + by_theta * self.reach[0] + along * self.reach[1]
-
-    def arcs(self) -> tuple[End, End]:
-        """An arc for each box that holds its landings; parameters are nan where none is proved."""
-        chart, theta, ahead, behind = self.guess()
-        found = []
-        for sign in (-1, 1):
-            where, at = chart.copy(), np.full(theta.shape, np.nan)
-            width, open_ = np.where(sign < 0, ahead, behind), np.ones(theta.shape, dtype=bool)
-            for attempt in range(TRIES):
-                trial = self._moved(chart, theta, sign * width * 1.4**attempt)
-                side = self.sides(trial)
-                good = open_ & (side.negative() if sign < 0 else side.positive())
-                where[good], at[good] = trial[0][good], trial[1][good]
-                open_ &= ~good
-                if not np.any(open_):
-                    break
-            found.append((where, at))
-        if not self.map.closed:  # a landing comes after every start of the box, and before that start comes again
-            unknown = [np.isnan(at) for _, at in found]
-            for (where, at), mine, other, own in zip(found, unknown, unknown[::-1], self.boxes.x, strict=True):
-                use = mine & ~other
-                where[use], at[use] = self.chart[use], own[use]
-        return found[0], found[1]
-
-    def guess(self) -> tuple[Indices, Array, Array, Array]:
-        """Landings of the midpoints, and how far the box's landings may lie before and after, in float64."""
-        ends = self.map.map.states.ends
-        low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
-        theta = self.theta.m if self.map.closed else np.clip(self.theta.m, low, high)
-        step = self.map.map.step(theta, self.phi.m, self.chart)
-        chart = np.where(step.code == 0, step.component, self.chart)
-        landed = np.where(step.code == 0, step.theta, np.nan)
-        x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(np.nan_to_num(landed))))
-        with np.errstate(all="ignore"):
-            at = {name: value.m for name, value in self.centre.items()}
-            along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
-            slope = np.abs(at["v"] * dy - at["w"] * dx)
-            rate = np.abs(at["cos"] * at["speed"] - at["bend"] * along) * self.reach[0].r
-            width = (rate + np.abs(along) * self.reach[1].r) / slope * 1.1 + CENTRE
-        if self.map.closed:
-            landed = landed + 2 * np.pi * (landed < self.theta.m)
-        return chart, landed, width, width
-
-    def _moved(self, chart: Indices, theta: Array, by: Array) -> End:
-        """Boundary points moved along by a parameter; past a join onto the next component, by the same length."""
-        if self.map.closed:
-            return chart, theta + by
-        count = len(self.map.ends)
-        low = np.array([float(end[0].upper()) for end in self.map.ends])
-        high = np.array([float(end[1].lower()) for end in self.map.ends])
-        place = [value.m for value in self.map.place(chart, BallArray(np.nan_to_num(theta)))]
-        speed = np.hypot(place[2], place[3])
-        chart, moved = chart.copy(), theta + by
-        for edge, step, start in ((high, 1, low), (low, -1, high)):
-            over = moved > edge[chart] if step > 0 else moved < edge[chart]
-            length = np.abs(moved - edge[chart]) * speed
-            following = np.where(over, (chart + step) % count, chart)
-            place = [value.m for value in self.map.place(following, BallArray(start[following]))]
-            moved = np.where(over, start[following] + step * length / np.hypot(place[2], place[3]), moved)
-            chart = following
-        return chart, np.clip(moved, low[chart], high[chart])
-
-    def pieces(self, low: End, high: End) -> list[Piece]:
-        """The arcs of landings, cut where components meet."""
-        if self.map.closed:
-            return [Piece(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
-        count = len(self.map.ends)
-        ends = [(float(a.lower()), float(b.upper())) for a, b in self.map.ends]
-        whole = (low[0] == high[0]) & (low[1] < high[1]) & ~np.isnan(low[1])
-        found = [Piece(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True)]
-        joined = np.flatnonzero(~whole)
-        steps = (high[0][joined] - low[0][joined]) % count
-        steps = np.where(steps == 0, count, steps)  # around all of the boundary
-        for step in range(int(steps.max(initial=0)) + 1):
-            on = joined[steps >= step]
-            last = steps[steps >= step] == step
-            chart = (low[0][on] + step) % count
-            bottom, top = (np.array([end[i] for end in ends])[chart] for i in (0, 1))
-            a = low[1][on] if step == 0 else bottom
-            found.append(Piece(on, chart, a, np.where(last, high[1][on], top), False))
-        return found
-
-    def landing(self, piece: Piece) -> Landing:
-        """For each box of a piece, whose landings lie on one component between two parameters.
-
-        Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
-        """
-        on, chart, low, high, smooth = piece
-        arc = hull(low, high)
-        eta = incidence(self.phis[on] + turn_between(self.tangent(on, self.thetas), self.map.place(chart, arc)[2:4]))
-        if not smooth:
-            return piece, arc, eta, None
-        theta, eta, phi = self.mean_value(on, chart, arc, eta)
-        return piece, common_part(arc, theta), eta, phi
-
-    def tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
-        return self.map.place(self.chart[on], theta[on])[2:4]
-
-    def mean_value(
-        self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
-    ) -> tuple[BallArray, BallArray, BallArray | None]:
-        """Landing, incidence and, under a law of the place, exit, by the mean-value theorem about the midpoint's."""
-        by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
-        reach = self.reach[0][on], self.reach[1][on]
-        middle = self.midpoint(on, chart, arc)
-        theta = middle + by_theta * reach[0] + by_phi * reach[1]
-        turn = turn_between(self.tangent(on, self.theta), self.map.place(chart, middle)[2:4])
-        by = there * by_theta - here, there * by_phi + 1
-        fine = self.phi[on] + turn + by[0] * reach[0] + by[1] * reach[1]
-        phi = None
-        if self.map.placed:  # place and incidence move together
-            phi = self.map.exit(incidence(self.phi[on] + turn), middle)
-            phi = phi + (drift * by_theta - law * by[0]) * reach[0] + (drift * by_phi - law * by[1]) * reach[1]
-        return theta, common_part(eta, incidence(fine)), phi
-
-    def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
-        """The derivatives over the boxes `on`, whose landings lie in an arc."""
-        at, (dx, dy, ddx, ddy), along, slope = self.across(on, chart, arc)
-        by_theta = (at["bend"] * along - at["cos"] * at["speed"]) / slope
-        law, drift = self.map.lam, BallArray(0.0)
-        if self.map.law is not None:
-            turn = self.phis[on] + turn_between(self.tangent(on, self.thetas), [dx, dy])
-            law, drift = self.map.slopes(incidence(turn), arc)
-        return Slopes(by_theta, -along / slope, at["bend"], (dx * ddy - dy * ddx) / (dx * dx + dy * dy), law, drift)
-
-    def across(
-        self, on: Indices, chart: Indices, arc: BallArray
-    ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
-        """The boxes `on`; velocity and acceleration over an arc; how far it is, and how fast it leaves the lines."""
-        at = {name: value[on] for name, value in self.whole.items()}
-        x, y, *velocity = self.map.place(chart, arc)
-        along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
-        slope = at["v"] * velocity[1] - at["w"] * velocity[0]
-        return at, velocity, along, BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
-
-    def midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
-        """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
-        at = {name: value[on] for name, value in self.centre.items()}
-        guess = BallArray(np.asarray(arc.m))
-        place, slopes = self.map.place(chart, guess), self.map.place(chart, arc)
-        for _ in range(2):  # of Newton's method, in float64
-            value = at["v"].m * (place[1].m - at["y"].m) - at["w"].m * (place[0].m - at["x"].m)
-            guess = BallArray(guess.m - value / (at["v"].m * place[3].m - at["w"].m * place[2].m))
-            place = self.map.place(chart, guess)
-        value = at["v"] * (place[1] - at["y"]) - at["w"] * (place[0] - at["x"])
-        slope = at["v"] * slopes[3] - at["w"] * slopes[2]
-        inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
-        found = guess - value / slope
-        return BallArray(found.m, np.where(inside, found.r, np.inf))
-
-
-def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
-    """The angle from one tangent to another, less half a turn, up to whole turns."""
-    c, s = first[0] * last[0] + first[1] * last[1], first[0] * last[1] - first[1] * last[0]
-    return direction(-c, -s)
-
-
-def incidence(eta: BallArray) -> BallArray:
-    """Angles of incidence known up to whole turns, as they are: they lie within a quarter turn.
-
-    An enclosure within three quarters of a turn holds no number a whole turn away from one; a wider one is not kept.
-    """
-    return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))

@@ -32,17 +32,16 @@ from verification.proofs.global_dynamics.boxes import (
     hull,
     spread,
 )
-from verification.proofs.global_dynamics.images import (
-    QUARTER,
+from verification.proofs.global_dynamics.flights import (
     Array,
     Flights,
     Indices,
     Landing,
     Piece,
-    PinballImages,
     incidence,
     turn_between,
 )
+from verification.proofs.global_dynamics.images import QUARTER, PinballImages
 
 Range = tuple[Fraction, Fraction]
 

@@ -30,6 +30,7 @@ from scipy.sparse import csr_matrix
 from numeric.backends import elementary
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Images, hull
+from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.global_dynamics.graph import (
     BLOCK,
     LARGEST,
@@ -42,7 +43,7 @@ from verification.proofs.global_dynamics.graph import (
     inside,
     mapped,
 )
-from verification.proofs.global_dynamics.images import PinballImages, Slopes
+from verification.proofs.global_dynamics.images import PinballImages
 
 KIND, SCHEMA = "trapping region", 1
 Checked = tuple[str, dict[str, bool | None]]

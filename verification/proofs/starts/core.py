@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.flights import Matrix, matrix, times
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.parallelograms import Matrix, Parallelograms, carried, matrix, times
+from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -16,16 +16,13 @@ give beyond the join, which are a smooth function of all of the set, or else a r
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Rational, simplify
 
-from symbolic.tables.geometry import velocity
-from symbolic.tables.table import Table, theta
-from verification.proofs.global_dynamics.boxes import ROUNDING, ArrayOps, BallArray, Boxes, common_part, hull, turned
-from verification.proofs.global_dynamics.images import Flights, PinballImages, Slopes, incidence, turn_between
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
+from verification.proofs.global_dynamics.flights import Flights, incidence, matrix, turn_between
+from verification.proofs.global_dynamics.images import PinballImages
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -33,11 +30,7 @@ Mask = NDArray[np.bool_]
 OUTWARDS = 1 + 2.0**-46  # more than the roundings of a sum of six doubles
 PAD = 1e-300
 WIDER = 1.5  # a parallelogram may be so much wider than the rectangle, for what it keeps of directions
-Matrix = list[list[BallArray]]
 ENDS = 1e-14  # more than the rounding of an end of a component
-TRIES = 4  # doublings of what is added to an arc
-REACH = 3.0  # about the length of a flight
-CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # of a boundary point
 FIELDS = "chart", "middle", "sides", "rest"
 
 
@@ -102,127 +95,6 @@ class Parallelograms:
         return Boxes(self.chart, ends[0], ends[1])
 
 
-class Chords(Flights):
-    """Flights whose derivative is enclosed closely: from the length of the chord, which hardly varies.
-
-    Along a flight from `z0` to `z1`, with `t` the unit vector along it and `l` its length,
-
-        d theta1/d theta0 = (bend0*l - cos(phi0)*speed0)/(speed1*cos(eta1)),   d theta1/d phi0 = -l/(speed1*cos(eta1)),
-
-    where `bend` is how fast the tangent turns. The length and the speeds are enclosed by the mean-value theorem.
-    """
-
-    def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
-        """The derivatives over the boxes `on`, whose landings lie in an arc."""
-        ops, mid = self.map.ops, BallArray(np.asarray(arc.m))
-        beside = BallArray(0.0 * arc.m, arc.r)
-        there, start = self.map.place(chart, arc), {name: value[on] for name, value in self.whole.items()}
-        here = [start[name] for name in CURVE]
-        gap = [there[k] - start[name] for k, name in ((0, "x"), (1, "y"))]
-        rough = ops.sqrt(gap[0] * gap[0] + gap[1] * gap[1])
-        t = [side / rough for side in gap]
-        middle, centre = self.map.place(chart, mid), {name: value[on] for name, value in self.centre.items()}
-        first = [middle[k] - centre[name] for k, name in ((0, "x"), (1, "y"))]
-        length = ops.sqrt(first[0] * first[0] + first[1] * first[1])
-        shorter, longer = (t[0] * place[2] + t[1] * place[3] for place in (here, there))
-        length = common_part(length - shorter * self.reach[0][on] + longer * beside, rough)
-        given = (start["bend"], self.chart[on]), (turn_rate(there), chart)
-        bends = [closer(bend, self.map, where) for bend, where in given]
-        speeds = [
-            speed(ops, [centre[name] for name in CURVE], here, self.reach[0][on]),
-            speed(ops, middle, there, beside),
-        ]
-        turn = turn_between([centre["dx"], centre["dy"]], middle[2:4])
-        eta = self.phi[on] + turn + bends[1] * beside - bends[0] * self.reach[0][on] + self.reach[1][on]
-        whole = incidence(self.phis[on] + turn_between(here[2:4], there[2:4]))
-        eta = common_part(incidence(eta), whole)
-        cosine = turned(eta)[0]
-        across = speeds[1] * cosine
-        across = BallArray(across.m, np.where(across.positive(), across.r, np.inf))
-        by_theta = (bends[0] * length - start["cos"] * speeds[0]) / across
-        law, drift = self.map.slopes(eta, arc)
-        return Slopes(by_theta, -length / across, bends[0], bends[1], law, drift)
-
-    def beyond(self, on: Indices, chart: Indices, low: Array, high: Array) -> tuple[BallArray, Mask]:
-        """Arcs that go on past the join at which a component ends, along the same formulas; and which are told.
-
-        They are so long that every flight of the box crosses the longer component within them; and once, since the
-        derivative is known only where flights cross all of the arc from one side to the other. Where a landing lies on
-        the component it is that crossing; and the crossing is a smooth function on all of the box.
-        """
-        first, last = (np.array([float(end[k].m) for end in self.map.ends])[chart] for k in (0, 1))
-        up, down = high >= last, low <= first
-        step = (self.reach[0].r + REACH * self.reach[1].r)[on]
-        where, found = self.chart.copy(), [low.copy(), high.copy()]
-        told = ~(up & down) & (low < high)
-        for side, moving, sign in ((0, down, -1.0), (1, up, 1.0)):
-            open_ = moving & told
-            for attempt in range(TRIES):
-                at = self.theta.m + 0.0 * self.thetas.m
-                where[on], at[on] = chart, found[side] + sign * step * 2.0**attempt
-                value = self.sides((where, at))[on]
-                good = open_ & (value.positive() if sign > 0 else value.negative())
-                found[side] = np.where(good, at[on], found[side])
-                open_ &= ~good
-            told &= ~open_
-        return hull(*found), told
-
-    def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
-        """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""
-        turn = turn_between(self.tangent(on, self.thetas), self.map.place(chart, arc)[2:4])
-        exit, top = self.map.exit(incidence(self.phis[on] + turn), arc), self.map.top
-        return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
-
-
-def matrix(slopes: Slopes) -> Matrix:
-    """The derivative in `(theta, phi)`."""
-    by_theta, by_phi, here, there, law, drift = slopes
-    turn = [there * by_theta - here, there * by_phi + 1]
-    return [[by_theta, by_phi], [drift * by_theta - law * turn[0], drift * by_phi - law * turn[1]]]
-
-
-def times(first: Matrix, second: Matrix) -> Matrix:
-    """The product of two matrices of two rows."""
-    return [[first[i][0] * second[0][j] + first[i][1] * second[1][j] for j in (0, 1)] for i in (0, 1)]
-
-
-def turn_rate(place: list[BallArray]) -> BallArray:
-    """How fast the tangent turns, by the parameter."""
-    _, _, dx, dy, ddx, ddy = place
-    return (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
-
-
-def speed(ops: ArrayOps, middle: list[BallArray], whole: list[BallArray], beside: BallArray) -> BallArray:
-    """The speed of the parameter, by the mean-value theorem."""
-    rough = ops.sqrt(whole[2] * whole[2] + whole[3] * whole[3])
-    at = ops.sqrt(middle[2] * middle[2] + middle[3] * middle[3])
-    return common_part(rough, at + (whole[2] * whole[4] + whole[3] * whole[5]) / rough * beside)
-
-
-def closer(bend: BallArray, map: PinballImages, chart: Indices) -> BallArray:
-    """A bend that is known to be constant on the component, or the one that is given."""
-    known = np.array([np.nan if x is None else float(x) for x in constant_bends(map.map.table)])[chart]
-    held = ~np.isnan(known)
-    m, r = np.broadcast_arrays(bend.m, bend.r)
-    return BallArray(np.where(held, known, m), np.where(held, np.abs(known) * ROUNDING, r))
-
-
-@lru_cache(maxsize=16)
-def constant_bends(table: Table) -> tuple[Rational | None, ...]:
-    """How fast the tangent of each component turns, by its parameter, where SymPy finds that to be a constant.
-
-    >>> from symbolic import tables
-    >>> constant_bends(tables.cuspless)
-    (3/2, 0)
-    """
-    found: list[Rational | None] = []
-    for component in table.components:
-        (dx, dy) = velocity(component)
-        bend = simplify((dx * dy.diff(theta) - dy * dx.diff(theta)) / (dx**2 + dy**2))
-        found.append(bend if bend.is_Rational else None)
-    return tuple(found)
-
-
 def carried(map: PinballImages, sets: Parallelograms) -> tuple[Indices, Parallelograms]:
     """Parallelograms about the images, and of which set each is one.
 
@@ -252,7 +124,7 @@ def _carried(map: PinballImages, sets: Parallelograms, boxes: Boxes, on: Indices
     if not on.size:
         return []
     sets, boxes = sets[on], Boxes(boxes.chart[on], *((a[on], b[on]) for a, b in (boxes.x, boxes.y)))
-    flights = Chords(map, boxes)
+    flights = Flights(map, boxes)
     low, high = flights.arcs()
     if not map.closed:
         ends = [np.array([c.x[k] for c in map.charts])[boxes.chart] for k in (0, 1)]
@@ -283,7 +155,7 @@ def _on_the_table(map: PinballImages, sets: Parallelograms) -> Boxes:
 
 
 def _image(
-    flights: Chords, sets: Parallelograms, on: Indices, chart: Indices, arc: BallArray, smooth: bool
+    flights: Flights, sets: Parallelograms, on: Indices, chart: Indices, arc: BallArray, smooth: bool
 ) -> tuple[Parallelograms, NDArray[np.bool_]]:
     """The image of sets whose landings lie in one arc of one component: as parallelograms where that arc is all.
 

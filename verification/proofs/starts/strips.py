@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull, turned
+from verification.proofs.global_dynamics.flights import Flights, Matrix, matrix, times
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.core import Core
-from verification.proofs.starts.parallelograms import ENDS, Chords, Matrix, Parallelograms, carried, matrix, times
+from verification.proofs.starts.parallelograms import ENDS, Parallelograms, carried
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -266,7 +267,7 @@ def _steepest(
             np.maximum.at(found, owner, np.where(np.isfinite(most), most, np.inf))
             return
         seen = np.zeros(owner.size, dtype=bool)
-        whole = Chords(map, boxes)
+        whole = Flights(map, boxes)
         for piece in whole.pieces(*whole.arcs()):
             on = piece.on
             if not on.size:

@@ -11,8 +11,9 @@ from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics import regions as statements
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Chart
+from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.global_dynamics.graph import Grid, Transitions, morse_graph, refined
-from verification.proofs.global_dynamics.images import PinballImages, Slopes
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import (
     Derivatives,
     _arriving,

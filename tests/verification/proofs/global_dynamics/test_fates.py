@@ -11,8 +11,8 @@ from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Chart
 from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _reach, _staying, clusters, holding
+from verification.proofs.global_dynamics.flights import Piece, Slopes
 from verification.proofs.global_dynamics.graph import Grid, Transitions
-from verification.proofs.global_dynamics.images import Piece, Slopes
 
 ONE = np.ones(1)
 HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from symbolic import Scene, tables
 from verification.proofs.global_dynamics.boxes import Boxes, hull
+from verification.proofs.global_dynamics.flights import Flights, constant_bends, matrix
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.parallelograms import Chords, Parallelograms, carried, constant_bends, matrix
+from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
 Array = NDArray[np.float64]
@@ -68,7 +69,7 @@ def test_derivatives_hold_those_of_the_kernels() -> None:
     ]
     factors = np.array([[speed[0] / speed[1], 1 / speed[1]], [speed[0], np.ones_like(theta)]])
     told = told * factors.transpose(2, 0, 1)
-    flights, asked = Chords(images, boxes), 0
+    flights, asked = Flights(images, boxes), 0
     for on, chart, low, high, _ in flights.pieces(*flights.arcs()):
         arc = hull(low, high)
         entries = matrix(flights.slopes(on, chart, arc))
@@ -88,7 +89,7 @@ def test_beyond_a_join_every_flight_crosses_the_longer_component() -> None:
     images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
     boxes, rng = drawn(images, 5, 6000, 0.03), np.random.default_rng(6)
     theta, phi = (a + (b - a) * rng.random(6000) for a, b in (boxes.x, boxes.y))
-    flights, beyond = Chords(images, boxes), 0
+    flights, beyond = Flights(images, boxes), 0
     for on, chart, low, high, smooth in flights.pieces(*flights.arcs()):
         if smooth or not on.size:
             continue

@@ -29,7 +29,7 @@ def map() -> PinballImages:
     [
         (replace(SHORT, cubic=0.2), "orbits come to the middle"),  # no curve along which orbits approach
         (replace(SHORT, outer=0.4335), "orbits come to the middle"),  # beyond the join
-        (replace(SHORT, inner=0.2), "they converge there"),  # the norm of the derivative is above 1
+        (replace(SHORT, inner=0.3), "they converge there"),  # its entries, as the kernels find them, grow by 1.03
         (replace(SHORT, cells=20), "orbits come to the middle"),
         (replace(SHORT, gates=((0.41, 0.05),)), "gates lead in"),
     ],

@@ -1,0 +1,370 @@
+"""Flights that leave boxes: arcs that hold their landings, the landings themselves, and the derivative over a box.
+
+The arc of a box comes from two signs of a cross product, as in `images`; within it the mean-value theorem encloses
+landing and incidence.
+"""
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from sympy import Rational, simplify
+
+from symbolic.tables.geometry import velocity
+from symbolic.tables.table import Table, theta
+from verification.proofs.global_dynamics.boxes import (
+    ROUNDING,
+    ArrayOps,
+    BallArray,
+    Boxes,
+    centred,
+    common_part,
+    direction,
+    hull,
+    turned,
+)
+
+if TYPE_CHECKING:
+    from verification.proofs.global_dynamics.images import PinballImages
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+TRIES = 7  # widenings of a guessed arc
+DOUBLINGS = 4  # of what is added to an arc beyond a join
+REACH = 3.0  # about the length of a flight
+CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
+PLACES, CLOSE = (Rational(1, 7), Rational(1, 5)), 1e-9  # where a bend that varies is seen to do so
+CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # of a boundary point
+
+
+class Piece(NamedTuple):
+    """Boxes, and for each a part of its arc of landings, on one component; `smooth` if it is all of the arc."""
+
+    on: Indices
+    chart: Indices
+    low: Array
+    high: Array
+    smooth: bool
+
+
+class Slopes(NamedTuple):
+    """The landing's derivatives by `theta` and `phi`, how fast the tangent turns at start and landing, the law's slope.
+
+    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = drift*d theta1 - law*d eta1`;
+    `drift` is 0 for a law that is the same everywhere.
+    """
+
+    by_theta: BallArray
+    by_phi: BallArray
+    bend_here: BallArray
+    bend_there: BallArray
+    law: BallArray
+    drift: BallArray = BallArray(0.0)
+
+
+End = tuple[Indices, Array]  # component and parameter of boundary points
+Places = dict[str, BallArray]
+Matrix = list[list[BallArray]]
+Landing = tuple[Piece, BallArray, BallArray, BallArray | None]  # where, the incidence, the exit if place and law mix
+
+
+class Flights:
+    """What a block of boxes needs more than once."""
+
+    def __init__(self, map: "PinballImages", boxes: Boxes) -> None:
+        self.map, self.boxes, self.chart = map, boxes, boxes.chart
+        (theta, phi), self.reach, (self.thetas, self.phis) = centred(boxes)
+        self.theta, self.phi = theta, phi
+        self.centre = self._leaving(theta, phi)
+        self.whole = self._leaving(self.thetas, self.phis)
+        self.last: tuple[BallArray, list[BallArray]] | None = None  # an arc, and the boundary over it
+
+    def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
+        """Start, velocity and acceleration of the boundary, its speed and bend, and the direction of flight."""
+        x, y, dx, dy, ddx, ddy = self.map.place(self.chart, theta)
+        square, (c, s) = dx * dx + dy * dy, turned(phi)
+        v, w = (s * dx - c * dy) / (speed := self.map.ops.sqrt(square)), (s * dy + c * dx) / speed
+        found = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy, "v": v, "w": w, "cos": c, "speed": speed}
+        return found | {"bend": (dx * ddy - dy * ddx) / square}
+
+    def sides(self, end: End) -> BallArray:
+        """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""
+        x, y, *_ = self.map.place(end[0], BallArray(end[1]))
+        at, all_of = self.centre, self.whole
+        value = at["v"] * (y - at["y"]) - at["w"] * (x - at["x"])
+        along = all_of["v"] * (x - all_of["x"]) + all_of["w"] * (y - all_of["y"])
+        by_theta = all_of["cos"] * all_of["speed"] - all_of["bend"] * along
+        return value + by_theta * self.reach[0] + along * self.reach[1]
+
+    def arcs(self) -> tuple[End, End]:
+        """An arc for each box that holds its landings; parameters are nan where none is proved."""
+        chart, theta, ahead, behind = self.guess()
+        found = []
+        for sign in (-1, 1):
+            where, at = chart.copy(), np.full(theta.shape, np.nan)
+            width, open_ = np.where(sign < 0, ahead, behind), np.ones(theta.shape, dtype=bool)
+            for attempt in range(TRIES):
+                trial = self._moved(chart, theta, sign * width * 1.4**attempt)
+                side = self.sides(trial)
+                good = open_ & (side.negative() if sign < 0 else side.positive())
+                where[good], at[good] = trial[0][good], trial[1][good]
+                open_ &= ~good
+                if not np.any(open_):
+                    break
+            found.append((where, at))
+        if not self.map.closed:  # a landing comes after every start of the box, and before that start comes again
+            unknown = [np.isnan(at) for _, at in found]
+            for (where, at), mine, other, own in zip(found, unknown, unknown[::-1], self.boxes.x, strict=True):
+                use = mine & ~other
+                where[use], at[use] = self.chart[use], own[use]
+        return found[0], found[1]
+
+    def guess(self) -> tuple[Indices, Array, Array, Array]:
+        """Landings of the midpoints, and how far the box's landings may lie before and after, in float64."""
+        ends = self.map.map.states.ends
+        low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
+        theta = self.theta.m if self.map.closed else np.clip(self.theta.m, low, high)
+        step = self.map.map.step(theta, self.phi.m, self.chart)
+        chart = np.where(step.code == 0, step.component, self.chart)
+        landed = np.where(step.code == 0, step.theta, np.nan)
+        x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(np.nan_to_num(landed))))
+        with np.errstate(all="ignore"):
+            at = {name: value.m for name, value in self.centre.items()}
+            along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
+            slope = np.abs(at["v"] * dy - at["w"] * dx)
+            rate = np.abs(at["cos"] * at["speed"] - at["bend"] * along) * self.reach[0].r
+            width = (rate + np.abs(along) * self.reach[1].r) / slope * 1.1 + CENTRE
+        if self.map.closed:
+            landed = landed + 2 * np.pi * (landed < self.theta.m)
+        return chart, landed, width, width
+
+    def _moved(self, chart: Indices, theta: Array, by: Array) -> End:
+        """Boundary points moved along by a parameter; past a join onto the next component, by the same length."""
+        if self.map.closed:
+            return chart, theta + by
+        count = len(self.map.ends)
+        low = np.array([float(end[0].upper()) for end in self.map.ends])
+        high = np.array([float(end[1].lower()) for end in self.map.ends])
+        place = [value.m for value in self.map.place(chart, BallArray(np.nan_to_num(theta)))]
+        speed = np.hypot(place[2], place[3])
+        chart, moved = chart.copy(), theta + by
+        for edge, step, start in ((high, 1, low), (low, -1, high)):
+            over = moved > edge[chart] if step > 0 else moved < edge[chart]
+            length = np.abs(moved - edge[chart]) * speed
+            following = np.where(over, (chart + step) % count, chart)
+            place = [value.m for value in self.map.place(following, BallArray(start[following]))]
+            moved = np.where(over, start[following] + step * length / np.hypot(place[2], place[3]), moved)
+            chart = following
+        return chart, np.clip(moved, low[chart], high[chart])
+
+    def pieces(self, low: End, high: End) -> list[Piece]:
+        """The arcs of landings, cut where components meet."""
+        if self.map.closed:
+            return [Piece(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
+        count = len(self.map.ends)
+        ends = [(float(a.lower()), float(b.upper())) for a, b in self.map.ends]
+        whole = (low[0] == high[0]) & (low[1] < high[1]) & ~np.isnan(low[1])
+        found = [Piece(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True)]
+        joined = np.flatnonzero(~whole)
+        steps = (high[0][joined] - low[0][joined]) % count
+        steps = np.where(steps == 0, count, steps)  # around all of the boundary
+        for step in range(int(steps.max(initial=0)) + 1):
+            on = joined[steps >= step]
+            last = steps[steps >= step] == step
+            chart = (low[0][on] + step) % count
+            bottom, top = (np.array([end[i] for end in ends])[chart] for i in (0, 1))
+            a = low[1][on] if step == 0 else bottom
+            found.append(Piece(on, chart, a, np.where(last, high[1][on], top), False))
+        return found
+
+    def landing(self, piece: Piece) -> Landing:
+        """For each box of a piece, whose landings lie on one component between two parameters.
+
+        Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
+        """
+        on, chart, low, high, smooth = piece
+        arc = hull(low, high)
+        eta = incidence(self.phis[on] + turn_between(self.tangent(on, self.thetas), self.over(chart, arc)[2:4]))
+        if not smooth:
+            return piece, arc, eta, None
+        theta, eta, phi = self.mean_value(on, chart, arc, eta)
+        return piece, common_part(arc, theta), eta, phi
+
+    def over(self, chart: Indices, arc: BallArray) -> list[BallArray]:
+        """The boundary over an arc; one that is asked for again at once is not worked out again."""
+        if self.last is None or self.last[0] is not arc:
+            self.last = arc, self.map.place(chart, arc)
+        return self.last[1]
+
+    def tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
+        return self.map.place(self.chart[on], theta[on])[2:4]
+
+    def mean_value(
+        self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
+    ) -> tuple[BallArray, BallArray, BallArray | None]:
+        """Landing, incidence and, under a law of the place, exit, by the mean-value theorem about the midpoint's."""
+        by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
+        reach = self.reach[0][on], self.reach[1][on]
+        middle = self.midpoint(on, chart, arc)
+        theta = middle + by_theta * reach[0] + by_phi * reach[1]
+        turn = turn_between(self.tangent(on, self.theta), self.map.place(chart, middle)[2:4])
+        by = there * by_theta - here, there * by_phi + 1
+        fine = self.phi[on] + turn + by[0] * reach[0] + by[1] * reach[1]
+        phi = None
+        if self.map.placed:  # place and incidence move together
+            phi = self.map.exit(incidence(self.phi[on] + turn), middle)
+            phi = phi + (drift * by_theta - law * by[0]) * reach[0] + (drift * by_phi - law * by[1]) * reach[1]
+        return theta, common_part(eta, incidence(fine)), phi
+
+    def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
+        """The derivatives over the boxes `on`, whose landings lie in an arc.
+
+        Along a flight from `z0` to `z1`, with its length `l`,
+
+            d theta1/d theta0 = (bend0*l - cos(phi0)*speed0)/(speed1*cos(eta1)),
+            d theta1/d phi0 = -l/(speed1*cos(eta1)).
+
+        The length, which hardly varies, the speeds and the incidence are enclosed by the mean-value theorem.
+        """
+        ops, beside, aside = self.map.ops, BallArray(0.0 * arc.m, arc.r), self.reach[0][on]
+        start, centre = ({name: value[on] for name, value in places.items()} for places in (self.whole, self.centre))
+        here, first = ([places[name] for name in CURVE] for places in (start, centre))
+        there, last = self.over(chart, arc), self.map.place(chart, BallArray(np.asarray(arc.m)))
+        gap, middle = (
+            [z1 - z0 for z0, z1 in zip(a[:2], b[:2], strict=True)] for a, b in ((here, there), (first, last))
+        )
+        rough, length = (ops.sqrt(x * x + y * y) for x, y in (gap, middle))
+        shorter, longer = ((gap[0] * place[2] + gap[1] * place[3]) / rough for place in (here, there))
+        length = common_part(length - shorter * aside + longer * beside, rough)
+        bends = closer(start["bend"], self.map, self.chart[on]), closer(turn_rate(there), self.map, chart)
+        speeds = speed(ops, first, here, aside), speed(ops, last, there, beside)
+        eta = self.phi[on] + turn_between(first[2:4], last[2:4]) + self.reach[1][on]
+        eta = incidence(eta + bends[1] * beside - bends[0] * aside)
+        eta = common_part(eta, incidence(self.phis[on] + turn_between(here[2:4], there[2:4])))
+        across = speeds[1] * turned(eta)[0]
+        across = BallArray(across.m, np.where(across.positive(), across.r, np.inf))
+        by_theta = (bends[0] * length - start["cos"] * speeds[0]) / across
+        return Slopes(by_theta, -length / across, *bends, *self.map.slopes(eta, arc))
+
+    def across(
+        self, on: Indices, chart: Indices, arc: BallArray
+    ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
+        """The boxes `on`; velocity and acceleration over an arc; how far it is, and how fast it leaves the lines."""
+        at = {name: value[on] for name, value in self.whole.items()}
+        x, y, *velocity = self.over(chart, arc)
+        along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
+        slope = at["v"] * velocity[1] - at["w"] * velocity[0]
+        return at, velocity, along, BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
+
+    def midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
+        """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
+        at = {name: value[on] for name, value in self.centre.items()}
+        guess = BallArray(np.asarray(arc.m))
+        place, slopes = self.map.place(chart, guess), self.over(chart, arc)
+        for _ in range(2):  # of Newton's method, in float64
+            value = at["v"].m * (place[1].m - at["y"].m) - at["w"].m * (place[0].m - at["x"].m)
+            guess = BallArray(guess.m - value / (at["v"].m * place[3].m - at["w"].m * place[2].m))
+            place = self.map.place(chart, guess)
+        value = at["v"] * (place[1] - at["y"]) - at["w"] * (place[0] - at["x"])
+        slope = at["v"] * slopes[3] - at["w"] * slopes[2]
+        inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
+        found = guess - value / slope
+        return BallArray(found.m, np.where(inside, found.r, np.inf))
+
+    def beyond(self, on: Indices, chart: Indices, low: Array, high: Array) -> tuple[BallArray, Mask]:
+        """Arcs that go on past the join at which a component ends, along the same formulas; and which are told.
+
+        They are so long that every flight of the box crosses the longer component within them; and once, since the
+        derivative is known only where flights cross all of the arc from one side to the other. Where a landing lies on
+        the component it is that crossing; and the crossing is a smooth function on all of the box.
+        """
+        first, last = (np.array([float(end[k].m) for end in self.map.ends])[chart] for k in (0, 1))
+        up, down = high >= last, low <= first
+        step = (self.reach[0].r + REACH * self.reach[1].r)[on]
+        where, found = self.chart.copy(), [low.copy(), high.copy()]
+        told = ~(up & down) & (low < high)
+        for side, moving, sign in ((0, down, -1.0), (1, up, 1.0)):
+            open_ = moving & told
+            for attempt in range(DOUBLINGS):
+                at = self.theta.m + 0.0 * self.thetas.m
+                where[on], at[on] = chart, found[side] + sign * step * 2.0**attempt
+                value = self.sides((where, at))[on]
+                good = open_ & (value.positive() if sign > 0 else value.negative())
+                found[side] = np.where(good, at[on], found[side])
+                open_ &= ~good
+            told &= ~open_
+        return hull(*found), told
+
+    def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
+        """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""
+        turn = turn_between(self.tangent(on, self.thetas), self.over(chart, arc)[2:4])
+        exit, top = self.map.exit(incidence(self.phis[on] + turn), arc), self.map.top
+        return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
+
+
+def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
+    """The angle from one tangent to another, less half a turn, up to whole turns."""
+    c, s = first[0] * last[0] + first[1] * last[1], first[0] * last[1] - first[1] * last[0]
+    return direction(-c, -s)
+
+
+def incidence(eta: BallArray) -> BallArray:
+    """Angles of incidence known up to whole turns, as they are: they lie within a quarter turn.
+
+    An enclosure within three quarters of a turn holds no number a whole turn away from one; a wider one is not kept.
+    """
+    return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))
+
+
+def matrix(slopes: Slopes) -> Matrix:
+    """The derivative in `(theta, phi)`."""
+    by_theta, by_phi, here, there, law, drift = slopes
+    turn = [there * by_theta - here, there * by_phi + 1]
+    return [[by_theta, by_phi], [drift * by_theta - law * turn[0], drift * by_phi - law * turn[1]]]
+
+
+def times(first: Matrix, second: Matrix) -> Matrix:
+    """The product of two matrices of two rows."""
+    return [[first[i][0] * second[0][j] + first[i][1] * second[1][j] for j in (0, 1)] for i in (0, 1)]
+
+
+def turn_rate(place: list[BallArray]) -> BallArray:
+    """How fast the tangent turns, by the parameter."""
+    _, _, dx, dy, ddx, ddy = place
+    return (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
+
+
+def speed(ops: ArrayOps, middle: list[BallArray], whole: list[BallArray], beside: BallArray) -> BallArray:
+    """The speed of the parameter, by the mean-value theorem."""
+    rough = ops.sqrt(whole[2] * whole[2] + whole[3] * whole[3])
+    at = ops.sqrt(middle[2] * middle[2] + middle[3] * middle[3])
+    return common_part(rough, at + (whole[2] * whole[4] + whole[3] * whole[5]) / rough * beside)
+
+
+def closer(bend: BallArray, map: "PinballImages", chart: Indices) -> BallArray:
+    """A bend that is known to be constant on the component, or the one that is given."""
+    known = np.array([np.nan if x is None else float(x) for x in constant_bends(map.map.table)])[chart]
+    held = ~np.isnan(known)
+    m, r = np.broadcast_arrays(bend.m, bend.r)
+    return BallArray(np.where(held, known, m), np.where(held, np.abs(known) * ROUNDING, r))
+
+
+@lru_cache(maxsize=16)
+def constant_bends(table: Table) -> tuple[Rational | None, ...]:
+    """How fast the tangent of each component turns, by its parameter, where SymPy finds that to be a constant.
+
+    >>> from symbolic import tables
+    >>> constant_bends(tables.cuspless)
+    (3/2, 0)
+    """
+    found: list[Rational | None] = []
+    for component in table.components:
+        (dx, dy) = velocity(component)
+        bend = (dx * dy.diff(theta) - dy * dx.diff(theta)) / (dx**2 + dy**2)
+        some = [bend.subs(dict.fromkeys(bend.free_symbols, at)).n() for at in PLACES]
+        varies = all(x.is_Float for x in some) and abs(some[0] - some[1]) > CLOSE
+        bend = bend if varies else simplify(bend)
+        found.append(bend if bend.is_Rational else None)
+    return tuple(found)

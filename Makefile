@@ -45,7 +45,9 @@ check-all:
 formal:
 	@$(PYTHON) formal/check.py
 
+# Before: the table IRs that come with the package, made anew where their sources changed; commit them.
 lint: $(VENV)/test.stamp
+	$(BIN)/python -m numeric.lowering.shipped
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

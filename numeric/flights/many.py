@@ -28,7 +28,6 @@ from numeric.flights.corners import (
 )
 from numeric.flights.family import SLAP, Boundary, Landing
 from numeric.flights.general import UNSURE
-from numeric.flights.grid import laid, met
 from numeric.flights.pieces import FAR, Pieces
 
 SOME = 32  # pieces, from which on it pays to find the first hit by a grid
@@ -48,6 +47,8 @@ class Many(Pieces):
         spans = [span(piece) for piece in self.known]
         most = [max(map(abs, piece.middle)) for piece in self.known]
         self.size = max(float(base + slope * p) for (base, slope), p in zip(spans, most, strict=True))
+        from numeric.flights.grid import laid
+
         inner = [j for j in range(len(self.known)) if j not in self.outer]
         boxes = [boxes_of(piece, ends) for piece, ends in zip(self.known, boundary.ends, strict=True)]
         corners = [
@@ -76,6 +77,8 @@ class Many(Pieces):
         component, p, q = position
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0, d0 = self.point(ops, pieces, position), self.tangent(ops, shape, position)
+        from numeric.flights.grid import met
+
         flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
         far = ops.number(FAR) + nought * component
         best = [far, component]

@@ -9,16 +9,22 @@ When the folder cannot be used the work is done without it, and one warning says
 # Every warm start passes here, and pathlib alone takes 3 ms to import.
 # ruff: noqa: PTH103, PTH105, PTH108, PTH111, PTH116, PTH118, PTH120, PTH123
 
-import hashlib
 import os
 import stat
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache as memoised
 
+try:
+    from _blake2 import blake2b  # hashlib takes 3 ms to import: it asks OpenSSL what else there is
+except ImportError:
+    from hashlib import blake2b
+
 FOLDER = "PINBALL_CACHE"  # the environment variable that moves the folder; empty switches it off
 LIMIT = 256 << 20  # bytes kept; a kernel takes 10 to 100 kB
-KINDS = ("scene", "table_ir", "kernel")
+KINDS = ("scene", "table_ir", "kernel", "sources")
+SETTLED = 2.0  # seconds after which a file that changes again has another time
 TEMPORARY = ".new-"  # a file before it is renamed
 FOR_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _said: set[str] = set()
@@ -58,23 +64,38 @@ def _foreign(found: os.stat_result) -> str | None:
 
 @memoised
 def sources(*packages: str) -> str:
-    """A digest of the program text of some of this project's packages, each as a path such as `numeric/flights`."""
-    digest = hashlib.sha256()
+    """A digest of the program text of some of this project's packages, each as a path such as `numeric/flights`.
+
+    The text is read once: as long as no file has another length or time, its digest is taken from the folder.
+    """
     root = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
-    for package in packages:
-        for inside, folders, files in os.walk(os.path.join(root, package)):
-            folders.sort()
-            for name in sorted(files):
-                if name.endswith(".py"):
-                    path = os.path.join(inside, name)
-                    with open(path, "rb", buffering=0) as file:
-                        digest.update(os.path.relpath(path, root).encode() + b"\0" + file.readall() + b"\0")
+    found = sorted(path for package in packages for path in _files(os.path.join(root, package)))
+    stamps = "\n".join(f"{path} {at.st_size} {at.st_mtime_ns} {at.st_ctime_ns}" for path, at in found)
+    kept = read("sources", stamps)
+    if kept is not None:
+        return kept.decode()
+    digest = blake2b(digest_size=32)
+    for path, _ in found:
+        with open(path, "rb", buffering=0) as file:
+            digest.update(os.path.relpath(path, root).encode() + b"\0" + file.readall() + b"\0")
+    if max(at.st_ctime for _, at in found) < time.time() - SETTLED:  # else it could change within a tick of its clock
+        write("sources", stamps, digest.hexdigest().encode())
     return digest.hexdigest()
+
+
+def _files(place: str) -> Iterator[tuple[str, os.stat_result]]:
+    """The files of Python in a folder and in those inside it, with their lengths and times."""
+    with os.scandir(place) as entries:
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                yield entry.path, entry.stat()
+            elif entry.is_dir():
+                yield from _files(entry.path)
 
 
 def key_of(*parts: str) -> str:
     """A digest of several texts, of which no two runs together."""
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+    return blake2b("\0".join(parts).encode(), digest_size=16).hexdigest()
 
 
 def read(kind: str, *parts: str) -> bytes | None:
@@ -183,7 +204,7 @@ def _trusted() -> str | None:
 
 
 def _digest(name: str, content: bytes) -> bytes:
-    return hashlib.sha256(name.encode() + b"\0" + content).digest()
+    return blake2b(name.encode() + b"\0" + content, digest_size=32).digest()
 
 
 def _say(place: str, what: str) -> None:

@@ -335,22 +335,30 @@ def table_ir(table: "Table | Scene | Named | str", K: int = 3) -> TableIR:
         from numeric.lowering.lower import lower
 
         return lower(table)
-    if isinstance(table, Scene):
-        name = table.family_text or table.boundary
-    elif isinstance(table, Named):
-        name = repr(table)
-    elif table in PAPER:
-        name = f"{table}{K}" if table == "egg" else table
-    else:
-        raise ValueError(f"no table is called {table!r}; accepted: {', '.join((*PAPER, *GALLERY))}")
-    kept = cache.read("table_ir", name, cache.sources(*SOURCES))
+    name, sources = ir_name(table, K), cache.sources(*SOURCES)
+    kept = cache.read("table_ir", name, sources)
     if kept is not None:
         try:
             return TableIR.from_text(kept.decode())
         except (ValueError, KeyError, TypeError, IndexError):
             pass  # a damaged file is as good as none: it is written again
-    from numeric.lowering.lower import exact_table, lower
+    from numeric.lowering.shipped import shipped
 
-    found = lower(table.family if isinstance(table, Scene) else exact_table(table, K, {}))
-    cache.write("table_ir", name, cache.sources(*SOURCES), found.as_text().encode())
-    return found
+    text = shipped(name, sources)
+    if text is None:
+        from numeric.lowering.lower import exact_table, lower
+
+        text = lower(table.family if isinstance(table, Scene) else exact_table(table, K, {})).as_text()
+    cache.write("table_ir", name, sources, text.encode())
+    return TableIR.from_text(text)
+
+
+def ir_name(table: "Scene | Named | str", K: int) -> str:
+    """What a table IR that is kept is known by."""
+    if isinstance(table, Scene):
+        return table.family_text or table.boundary
+    if isinstance(table, Named):
+        return repr(table)
+    if table in PAPER:
+        return f"{table}{K}" if table == "egg" else table
+    raise ValueError(f"no table is called {table!r}; accepted: {', '.join((*PAPER, *GALLERY))}")

@@ -7,7 +7,6 @@ tables with plain numbers is read without SymPy.
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from difflib import get_close_matches
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +48,8 @@ def like(name: str, known: Iterable[str]) -> str:
     >>> like("stadum", GALLERY)
     '; did you mean stadium?'
     """
+    from difflib import get_close_matches  # 1 ms, for a mistake only
+
     return "".join(f"; did you mean {each}?" for each in get_close_matches(name, list(known), 1))
 
 

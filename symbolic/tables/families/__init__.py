@@ -3,6 +3,8 @@
 Nothing else has to hear of a new file: commands, scene files, `PinballMap` and reports take its name from the folder.
 """
 
-import pkgutil
+import os
 
-NAMES: tuple[str, ...] = tuple(sorted(module.name for module in pkgutil.iter_modules(__path__)))
+NAMES: tuple[str, ...] = tuple(
+    sorted(name.removesuffix(".py") for name in os.listdir(__path__[0]) if name.endswith(".py") and name[0] != "_")
+)

@@ -16,7 +16,7 @@ from numeric.lowering import cache, program
 PROGRAM = """
 import sys
 from numeric import PinballMap
-step = PinballMap("circle", lam=0.5).step(0.3, 0.2)
+step = PinballMap("semi_ellipse", lam=0.5, a=3).step(0.3, 0.2)  # not one that comes with the package
 print(float(step.theta).hex(), "sympy" in sys.modules)
 """
 
@@ -32,7 +32,7 @@ def test_the_second_run_needs_no_sympy(tmp_path):
 
     assert cold[0] == warm[0]
     assert (cold[1], warm[1]) == ("True", "False")
-    assert len(list(tmp_path.iterdir())) == 2
+    assert {path.name.split("-")[0] for path in tmp_path.iterdir()} - {"sources"} == {"table_ir", "kernel"}
 
 
 def test_damaged_files_are_written_again(tmp_path):

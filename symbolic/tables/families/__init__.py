@@ -6,5 +6,9 @@ Nothing else has to hear of a new file: commands, scene files, `PinballMap` and 
 import os
 
 NAMES: tuple[str, ...] = tuple(
-    sorted(name.removesuffix(".py") for name in os.listdir(__path__[0]) if name.endswith(".py") and name[0] != "_")
+    sorted(
+        name.removesuffix(".py")
+        for name in os.listdir(__path__[0])  # noqa: PTH208  (pathlib takes 3 ms to import, pkgutil one)
+        if name.endswith(".py") and not name.startswith("_")
+    )
 )

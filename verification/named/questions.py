@@ -329,7 +329,7 @@ def bifurcations(
         value: dict[str, Any] = {parameter: low + (high - low) * Fraction(2 * i + 1, 2 * searches)}
         orbits = find_cycles(scene.at(**value), period=period)
         say(f"{parameter} = {float(value[parameter]):.4g}")
-        for orbit in {_mark(orbit): orbit for orbit in orbits}.values():
+        for orbit in {same_multipliers(orbit): orbit for orbit in orbits}.values():
             try:
                 followed = follow(orbit, **interval)
             except ValueError:
@@ -342,6 +342,6 @@ def bifurcations(
     return tuple(found)
 
 
-def _mark(orbit: PeriodicOrbit) -> tuple[complex, ...]:
+def same_multipliers(orbit: PeriodicOrbit) -> tuple[complex, ...]:
     """The multipliers, which images under a symmetry share."""
     return tuple(complex(round(mu.real, ALIKE), round(abs(mu.imag), ALIKE)) for mu in orbit.multipliers)

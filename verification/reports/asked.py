@@ -23,6 +23,7 @@ from symbolic.tables.scene import Scene
 
 Arrays = Mapping[str, NDArray[Any]]
 FILE = "scene.toml"  # among the parts: the scene as a file that `--scene` reads
+DRAWN = "--plot FILE.svg"  # of the command beneath a picture
 CONTRACTIONS = ("1/10", "1/2", "9/10")
 
 

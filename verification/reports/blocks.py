@@ -79,7 +79,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure: the name of its file among the parts of the report, what it shows, and the command for its data.
+    """A figure: the name of its file among the parts of the report, what it shows, and the command that draws it.
 
     `values` are the numbers that it draws, where they are few.
     """

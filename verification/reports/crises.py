@@ -6,7 +6,6 @@ The boundary has to be one smooth formula; where it is not convex each flight is
 other tables only the changes are told (`parted`).
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -18,22 +17,17 @@ from numeric import PinballMap
 from numeric.sweeps.fields import bifurcation
 from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
-from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal
 from verification.cycles.recurrence import Closure
-from verification.cycles.systems import reflected, rotations
-from verification.maps.first_hit import closes_smoothly
-from verification.named.questions import PeriodicOrbit, Tick, find_cycles
-from verification.proofs.manifolds.grow import touches
-from verification.proofs.manifolds.known import settled
-from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened, tangency_proved
+from verification.named import tangencies
+from verification.named.questions import PeriodicOrbit, Tick
+from verification.named.tangencies import LEAST, SAME, near, objection_of
+from verification.proofs.manifolds.proof import LEAST_DIGITS
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact, Touch
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Block, Effort, Known, Listing, Number, Words
 from verification.reports.dynamics import density
-from verification.reports.lives import mark
 from verification.reports.parted import near_changes, told_of
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
@@ -42,30 +36,23 @@ GROWN = 0.15  # part of the cells that an attractor meets, gained or lost from o
 MOST = 3  # changes that are looked into
 COLUMNS, ORBITS, POINTS, LONG = 25, 16, 512, 20_000  # of the closer look: contractions, particles, bounces, transient
 NEAR = 4  # steps of that look within which a tangency belongs to a change
-BOUNCES, ROUNDS = 6, 6  # that an unstable manifold is followed: so many at least, and so many rounds
-TRIED = 6  # places on it from which a tangency is sought
-LEAST, SHOWN = 1e-12, 5e-6  # of an error in float64; of a multiplier, half a unit of its last digit
+SHOWN = 5e-6  # of a multiplier, half a unit of its last digit
 DIGITS = 10  # of a multiplier
-SAME = 1e-6  # parameters of bounces that a symmetry exchanges, found in float64
-
-
-def askable(scene: Scene) -> bool:
-    """Is the boundary one closed formula without cusps, and the exit angle a formula of angles and place?"""
-    table = scene.table
-    return len(table.components) == 1 and not table.undefined and closes_smoothly(table) and not scene.law.measured
 
 
 def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found:
     """The tangencies near the changes that the diagram shows, sought in float64; nothing of them is proved yet."""
     arrays = parts.arrays("diagram-0")
     changes = changed(arrays["counts"], arrays["chaotic"])
-    if not askable(asked.scene):
+    if objection_of(asked.scene):
         rows = near_changes(asked, [closer(asked, parts, arrays["values"], j) for j in changes])
         return [told_of(asked, rows)], [Effort("changes of attractors", f"{len(rows)} changes", 0.0)], {"parted": rows}
     found: list[Document] = []
     for j in changes:
         low, high = closer(asked, parts, arrays["values"], j)
-        for touch, cycle in near(asked, (low + high) / 2, NEAR * (high - low), heard):
+        ends = _about(low, high)
+        here = asked.scene.at(lam=repr(round(sum(ends) / 2, 9)))
+        for touch, cycle in near(here, ends, asked.period, asked.seed, heard):
             if all(abs(touch.parameter - other["value"]) > SAME for other in found):
                 found.append(_touched(touch, cycle, (low, high)))
     found.sort(key=lambda said: float(said["value"]))
@@ -73,17 +60,18 @@ def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found
     return [], [Effort("tangencies", size, 0.0)], {"touches": found, "changes": len(changes)}
 
 
+def _about(low: float, high: float) -> tuple[float, float]:
+    """The contractions within which a tangency belongs to a change between two of them."""
+    reach = min(NEAR * (high - low), (low + high) / 2 - SAME, 1 - (low + high) / 2)
+    return (low + high) / 2 - reach, (low + high) / 2 + reach
+
+
 def proved(asked: Asked, said: Document, number: int) -> Found:
     """The proof of a tangency that was found: an enclosure of the contraction, and the checklist."""
-    map, contact = plane_map(asked.scene), contact_of(said["contact"])
-    digits = max(asked.digits, LEAST_DIGITS)
-    effort = Effort(f"tangency {number}", f"{digits} digits", 0.0)
-    if why := objection(contact, map, contact.parameter):
-        return [], [effort], {"open": why}
-    try:
-        proof = tangency_proved(contact, map, sharpened(contact, map, repr(contact.parameter), digits), digits)
-    except (ValueError, ArithmeticError) as why:
-        return [], [effort], {"open": str(why)}
+    effort = Effort(f"tangency {number}", f"{max(asked.digits, LEAST_DIGITS)} digits", 0.0)
+    proof = tangencies.proved(asked.scene, contact_of(said["contact"]), asked.digits)
+    if isinstance(proof, str):
+        return [], [effort], {"open": proof}
     unknown = [item for item, holds in proof.checks.items() if holds is not True]
     if unknown:
         return [], [effort], {"open": ", ".join(unknown)}
@@ -141,53 +129,6 @@ def closer(asked: Asked, parts: Parts, values: NDArray[Any], j: int) -> tuple[fl
     counts = density(seen.s.values, half)
     k = next(iter(changed(counts, seen.chaotic.values.mean(axis=1))), COLUMNS // 2)
     return float(finer[k]), float(finer[k + 1])
-
-
-def near(asked: Asked, lam: float, reach: float, heard: Tick) -> Iterator[tuple[Touch, PeriodicOrbit]]:
-    """The tangencies within reach of a contraction, each with the saddle whose manifolds touch."""
-    here = asked.scene.at(lam=repr(round(lam, 9)))
-    mirror = here.law.odd and reflected(here.table)
-    map, known = plane_map(here), list[list[float]]()
-    for cycle in find_cycles(here, up_to=asked.period, seed=asked.seed, tick=heard):
-        one, two = cycle.multipliers
-        look = mark(cycle.period, (one + two).real, (one * two).real)
-        saddle = one.imag == 0 and min(abs(one), abs(two)) < 1 < max(abs(one), abs(two))
-        if not saddle or look in known:
-            continue
-        known.append(look)
-        heard("tangencies")
-        orbit = round_of(cycle, map.turn, mirror)
-        rounds = max(ROUNDS, BOUNCES // len(orbit.start))
-        for touch in touches(orbit, map, lam, rounds, TRIED, any_bounce=mirror):
-            if abs(touch.parameter - lam) <= reach:
-                yield replace(touch, contact=settled(touch.contact, map)), cycle
-
-
-def plane_map(scene: Scene) -> Pinball:
-    """The map of a scene, with the rotations that its table and its law have."""
-    return Pinball(scene.table, turn=1 if scene.law.placed else rotations(scene.table), law=scene.law)
-
-
-def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:
-    """The least part of a cycle that a symmetry continues, on angles that count turns.
-
-    >>> from symbolic import Scene
-    >>> egg, thirds = Scene("egg", alpha="2/25"), (0.0, 2.0943951, -2.0943951)
-    >>> triangle = PeriodicOrbit(egg, (0,) * 3, thirds, (0.0,) * 3, (0j, 0j))
-    >>> round_of(triangle, 3, True).closure.shift
-    (1, 3)
-    """
-    x = [cycle.theta[0]]
-    for theta in (*cycle.theta[1:], cycle.theta[0]):
-        x.append(x[-1] + (theta - x[-1]) % (2 * math.pi))
-    once = x[-1] - x[0]
-    twice, unit, name = [*x[:-1], *(y + once for y in x[:-1])], 2 * math.pi / turn, f"cycle of period {cycle.period}"
-    for k in range(1, cycle.period):
-        for sign in (1, -1) if mirrored else (1,):
-            moved = [(twice[i + k] - sign * twice[i]) / unit for i in range(cycle.period)]
-            if all(abs(math.remainder(y - round(moved[0]), turn)) < SAME for y in moved):  # whole turns change nothing
-                return Orbit(name, tuple(x[:k]), Closure(sign, (round(moved[0]), turn)))
-    return Orbit(name, tuple(x[:-1]), Closure(1, (round(once / (2 * math.pi)), 1)))
 
 
 def contact_of(said: Mapping[str, Any]) -> Contact:
@@ -265,4 +206,11 @@ def _table(asked: Asked, changes: int, pairs: list[tuple[Document, Document]]) -
         "it is seen too late."
     )
     rows = tuple(_row(*pair) for pair in pairs)
-    return Listing(caption, COLUMN, rows, asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:150"))
+    return Listing(caption, COLUMN, rows, "; ".join(_commands(asked, [said["change"] for said, _ in pairs])))
+
+
+def _commands(asked: Asked, changes: list[list[float]]) -> Iterator[str]:
+    """For each change the command that seeks and proves the tangencies near it."""
+    for low, high in {tuple(change): None for change in changes}:
+        (first, last), options = _about(low, high), f"--period {asked.period} --digits {asked.digits} --searches 1"
+        yield asked.command("locate tangency", f"--lam {first:.9f}:{last:.9f} {options}")

@@ -21,7 +21,7 @@ from verification.arithmetic.balls import decimal, working
 from verification.named.attractors import Member, certificate, exponents, joined
 from verification.named.questions import PeriodicOrbit
 from verification.reports import pictures
-from verification.reports.asked import Asked, Parts
+from verification.reports.asked import DRAWN, Asked, Parts
 from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Words, solved
 from verification.reports.lives import said_of
 
@@ -62,7 +62,7 @@ def slap(asked: Asked, parts: Parts) -> Found:
         f"contracts; it expands at {steep:.0%} of {good.sum()} points of an even grid in the parameter."
     )
     alt = "Graphs of the slap map and of its derivative"
-    return [Picture("slap", caption, alt, asked.command("slap", "--json slap.json"))], [], {}
+    return [Picture("slap", caption, alt, asked.command("slap", DRAWN))], [], {}
 
 
 def wrapped(s: Any, half: float) -> Any:
@@ -94,7 +94,7 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
         f"darker the more often a cell is met (logarithm of the count). Sampled, seed {asked.seed}."
     )
     alt = "Densities of bounces in phase space at " + ", ".join(f"lambda = {text}" for text in asked.at)
-    command = asked.command("attractor", f"--orbits {orbits} --seed {asked.seed} --json FILE", lam=asked.at[0])
+    command = asked.command("attractor", f"--orbits {orbits} --seed {asked.seed}", DRAWN, lam=asked.at[0])
     effort = Effort("phase portraits", f"{orbits} particles, {bounces} bounces", 0.0)
     return [Picture(f"portrait-{level}", caption, alt, command)], [effort], {}
 
@@ -127,7 +127,7 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     over = f"--lams {asked.low}:{asked.high}:{columns}"
     if asked.parameter != "lam":
         over = f"--lams {asked.at[0]} --shape {asked.parameter}={asked.low}:{asked.high}:{columns}"
-    command = asked.command("bifurcation", over, options, "--json FILE")
+    command = asked.command("bifurcation", over, options)
     size = f"{columns} values of {asked.parameter}, {orbits} particles, {bounces} bounces"
     effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.nanmedian(arrays['error'])):.1g} (median of nu_plus)")
     rows_of = exponent_rows(arrays)
@@ -159,7 +159,7 @@ def plane(asked: Asked, parts: Parts, level: int) -> Found:
     parts.keep(f"plane-{level}", arrays)
     over = f"--shape {name}={low}:{high}:{rows} --lams {asked.low}:{asked.high}:{columns}"
     options = f"--starts {starts} --transient {transient} --bounces {bounces} --seed {asked.seed}"
-    command = asked.command("sweep parameter-space", over, options, "--plot FILE.png")
+    command = asked.command("sweep parameter-space", over, options, DRAWN)
     error = float(np.nanmedian(found.nu_max_error.values))
     size = f"{rows} values of {name} by {columns} contractions, {starts} particles, {bounces} bounces"
     said = {"level": level, "command": command, "size": size, "chaotic": float(np.mean(found.chaotic.values > 0))}
@@ -200,7 +200,7 @@ def diagram_blocks(asked: Asked, parts: Parts, said: dict[str, Any], events: lis
         "per bounce over the orbits, with its standard error, and the smallest. Sampled: an attractor that no start "
         "reached is not drawn."
     )
-    picture = Picture(name, caption, "Bifurcation diagram as a density, above exponents", said["command"])
+    picture = Picture(name, caption, "Bifurcation diagram as a density, above exponents", f"{said['command']} {DRAWN}")
     rows = tuple(
         (
             f"{value:.6g}",
@@ -210,7 +210,8 @@ def diagram_blocks(asked: Asked, parts: Parts, said: dict[str, Any], events: lis
         for value, share, nu, error in said["rows"]
     )
     caption = "Along the diagram: the share of orbits with an exponent positive beyond its error, and the largest one."
-    return [picture, Listing(caption, (asked.parameter, "chaotic orbits", "largest nu_plus"), rows, said["command"])]
+    columns = asked.parameter, "chaotic orbits", "largest nu_plus"
+    return [picture, Listing(caption, columns, rows, f"{said['command']} --json FILE.json")]
 
 
 def _share(share: float, of: int) -> Number:
@@ -323,5 +324,5 @@ def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], 
         f"Basins at lambda = {text}: the attractor that each of {columns} x {rows} starts reaches, a colour for "
         f"each of {len(attractors)}; shares of the cells {shares}. Sampled at the centres of the cells."
     )
-    command = asked.command("basins", f"--columns {columns} --rows {rows} --seed {asked.seed} --json FILE", lam=text)
+    command = asked.command("basins", f"--columns {columns} --rows {rows} --seed {asked.seed}", DRAWN, lam=text)
     return Picture(name, caption, f"Basins of attraction at lambda = {text}", command)

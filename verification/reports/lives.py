@@ -22,7 +22,7 @@ from verification.named.questions import PeriodicOrbit, Tick, find_cycles, follo
 from verification.plots.dynamics import plotted
 from verification.plots.sheet import styled
 from verification.proofs.periodic.bifurcation import Proof
-from verification.reports.asked import Asked, Parts
+from verification.reports.asked import DRAWN, Asked, Parts
 from verification.reports.blocks import Block, Cell, Certificate, Effort, Known, Listing, Number, Picture, Words, solved
 from verification.reports.pictures import saved
 
@@ -127,7 +127,7 @@ def life(asked: Asked, parts: Parts, text: str, said: Document, number: int) -> 
         "along the branch, solid where it attracts and dashed where not, with its events. In float64."
     )
     alt = f"Bounces of a cycle of period {orbit.period} against {asked.parameter}"
-    blocks.append(Picture(name, caption, alt, command(asked, orbit, text)))
+    blocks.append(Picture(name, caption, alt, f"{command(asked, orbit, text)} {DRAWN}"))
     blocks += [event.certificate for event in events if event.certificate]
     certified = sum(event.certificate is not None for event in events)
     size = f"{len(branch.points)} points, {certified} certificates"

@@ -18,7 +18,7 @@ from symbolic.tables.scene import Scene
 from verification.reports import crises as tangencies
 from verification.reports import lives
 from verification.reports import scene as exactly
-from verification.reports.asked import Asked, Parts
+from verification.reports.asked import DRAWN, Asked, Parts
 from verification.reports.blocks import Block, Effort, Picture, Section, costs
 
 Clock = Callable[[], float]
@@ -65,7 +65,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Report:
-    """The sections of a report, its findings in a few numbers each, and what more time would do."""
+    """The sections of a report, its findings in a few numbers each, and what more time would do.
+
+    `pending` are the titles of sections of which nothing is known yet. A report is `unfinished` while it is worked on:
+    that is what a page says which was left behind by a run that was killed.
+    """
 
     asked: Asked
     sections: tuple[Section, ...]
@@ -75,6 +79,8 @@ class Report:
     events: tuple[dict[str, Any], ...] = ()
     attractors: tuple[dict[str, Any], ...] = ()
     exponents: tuple[dict[str, Any], ...] = ()
+    pending: tuple[str, ...] = ()
+    unfinished: bool = False
 
     def document(self) -> dict[str, Any]:
         """The report as JSON has it: what the page shows, without its pictures."""
@@ -182,7 +188,6 @@ def worked(
 ) -> Report:
     """Does the steps that fit until a time, each of them once, and writes the report after each."""
     left: list[str] = []
-    done = composed(asked, parts, ())
 
     def heard(_: str) -> None:
         if clock() > until:
@@ -205,8 +210,7 @@ def worked(
         efforts = [replace(effort, seconds=round(spent / len(efforts), 2)) for effort in efforts]
         section = Section(step.section, TITLES[step.section], tuple(blocks), tuple(efforts))
         parts.write(step.name, {"seconds": round(spent, 3), "data": data, **section.document()})
-        done = composed(asked, parts, tuple(left))
-        written(done, parts, page)
+        written(replace(composed(asked, parts, tuple(left)), unfinished=True), parts, page)
     done = composed(asked, parts, tuple(dict.fromkeys(left)))
     written(done, parts, page, latex)
     return done
@@ -273,7 +277,7 @@ def _scene(asked: Asked, parts: Parts) -> Made:
 
     start = 0.3
     pictures.table(parts, "table", PinballMap(asked.scene), start)
-    command = asked.command("orbit", f"--start {start},{start} --bounces 14", lam=str(asked.scene.lam))
+    command = asked.command("orbit", f"--start {start},{start} --bounces 14 {DRAWN}", lam=str(asked.scene.lam))
     caption = "The table, and fourteen flights of one particle at the contraction of the scene."
     shown = Picture("table", caption, "The boundary of the table with an orbit in it", command)
     return [shown, *exactly.definition(asked), *exactly.facts(asked)], [], {}
@@ -358,11 +362,13 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
     if efforts:
         sections.append(Section("cost", TITLES["cost"], (costs(efforts),), efforts))
     seconds = sum(float(found["seconds"]) for found in made.values())
-    findings = (
+    located, attractors, exponents = (
         _once([row for found in best.values() for row in found["data"].get(name, [])] + more)
         for name, more in (("located", touching.events), ("attractors", []), ("exponents", []))
     )
-    return Report(asked, tuple(sections), versions(), seconds, left, *findings)
+    told = {found["name"] for found in best.values()} | {"cost", *(() if asked.second else ("plane",))}
+    pending = tuple(title for name, title in TITLES.items() if name not in told)
+    return Report(asked, tuple(sections), versions(), seconds, left, located, attractors, exponents, pending)
 
 
 def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:

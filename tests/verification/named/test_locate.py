@@ -2,7 +2,9 @@
 
 import json
 import re
+from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -195,6 +197,13 @@ def test_digits_out_of_range_are_refused(digits):
         ("doubling --alpha 0.08 --shape b=0:1", "--shape b=0:1 says something of a table, and none is given"),
         ("doubling --alpha 0.08 --n 3 --law=-lam*sin(eta)", "accepted: -lam*eta, and any law for tangencies"),
         ("saddle-node --alpha 0.08 --K 4", "--K 4 says something of a table; accepted: egg --K 4"),
+        ("tangency", "locate tangency is asked of a table; accepted: egg --alpha 2/25 --lam 0.6:0.7 --period 3"),
+        ("tangncy circle --lam 0.1:0.3 --period 2", "no value is called tangncy; accepted with circle: saddle-node"),
+        ("tangency stadium --lam 0.1:0.3 --period 2", "its boundary has 4 pieces, and the map has kinks where they"),
+        ("tangency cardioid --lam 0.1:0.3 --period 2", "its boundary has a cusp or a corner, where the map is not"),
+        ("tangency circle --lam 0:0.3 --period 2", "lam from 0 to 3/10 is no interval of contractions; accepted: 0 <"),
+        ("tangency egg --shape alpha=0.05:0.08 --lam 0.6 --period 3", "alpha varies; accepted: --lam LOW:HIGH"),
+        ("tangency circle --lam 0.1:0.3 --period 2 --certificate c.json", "a file holds tangencies of the egg alone"),
     ],
 )
 def test_what_cannot_be_asked_of_a_table_is_told_in_a_sentence(arguments, says):
@@ -210,3 +219,32 @@ def test_a_bifurcation_of_a_table_s_cycles_is_located_and_its_certificate_checks
     assert done.return_value == 0
     assert done.output.startswith("period doubling of period 2 in lam = 0.125678082249803028854")
     assert CliRunner().invoke(check, [str(certificate)], standalone_mode=False).return_value == 0
+
+
+def test_a_tangency_asked_of_a_radius_is_the_named_crisis_and_its_proof_stands(capsys):
+    """The named one is located by its own contact and by the folds of a cycle that shadows it."""
+    given = ["tangency", "--polar", "1 + 2*cos(3*theta)/25", "--lam", "0.655:0.67", "--period", "3", "--searches", "1"]
+    done = CliRunner().invoke(locate_command, [*given, "--digits", "15", "--json", "-"], standalone_mode=False)
+    (found,) = json.loads(done.stdout)["found"]
+    named = locate("boundary-crisis", 15, alpha=Rational(2, 25))
+
+    assert done.return_value == 0
+    assert found["certified"]
+    assert abs(Fraction(found["value"]) - Fraction(named.value)) <= Fraction(found["radius"]) + Fraction(named.radius)
+
+
+def test_several_certificates_are_checked_at_once_and_each_is_told(tmp_path):
+    files = [str(tmp_path / f"{n}.json") for n in (3, 4)]
+    for file, n in zip(files, (3, 4), strict=True):
+        given = ["doubling", "--alpha", "0.08", "--n", str(n), "--digits", "20", "--certificate", file]
+        assert CliRunner().invoke(locate_command, given, standalone_mode=False).return_value == 0
+    done = CliRunner().invoke(check, [*files, "--json", "-"], standalone_mode=False)
+    told = json.loads(done.stdout)["files"]
+    changed = json.loads(Path(files[1]).read_text()) | {"name": "another"}
+    Path(files[1]).write_text(json.dumps(changed))
+
+    assert done.return_value == 0
+    assert [each["file"] for each in told] == files
+    assert all(each["certified"] for each in told)
+    with pytest.raises(ValueError, match=r"4\.json: "):
+        CliRunner().invoke(check, files, standalone_mode=False, catch_exceptions=False)

@@ -14,11 +14,12 @@ from verification.arithmetic.balls import working
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex, unobstructed
 from verification.named.questions import PeriodicOrbit
+from verification.named.tangencies import plane_map, round_of
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import shadow
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Known, Number, Words
-from verification.reports.crises import crises, plane_map, proved, round_of, told
+from verification.reports.crises import crises, proved, told
 from verification.reports.parted import NONE, least_angle
 
 ROOT = Path(__file__).parents[3]

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 from fractions import Fraction
 from importlib.util import find_spec
 from itertools import pairwise
@@ -57,10 +58,12 @@ def made(tmp_path_factory):
 
 
 def test_a_report_that_was_stopped_is_a_report_and_goes_on_without_doing_a_step_twice(made):
-    _, done, first, second, half = made
+    out, done, first, second, half = made
 
-    assert "Bifurcation diagram and exponents" in half
-    assert "Cycles from birth to death" not in half
+    assert '<h2 id="diagram">Bifurcation diagram and exponents' in half
+    assert "Cycles from birth to death (not made yet)" in half
+    assert "Not finished." in half
+    assert not re.search("Not finished|not made yet", out.read_text())
     assert set(first) & set(second) == {"census-0-0"}  # the one that was stopped
     assert [section.name for section in done.sections][:4] == ["scene", "derivation", "slap", "portrait"]
     assert {"cycles", "census"} <= {section.name for section in done.sections}
@@ -92,6 +95,18 @@ def test_the_page_shows_what_the_json_says_and_needs_no_network(made):
 
 def _plain(cell):
     return isinstance(cell, str) or cell.known is not Known.EXACT
+
+
+def test_the_command_beneath_each_picture_draws_it(made, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    _, done, *_ = made
+    pictures = [block for section in done.sections for block in section.blocks if isinstance(block, Picture)]
+
+    assert {picture.name.split("-")[0] for picture in pictures} >= {"table", "slap", "portrait", "diagram", "life"}
+    for command in dict.fromkeys(picture.command for picture in pictures):
+        assert main(shlex.split(command)[1:]) == 0
+        assert Path("FILE.svg").read_text().startswith("<?xml"), command
+        Path("FILE.svg").unlink()
 
 
 def test_every_number_is_exact_or_has_an_error(made):

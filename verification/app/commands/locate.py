@@ -6,6 +6,7 @@
 import json
 import os
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from textwrap import wrap
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import exact
+from symbolic.tables.definition import exact, like
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, json_option, plot_option, write_whole
 from verification.app.scene import optional_options
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 
 PARAMETERS = ("lam", "alpha", "n", "period")
+TANGENCY = "tangency"  # asked of a scene
 
 
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
@@ -57,8 +59,9 @@ def command(
     there, and nowhere before, is not. With --law they are those of another law, followed there from the paper's.
 
     With a table, saddle-node, doubling and symmetry-breaking are those of its cycles of one --period, as --lam
-    LOW:HIGH varies, or --shape NAME=LOW:HIGH and --lam is one number. Cycles are looked for at some values: each
-    bifurcation that is found is proved, and that there is no other is not.
+    LOW:HIGH varies, or --shape NAME=LOW:HIGH and --lam is one number; tangency is where, as --lam LOW:HIGH varies, the
+    manifolds of a saddle up to that period touch. Cycles are looked for at some values: each bifurcation that is found
+    is proved, and that there is no other is not.
     """
     from symbolic.tables.formula import number
     from symbolic.tables.law import PAPERS_LAW, Law
@@ -72,6 +75,8 @@ def command(
         return of_scene(scene, axis, name, bare["lam"], period, digits, searches, certificate, output)
     if bare["K"] is not None:
         raise ValueError(f"--K {bare['K']} says something of a table; accepted: egg --K {bare['K']}, with --period")
+    if name == TANGENCY:
+        raise ValueError("locate tangency is asked of a table; accepted: egg --alpha 2/25 --lam 0.6:0.7 --period 3")
     options = bare["lam"], bare["alpha"], n, period
     given = {parameter: text for parameter, text in zip(PARAMETERS, options, strict=True) if text is not None}
     shape = {parameter: number(text, f"--{parameter}") for parameter, text in given.items()}
@@ -102,18 +107,22 @@ def of_scene(
     output: Output,
 ) -> int:
     """The bifurcations of the cycles of a table."""
+    from verification.named.locate import NAMES
     from verification.named.questions import KINDS, bifurcations
 
-    if name not in KINDS:
-        known = ", ".join(KINDS)
-        raise ValueError(f"locate {name} knows its own table of the paper; accepted with {scene.name}: {known}")
+    asked_of = *KINDS, TANGENCY
+    if name not in asked_of:
+        why = f"{name} knows its own table of the paper" if name in NAMES else f"no value is called {name}"
+        raise ValueError(f"locate: {why}; accepted with {scene.name}: {', '.join(asked_of)}{like(name, asked_of)}")
     if not period.isascii() or not period.isdigit() or int(period) < 2:
         raise ValueError(f"--period {period} is no period; accepted: integers from 2")
     scene, parameter, ends = interval_of(scene, axis, lam)
+    asked: dict[str, Any] = {"period": int(period), "digits": digits, "searches": searches, parameter: ends}
     with output.progress(f"Locating {name}", searches) as step:
-        found = bifurcations(
-            scene, name, period=int(period), digits=digits, searches=searches, tick=step, **{parameter: ends}
-        )
+        if name != TANGENCY:
+            found = bifurcations(scene, name, tick=step, **asked)
+        else:
+            found = _tangencies(scene, parameter, certificate, asked | {"tick": step})
     if certificate is not None:
         if len(found) != 1:
             raise ValueError(
@@ -127,6 +136,19 @@ def of_scene(
     if not found:
         output.console.print(f"no {name} of period {period} found for {parameter} from {ends[0]} to {ends[1]}")
     return DONE if found and all(one.certified for one in found) else FAILED
+
+
+def _tangencies(scene: Scene, parameter: str, certificate: str | None, asked: dict[str, Any]) -> "tuple[Located, ...]":
+    """The tangencies of manifolds as the contraction varies."""
+    if parameter != "lam":
+        raise ValueError(f"locate tangency: {parameter} varies; accepted: --lam LOW:HIGH")
+    if certificate is not None:
+        raise ValueError(
+            "--certificate: a file holds tangencies of the egg alone; accepted: boundary-crisis and the like"
+        )
+    from verification.named.tangencies import tangencies
+
+    return tangencies(scene, **asked)
 
 
 def interval_of(scene: Scene, axis: str | None, lam: str | None) -> tuple[Scene, str, tuple[str, str]]:
@@ -218,63 +240,83 @@ def _write(path: str, found: "Located") -> None:
 
 
 @click.command(epilog="Example: pinball locate lambda-c --certificate lambda_c.json && pinball check lambda_c.json")
-@click.argument("file")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @json_option
-def check_command(file: str, output: Output) -> int:
+def check_command(files: tuple[str, ...], output: Output) -> int:
     """Does a certificate prove what it says? Exit status 1 when an item of its checklist is not proved.
 
-    The whole checklist is worked through anew; what the file says of itself is not believed.
+    The whole checklist is worked through anew; what the file says of itself is not believed. With several files the
+    JSON has a list of them, under `files`.
     """
+    from verification.named.files import read
+
+    documents = []
+    for file in files:
+        given = read(Path(file))
+        boxes = given.get("kind") in ("trapping region", "boundary crisis")
+        try:
+            document, lines = (_boxes_checked if boxes else _proof_checked)(given)
+        except ValueError as why:
+            raise ValueError(f"{file}: {why}" if len(files) > 1 else str(why)) from None
+        documents.append(document)
+        for line in lines:
+            output.console.print(line)
+    output.write(
+        documents[0]
+        if len(files) == 1
+        else {"files": [{"file": file, **document} for file, document in zip(files, documents, strict=True)]}
+    )
+    return DONE if all(document["certified"] for document in documents) else FAILED
+
+
+Checked = tuple[dict[str, Any], list[str]]
+
+
+def _proof_checked(given: Mapping[str, Any]) -> Checked:
+    """The value that a certificate proves, and its checklist: for JSON, and in lines."""
     from verification.arithmetic.balls import decimal
-    from verification.named.files import checked, read
+    from verification.named.files import checked
     from verification.named.locate import WORDS
 
     started = time.perf_counter()
-    given = read(Path(file))
-    if given.get("kind") in ("trapping region", "boundary crisis"):
-        return _boxes_checked(given, output)
     proof = checked(given)
     seconds = time.perf_counter() - started
     name = str(given["name"])  # held to be what the equations say
     value, radius = decimal(proof.value, proof.claim.digits + 1)
-    strange = {}
+    document: dict[str, Any] = {
+        "name": name,
+        "value": value,
+        "radius": radius,
+        "digits": proof.claim.digits,
+        "certified": proof.certified,
+        "checks": proof.checks,
+        "seconds": seconds,
+    }
+    said = "certified" if proof.certified else "not certified"
+    lines = [f"{name} = {value} +- {radius}  ({said}, {seconds:.2f} s)", *_checklist(proof.checks)]
     if given["kind"] == "tangency":
         from verification.proofs.manifolds.proof import TangencyProof  # NumPy, which no other certificate needs
 
-        strange = {"strange_attractors": proof.strange} if isinstance(proof, TangencyProof) else {}
-    output.write(
-        {
-            "name": name,
-            "value": value,
-            "radius": radius,
-            "digits": proof.claim.digits,
-            "certified": proof.certified,
-            "checks": proof.checks,
-            "seconds": seconds,
-        }
-        | strange
-    )
-    said = "certified" if proof.certified else "not certified"
-    output.console.print(f"{name} = {value} +- {radius}  ({said}, {seconds:.2f} s)")
-    for item, outcome in proof.checks.items():
-        output.console.print(f"  {item.replace('_', ' '):28} {WORDS[outcome]}")
-    if strange:
-        held = all(strange["strange_attractors"].values()) or None
-        output.console.print(f"  {'strange attractors follow':28} {WORDS[held]}")
-    return DONE if proof.certified else FAILED
+        if isinstance(proof, TangencyProof):
+            document["strange_attractors"] = follow = proof.strange
+            lines.append(f"  {'strange attractors follow':28} {WORDS[all(follow.values()) or None]}")
+    return document, lines
 
 
-def _boxes_checked(given: dict[str, Any], output: Output) -> int:
-    """What has no value to show: a trapping region's boxes are mapped anew, and those of a crisis grow again."""
+def _checklist(checks: Mapping[str, bool | None]) -> list[str]:
     from verification.named.locate import WORDS
+
+    return [f"  {item.replace('_', ' '):28} {WORDS[outcome]}" for item, outcome in checks.items()]
+
+
+def _boxes_checked(given: Mapping[str, Any]) -> Checked:
+    """What has no value to show: a trapping region's boxes are mapped anew, and those of a crisis grow again."""
     from verification.proofs.global_dynamics.crisis import BoundaryCrisis
     from verification.proofs.global_dynamics.regions import KIND, Region, checked
 
     started = time.perf_counter()
     name, checks = checked(given, (Region if given["kind"] == KIND else BoundaryCrisis).from_dict)
     seconds, certified = time.perf_counter() - started, all(checks.values())
-    output.write({"name": name, "certified": certified, "checks": checks, "seconds": seconds})
-    output.console.print(f"{name}  ({'certified' if certified else 'not certified'}, {seconds:.2f} s)")
-    for item, outcome in checks.items():
-        output.console.print(f"  {item.replace('_', ' '):28} {WORDS[outcome]}")
-    return DONE if certified else FAILED
+    said = "certified" if certified else "not certified"
+    document = {"name": name, "certified": certified, "checks": checks, "seconds": seconds}
+    return document, [f"{name}  ({said}, {seconds:.2f} s)", *_checklist(checks)]

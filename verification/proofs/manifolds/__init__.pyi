@@ -7,6 +7,7 @@ from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis,
 from .plane_map import Pinball
 from .proof import (
     LEAST_DIGITS,
+    Proof,
     TangencyClaim,
     TangencyProof,
     objection,
@@ -31,6 +32,7 @@ __all__ = [
     "Gap",
     "Orbit",
     "Pinball",
+    "Proof",
     "Saddle",
     "TangencyClaim",
     "TangencyProof",

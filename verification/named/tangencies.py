@@ -1,0 +1,167 @@
+"""Where manifolds of a saddle touch, in any scene whose boundary is one smooth formula: sought, then proved.
+
+Each tangency is sought in float64 and then proved in balls. A crisis is such a tangency; that an attractor changes
+there is not shown here. Where the boundary is not convex each flight is proved to meet nothing on its way.
+
+A boundary in pieces gives a map with kinks. A manifold that crosses one is bent there, or torn, and has no power series
+on both sides: none is followed, and no tangency is sought (`objection_of`).
+"""
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from flint import arb
+
+from symbolic.tables.definition import exact
+from symbolic.tables.scene import Scene
+from verification.arithmetic.balls import decimal, working
+from verification.cycles.recurrence import Closure
+from verification.cycles.systems import reflected, rotations
+from verification.maps.first_hit import closes_smoothly
+from verification.named.locate import Located
+from verification.named.questions import SEARCHES, PeriodicOrbit, Tick, find_cycles, same_multipliers
+from verification.proofs.manifolds.grow import touches
+from verification.proofs.manifolds.known import settled
+from verification.proofs.manifolds.plane_map import Pinball
+from verification.proofs.manifolds.proof import LEAST_DIGITS, Proof, objection, sharpened, tangency_proved
+from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.manifolds.tangency import Contact, Touch
+
+BOUNCES, ROUNDS = 6, 6  # that an unstable manifold is followed: so many at least, and so many rounds
+TRIED = 6  # places on it from which a tangency is sought
+LEAST, BITS = 1e-12, 64  # of an error in float64, and of the ball that holds it
+SAME = 1e-6  # parameters of bounces that a symmetry exchanges, and of one tangency found twice, in float64
+
+
+def objection_of(scene: Scene) -> str:
+    """Why no tangency is sought in a scene; empty where the boundary is one smooth formula and the law one of angles.
+
+    >>> objection_of(Scene("stadium"))
+    'its boundary has 4 pieces, and the map has kinks where they join: a manifold breaks there and is not followed'
+    >>> objection_of(Scene("egg", alpha="2/25"))
+    ''
+    """
+    table = scene.table
+    broken = "a manifold breaks there and is not followed"
+    if (pieces := len(table.components)) > 1:
+        return f"its boundary has {pieces} pieces, and the map has kinks where they join: {broken}"
+    if table.undefined:
+        return f"its boundary has a cusp or a corner, where the map is not defined: {broken}"
+    if not closes_smoothly(table):
+        return f"its boundary does not close smoothly, and the map has kinks where it does not: {broken}"
+    return "its law measures arc length, of which no power series is made" if scene.law.measured else ""
+
+
+def tangencies(
+    scene: Scene,
+    *,
+    period: int,
+    lam: tuple[Any, Any] = ("0", "1"),
+    digits: int = 30,
+    searches: int = SEARCHES,
+    tick: Tick | None = None,
+) -> tuple[Located, ...]:
+    """Where the manifolds of a saddle touch as the contraction varies; saddles up to one period, each with its proof.
+
+    Cycles and their manifolds are looked at for some contractions: each tangency that comes back certified is proved,
+    and that there are no others is not. There are infinitely many near any of them.
+    """
+    if why := objection_of(scene):
+        raise ValueError(f"locate tangency: {scene.name}: {why}; accepted: a boundary of one smooth formula")
+    low, high = (exact("lam", end) for end in lam)
+    if not 0 < low < high <= 1:
+        raise ValueError(
+            f"locate tangency: lam from {low} to {high} is no interval of contractions; accepted: 0 < LOW < HIGH <= 1"
+        )
+    say, met = tick or (lambda said: None), dict[int, tuple[Touch, PeriodicOrbit]]()
+    for i in range(searches):
+        middle = low + (high - low) * Fraction(2 * i + 1, 2 * searches)
+        for touch, cycle in near(scene.at(lam=str(middle)), (float(low), float(high)), period):
+            met.setdefault(round(touch.parameter / SAME), (touch, cycle))
+        say(f"lam = {float(middle):.4g}")
+    return tuple(located(scene, *met[place], digits) for place in sorted(met))
+
+
+def located(scene: Scene, touch: Touch, cycle: PeriodicOrbit, digits: int) -> Located:
+    """A tangency that was found, with what is proved of it."""
+    begun, contact = time.perf_counter(), touch.contact
+    unstable, stable = touch.multipliers[1], touch.multipliers[0]
+    notes = {
+        "called": f"tangency of manifolds of a cycle of period {cycle.period}",
+        "saddle": f"bounces at theta = {', '.join(f'{x:.6f}' for x in cycle.theta)}",
+        "multipliers": f"{unstable:.6g} and {stable:.6g} in a round of {len(contact.unstable.start)} bounces",
+        "orbit": f"{contact.bounces} bounces from the local unstable manifold to the stable one",
+    }
+    proof = proved(scene, contact, digits)
+    if isinstance(proof, str):
+        notes["open"] = proof
+        with working(BITS):
+            ball, checks = arb(touch.parameter, max(touch.error, LEAST)), dict[str, bool | None](touch=None)
+        value, radius = f"{float(touch.parameter):.12f}", f"{max(touch.error, LEAST):.0e}"
+    else:
+        ball, checks = proof.parameter, dict(proof.checks)
+        value, radius = decimal(ball, digits + 1)
+    return Located("tangency", value, radius, digits, checks, time.perf_counter() - begun, ball, None, notes)
+
+
+def proved(scene: Scene, contact: Contact, digits: int) -> Proof | str:
+    """The proof that the manifolds touch, to so many digits or a few more; or why there is none."""
+    map, asked = plane_map(scene), max(digits, LEAST_DIGITS)
+    if why := objection(contact, map, contact.parameter):
+        return why
+    try:
+        return tangency_proved(contact, map, sharpened(contact, map, repr(contact.parameter), asked), asked)
+    except (ValueError, ArithmeticError) as why:
+        return str(why)
+
+
+def near(
+    scene: Scene, ends: tuple[float, float], period: int, seed: int = 1, heard: Tick = lambda said: None
+) -> Iterator[tuple[Touch, PeriodicOrbit]]:
+    """The tangencies between two contractions that Newton's method finds from the scene's, each with its saddle."""
+    mirror = scene.law.odd and reflected(scene.table)
+    map, known = plane_map(scene), set[tuple[complex, ...]]()
+    for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):
+        one, two = cycle.multipliers
+        look = cycle.period, *same_multipliers(cycle)
+        saddle = one.imag == 0 and min(abs(one), abs(two)) < 1 < max(abs(one), abs(two))
+        if not saddle or look in known:
+            continue
+        known.add(look)
+        heard("tangencies")
+        orbit = round_of(cycle, map.turn, mirror)
+        rounds = max(ROUNDS, BOUNCES // len(orbit.start))
+        for touch in touches(orbit, map, float(scene.lam), rounds, TRIED, any_bounce=mirror):
+            if ends[0] <= touch.parameter <= ends[1]:
+                yield replace(touch, contact=settled(touch.contact, map)), cycle
+
+
+def plane_map(scene: Scene) -> Pinball:
+    """The map of a scene, with the rotations that its table and its law have."""
+    return Pinball(scene.table, turn=1 if scene.law.placed else rotations(scene.table), law=scene.law)
+
+
+def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:
+    """The least part of a cycle that a symmetry continues, on angles that count turns.
+
+    >>> from symbolic import Scene
+    >>> egg, thirds = Scene("egg", alpha="2/25"), (0.0, 2.0943951, -2.0943951)
+    >>> triangle = PeriodicOrbit(egg, (0,) * 3, thirds, (0.0,) * 3, (0j, 0j))
+    >>> round_of(triangle, 3, True).closure.shift
+    (1, 3)
+    """
+    x = [cycle.theta[0]]
+    for theta in (*cycle.theta[1:], cycle.theta[0]):
+        x.append(x[-1] + (theta - x[-1]) % (2 * math.pi))
+    once = x[-1] - x[0]
+    twice, unit, name = [*x[:-1], *(y + once for y in x[:-1])], 2 * math.pi / turn, f"cycle of period {cycle.period}"
+    for k in range(1, cycle.period):
+        for sign in (1, -1) if mirrored else (1,):
+            moved = [(twice[i + k] - sign * twice[i]) / unit for i in range(cycle.period)]
+            if all(abs(math.remainder(y - round(moved[0]), turn)) < SAME for y in moved):  # whole turns change nothing
+                return Orbit(name, tuple(x[:k]), Closure(sign, (round(moved[0]), turn)))
+    return Orbit(name, tuple(x[:-1]), Closure(1, (round(once / (2 * math.pi)), 1)))

@@ -107,8 +107,9 @@ def test_grazing_is_left_behind_and_not_approached():
     assert "pi/2" in judgement.erratum
 
 
-def test_a_third_fate_leaves_two_basins_open(monkeypatch):
-    height, label = on_basins.fates("cuspless", "0.09", 200)
-    monkeypatch.setattr(on_basins, "fates", lambda *_: (height, label * 0 - 1))
+def test_boxes_of_which_a_third_fate_is_not_excluded_leave_two_basins_open(monkeypatch):
+    proved, claim = on_basins.division(), CLAIMS["cuspless.two_basins"]
+    assert on_basins.two_basins(claim).verdict is Verdict.CONFIRMED
 
+    monkeypatch.setattr(on_basins, "division", lambda: replace(proved, ring=replace(proved.ring, low=0.17)))
     assert on_basins.two_basins(CLAIMS["cuspless.two_basins"]).verdict is Verdict.OPEN

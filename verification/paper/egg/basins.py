@@ -9,14 +9,11 @@ from fractions import Fraction
 from functools import cache
 from math import tau
 
-import numpy as np
 from sympy import Expr, Rational
 
 from numeric import PinballMap
-from numeric.dynamics.attractors import Attractor, Kind
-from numeric.dynamics.basins import labels, random_points, starts_at, whole
-from numeric.dynamics.phase_points import Array, phase_points
-from numeric.dynamics.recognition import Labels
+from numeric.dynamics.attractors import Attractor
+from numeric.dynamics.phase_points import phase_points
 from numeric.dynamics.statistics import Uncertainty, uncertainty
 from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, is_double_normal
 from symbolic.cycles.polygons import near_flat, saddle_node
@@ -28,11 +25,13 @@ from verification.arithmetic.iteration import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, greater, judges, sampled, shown
-from verification.paper.judges.attractors import SHAPE, found, unsettled
+from verification.paper.judges.attractors import SHAPE, found
 from verification.proofs.global_dynamics.common_boundary import CommonBoundary, entered_around
 from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
 from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_points
+from verification.proofs.starts.core import Core
+from verification.proofs.starts.division import Division, Ring
 
 SEED = 1
 PAIRS = 4000
@@ -58,14 +57,6 @@ def told(law: Uncertainty) -> str:
     return f"{law.dimension:.3f} +- {law.error:.3f} for eps from {law.largest:g} to {law.smallest:g}"
 
 
-@cache
-def fates(name: str, contraction: str, starts: int = 3000) -> tuple[Array, Labels]:
-    """`sin(phi)` of random starts and the attractor each reaches."""
-    map, attractors = scene(name, contraction)
-    s, height = random_points(whole(map), starts, np.random.default_rng(SEED))
-    return height, labels(map, starts_at(map, s, height), attractors, EARLY, sure=True)
-
-
 @judges("cuspless.basins_intermingled")
 def cuspless_intermingled(claim: Claim) -> Judgement:
     """A boundary of dimension above 1: strips of both basins at every scale that was looked at."""
@@ -80,20 +71,30 @@ def cuspless_intermingled(claim: Claim) -> Judgement:
     )
 
 
+@cache
+def division() -> Division:
+    """The core of period 2 at 9/100, and the ring about the unstable cycle of period 4 that bounds it."""
+    core = Core(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, gates=((0.14, 0.006), (0.1, 0.01)))
+    ring = Ring(low=0.1395, high=0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
+    return Division(Scene("cuspless"), (Fraction(9, 100),) * 2, (8192, 1024), 8, core, ring, rate=0.16)
+
+
 @judges("cuspless.two_basins")
 def two_basins(claim: Claim) -> Judgement:
-    """No random start reaches anything else."""
-    map, attractors = scene("cuspless", "0.09")
-    _, label = fates("cuspless", "0.09")
-    kinds = sorted((a.kind.name, a.period) for a in attractors)
-    other = int(np.sum(label < 0)) + unsettled(attractors)
-    share = np.mean(np.isin(label, [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]))
-    said = (
-        f"{label.size} random starts: {share:.1%} reach the chaotic attractor, all others the period-2 orbit; a share "
-        f"below {3 / label.size:.1%} of others is not excluded"
-    )
-    return sampled(
-        "two attractors", said, other == 0 and kinds == [("CHAOTIC", 0), ("CYCLE", 2)] and map.law == "pinball"
+    """Almost every start: what stays near the unstable cycles has no area. That chaos is one attractor is not said."""
+    found = division()
+    rate = f"each orbit that misses the joins has nu_+ >= {found.rate}"
+    return Judgement(
+        by(
+            "boxes of all of phase space, and two bounces over a ring where boxes do not see orbits drift",
+            answer(
+                found.proved,
+                "almost every orbit converges to the period-2 orbit, or ends in a trapping region apart, where "
+                f"{rate}; what stays near the unstable orbits of period 4 and the vertical one has no area",
+            ),
+        ),
+        "proved of almost every start: it is attracted to the period-2 orbit, or by what a trapping region keeps, "
+        f"where {rate}: chaos, in one attractor or several; what does neither has no area, as the vertical orbit",
     )
 
 

@@ -5,9 +5,9 @@ from .boxes import BallArray, Boxes, hull, turned
 from .common_boundary import CommonBoundary, entered_around
 from .crisis import BoundaryCrisis, boxed, kept_apart
 from .database import KNOWN, Numbers, continued
-from .fates import Fate
+from .fates import NEAR, Fate, clusters, invertible
 from .flights import Flights, Matrix, incidence, matrix, times, turn_between
-from .graph import Cells, Grid, MorseGraph, morse_graph, refined
+from .graph import Cells, Grid, Mask, MorseGraph, morse_graph, refined, walked
 from .images import PinballImages
 from .regions import KIND, Region, checked, expansion, region, sampled_share, shares
 from .returns import every_return
@@ -15,6 +15,7 @@ from .returns import every_return
 __all__ = [
     "KIND",
     "KNOWN",
+    "NEAR",
     "BallArray",
     "Barrier",
     "BoundaryCrisis",
@@ -24,6 +25,7 @@ __all__ = [
     "Fate",
     "Flights",
     "Grid",
+    "Mask",
     "Matrix",
     "MorseGraph",
     "Numbers",
@@ -31,12 +33,14 @@ __all__ = [
     "Region",
     "boxed",
     "checked",
+    "clusters",
     "continued",
     "entered_around",
     "every_return",
     "expansion",
     "hull",
     "incidence",
+    "invertible",
     "kept_apart",
     "lost",
     "matrix",
@@ -48,4 +52,5 @@ __all__ = [
     "times",
     "turn_between",
     "turned",
+    "walked",
 ]

@@ -39,7 +39,7 @@ from scipy.sparse.csgraph import connected_components
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
 from verification.proofs.global_dynamics.flights import Slopes, matrix
-from verification.proofs.global_dynamics.graph import Cells, Grid, Transitions, refined
+from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Transitions, refined
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import carried
 
@@ -68,14 +68,17 @@ class Cluster:
     factor: float | None
 
 
-def clusters(map: PinballImages, graph: Transitions, near: int = NEAR) -> list[Cluster] | None:
+def clusters(
+    map: PinballImages, graph: Transitions, near: int = NEAR, among: Mask | None = None
+) -> list[Cluster] | None:
     """The components of clusters that hold every box where orbits may return, each with what is proved of it.
 
-    Boxes at most `2*near` cells apart are held by one cluster. None where a box is lost, or where a cluster may land
+    Where some vertices `among` them are given, these alone: no orbit stays in them that they do not hold. Boxes at most
+    `2*near` cells apart are held by one cluster. None where a box is lost, or where a cluster may land
     on both sides of a join.
     """
-    recurrent = graph.recurrent
-    if recurrent[-1] and np.any(graph.edges.indices[: graph.edges.indptr[-2]] == graph.count):
+    recurrent = graph.recurrent if among is None else among
+    if graph.recurrent[-1] and np.any(graph.edges.indices[: graph.edges.indptr[-2]] == graph.count):
         return None  # some box is lost, and orbits may do anything
     cells = graph.chosen(recurrent)
     if not cells.chart.size:
@@ -101,19 +104,19 @@ def clusters(map: PinballImages, graph: Transitions, near: int = NEAR) -> list[C
     labels = connected_components(walks, directed=True, connection="strong")[1]
     for name in np.unique(labels):
         own = np.flatnonzero(labels == name)
-        among = walks[own][:, own].tocsr()
-        if among.nnz == 0:
+        inside = walks[own][:, own].tocsr()
+        if inside.nnz == 0:
             continue  # passed once
         on = np.isin(source, own)
         some = Slopes(*(BallArray(*(np.broadcast_to(x, source.shape)[on] for x in (s.m, s.r))) for s in slopes))
         where = np.searchsorted(own, source[on])
         held = Boxes(boxes.chart[own], *((low[own], high[own]) for low, high in (boxes.x, boxes.y)))
-        single = bool(np.all(np.diff(among.indptr) == 1))
-        shrinks = _contraction(some, where, among) if single else np.inf
+        single = bool(np.all(np.diff(inside.indptr) == 1))
+        shrinks = _contraction(some, where, inside) if single else np.inf
         if shrinks < 1:
             parts.append(Cluster(held, True, shrinks))
         else:
-            parts.append(Cluster(held, False, _staying(some, where, among)))
+            parts.append(Cluster(held, False, _staying(some, where, inside)))
     return parts
 
 

@@ -1,0 +1,91 @@
+"""Two basins and what divides them: the proof at 0.09, orbits that agree with it, and what is refused."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from numeric.pinball.sampling import interior_starts
+from symbolic import Scene
+from verification.paper.egg.basins import division
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.core import attracts
+
+FOUND = division()
+RING, CHART = FOUND.ring, FOUND.core.chart
+
+
+def test_almost_every_orbit_of_the_cuspless_table_at_0_09_goes_to_one_of_two():
+    """And samples agree: of random starts each comes to the cycle or into the region, and some to either."""
+    assert set(FOUND.checks.values()) == {True}
+    map, graph = PinballMap("cuspless", lam="0.09"), FOUND.graph.transitions
+    start = interior_starts(map, 1000, 3)
+    end = map.exponents(start.theta, start.phi, 3000, 3000, start.component)
+    cells = graph.chosen(FOUND.region)
+    member = graph.grid.painted(cells, np.ones(cells.chart.size, dtype=bool)).astype(bool)
+    place = []
+    for side, value, count in (("x", end.theta, graph.grid.columns), ("y", end.phi, graph.grid.rows)):
+        low, high = np.array([getattr(c, side) for c in graph.grid.charts])[end.component].T
+        place.append(np.clip(((value - low) / (high - low) * count).astype(int), 0, count - 1))
+    kept = member[end.component, place[0], place[1]]
+    assert np.array_equal(kept, np.abs(end.theta) > 0.2)
+    assert 0.1 < np.mean(kept) < 0.9
+    assert np.all(end.nu_plus[~kept] < 0)
+    assert np.all(end.nu_plus[kept] > 0)
+
+
+def test_the_derivative_of_two_bounces_stretches_the_ring_as_the_kernels_find_it():
+    """At the two ends of a part, by 1.0105 and 1.0500 along the ring; a little less is proved, with the cone."""
+    map = PinballMap("cuspless", lam="0.09")
+    theta = np.array([RING.low, RING.high])
+    at, phi, on = theta, RING.slope * theta + RING.offset, np.full(2, CHART)
+    vector = np.stack([np.ones(2), np.full(2, RING.slope)], 1)[..., None]
+    for _ in range(2):
+        step, vector = map.step(at, phi, on), map.derivative(at, phi, on) @ vector
+        at, phi, on = step.theta, step.phi, step.component
+    assert np.all(np.abs(np.abs(vector[:, 0, 0]) - [1.0105, 1.0500]) < 1e-4)
+    assert RING.stretches(FOUND.map, CHART)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"growth": 1.02},  # the inner end stretches by 1.0105
+        {"growth": 1.0},  # no stretching
+        {"low": 0.05},  # there the map of two bounces shrinks
+        {"cone": 0.001},  # images of its slopes lie within 0.0022
+        {"slope": -0.08551},  # no direction that the map keeps
+    ],
+)
+def test_a_ring_that_does_not_stretch_is_refused(change):
+    """Each hypothesis fails alone."""
+    assert not replace(RING, **change).stretches(FOUND.map, CHART)
+
+
+def test_boxes_are_in_a_part_of_the_ring_only_as_a_whole():
+    """A box on the line is in, its mirror image in the other part; one that juts out, or is elsewhere, in neither."""
+    x = np.array([0.15, 0.15, 0.139, 0.15, -0.16])
+    y = RING.slope * np.abs(x) + RING.offset
+    y[1] += RING.width
+    chart = np.array([CHART, CHART, CHART, 1 - CHART, CHART])
+    boxes = Boxes(chart, (x, x + 1e-4), (np.copysign(y, x), np.copysign(y, x)))
+    assert RING.sides(boxes, CHART).tolist() == [1, 0, 0, 0, -1]
+    part = RING.part(CHART, -1)
+    assert part.x[0].min() <= -RING.high < -RING.low <= part.x[1].max()
+
+
+def test_what_is_left_out_is_not_proved():
+    """A ring too short leaves boxes that are neither; a bound above the exponents of all orbits is none."""
+    short = replace(FOUND, ring=replace(RING, low=0.17), rate=2.0).checks
+    assert {name for name, held in short.items() if held is not True} == {"unstable", "saddles"}
+
+
+def test_a_core_beyond_the_cycle_of_period_4_and_one_of_an_unstable_cycle_are_refused():
+    """Between 0.167 and 0.18 orbits leave; beyond lambda_c = 0.0934 all do."""
+    assert attracts(FOUND.map, FOUND.core)["orbits come to the middle"]
+    assert not attracts(FOUND.map, replace(FOUND.core, outer=0.18))["orbits come to the middle"]
+    beyond = PinballImages(Scene("cuspless", lam="0.095"), (Fraction(95, 1000),) * 2)
+    assert not attracts(beyond, FOUND.core)["they converge there"]

@@ -74,12 +74,12 @@ def squares(size: int, cut: int, number: int, done: list[tuple[int, ...]]) -> An
     return Sweep("squares", "Squares", axes, made, task, number, "none", {}, size, lambda: None)
 
 
-def _chunks(store: Path) -> list[str]:
-    """The parts of which both fields are whole files; a damaged one is shorter."""
-    sizes: dict[str, list[int]] = {}
-    for file in store.rglob("c/*"):
-        sizes.setdefault(f"c/{file.name}", []).append(file.stat().st_size)
-    return [name for name, found in sizes.items() if len(found) == 2 and min(found) > 20]
+def _parts(store: Path, whole: Path) -> set[str]:
+    """The parts of which the files of both fields have the bytes of a sweep that nothing disturbed."""
+    found = _files(store)
+    names = [{name for name in found if name.startswith(f"{field}/c/")} for field in ("square", "noise")]
+    same = [{name[name.index("c/") :] for name in each if found[name] == _files(whole).get(name)} for each in names]
+    return same[0] & same[1]
 
 
 def restarts(sweeps: int, seed: int = 1) -> Outcome:
@@ -101,7 +101,7 @@ def restarts(sweeps: int, seed: int = 1) -> Outcome:
             while True:
                 runs += 1
                 where, moment = chance.choice(("before", "between")), chance.randint(6, 20)
-                before = set(_chunks(store))
+                before = _parts(store, Path(folder) / "whole")
                 done.clear()
                 if not interrupted(lambda: run(sweep, store, workers=1), where, moment):  # noqa: B023
                     break

@@ -19,6 +19,7 @@ from pathlib import Path
 
 Wrong, Unproved = (type(name, (Exception,), {}) for name in ("Wrong", "Unproved"))  # no certificate; an item fails
 value = lambda x: x.c[0] if isinstance(x, Jet) else x
+pi = cache(lambda p: I.of(I.of(1, p + 8).atan() * 4, p))
 sys.set_int_max_str_digits(0)  # a certificate may have thousands of digits; `exact` refuses longer text
 PAPER = {  # the shape's letter, and the components: x and y, or one formula for the radius, and the ends of theta
     "circle": ("", [("1", "-pi", "pi")]),
@@ -145,11 +146,6 @@ class I(Number):
 
 
 @cache
-def pi(p):
-    return I.of(I.of(1, p + 8).atan() * 4, p)
-
-
-@cache
 def algebra(degree):
     """The exponents in order, where each stands, and of each the pairs that multiply to it."""
     powers = [e for d in range(degree + 1) for e in product(range(d + 1), repeat=3) if sum(e) == d]
@@ -199,9 +195,10 @@ class Jet(Number):
 
     def tighten(self, m, off, p):
         """The coefficients over boxes from those at their middle, m, and the next ones; or the value from another's."""
-        slopes = [self.diff(k).c for k in range(3)] if off else []
-        for i in range(len(m.c) if off else 1):
-            self.c[i] = I.of(self.c[i], p).meet(sum((s[i] * o for s, o in zip(slopes, off or ())), I.of(m.c[i], p)))
+        for d in reversed(range(m.degree + 1 if off else 1)):  # the higher ones first, on which the lower ones rest
+            slopes = [self.diff(k).c for k in range(3)] if off else []
+            for i in range(len(algebra(d - 1)[0]) if d else 0, len(algebra(d)[0])):
+                self.c[i] = I.of(self.c[i], p).meet(sum((s[i] * o for s, o in zip(slopes, off or ())), I.of(m.c[i], p)))
 
 
 def function(name, x, p):
@@ -225,6 +222,23 @@ def taylor(x, terms):
     for term in reversed(terms[:-1]):
         found = found * small + term
     return found
+
+
+def implicit(off, near, degree):
+    """The jet of the one zero near an interval, by interval Newton; `off` has value and slope, of jets cut short."""
+    sure = False
+    for _ in range(60):
+        last, found = near, near.mid() - off(near.mid(), value)[0] / off(near, value)[1]
+        sure = sure or found.inside(near)
+        near = found.meet(near) if sure else near.hull(found).wide((found - found.mid()) * 2)
+        if sure and near.width() * 2 >= last.width():
+            break
+    need(sure, "exists: a landing is not enclosed")
+    t = Jet.of(near, 0)
+    for k, n in [(k, len(algebra(k)[0])) for k in range(1, degree + 1)]:  # coefficients of degree k, from those below
+        h, dh = off(Jet((t.c + [0] * n)[:n], k), lambda x, n=n, k=k: Jet(x.c[:n], k) if isinstance(x, Jet) else x)
+        t = Jet(t.c + [-b / value(dh) for b in h.c[len(t.c) :]], k)
+    return t
 
 
 def parse(text):
@@ -304,38 +318,27 @@ class Table:
         return I.of(((u - x) * tx + (v - y) * ty) / across, self.p).atan()
 
     def flight(self, part, place, state, names):
-        """The state at the one zero of `direction x (q - start)` about a place, by interval Newton; then see `free`."""
-        (there, near), (theta, psi), p, sure = place, state, self.p, False
+        """The state at the one zero of `direction x (q - start)` about a place; then see `free`."""
+        (there, near), (theta, psi), p = place, state, self.p
         x, y, tx, ty = self.at(part, theta, names, p)
         s, c = function("sin", psi, p), function("cos", psi, p)
-        ux, uy, flat = tx * s - ty * c, ty * s + tx * c, {name: value(x) for name, x in names.items()}
+        ux, uy = tx * s - ty * c, ty * s + tx * c
 
-        def off(t, names, flat=lambda x: x):
-            a, b, da, db = self.at(there, t, names, p)
-            return flat(ux) * (b - flat(y)) - flat(uy) * (a - flat(x)), flat(ux) * db - flat(uy) * da
+        def off(t, cut):
+            a, b, da, db = self.at(there, t, {name: cut(x) for name, x in names.items()}, p)
+            return cut(ux) * (b - cut(y)) - cut(uy) * (a - cut(x)), cut(ux) * db - cut(uy) * da
 
-        for _ in range(60):
-            found = near.mid() - off(near.mid(), flat, value)[0] / off(near, flat, value)[1]
-            sure = sure or found.inside(near)
-            found = found.meet(near) if sure else near.hull(found).wide((found - found.mid()) * 2)
-            if sure and found.width() * 2 >= near.width():
-                break
-            near = found
-        need(sure, "exists: a landing is not enclosed")
-        t = Jet.of(found, 0)
-        for k in range(1, theta.degree + 1):  # the coefficients of degree k, from those below
-            n = len(algebra(k)[0])
-            cut = lambda x, n=n, k=k: Jet(x.c[:n], k) if isinstance(x, Jet) else x
-            h, dh = off(Jet((t.c + [0] * n)[:n], k), {name: cut(x) for name, x in names.items()}, cut)
-            t = Jet(t.c + [-b / value(dh) for b in h.c[len(t.c) :]], k)
+        t = implicit(off, near, theta.degree)
         a, b, da, db = self.at(there, t, names, p)
         vx, vy = a - x, b - y
         across, psi = vx * db - vy * da, I.of(value(psi), p)
         fair = psi < 2 and psi > -2 and value(c) > 0 and value(vx * ux + vy * uy) > 0
         need(fair and value(across) > 0, "admissible: a chord may not arrive from inside")
         psi = function("atan", (vx * da + vy * db) * function("inverse", across, p), p)
-        law = names | {"eta": -psi, "theta": t}
-        return t, psi * names["lam"] if self.law is None else Jet.of(0, t.degree) + evaluate(self.law, law, p)[0]
+        return t, self.leaves(psi, names | {"eta": -psi, "theta": t})
+
+    own_law = lambda self, psi, names: Jet.of(0, psi.degree) + evaluate(self.law, names, self.p)[0]
+    leaves = lambda self, psi, names: self.own_law(psi, names) if self.law else psi * names["lam"]  # of who arrives
 
     def orbit(self, launch, boxes, way, degree, middle=None, view=None):
         """The states along a way of places, from what `launch` makes of three letters in boxes, seen at last by `view`.
@@ -537,7 +540,7 @@ def checked(given):
         return beside("region").trapping(given) if "runs" in given else beside("crisis").crisis(given)
     need(isinstance(given, dict) and given.get("kind") in KINDS, f"kind must be one of {', '.join(KINDS)}", Wrong)
     keys = "schema name statement kind scene free bits digits centre radius checks".split()
-    own = beside("tangency").entries(given) if given["kind"] == "tangency" else "components mirror"
+    own = {"tangency": "unstable stable orbit meets contact"}.get(given["kind"], "components mirror")
     need(set(given) == {*keys, *own.split()}, f"the entries must be {', '.join(keys)}, {own}", Wrong)
     schema, name, words, kind, scene, free, bits, digits, centre, radius, items = map(given.get, keys)
     need(schema == 4, "this checker reads schema 4", Wrong)
@@ -552,10 +555,8 @@ def checked(given):
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
     sign, wanted = -1 if given.get("mirror") else 1, {"corner": 2, "tangency": 3}.get(kind, len(parts) + (free != ""))
     fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts)
-    plain = sign > 0 or ("table" in scene and not table.law)
-    fit = fit and (plain or beside("boundaries").symmetric(table, parts))
+    fit = fit and (sign > 0 or ("table" in scene and not table.law) or beside("boundaries").symmetric(table, parts))
     fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and sign < 0))
-    fit = fit and (kind != "tangency" or (table.closed == [True] and table.law is None))
     need(fit and len(centre) == wanted, "scene, components, centre or mirror do not fit", Wrong)
     n = f"its {len(parts)} bounces" if sign > 0 else f"{len(parts)} bounces, and then their mirror images,"
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))

@@ -20,7 +20,7 @@ from symbolic import Law, Scene, tables
 from symbolic.tables.table import Mark, Table
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
-from verification.named.files import document
+from verification.named.files import checked, document
 from verification.named.locate import certify, locate
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket, grown
@@ -50,6 +50,7 @@ PEBBLE = (
     "0.3 -1",
     "1.23 -0.58",
 )
+CUBIC = "-lam*eta*(1 - eta**2/40)"
 BENT = "-b*eta - eta**3/50"
 RADIUS = "1 + exp(cos(2*theta))/40 + tanh(cos(2*theta))/50 + (2 + cos(2*theta))**(2/3)/60 + E/99"
 EGG, THIRD, HALF = Rational(2, 25), Rational(1, 3), Rational(1, 2)
@@ -87,12 +88,17 @@ def doubling_beside(period: int, member: int) -> Proof:
     return proof
 
 
+def inside(report: str, name: str) -> Mapping[str, Any]:
+    """A certificate inside of a report of docs/reports."""
+    blocks = (block for part in json.loads((REPORTS / report).read_text())["sections"] for block in part["blocks"])
+    return next(block["document"] for block in blocks if block["kind"] == "certificate" and block["name"] == name)
+
+
 def kept(report: str, name: str) -> Proof:
     """What a report of docs/reports has a certificate of, to as many digits as the second reader needs."""
 
     def proof() -> Any:
-        blocks = (block for part in json.loads((REPORTS / report).read_text())["sections"] for block in part["blocks"])
-        given = next(block["document"] for block in blocks if block["kind"] == "certificate" and block["name"] == name)
+        given = inside(report, name)
         start = [int(m) * 2.0 ** int(e) for m, e in given["centre"]]
         period = len(given["components"])
         table = tables.polar(given["scene"]["polar"])
@@ -100,6 +106,11 @@ def kept(report: str, name: str) -> Proof:
         return certify(problem, start, int(2.5 * period))
 
     return proof
+
+
+def touching(report: str, name: str) -> Proof:
+    """The tangency that a report of docs/reports has a certificate of, worked through anew."""
+    return lambda: checked(inside(report, name))
 
 
 def family(radius: str, parameter: str, span: str) -> Table:
@@ -149,6 +160,8 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         **{f"beside-{8 * 2**k}": doubling_beside(8, k) for k in range(2)},
         "limacon-12": kept("limacon.json", "cascade-3-12-0"),
         "limacon-24": kept("limacon.json", "cascade-3-24-0"),
+        **{f"flower-tangency-{k}": touching("flower.json", f"tangency-{k}") for k in range(4)},
+        "tangency-under-a-law": lambda: locate("boundary-crisis", DIGITS, Law(CUBIC), alpha=EGG).proof,
         "marked-point": cycle(tables.polar("1 + cos(5*theta)/40", "polar", (), [Mark("m", 0, HALF)]), [0.0, pi], THIRD),
         "law-in-all-words": cycle(tables.egg(3).at(alpha=EGG), [0.96, 3.05, 5.15], HALF, LAW),
         "radius-in-words": cycle(tables.polar(RADIUS), [pi / 2, -pi / 2], THIRD),

@@ -33,7 +33,8 @@ SAMPLES = (
 )
 REGION = "triangle-region"
 CRISIS_FILE = "crisis-between"  # a minute and a half for the first, and less where cells are known
-TOUCH = "boundary-crisis"  # of the kind of its own; the damage to manifolds and orbit stands for that to bounces
+# of the kind of its own; the damage to manifolds and orbit stands for that to bounces
+TOUCH = ("boundary-crisis", "flower-tangency-2", "tangency-under-a-law")
 Document = dict[str, Any]
 NAMES = (
     "lambda-star",
@@ -269,7 +270,8 @@ def mutant(name: str, given: Document, k: int) -> Document:
     """Mutant `k`; name and statement repaired in half of the cases where that can be done."""
     dice, found = random.Random(f"{name} {k}"), copy.deepcopy(given)
     own = {"law", "polar", "component"} & {*given["scene"]}
-    kinds = {"tangency": TOUCHING, "trapping region": CELLS, "boundary crisis": CRISIS}
+    touching = (*TOUCHING, formula, formula) if own else TOUCHING
+    kinds = {"tangency": touching, "trapping region": CELLS, "boundary crisis": CRISIS}
     damage = dice.choice(kinds.get(given["kind"], OWN if own and name != "five-waves" else DAMAGE))
     damage(found, dice)
     again = damage in (scene, formula, about, cells, range_of_lam, shape, branch)
@@ -350,10 +352,15 @@ def is_true(given: Document, line: str, original: Document, first: str) -> bool:
 
 def proved_by_the_package(given: Document) -> bool:
     """What the reader in balls says of a scene with another formula, however that is spelled."""
+    from verification.named import tangency_entries
     from verification.named.files import claim_of
+    from verification.proofs.manifolds.claim import worked_through
     from verification.proofs.periodic.bifurcation import proved
 
     try:
+        if given["kind"] == "tangency":
+            made = worked_through(tangency_entries.claim_of(given))
+            return made.certified and bool(abs(made.value - float(check.exact(given["centre"][-1]))) < 1e-9)
         return proved(claim_of(given)).certified
     except ValueError:  # what it does not take for a table
         return False
@@ -428,7 +435,7 @@ def remember_manifolds() -> None:
 
     def kept(table: Any, given: Any, lam: Any, back: bool) -> Any:
         numbers = [*table.letters.values(), lam]
-        formulas = [ast.dump(node) for part in table.parts for node in part]
+        formulas = [ast.dump(node) for part in [*table.parts, [table.law] if table.law else []] for node in part]
         key = json.dumps(given), back, *formulas, *table.letters, *((x.lo, x.hi, x.p) for x in numbers)
         return remembered(known, key, lambda: manifold(table, given, lam, back))
 
@@ -454,7 +461,7 @@ def main() -> int:
     false = 0
     remember_images()
     remember_manifolds()
-    for name in [given.only] if given.only else (*SAMPLES, REGION, TOUCH, CRISIS_FILE):
+    for name in [given.only] if given.only else (*SAMPLES, REGION, *TOUCH, CRISIS_FILE):
         original = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
         first, found = check.checked(original).splitlines()[0], kept.setdefault(name, [])
         for k in range(len(found), given.each):

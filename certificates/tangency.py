@@ -5,14 +5,29 @@ Why this proves that the manifolds touch: docs/certificate_format.md.
 
 from fractions import Fraction
 
-from check import I, Jet, Wrong, algebra, exact, function, need, newton, value
+from check import I, Jet, Table, Wrong, algebra, evaluate, exact, function, implicit, need, newton, value
 
 
-def entries(given):
-    """What a file of a tangency has beside the entries of every kind; with another law it has not all of them."""
-    other = isinstance(given.get("scene"), dict) and "law" in given["scene"]
-    need(not other, "scene: a tangency under another law than -lam*eta is read by `pinball check` alone", Wrong)
-    return "unstable stable orbit meets contact"
+class Back(Table):
+    """A table whose particles run back in time: what they arrive at is an exit, and they leave as one had come in."""
+
+    def __init__(self, table):
+        self.__dict__ = table.__dict__
+
+    def leaves(self, psi, names):
+        """The angle of incidence, with its sign for a particle that leaves, from which the law makes `-psi`.
+
+        Among all the angles between it and 0 it is the only one, so that it is the same however often one asks."""
+        if self.law is None:
+            return psi * names["1/lam"]
+
+        def off(eta, cut):
+            known = {name: cut(x) for name, x in names.items()}
+            at = {name: value(x) for name, x in names.items()} | {"eta": Jet.of(value(eta), 1, 0)}
+            slope = self.own_law(at["eta"], at).gradient(self.p)[0]
+            return evaluate(self.law, known | {"eta": eta}, self.p)[0] + cut(psi), slope
+
+        return implicit(off, I.of(0, self.p), psi.degree)
 
 
 class Manifold:
@@ -23,7 +38,8 @@ class Manifold:
     two closer. So one is mapped to itself, and along it a round expands: it is the manifold of a saddle on it."""
 
     def __init__(self, table, given, lam, back):
-        p, self.table, self.lam, self.own, self.other = table.p, table, lam, int(back), int(not back)
+        p, self.lam, self.own, self.other = table.p, lam, int(back), int(not back)
+        self.table = table = Back(table) if back else table
         point = lambda pair: I.of(exact(pair), p)
         names = ("bounces", "frame", "drift", "range", "bounds")
         saddle, (*self.zero, along, across), self.drift, (self.reach, inner), radii = (
@@ -48,7 +64,7 @@ class Manifold:
 
     def launch(self, *letters):
         (x, y, lam), (theta, psi) = (letters[self.own], letters[self.other], letters[2]), self.centred(letters[2])
-        names = {"lam": function("inverse", lam, self.table.p) if self.own else lam}
+        names = {"lam": lam, "1/lam": function("inverse", lam, self.table.p)} if self.own else {"lam": lam}
         return y * self.across + x + theta, x * self.along + y + psi, self.table.letters | names
 
     def centred(self, lam):
@@ -79,6 +95,8 @@ def touching(given, table, lam, title):
     Where the derivative of these equations is regular, the contact is quadratic and passes with non-zero speed."""
     true = f"tangency of two manifolds: {title}"
     need(given["name"] == true, f"the name must be {true!a}", Wrong)
+    whole = table.closed == [True] and not table.marks
+    need(whole, "scene: a tangency is one of a single closed curve without marked points", Wrong)
     p, meets, places = table.p, given["meets"], map(exact, given["centre"][:2])
     box = [*(I.of(x, p).wide(I.of(x / 2**36, p)) for x in places), lam]
     sides = [Manifold(table, given[key], box[2], key == "stable") for key in ("unstable", "stable")]
@@ -89,12 +107,12 @@ def touching(given, table, lam, title):
 
     def runs(box, d):
         sought = zip(sides, box, ways)
-        return [table.orbit(side.launch, side.boxes(x, box[2]), way, d) for side, x, way in sought]
+        return [side.table.orbit(side.launch, side.boxes(x, box[2]), way, d) for side, x, way in sought]
 
     def equations(box, d):
         chains.append(runs(box, d + 2))
         (a, b), (u, v) = ([side.on(Jet(f.c[:10], 2)) for f in run[-1]] for side, run in zip(sides, chains[-1]))
-        v = -v * Jet.of(box[2], 2, 2)
+        v = table.leaves(-v, table.letters | {"lam": Jet.of(box[2], 2, 2), "eta": v, "theta": u})
         return a - u, b - v, a.diff(0) * v.diff(1) - b.diff(0) * u.diff(1)
 
     chains = [[side.states for side in sides]]

@@ -8,12 +8,13 @@ from pathlib import Path
 import jsonschema
 import pytest
 from flint import arb
-from sympy import Rational
 
+from symbolic.tables import egg
 from verification.named import files
 from verification.paper.claims import folder
+from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof
 from verification.proofs.manifolds.known import CONTACTS
-from verification.proofs.manifolds.proof import ITEMS, Proof, TangencyClaim, TangencyProof
+from verification.proofs.manifolds.proof import ITEMS, Proof
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "certificates"
@@ -57,7 +58,8 @@ def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
     examples |= {"cardioid-period-9", "egg-period-3", "beside-8", "beside-12", "beside-16", "beside-24", "limacon-12"}
     examples |= {"limacon-24"}  # of claims of the report, and of a report of a table of one's own
     examples |= {"law-in-all-words", "radius-in-words", "free-parameter", "marked-point", "own-mirror"}
-    examples |= {"spline", "scatterer", "moved-waves", "law-parameter"}
+    examples |= {"spline", "scatterer", "moved-waves", "law-parameter", "tangency-under-a-law"}
+    examples |= {f"flower-tangency-{k}" for k in range(4)}  # of the same report
 
     assert len(results) - 2 >= 20  # without the header
     assert named - {"lam", "a"} == {path.stem for path in FILES} - examples
@@ -113,7 +115,7 @@ def test_the_schema_asks_for_every_entry_and_for_no_other(key):
 
 
 def test_a_tangency_that_is_not_proved_has_no_orbit_and_is_not_of_the_format():
-    claim = TangencyClaim(CONTACTS["merging"], Rational(2, 25), "0.44343525", 20)
+    claim = TangencyClaim(CONTACTS["merging"], egg(3).at(alpha="2/25"), "0.44343525", 20)
     made = files.document(TangencyProof(claim, Proof(arb(0), dict.fromkeys(ITEMS))))
 
     assert "orbit" not in made

@@ -14,7 +14,7 @@ from .curves import (
     largest_shape,
 )
 from .events import EventCurve, Plane, curve_of, curves_along, proof_of
-from .files import SCHEMA, check, checked, document, read
+from .files import check, checked, document, read
 from .locate import GMPY2, NAMES, WORDS, Located, certify, closed_form, lambda_star
 from .questions import (
     KINDS,
@@ -28,6 +28,7 @@ from .questions import (
     follow,
     law_over,
 )
+from .scene_entries import SCHEMA
 from .tangencies import LEAST, SAME, near, objection_of
 
 __all__ = [

@@ -9,48 +9,29 @@ the second a tangency had no orbit, and to the third a fitted table was its poin
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz
-from sympy import Expr, S
+from sympy import Expr
 
-from symbolic import tables
 from symbolic.cycles import polygons, thresholds
-from symbolic.tables.definition import (
-    BOUNDARY,
-    KEYS,
-    KINDS,
-    PAPER,
-    PIECE,
-    POINTS,
-    UNIFORM,
-    boundary_of,
-    built,
-    known_entries,
-    range_ends,
-    table_boundary,
-    text_entry,
-)
+from symbolic.tables.definition import PIECE, POINTS, table_boundary
 from symbolic.tables.formula import LENGTH, number
-from symbolic.tables.law import Law
-from symbolic.tables.scene import Scene
-from symbolic.tables.table import Table
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
-from verification.arithmetic.balls import bits_of, real_ball, working
+from verification.arithmetic.balls import working
 from verification.cycles.problem import Problem, seen_mirrored
 from verification.cycles.recurrence import BifurcationKind, Closure
 from verification.named.locate import closed_form
+from verification.named.scene_entries import FIRST, SCHEMA, SECOND, THIRD, scene_of, scene_said, title_of
 from verification.proofs.corner.corner import NEAR
 from verification.proofs.corner.corner_orbit import CornerClaim, CornerProof, corner_proved
 from verification.proofs.periodic.bifurcation import Claim, Proof, proved
 
 if TYPE_CHECKING:
-    from verification.proofs.manifolds.proof import TangencyClaim, TangencyProof
+    from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof
 
-SCHEMA, THIRD, SECOND, FIRST = 4, 3, 2, 1
 LARGEST_BITS, LARGEST_DIGITS, LARGEST_PERIOD, LARGEST_K = 200_000, 60_000, 2**20, 1000
 LONGEST = 1024  # bounces of a certificate that is written
 CHAIN = ("bits", "centre", "radius", "unstable", "stable", "orbit", "meets")  # of a tangency, bounce by bounce
@@ -75,9 +56,13 @@ def document(proof: "Proof | CornerProof | TangencyProof", schema: int = SCHEMA)
     claim = proof.claim
     first = {"schema": schema, "name": name_of(claim, schema)}
     if not isinstance(claim, Claim | CornerClaim):
-        words = WORDS["tangency"].format(scene=_of_tangency(claim))
-        chain = claim.chain() if proof.certified and claim.law.uniform else {}  # its reader knows the paper's law alone
-        return first | {"statement": words} | _contact_said(claim) | chain | {"checks": dict(proof.checks)}
+        from verification.named import tangency_entries  # NumPy, which no other certificate needs
+
+        words = WORDS["tangency"].format(scene=tangency_entries.title(claim))
+        said = tangency_entries.entries(claim)
+        _scene_held(said["scene"])
+        said |= claim.chain() if proof.certified else {}  # of one that is not proved no orbit is known
+        return first | {"statement": words} | said | {"checks": dict(proof.checks)}
     what = _special(claim) if isinstance(claim, CornerClaim) else _problem_said(claim.problem, schema)
     if schema == SCHEMA:
         _holds(claim, what)
@@ -88,27 +73,6 @@ def document(proof: "Proof | CornerProof | TangencyProof", schema: int = SCHEMA)
         | {"bits": claim.bits, "digits": claim.digits, "centre": [_pair(x) for x in claim.centre]}
         | {"radius": _pair(claim.radius), "checks": proof.checks}
     )
-
-
-def _of_tangency(claim: "TangencyClaim") -> str:
-    """Its scene in words."""
-    return "egg, " + ("" if claim.law.uniform else f"phi = {claim.law}, ") + f"alpha = {claim.alpha}"
-
-
-def _contact_said(claim: "TangencyClaim") -> dict[str, Any]:
-    """What a tangency is about; its value stands among the starts that a reader with series takes."""
-    said = claim.to_dict()
-    scene = {"table": said["table"], "shape": said["shape"]} | ({"law": said["law"]} if "law" in said else {})
-    contact = said["contact"] | {"value": said["value"]}
-    return {"kind": said["kind"], "scene": scene, "free": "lam", "digits": said["digits"], "contact": contact}
-
-
-def _contact_of(given: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries of a claim in a document of this version."""
-    scene, contact = given["scene"], dict(given["contact"])
-    said = {"table": scene["table"], "points": scene.get("K", POINTS), "shape": scene["shape"]}
-    said |= {"law": scene["law"]} if "law" in scene else {}
-    return said | {"value": contact.pop("value"), "contact": contact, "digits": given["digits"]}
 
 
 def _special(claim: CornerClaim) -> dict[str, Any]:
@@ -122,72 +86,39 @@ def _special(claim: CornerClaim) -> dict[str, Any]:
 def _holds(claim: Claim | CornerClaim, said: Mapping[str, Any]) -> None:
     """`ValueError` where another reader would refuse a document of this version, however right it is."""
     scene, count = said["scene"], len(said["components"])
-    entries = [claim.bits <= LARGEST_BITS, claim.digits <= LARGEST_DIGITS, count <= LONGEST]
-    if not all([*entries, scene.get("K", 2) <= LARGEST_K]):
-        given = f"{claim.digits} digits, {claim.bits} bits, {count} bounces or K = {scene.get('K', POINTS)}"
-        most = f"{LARGEST_DIGITS} digits, {LARGEST_BITS} bits, {LONGEST} bounces and K = {LARGEST_K}"
+    if claim.bits > LARGEST_BITS or claim.digits > LARGEST_DIGITS or count > LONGEST:
+        given = f"{claim.digits} digits, {claim.bits} bits or {count} bounces"
+        most = f"{LARGEST_DIGITS} digits, {LARGEST_BITS} bits and {LONGEST} bounces"
         raise ValueError(f"certificate: {given} is too much; accepted: up to {most}")
-    formulas = [scene.get("polar", ""), *scene.get("parametric", ()), scene.get("law", "")]
-    formulas += [part[key] for part in scene.get("component", ()) for key in PIECE[1:]]
-    if longest := max((text for text in formulas if len(text) > LENGTH), key=len, default=""):
-        raise ValueError(f"certificate: a formula of {len(longest)} characters is too long; accepted: {LENGTH}")
+    _scene_held(scene)
     if isinstance(claim, Claim) and said["mirror"] and not seen_mirrored(claim.problem, "table" not in scene):
         raise ValueError(
             "certificate: that theta -> -theta is a symmetry is proved, but not seen in the formulas node by node"
         )
 
 
+def _scene_held(scene: Mapping[str, Any]) -> None:
+    """`ValueError` where another reader would refuse a scene."""
+    if scene.get("K", POINTS) > LARGEST_K:
+        raise ValueError(f"certificate: K = {scene['K']} is too much; accepted: up to {LARGEST_K}")
+    formulas = [scene.get("polar", ""), *scene.get("parametric", ()), scene.get("law", "")]
+    formulas += [part[key] for part in scene.get("component", ()) for key in PIECE[1:]]
+    if longest := max((text for text in formulas if len(text) > LENGTH), key=len, default=""):
+        raise ValueError(f"certificate: a formula of {len(longest)} characters is too long; accepted: {LENGTH}")
+
+
 def _problem_said(problem: Problem, schema: int = SCHEMA) -> dict[str, Any]:
-    """What a problem is about: kind, scene, free parameter, bounces. A fitted table is its fit."""
-    boundary, held = table_boundary(replace(problem.table, fit=None) if schema == SCHEMA else problem.table)
-    scene = {key: value for key, value in boundary.items() if key != "name"}
-    scene |= {"shape": {parameter: str(value) for parameter, value in held.items()}} if held else {}
-    if "table" not in boundary and problem.table.shapes:  # the free parameter of a table of one's own, by its range
-        (own,) = problem.table.shapes
-        scene |= {"shape": {own.symbol.name: f"{own.range.start}..{own.range.end}"}}
-    scene |= {} if problem.law.uniform else _law_said(problem, scene)
-    scene |= {} if problem.lam is None else {"lam": str(problem.lam)}
+    """What a problem is about: kind, scene, free parameter, bounces."""
+    scene = scene_said(problem.table, problem.law, problem.lam, schema)
     said = {"kind": problem.kind.name.lower() if problem.kind else "cycle", "scene": scene, "free": problem.free}
     return said | {"components": list(problem.components), "mirror": problem.mirror}
-
-
-def _law_said(problem: Problem, scene: dict[str, Any]) -> dict[str, Any]:
-    """The law's formula, and the numbers of its own parameters beside the table's."""
-    if problem.law.measured and len(problem.table.components) > 1:
-        raise ValueError(
-            f"certificate: law = {problem.law} has another formula in theta on each component of {problem.table.name}, "
-            "which a certificate has no words for; write the law in theta"
-        )
-    shape, own = scene.get("shape", {}), dict(problem.law.numbers)
-    twice = [name for name in own if shape.get(name, own[name]) != own[name]]
-    if twice:
-        raise ValueError(f"certificate: {twice[0]} is a number of the table, and another one of the law; rename one")
-    return {"shape": {**shape, **own}, "law": problem.law.formula}
 
 
 def _words(said: Mapping[str, Any], schema: int) -> str:
     """The statement of a document in words."""
     count = len(said["components"])
     n = f"{count} bounces, and then their mirror images," if said["mirror"] else f"its {count} bounces"
-    return WORDS[said["kind"]].format(scene=_title(said["scene"], schema), n=n, free=said["free"])
-
-
-def _title(scene: Mapping[str, Any], schema: int) -> str:
-    """A scene in words."""
-    kind = next(key for key in KINDS if key in scene)
-    title = scene[kind] if kind == "table" else f"{kind} {scene[kind]}"
-    if schema == SCHEMA and kind in ("parametric", "component"):
-        pieces = scene[kind]
-        title = f"boundary of {len(pieces)} pieces" if kind == "component" else f"parametric {'; '.join(pieces)}"
-    points = f" of {scene['K']} points" if "K" in scene else ""
-    law = [("phi", scene["law"])] if "law" in scene else []
-    numbers = [(name, text) for name, text in scene.get("shape", {}).items() if ".." not in text]
-    said = [*law, *numbers, *_lam(scene)]
-    return title + points + "".join(f", {k} = {v}" for k, v in said)
-
-
-def _lam(scene: Mapping[str, Any]) -> list[tuple[str, str]]:
-    return [("lam", scene["lam"])] if "lam" in scene else []
+    return WORDS[said["kind"]].format(scene=title_of(said["scene"], schema), n=n, free=said["free"])
 
 
 def name_of(claim: "Claim | CornerClaim | TangencyClaim", schema: int = SCHEMA) -> str:
@@ -204,7 +135,9 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim", schema: int = SCHEMA) 
             "alpha-hat" if _in_box(claim, thresholds.alpha_hat().subs(lam_symbol, claim.lam)) else "equal multipliers"
         )
     if not isinstance(claim, Claim):
-        return f"tangency of two manifolds: {_of_tangency(claim)}"
+        from verification.named import tangency_entries
+
+        return tangency_entries.name_of(claim, schema)
     problem = claim.problem
     table, plain = problem.table, not problem.mirror
     what = table.name, problem.period, problem.kind, problem.free
@@ -223,8 +156,8 @@ def name_of(claim: "Claim | CornerClaim | TangencyClaim", schema: int = SCHEMA) 
     said = _problem_said(problem, schema)
     half = "half of a symmetric cycle," if problem.mirror else "a cycle"
     if problem.kind is None:
-        return f"{half} of period {problem.period}: {_title(said['scene'], schema)}"
-    return f"{said['kind']} of {half} of period {problem.period} in {problem.free}: {_title(said['scene'], schema)}"
+        return f"{half} of period {problem.period}: {title_of(said['scene'], schema)}"
+    return f"{said['kind']} of {half} of period {problem.period} in {problem.free}: {title_of(said['scene'], schema)}"
 
 
 def _in_box(claim: Claim | CornerClaim, exact: Expr) -> bool:
@@ -276,38 +209,11 @@ def _of_first(given: Mapping[str, Any]) -> dict[str, Any]:
     return {**given, "scene": {"table": given["table"]} | points | shape | lam}
 
 
-def _over(scene: Mapping[str, Any], parameter: str, text: str, box: arb) -> Table:
-    """The table over the range of its free parameter, in which the `box` must lie."""
-    low, high = range_ends(parameter, text)
-    boundary = {key: value for key, value in scene.items() if key in BOUNDARY}
-    table = Scene.of({**boundary, "shape": {parameter: f"{low}:{low}..{high}"}}).family
-    with working(bits_of(30)):
-        if not (box >= real_ball(S(low)) and box <= real_ball(S(high))):
-            raise ValueError(f"certificate: {parameter} is not proved to lie in its range {text}")
-    return table
-
-
 def _problem(said: Mapping[str, Any], lam: Any, box: arb) -> Problem:
     components = tuple(int(i) for i in said["components"])
     if not 2 <= len(components) <= LARGEST_PERIOD:
         raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LARGEST_PERIOD}")
-    scene = said["scene"]
-    known_entries("certificate: scene", scene, tuple(key for key in KEYS if key != "name"))
-    law = Law(text_entry("law", scene.get("law", UNIFORM)))
-    texts = scene.get("shape", {})
-    ranges = {parameter: text for parameter, text in texts.items() if isinstance(text, str) and ".." in text}
-    if set(ranges) - {said["free"]}:
-        raise ValueError(f"certificate: {', '.join(ranges)} has a range; accepted: for the free parameter alone")
-    numbers = {parameter: number(text, parameter) for parameter, text in texts.items() if parameter not in ranges}
-    law = law.at(**{parameter: numbers[parameter] for parameter in law.parameters if parameter in numbers})
-    if "table" in scene:
-        table = tables.named(scene["table"], int(scene.get("K", POINTS)))
-        own = set(numbers) - (set(dict(law.numbers)) - set(PAPER[table.name]))  # one number may be of both
-        table = table.at(**{parameter: numbers[parameter] for parameter in own})
-    elif ranges:
-        table = _over(scene, *next(iter(ranges.items())), box)
-    else:
-        table = built(boundary_of(scene, ()))
+    table, law = scene_of(said["scene"], said["free"], box)
     if not set(components) <= set(range(len(table.components))):
         raise ValueError(f"certificate: {table.name} has components 0 to {len(table.components) - 1} only")
     kind = None if said["kind"] == "cycle" else BifurcationKind[said["kind"].upper()]
@@ -339,14 +245,12 @@ def checked(given: Mapping[str, Any]) -> "Proof | CornerProof | TangencyProof":
     """
     proof: Proof | CornerProof | TangencyProof
     if given.get("kind") == "tangency" and given.get("schema") in range(FIRST, SCHEMA + 1):
-        from verification.proofs.manifolds import proof as tangency  # NumPy, which no other certificate needs
+        from verification.named import tangency_entries
+        from verification.proofs.manifolds.claim import worked_through
 
-        try:
-            contact = tangency.claim_of(_contact_of(given) if given["schema"] >= THIRD else given)
-        except (KeyError, TypeError, AttributeError) as error:
-            raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
+        contact = tangency_entries.claim_of(given)
         _rightly_named(given, contact)
-        proof = tangency.worked_through(contact)
+        proof = worked_through(contact)
     else:
         claim = claim_of(given)
         _rightly_named(given, claim)
@@ -363,16 +267,8 @@ def check(path: Path | str) -> "Proof | CornerProof | TangencyProof":
 
 def _rightly_named(given: Mapping[str, Any], claim: "Claim | CornerClaim | TangencyClaim") -> None:
     said, true = given.get("name"), name_of(claim, given["schema"])
-    if given["schema"] < THIRD and given["kind"] == "tangency":
-        true = _name_before(claim)
     if said != true:
         raise ValueError(f"certificate: name = {ascii(said)[:80]} is not what it states, which is {true!r}")
-
-
-def _name_before(claim: Any) -> str:
-    """The name of a tangency in documents of earlier versions."""
-    kind = "homoclinic" if claim.contact.unstable == claim.contact.stable else "heteroclinic"
-    return f"{kind} tangency in the egg, alpha = {claim.alpha}"
 
 
 def _rightly_said(given: Mapping[str, Any], true: Mapping[str, Any]) -> None:
@@ -383,7 +279,7 @@ def _rightly_said(given: Mapping[str, Any], true: Mapping[str, Any]) -> None:
         raise ValueError(f"certificate: {wrong[0]} = {said} is not what its equations say, which is {meant}")
     if not isinstance(given.get("checks"), Mapping) or set(given["checks"]) != set(true["checks"]):
         raise ValueError(f"certificate: checks must list just these: {', '.join(true['checks'])}")
-    own = set(CHAIN) if true["kind"] == "tangency" else set()  # of a tangency that is not proved no orbit is known
+    own = {*CHAIN} if true["kind"] == "tangency" else set()  # of a tangency that is not proved no orbit is known
     if unknown := set(given) - set(true) - own:
         raise ValueError(f"certificate: the entry {ascii(min(unknown))[:60]} is unknown; accepted: {', '.join(true)}")
 

@@ -34,7 +34,7 @@ from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, prove
 from verification.proofs.periodic.interval_newton import Status
 
 if TYPE_CHECKING:
-    from verification.proofs.manifolds.proof import TangencyProof  # NumPy, which no other name needs
+    from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other name needs
 
 MOST_DIGITS = 20_000
 BUDGET = 4_000_000  # bounces times digits: some ten minutes

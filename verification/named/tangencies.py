@@ -20,14 +20,15 @@ from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal, working
 from verification.cycles.recurrence import Closure
-from verification.cycles.systems import reflected, rotations
+from verification.cycles.systems import reflected
 from verification.maps.first_hit import closes_smoothly
 from verification.named.locate import Located
 from verification.named.questions import SEARCHES, PeriodicOrbit, Tick, find_cycles, same_multipliers
+from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import settled
-from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.proof import LEAST_DIGITS, Proof, objection, sharpened, tangency_proved
+from verification.proofs.manifolds.plane_map import pinball
+from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact, Touch
 
@@ -103,18 +104,20 @@ def located(scene: Scene, touch: Touch, cycle: PeriodicOrbit, digits: int) -> Lo
             ball, checks = arb(touch.parameter, max(touch.error, LEAST)), dict[str, bool | None](touch=None)
         value, radius = f"{float(touch.parameter):.12f}", f"{max(touch.error, LEAST):.0e}"
     else:
-        ball, checks = proof.parameter, dict(proof.checks)
+        ball, checks = proof.value, dict(proof.checks)
         value, radius = decimal(ball, digits + 1)
-    return Located("tangency", value, radius, digits, checks, time.perf_counter() - begun, ball, None, notes)
+    made = None if isinstance(proof, str) else proof
+    return Located("tangency", value, radius, digits, checks, time.perf_counter() - begun, ball, made, notes)
 
 
-def proved(scene: Scene, contact: Contact, digits: int) -> Proof | str:
+def proved(scene: Scene, contact: Contact, digits: int) -> TangencyProof | str:
     """The proof that the manifolds touch, to so many digits or a few more; or why there is none."""
-    map, asked = plane_map(scene), max(digits, LEAST_DIGITS)
+    map, asked = pinball(scene.table, scene.law), max(digits, LEAST_DIGITS)
     if why := objection(contact, map, contact.parameter):
         return why
     try:
-        return tangency_proved(contact, map, sharpened(contact, map, repr(contact.parameter), asked), asked)
+        value = sharpened(contact, map, repr(contact.parameter), asked)
+        return worked_through(TangencyClaim(contact, scene.table, value, asked, scene.law))
     except (ValueError, ArithmeticError) as why:
         return str(why)
 
@@ -124,7 +127,7 @@ def near(
 ) -> Iterator[tuple[Touch, PeriodicOrbit]]:
     """The tangencies between two contractions that Newton's method finds from the scene's, each with its saddle."""
     mirror = scene.law.odd and reflected(scene.table)
-    map, known = plane_map(scene), set[tuple[complex, ...]]()
+    map, known = pinball(scene.table, scene.law), set[tuple[complex, ...]]()
     for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):
         one, two = cycle.multipliers
         look = cycle.period, *same_multipliers(cycle)
@@ -138,11 +141,6 @@ def near(
         for touch in touches(orbit, map, float(scene.lam), rounds, TRIED, any_bounce=mirror):
             if ends[0] <= touch.parameter <= ends[1]:
                 yield replace(touch, contact=settled(touch.contact, map)), cycle
-
-
-def plane_map(scene: Scene) -> Pinball:
-    """The map of a scene, with the rotations that its table and its law have."""
-    return Pinball(scene.table, turn=1 if scene.law.placed else rotations(scene.table), law=scene.law)
 
 
 def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:

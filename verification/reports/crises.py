@@ -7,7 +7,9 @@ other tables only the changes are told (`parted`).
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -18,15 +20,15 @@ from numeric.sweeps.fields import bifurcation
 from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
 from verification.arithmetic.balls import decimal
-from verification.cycles.recurrence import Closure
 from verification.named import tangencies
+from verification.named.files import document
 from verification.named.questions import PeriodicOrbit, Tick
 from verification.named.tangencies import LEAST, SAME, near, objection_of
+from verification.proofs.manifolds.claim import contact_of, contact_said
 from verification.proofs.manifolds.proof import LEAST_DIGITS
-from verification.proofs.manifolds.saddle import Orbit
-from verification.proofs.manifolds.tangency import Contact, Touch
+from verification.proofs.manifolds.tangency import Touch
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Block, Effort, Known, Listing, Number, Words
+from verification.reports.blocks import Block, Certificate, Effort, Known, Listing, Number, Words
 from verification.reports.dynamics import density
 from verification.reports.parted import near_changes, told_of
 
@@ -67,17 +69,21 @@ def _about(low: float, high: float) -> tuple[float, float]:
 
 
 def proved(asked: Asked, said: Document, number: int) -> Found:
-    """The proof of a tangency that was found: an enclosure of the contraction, and the checklist."""
+    """The proof of a tangency that was found: an enclosure of the contraction, the checklist, and the certificate."""
     effort = Effort(f"tangency {number}", f"{max(asked.digits, LEAST_DIGITS)} digits", 0.0)
-    proof = tangencies.proved(asked.scene, contact_of(said["contact"]), asked.digits)
-    if isinstance(proof, str):
-        return [], [effort], {"open": proof}
+    made = tangencies.proved(asked.scene, contact_of(said["contact"]), asked.digits)
+    if isinstance(made, str):
+        return [], [effort], {"open": made}
+    proof = made.proof
     unknown = [item for item, holds in proof.checks.items() if holds is not True]
     if unknown:
         return [], [effort], {"open": ", ".join(unknown)}
     ball = dict(zip(("value", "radius"), decimal(proof.parameter, asked.digits + 1), strict=True))
     multipliers = [decimal(x, DIGITS) for x in (proof.multipliers[1], proof.multipliers[0])]
-    return [], [replace(effort, error=ball["radius"])], ball | {"multipliers": multipliers, "items": len(proof.checks)}
+    found = ball | {"multipliers": multipliers, "items": len(proof.checks)}
+    with suppress(ValueError, ArithmeticError):  # what the format does not hold
+        found["certificate"] = document(made)
+    return [], [replace(effort, error=ball["radius"])], found
 
 
 @dataclass(frozen=True)
@@ -100,7 +106,9 @@ def told(asked: Asked, made: Mapping[str, Document]) -> Told:
     proofs = [made.get(f"tangency-{i}", {"data": {}})["data"] for i in range(len(said["touches"]))]
     pairs = list(zip(said["touches"], proofs, strict=True))
     lines = [[float(touch["value"]), "tangency"] for touch, _ in pairs]
-    return Told([_table(asked, said["changes"], pairs)], lines, [_document(*pair) for pair in pairs])
+    table: Block = _table(asked, said["changes"], pairs)
+    files = [(f"tangency-{i}", proof["certificate"]) for i, proof in enumerate(proofs) if "certificate" in proof]
+    return Told([table, *starmap(Certificate, files)], lines, [_document(*pair) for pair in pairs])
 
 
 def changed(counts: NDArray[Any], chaotic: NDArray[Any]) -> list[int]:
@@ -131,21 +139,6 @@ def closer(asked: Asked, parts: Parts, values: NDArray[Any], j: int) -> tuple[fl
     return float(finer[k]), float(finer[k + 1])
 
 
-def contact_of(said: Mapping[str, Any]) -> Contact:
-    """The contact that was written down.
-
-    >>> orbit = Orbit("triangle", (-0.16,), Closure(1, (1, 3)))
-    >>> contact = Contact(orbit, orbit, 5, 1, 0.03, -0.02, 0.66)
-    >>> contact_of(asdict(contact)) == contact
-    True
-    """
-    unstable, stable = (
-        Orbit(each["name"], tuple(each["start"]), Closure(each["closure"]["turn"], tuple(each["closure"]["shift"])))
-        for each in (said["unstable"], said["stable"])
-    )
-    return Contact(**{**said, "unstable": unstable, "stable": stable})
-
-
 def _touched(touch: Touch, cycle: PeriodicOrbit, change: tuple[float, float]) -> Document:
     """A tangency in float64 as plain data."""
     parameter, error = float(touch.parameter), max(touch.error, LEAST)
@@ -155,7 +148,7 @@ def _touched(touch: Touch, cycle: PeriodicOrbit, change: tuple[float, float]) ->
         "period": cycle.period,
         "multipliers": [touch.multipliers[1], touch.multipliers[0]],
         "change": list(change),
-        "contact": asdict(touch.contact),
+        "contact": contact_said(touch.contact),
     }
 
 
@@ -164,7 +157,7 @@ def _row(said: Document, proof: Document) -> tuple[Any, ...]:
     if "value" in proof:
         where = Number(proof["value"], proof["radius"], Known.PROVED)
         stretch = [Number(value, radius, Known.PROVED) for value, radius in proof["multipliers"]]
-        checks = f"all {proof['items']} items hold"
+        checks = f"all {proof['items']} items hold" + ("" if "certificate" in proof else "; no file")
     else:
         where = Number(f"{said['value']:.12f}", f"{said['error']:.0e}", Known.FLOAT)
         stretch = [Number(f"{x:.6g}", f"{SHOWN * abs(x):.0e}", Known.FLOAT) for x in said["multipliers"]]
@@ -181,7 +174,7 @@ def _document(said: Document, proof: Document) -> Document:
         "parameter": "lam",
         "value": proof["value"] if exact else f"{said['value']:.12f}",
         "radius": proof["radius"] if exact else f"{said['error']:.0e}",
-        "certified": exact,
+        "certified": "certificate" in proof,
     }
 
 

@@ -203,7 +203,6 @@ def test_digits_out_of_range_are_refused(digits):
         ("tangency cardioid --lam 0.1:0.3 --period 2", "its boundary has a cusp or a corner, where the map is not"),
         ("tangency circle --lam 0:0.3 --period 2", "lam from 0 to 3/10 is no interval of contractions; accepted: 0 <"),
         ("tangency egg --shape alpha=0.05:0.08 --lam 0.6 --period 3", "alpha varies; accepted: --lam LOW:HIGH"),
-        ("tangency circle --lam 0.1:0.3 --period 2 --certificate c.json", "a file holds tangencies of the egg alone"),
     ],
 )
 def test_what_cannot_be_asked_of_a_table_is_told_in_a_sentence(arguments, says):

@@ -15,14 +15,14 @@ from symbolic.tables.law import Law
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision, working
 from verification.cycles.newton import refined
 from verification.cycles.recurrence import Closure
+from verification.named import tangency_entries
+from verification.proofs.manifolds.claim import TangencyClaim
 from verification.proofs.manifolds.known import CONTACTS, SHAPE, contact, shadow, table
 from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import (
     ITEMS,
     STRANGE,
-    TangencyClaim,
     admissible,
-    claim_of,
     falling,
     objection,
     settled,
@@ -346,7 +346,7 @@ def test_a_law_without_what_a_contact_needs_is_refused_and_proves_nothing(kind, 
 
     assert says in objection(where, table(SHAPE, law), 0.9)
     with pytest.raises(ValueError, match=says):
-        TangencyClaim(where, SHAPE, "0.9", 12, law)
+        TangencyClaim(where, EGG.table, "0.9", 12, law)
 
 
 def test_a_law_of_the_place_is_asked_of_a_map_that_counts_whole_turns_alone():
@@ -372,7 +372,10 @@ def test_a_law_with_a_slope_that_vanishes_or_with_a_root_is_not_proved_to_be_ana
 
 
 def test_a_claim_with_a_law_is_read_back_with_its_law():
-    claim = TangencyClaim(UNDER_LAW, SHAPE, "0.66481196848210", 12, BENT)
+    claim = TangencyClaim(UNDER_LAW, EGG.table, "0.66481196848210", 12, BENT)
 
-    assert claim_of(claim.to_dict()) == claim
-    assert claim_of({k: v for k, v in claim.to_dict().items() if k != "law"}).law.uniform
+    said = {"schema": 4} | tangency_entries.entries(claim)
+    plain = {key: text for key, text in said["scene"].items() if key != "law"}
+
+    assert tangency_entries.claim_of(said) == claim
+    assert tangency_entries.claim_of(said | {"scene": plain}).law.uniform

@@ -1,7 +1,7 @@
 """The tangencies of a report: found near the changes of its diagram, and then proved."""
 
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -14,9 +14,11 @@ from verification.arithmetic.balls import working
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex, unobstructed
 from verification.named.questions import PeriodicOrbit
-from verification.named.tangencies import plane_map, round_of
+from verification.named.tangencies import round_of
+from verification.proofs.manifolds.claim import contact_said
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import shadow
+from verification.proofs.manifolds.plane_map import pinball
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Known, Number, Words
 from verification.reports.crises import crises, proved, told
@@ -62,10 +64,10 @@ def test_a_tangency_of_a_table_that_is_not_convex_is_proved_with_every_flight_on
     scene = Scene.of({"polar": "1 + 3*cos(theta)/5", "lam": "1/2"})
     bounces = (-2.3414388, -0.1354213, 2.3414388, 0.1354213)
     orbit = round_of(PeriodicOrbit(scene, (0,) * 4, bounces, (0.0,) * 4, (2j, 0j)), 1, True)
-    map = plane_map(scene)
+    map = pinball(scene.table, scene.law)
     touch = next(t for t in touches(orbit, map, 0.4336, 8, 4, True) if abs(t.parameter - 0.433637) < 1e-5)
     contact = replace(touch.contact, parameter=float(touch.parameter))
-    said = {"contact": json.loads(json.dumps(asdict(contact)))}
+    said = {"contact": json.loads(json.dumps(contact_said(contact)))}
     _, _, proof = proved(Asked(scene), said, 0)
     cycles = [shadow(contact, map, contact.parameter, rounds) for rounds in (24, 32)]
     folds = [refined(cycle.problem, cycle.start, 15).z[-1] for cycle in cycles]

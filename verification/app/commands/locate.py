@@ -122,7 +122,7 @@ def of_scene(
         if name != TANGENCY:
             found = bifurcations(scene, name, tick=step, **asked)
         else:
-            found = _tangencies(scene, parameter, certificate, asked | {"tick": step})
+            found = _tangencies(scene, parameter, asked | {"tick": step})
     if certificate is not None:
         if len(found) != 1:
             raise ValueError(
@@ -138,14 +138,10 @@ def of_scene(
     return DONE if found and all(one.certified for one in found) else FAILED
 
 
-def _tangencies(scene: Scene, parameter: str, certificate: str | None, asked: dict[str, Any]) -> "tuple[Located, ...]":
+def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[Located, ...]":
     """The tangencies of manifolds as the contraction varies."""
     if parameter != "lam":
         raise ValueError(f"locate tangency: {parameter} varies; accepted: --lam LOW:HIGH")
-    if certificate is not None:
-        raise ValueError(
-            "--certificate: a file holds tangencies of the egg alone; accepted: boundary-crisis and the like"
-        )
     from verification.named.tangencies import tangencies
 
     return tangencies(scene, **asked)
@@ -181,7 +177,8 @@ HAPPENS = {"flip": "period {n} doubles", "fold": "period {n} folds", "tangency":
 def marked(path: str, scene: Scene, parameter: str) -> "Marked":
     """The value of a certificate of this scene, checked anew, and what happens there."""
     from symbolic.tables.definition import table_boundary
-    from verification.named.files import SCHEMA, checked, read
+    from verification.named.files import checked, read
+    from verification.named.scene_entries import SCHEMA
     from verification.plots.results import Marked
 
     given = read(Path(path))
@@ -295,7 +292,7 @@ def _proof_checked(given: Mapping[str, Any]) -> Checked:
     said = "certified" if proof.certified else "not certified"
     lines = [f"{name} = {value} +- {radius}  ({said}, {seconds:.2f} s)", *_checklist(proof.checks)]
     if given["kind"] == "tangency":
-        from verification.proofs.manifolds.proof import TangencyProof  # NumPy, which no other certificate needs
+        from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other certificate needs
 
         if isinstance(proof, TangencyProof):
             document["strange_attractors"] = follow = proof.strange

@@ -41,13 +41,13 @@ from verification.proofs.global_dynamics.branch import OUTER, Branch, exact, uns
 from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Rectangles, mapped
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import whole
+from verification.proofs.manifolds.claim import orbit_of, orbit_said
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
     complex_balls,
     enclosed_saddle,
 )
 from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.proof import orbit_of, orbit_said
 from verification.proofs.manifolds.saddle import Orbit, Saddle, local, saddle
 from verification.proofs.manifolds.tangency import one_cycle, scale
 from verification.proofs.manifolds.touching import bounce

@@ -53,15 +53,9 @@ from verification.arithmetic.iteration import telling
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
-from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.proof import (
-    LEAST_DIGITS,
-    TangencyClaim,
-    TangencyProof,
-    objection,
-    sharpened,
-    worked_through,
-)
+from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
+from verification.proofs.manifolds.plane_map import Pinball, pinball
+from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened
 from verification.proofs.manifolds.saddle import Orbit, horner
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
 from verification.proofs.manifolds.touching import composed
@@ -197,7 +191,7 @@ BOUNDARY = {  # the boundary tangency at four shapes, and its contraction there
 
 def table(alpha: Expr, law: Law = PAPERS_LAW) -> Pinball:
     """The map of the three-pointed egg; its rotations are symmetries unless the law depends on the place."""
-    return Pinball(egg(3).at(alpha=alpha), turn=1 if law.placed else 3, law=law)
+    return pinball(egg(3).at(alpha=alpha), law)
 
 
 def contact(kind: str, alpha: Expr, law: Law = PAPERS_LAW) -> Contact:
@@ -354,7 +348,7 @@ def proof(found: Crisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> Tan
         value = sharpened(touch.contact, map, str(touch.parameter), digits)
     except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
         value = str(touch.parameter)
-    return worked_through(TangencyClaim(touch.contact, alpha, value, digits, law))
+    return worked_through(TangencyClaim(touch.contact, map.table, value, digits, law))
 
 
 def boundary(alpha: Expr) -> TangencyProof:
@@ -363,7 +357,7 @@ def boundary(alpha: Expr) -> TangencyProof:
     >>> all(boundary(Rational(1, 20)).strange.values())
     True
     """
-    return worked_through(TangencyClaim(BOUNDARY[alpha][0], alpha, BOUNDARY[alpha][1], 12))
+    return worked_through(TangencyClaim(BOUNDARY[alpha][0], egg(3).at(alpha=alpha), BOUNDARY[alpha][1], 12))
 
 
 PROVED = {  # contractions of contacts at alpha = 0.08, and to how many digits the proof's balls serve best
@@ -380,7 +374,7 @@ def touching(kind: str) -> TangencyProof:
     >>> all(touching("window-merging-9").strange.values())
     True
     """
-    return worked_through(TangencyClaim(CONTACTS[kind], SHAPE, *PROVED[kind]))
+    return worked_through(TangencyClaim(CONTACTS[kind], egg(3).at(alpha=SHAPE), *PROVED[kind]))
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

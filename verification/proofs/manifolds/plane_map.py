@@ -25,6 +25,7 @@ from verification.arithmetic.iteration import Stop, Vector, iterated, largest
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chords import Chords, chord_angles, landing
 from verification.cycles.recurrence import Recurrence, Rule, henon
+from verification.cycles.systems import rotations
 from verification.maps.first_hit import convex
 
 NEWTON = Stop(small=1e-13, steps=60)  # after a landing in float64, in other numbers and order by order in jets
@@ -221,6 +222,16 @@ class Pinball(_Bound):
             return largest([share(parts[0], reached)])
 
         return iterated(correction, [here * 0 + (start if np.ndim(start) else float(start))], NEWTON, size).x[0]
+
+
+def pinball(table: Table, law: Law = PAPERS_LAW) -> Pinball:
+    """The map of a table under a law, with the rotations that both have.
+
+    >>> from symbolic.tables import egg
+    >>> pinball(egg(5).at(alpha="1/40")).turn
+    5
+    """
+    return Pinball(table, turn=1 if law.placed else rotations(table), law=law)
 
 
 @cache

@@ -16,36 +16,28 @@ says what is missing. Nothing else asks which law it is, as the rule and its der
 is a set of positive measure for whose parameters the map has a strange attractor: it attracts an open set, and holds a
 dense orbit along which vectors grow exponentially [MoraViana1993]. docs/global.md states the theorem, each hypothesis
 and why symmetries of the table and signs of multipliers do no harm.
-
-`TangencyClaim` is what a proof claims, as a document: enough to work the proof through anew, with nothing of it
-believed.
 """
 
-import re
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field
+from fractions import Fraction
 
 from flint import arb
-from sympy import Expr, Pow, Rational
+from sympy import Pow, Rational
 
-from symbolic import tables
 from symbolic.expressions.text import load
 from symbolic.motion.chords import law_kernel
 from symbolic.tables.curves import is_periodic
-from symbolic.tables.definition import UNIFORM, text_entry
-from symbolic.tables.formula import number
-from symbolic.tables.law import PAPERS_LAW, Law
+from symbolic.tables.law import Law
 from verification.arithmetic.balls import balls, between, working
 from verification.arithmetic.iteration import Stop, iterated
-from verification.cycles.recurrence import Closure
+from verification.cycles.systems import symmetries
 from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
-from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact, Precision, multipliers_at
-from verification.proofs.manifolds.touching import Chain, Point, Touching, Vector, generic
+from verification.proofs.manifolds.touching import Point, Touching, Vector, generic
 from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
 
 LEAST_DIGITS = 24
@@ -146,13 +138,18 @@ def admissible(map: PlaneMap) -> bool | None:
 
 
 def objection(contact: Contact, map: PlaneMap, parameter: float) -> str:
-    """Why a contact is none of a law of its own: what of its symmetry the law lacks, or where it is no law; else ''.
+    """Why a contact is none of its table or its law: what of its symmetry they lack, or where that is no law; else ''.
 
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
     >>> objection(CONTACTS["merging"], table(SHAPE, Law("-lam*eta + eta**2/99")), 0.44)
     'law = eta**2/99 - eta*lam: no odd function of eta, so mirror images of orbits are no orbits'
     """
-    law = map.law if isinstance(map, Pinball) else PAPERS_LAW
+    if not isinstance(map, Pinball):
+        return ""
+    law, own = map.law, {(g.turn, Fraction(*g.shift) % 1) for g in symmetries(map.table)} | {(1, Fraction(0))}
+    asked = {(c.turn, Fraction(*c.shift) % 1) for c in (contact.unstable.closure, contact.stable.closure)}
+    if not asked | ({(-1, Fraction(0))} if contact.sign < 0 else set()) <= own:
+        return f"{map.table.name}: the orbit closes by a turn or a mirror that the table does not have"
     if law.uniform:
         return ""
     if law.parameters:
@@ -266,132 +263,3 @@ def nonresonant(stable: arb, unstable: arb) -> bool | None:
     ratio = -stable.log() / unstable.log()
     apart = all(not (i * ratio).contains_integer() for i in range(1, RESONANCES + 1))
     return True if ratio.is_finite() and apart else None
-
-
-LARGEST_DIGITS, LARGEST_PERIOD, LARGEST_FLIGHT = 600, 64, 1000
-FARTHEST = 1000.0  # along an eigenvector, in radians
-DECIMAL = re.compile(r"0\.\d{1,1000}")
-KIND = "tangency"
-
-
-@dataclass(frozen=True)
-class TangencyClaim:
-    """Manifolds of the three-pointed egg touch at one contraction within `10**-digits` of `value`."""
-
-    contact: Contact
-    alpha: Expr
-    value: str
-    digits: int
-    law: Law = PAPERS_LAW
-
-    def __post_init__(self) -> None:
-        if why := objection(self.contact, self.map, float(self.value)):
-            raise ValueError(why)
-
-    @property
-    def map(self) -> Pinball:
-        """The map of the table, with its rotations where the law has them."""
-        return Pinball(tables.egg(3).at(alpha=self.alpha), turn=1 if self.law.placed else 3, law=self.law)
-
-    def chain(self) -> dict[str, Any]:
-        """The orbit bounce by bounce, for a reader that knows no series; a few seconds, not proved."""
-        return Chain(self.contact, self.map, self.value, self.digits).entries()
-
-    def to_dict(self) -> dict[str, Any]:
-        """The entries of a document that state the claim.
-
-        >>> from sympy import Rational
-        >>> where = Contact(Orbit("a", (0.5,)), Orbit("a", (0.5,)), 3, 1, 0.01, 0.02, 0.6)
-        >>> claim = TangencyClaim(where, Rational(2, 25), "0.6", 20)
-        >>> claim_of(claim.to_dict()) == claim
-        True
-        """
-        return {
-            "kind": KIND,
-            "table": "egg",
-            "points": 3,
-            "shape": {"alpha": str(self.alpha)},
-            "contact": _entries(self.contact),
-            "value": self.value,
-            "digits": self.digits,
-        } | ({} if self.law.uniform else {"law": str(self.law.phi)})
-
-
-@dataclass(frozen=True)
-class TangencyProof:
-    """A claim with the checklist that was worked through for it."""
-
-    claim: TangencyClaim
-    proof: Proof
-
-    @property
-    def value(self) -> arb:
-        """The contraction."""
-        return self.proof.parameter
-
-    @property
-    def checks(self) -> Checks:
-        """The checklist."""
-        return self.proof.checks
-
-    @property
-    def certified(self) -> bool:
-        """Is the whole checklist proved?"""
-        return self.proof.holds
-
-    @property
-    def strange(self) -> Checks:
-        """The hypotheses of the theorem by which strange attractors exist near the contraction."""
-        return strange_attractors(self.claim.contact, self.claim.map, self.proof)
-
-
-def worked_through(claim: TangencyClaim) -> TangencyProof:
-    """The proof of a claim."""
-    return TangencyProof(claim, tangency_proved(claim.contact, claim.map, claim.value, claim.digits))
-
-
-def claim_of(given: Mapping[str, Any]) -> TangencyClaim:
-    """The claim of a document; `ValueError` with the entry that is wrong."""
-    try:
-        if (given["table"], given["points"]) != ("egg", 3):
-            raise ValueError(f"certificate: table = {given['table']!r} is out of range; accepted: the egg of 3 points")
-        alpha = number(given["shape"]["alpha"], "alpha")
-        digits, value = int(given["digits"]), str(given["value"])
-        if not 10 <= digits <= LARGEST_DIGITS or not DECIMAL.fullmatch(value):
-            raise ValueError(f"certificate: digits = {digits} or value = {value[:30]} is out of range")
-        contact, law = _contact(given["contact"]), Law(text_entry("law", given.get("law", UNIFORM)))
-    except (KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
-    return TangencyClaim(contact, alpha, value, digits, law)
-
-
-def _entries(contact: Contact) -> dict[str, Any]:
-    """A contact in the words of the certificate format, which calls its parameter a letter."""
-    found = asdict(contact)
-    found["letter"] = found.pop("parameter")
-    return found | {"unstable": orbit_said(contact.unstable), "stable": orbit_said(contact.stable)}
-
-
-def _contact(given: Mapping[str, Any]) -> Contact:
-    unstable, stable = (orbit_of(given[name]) for name in ("unstable", "stable"))
-    bounces, sign = int(given["bounces"]), int(given["sign"])
-    if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
-        raise ValueError(f"certificate: bounces = {bounces} or sign = {sign} is out of range")
-    z, end, parameter = (float(given[name]) for name in ("z", "end", "letter"))
-    if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < parameter < 1):
-        raise ValueError(f"certificate: z = {z}, end = {end} or letter = {parameter} is out of range")
-    return Contact(unstable, stable, bounces, sign, z, end, parameter)
-
-
-def orbit_said(orbit: Orbit) -> dict[str, Any]:
-    """The entries of a document that say which cycle it is, up to Newton's method."""
-    return {"name": orbit.name, "start": orbit.start, "sign": orbit.closure.turn, "shift": orbit.closure.shift}
-
-
-def orbit_of(given: Mapping[str, Any]) -> Orbit:
-    """The cycle of such entries."""
-    start, sign = tuple(float(x) for x in given["start"]), int(given["sign"])
-    turns, parts = (int(x) for x in given["shift"])
-    if not 1 <= len(start) <= LARGEST_PERIOD or sign not in (1, -1) or parts not in (1, 3):
-        raise ValueError(f"certificate: a saddle of {len(start)} bounces, sign {sign}, turn 1/{parts} is out of range")
-    return Orbit(str(given["name"]), start, Closure(sign, (turns, parts)))

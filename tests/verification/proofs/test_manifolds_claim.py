@@ -65,7 +65,7 @@ def test_a_claim_survives_the_way_through_a_file():
     [
         ({"table": "cuspless", "shape": {}}, "cuspless is out of range; accepted: one smooth curve"),
         ({"table": "ellipse", "shape": {"a": "2"}}, "a turn or a mirror that the table does not have"),
-        ({"table": "square"}, "no table is called 'square'"),
+        ({"table": "square"}, "no table is called square"),
         ({"digits": 10**6}, "digits = 1000000"),
         ({"value": "__import__('os')"}, "value = __import__"),
         ({"value": "1.5"}, r"value = 1\.5"),

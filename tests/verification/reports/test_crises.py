@@ -19,6 +19,7 @@ from verification.proofs.manifolds.claim import contact_said
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import shadow
 from verification.proofs.manifolds.plane_map import pinball
+from verification.proofs.manifolds.proof import ITEMS
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Known, Number, Words
 from verification.reports.crises import crises, proved, told
@@ -50,7 +51,9 @@ def test_the_boundary_crisis_of_the_egg_is_found_and_proved_by_a_report_that_kno
     exact = mantissa * Fraction(2) ** exponent
 
     for told_of, known in zip(tangencies(tmp_path, egg, (0.64, 0.69)), (Known.FLOAT, Known.PROVED), strict=True):
-        ((table,), (found,)) = told_of.blocks, told_of.events
+        (table, *files), (found,) = told_of.blocks, told_of.events
+        assert [file.document["checks"] for file in files] == [dict.fromkeys(ITEMS, True)] * found["certified"]
+        assert [file.name for file in files] == ["tangency-0"] * found["certified"]
         assert (found["kind"], found["period"]) == ("homoclinic_tangency", 3)
         assert found["certified"] is (known is Known.PROVED)
         assert abs(Fraction(found["value"]) - exact) <= Fraction(found["radius"])

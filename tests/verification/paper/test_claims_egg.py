@@ -213,15 +213,35 @@ def test_the_vertices_that_an_attractor_comes_near_are_counted_modulo_a_turn():
     assert on_attractors.vertices(SimpleNamespace(points=points)) == {1}
 
 
-@pytest.mark.parametrize("name", ["egg.periodic_only_near_zero", "map.smooth_basin_boundaries"])
-def test_nearly_round_eggs_are_proved_and_one_bound_for_every_contraction_and_the_figures_are_not(name, monkeypatch):
+def test_nearly_round_eggs_are_proved_and_one_bound_for_every_contraction_is_not(monkeypatch):
     """The proof's `alpha0` goes to 0 as `lam` goes to 1, and is no number."""
-    judge = on_round.periodic_only if name.startswith("egg") else on_round.smooth_boundaries
+    claim = CLAIMS["egg.periodic_only_near_zero"]
     assert on_round.settles()
-    assert judge(CLAIMS[name]).verdict is Verdict.SUPPORTED
+    assert on_round.periodic_only(claim).verdict is Verdict.SUPPORTED
 
     monkeypatch.setattr(on_round, "settles", lambda: Finding(Outcome.UNKNOWN, ""))
-    assert judge(CLAIMS[name]).verdict is Verdict.OPEN
+    assert on_round.periodic_only(claim).verdict is Verdict.OPEN
+
+
+def test_smooth_boundaries_of_basins_rest_on_the_figure_and_on_nearly_round_eggs(monkeypatch):
+    claim, edge = CLAIMS["map.smooth_basin_boundaries"], on_round.edge()
+    assert on_round.smooth_boundaries(claim).verdict is Verdict.CONFIRMED
+
+    monkeypatch.setattr(on_round, "edge", lambda: replace(edge, radius=0.03))
+    assert on_round.smooth_boundaries(claim).verdict is Verdict.OPEN
+
+    monkeypatch.setattr(on_round, "edge", lambda: edge)
+    monkeypatch.setattr(on_round, "settles", lambda: Finding(Outcome.UNKNOWN, ""))
+    assert on_round.smooth_boundaries(claim).verdict is Verdict.OPEN
+
+
+def test_strips_of_both_basins_next_to_a_stable_manifold_are_what_intermingled_says(monkeypatch):
+    claim = CLAIMS["cuspless.basins_intermingled"]
+    assert on_basins.cuspless_intermingled(claim).verdict is Verdict.CONFIRMED
+
+    turned = replace(on_basins.alternating(), starts=on_basins.alternating().starts[::-1])
+    monkeypatch.setattr(on_basins, "alternating", lambda: turned)
+    assert on_basins.cuspless_intermingled(claim).verdict is Verdict.OPEN
 
 
 def test_cones_that_are_too_wide_and_a_width_that_is_not_the_eggs_prove_nothing():

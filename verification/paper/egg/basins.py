@@ -24,12 +24,14 @@ from symbolic.tables.table import alpha, lam
 from verification.arithmetic.iteration import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, greater, judges, sampled, shown
+from verification.paper.claims.judges import answer, by, counterexample, greater, judges, shown
 from verification.paper.judges.attractors import SHAPE, found
+from verification.paper.judges.cuspless import attracting_below
 from verification.proofs.global_dynamics.common_boundary import CommonBoundary, entered_around
 from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
 from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_points
+from verification.proofs.starts.alternating import Alternating
 from verification.proofs.starts.core import Core
 from verification.proofs.starts.division import Division, Ring
 
@@ -57,26 +59,38 @@ def told(law: Uncertainty) -> str:
     return f"{law.dimension:.3f} +- {law.error:.3f} for eps from {law.largest:g} to {law.smallest:g}"
 
 
-@judges("cuspless.basins_intermingled")
-def cuspless_intermingled(claim: Claim) -> Judgement:
-    """A boundary of dimension above 1: strips of both basins at every scale that was looked at."""
-    law = boundary("cuspless", "0.09", (0.01, 0.003, 1e-3, 3e-4))
-    said = (
-        f"the boundary has the dimension {told(law)}: strips of both basins at every scale sampled. It has no area: "
-        f"the share of pairs of starts with different fates falls like eps^{law.exponent:.2f}, and the basin of the "
-        "period-2 orbit is open"
-    )
-    return sampled(
-        "a fractal boundary, dimension about 1.24", said, 1 < law.dimension - 3 * law.error < law.dimension < 2
-    )
-
-
 @cache
 def division() -> Division:
     """The core of period 2 at 9/100, and the ring about the unstable cycle of period 4 that bounds it."""
     core = Core(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, gates=((0.14, 0.006), (0.1, 0.01)))
     ring = Ring(low=0.1395, high=0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
     return Division(Scene("cuspless"), (Fraction(9, 100),) * 2, (8192, 1024), 8, core, ring, rate=0.16)
+
+
+def alternating() -> Alternating:
+    """Strips of both basins next to the vertical orbit's stable manifold."""
+    return Alternating(Fraction(9, 100), division().core)
+
+
+@judges("cuspless.basins_intermingled")
+def cuspless_intermingled(claim: Claim) -> Judgement:
+    """Strips of both basins in turn come to all of a saddle's stable manifold."""
+    found = alternating()
+    return Judgement(
+        by(
+            "the inclination lemma, for the vertical orbit of period 2",
+            answer(
+                found.proved,
+                "it is a saddle; of the orbits along its unstable manifold one is proved to enter a set that converges "
+                "to the horizontal orbit, and one the trapping polygon of the chaotic attractor",
+            ),
+            attracting_below(),
+        ),
+        "next to the stable manifold of the vertical orbit: on each smooth curve across it infinitely many intervals, "
+        "of the one basin and of the other in turn, come to the point of crossing (where its orbit misses the joins). "
+        "Both basins are open, so elsewhere they are not; by samples the strips shrink by the orbit's multiplier and "
+        "are no Cantor set",
+    )
 
 
 @judges("cuspless.two_basins")

@@ -24,6 +24,7 @@ trace is `(1 + lam)^2*P - 2*lam` and the determinant `lam^2`: three diameters at
 stable manifolds of three saddles: analytic curves. They divide the three basins.
 """
 
+from dataclasses import replace
 from functools import cache
 
 from sympy import Expr, Interval, Matrix, Symbol, cos, expand_trig, factorial, pi, simplify, sin
@@ -33,10 +34,12 @@ from symbolic.motion.flight import flight
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, judges, sampled, zero
-from verification.paper.egg.basins import boundary, told
+from verification.paper.claims.judges import answer, by, judges, sampled, zero
+from verification.paper.egg.barriers import AT, barrier
 from verification.paper.egg.stability import periods_at
 from verification.paper.judges.attractors import SHAPE
+from verification.proofs.manifolds.known import TRIANGLE
+from verification.proofs.starts.basin_edge import BasinEdge
 
 MOST, PSI, SHIFT = Symbol("most"), Symbol("psi", real=True), Symbol("shift", real=True)
 SHAPES, LAMS = ("0.01", "0.02"), ("0.2", "0.4", "0.6", "0.8", "0.9")  # where periods are sampled
@@ -112,19 +115,30 @@ def periodic_only(claim: Claim) -> Judgement:
     )
 
 
+@cache
+def edge() -> BasinEdge:
+    """Of the upper triangle's basin at the contraction of the paper's figure; at that of the vertices it ends."""
+    saddle = replace(TRIANGLE, start=(-0.166903,))
+    return BasinEdge(barrier(), (-0.90420792, 0.41635565), saddle, 0.012)
+
+
 @judges("map.smooth_basin_boundaries")
 def smooth_boundaries(claim: Claim) -> Judgement:
-    """Proved in nearly round eggs; at a shape of the paper's figures their dimension is sampled, which is 1."""
-    smooth, rough = (
-        boundary("egg", "0.2", (0.02, 0.01, 0.005, 0.002)),
-        boundary("cuspless", "0.09", (0.01, 0.003, 1e-3, 3e-4)),
-    )
-    return sampled(
-        "smooth curves in some cases, of dimension above 1 in others; in nearly round eggs, for 0 < lam <= most < 1 "
-        "and 0 < alpha <= alpha0(most), three basins are divided by the stable manifolds of three saddles of period 2, "
-        "analytic curves: proved",
-        f"proved: {settles().reason}; sampled: the boundaries between the three basins of the egg at alpha = {SHAPE}, "
-        f"lam = 0.2 have the dimension {told(smooth)}, as smooth curves have; those of the cuspless cardioid at 0.09, "
-        f"{told(rough)}",
-        bool(settles()) and abs(smooth.dimension - 1) < 3 * smooth.error < 0.4,
+    """Proved at the figure's contraction and near it, and in nearly round eggs: open sets of parameters."""
+    return Judgement(
+        by(
+            "stable manifolds of saddles bound the basins: in the figure of the crisis and in nearly round eggs",
+            answer(
+                edge().proved and edge().barrier.mirrored,
+                f"at alpha = {SHAPE}, lam = {AT} a start that neither comes below a barrier nor converges to the "
+                "upper attracting triangle is on the stable manifold of the triangle of the vertices, closed and an "
+                "embedded analytic curve; likewise below, in the mirror image",
+            ),
+            settles(),
+        ),
+        f"in the figure of the crisis, alpha = {SHAPE} and lam = {AT}, each attracting triangle's basin is bounded by "
+        "stable manifolds of a triangle of saddles, embedded analytic curves, and so it is at all parameters near "
+        "these; in nearly round eggs, for 0 < lam <= most < 1 and 0 < alpha <= alpha0(most), three basins are divided "
+        "by the stable manifolds of three saddles of period 2. Not everywhere: beyond the crisis boundaries of "
+        "dimension near 2 are measured",
     )

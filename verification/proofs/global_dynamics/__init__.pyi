@@ -2,17 +2,19 @@
 
 from .barrier import Barrier, lost
 from .boxes import BallArray, Boxes, hull, turned
-from .common_boundary import CommonBoundary, entered_around
+from .branch import unstable_branch
+from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed, kept_apart
 from .database import KNOWN, Numbers, continued
 from .fates import NEAR, Fate, clusters, invertible
 from .flights import Flights, Matrix, incidence, matrix, times, turn_between
-from .graph import Cells, Grid, Mask, MorseGraph, morse_graph, refined, walked
+from .graph import BLOCK, Cells, Grid, Indices, Mask, MorseGraph, morse_graph, ranges, refined, sparse, walked
 from .images import PinballImages
 from .regions import KIND, Region, checked, expansion, region, sampled_share, shares
 from .returns import every_return
 
 __all__ = [
+    "BLOCK",
     "KIND",
     "KNOWN",
     "NEAR",
@@ -22,19 +24,23 @@ __all__ = [
     "Boxes",
     "Cells",
     "CommonBoundary",
+    "Disc",
     "Fate",
     "Flights",
     "Grid",
+    "Indices",
     "Mask",
     "Matrix",
     "MorseGraph",
     "Numbers",
     "PinballImages",
     "Region",
+    "attracts",
     "boxed",
     "checked",
     "clusters",
     "continued",
+    "disc",
     "entered_around",
     "every_return",
     "expansion",
@@ -45,12 +51,15 @@ __all__ = [
     "lost",
     "matrix",
     "morse_graph",
+    "ranges",
     "refined",
     "region",
     "sampled_share",
     "shares",
+    "sparse",
     "times",
     "turn_between",
     "turned",
+    "unstable_branch",
     "walked",
 ]

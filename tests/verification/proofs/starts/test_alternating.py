@@ -1,0 +1,59 @@
+"""Strips of two basins in turn next to the vertical orbit's stable manifold, and what is refused."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from symbolic.cycles.cycle import cuspless_vertical, trace_and_determinant
+from symbolic.tables.table import lam
+from verification.paper.egg.basins import alternating
+from verification.proofs.starts.alternating import STARTS
+
+FOUND = alternating()
+CORE = FOUND.core
+
+
+def failing(**changes: object) -> set[str]:
+    """The checks that are not proved of a changed statement."""
+    return {name for name, held in replace(FOUND, **changes).checks.items() if held is not True}
+
+
+def test_both_basins_come_to_the_stable_manifold_of_the_vertical_orbit() -> None:
+    assert FOUND.proved
+
+
+@pytest.mark.parametrize(
+    ("changes", "items"),
+    [
+        ({"starts": STARTS[::-1]}, {"first", "second"}),  # each goes to the other
+        ({"starts": (0.6, 0.6)}, {"second"}),
+        ({"starts": (0.9, 0.9)}, {"first"}),
+        ({"core": replace(CORE, outer=0.3)}, {"core"}),  # holds starts that go to the corners
+        ({"core": replace(CORE, inner=0.14)}, {"core"}),
+        ({"core": replace(CORE, cubic=0.3)}, {"core"}),
+        ({"lam": Fraction(7, 100)}, {"polygon", "second"}),  # below lambda*
+        ({"lam": Fraction(95, 1000)}, {"core"}),  # above lambda_c
+    ],
+)
+def test_what_is_not_so_is_refused(changes: dict[str, object], items: set[str]) -> None:
+    assert items <= failing(**changes)
+
+
+def fates(theta: np.ndarray, phi: float) -> np.ndarray:
+    """Which particles of the arc end on the horizontal orbit, in float64."""
+    map = PinballMap("cuspless", lam="0.09")
+    end = map.orbit(theta, np.full(theta.size, phi), 1500, np.zeros(theta.size, dtype=int))
+    return np.asarray(np.all(np.abs(end.theta[-4:]) < 0.15, axis=0) & np.all(np.abs(end.phi[-4:]) < 0.02, axis=0))
+
+
+def test_the_strips_seen_in_float64_shrink_by_the_multiplier() -> None:
+    """Next to the vertical orbit fates at a distance are those at the distance over its multiplier, again and again."""
+    trace, det = (x.subs(lam, Fraction(9, 100)) for x in trace_and_determinant(cuspless_vertical()))
+    factor = float((abs(trace) + (trace**2 - 4 * det) ** 0.5) / 2)  # of two bounces
+    distance = np.geomspace(1e-3, 1e-3 * factor, 60, endpoint=False)
+    each = [fates(np.pi / 3 + distance / factor**k, 0.0) for k in range(6)]
+    assert 0.2 < np.mean(each[0]) < 0.8
+    assert all(np.mean(one == each[0]) >= 0.95 for one in each[1:])

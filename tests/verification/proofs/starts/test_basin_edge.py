@@ -1,0 +1,99 @@
+"""The edge of a basin above a barrier, and what is refused."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from symbolic import Scene
+from verification.paper.egg.nearly_round import edge
+from verification.proofs.global_dynamics.barrier import Barrier
+from verification.proofs.manifolds.known import TRIANGLE
+from verification.proofs.starts import basin_edge
+from verification.proofs.starts.basin_edge import BasinEdge
+
+FOUND = edge()
+
+
+def placed(alpha: str, lam: str, sink: tuple[float, float], saddle: float) -> BasinEdge:
+    """The edge at other parameters."""
+    barrier = Barrier(Scene("egg", alpha=alpha), (Fraction(lam), Fraction(lam)))
+    return BasinEdge(barrier, sink, replace(TRIANGLE, start=(saddle,)), 0.012)
+
+
+def failing(found: BasinEdge) -> set[str]:
+    """The checks that are not proved."""
+    return {name for name, held in found.checks.items() if held is not True}
+
+
+@pytest.mark.parametrize(
+    ("alpha", "lam", "sink", "saddle"),
+    [
+        ("0.08", "0.45", (-0.7391158, 0.3249923), -0.3527392),
+        ("0.08", "0.6", (-2.9628777, 0.3926991), -0.2079523),
+        ("0.05", "0.8", (-0.9207699, 0.4654211), -0.1393690),
+        ("0.1", "0.45", (-2.9194720, 0.3249923), -0.2667781),
+    ],
+)
+def test_basins_end_at_the_stable_manifold_of_a_saddle(alpha, lam, sink, saddle):
+    assert FOUND.proved
+    assert placed(alpha, lam, sink, saddle).proved
+
+
+@pytest.mark.parametrize(
+    ("changes", "items"),
+    [
+        ({"radius": 0.03}, {"disc"}),  # the derivative is no contraction over so wide a disc
+        ({"sink": (-0.9, 0.4)}, {"disc", "alone"}),  # the triangle lies beside it
+        ({"saddle": replace(TRIANGLE, start=(1.19,))}, {"saddle", "hyperbolic", "alone"}),  # that triangle attracts
+    ],
+)
+def test_each_step_fails_alone(changes, items):
+    assert failing(replace(FOUND, **changes)) == items
+
+
+def test_beyond_the_crisis_boundaries_are_not_said_to_be_smooth():
+    """No barrier keeps the middle from the triangle: what is found is no barrier below the saddle."""
+    assert "alone" in failing(placed("0.08", "0.67", (-0.9096821, 0.4201331), -0.1605810))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("HALVINGS", 7), ("NEAR", 5e-3), ("WITHIN", 4.1e-4)],  # coarse cells; sets about the saddle too large; too small
+)
+def test_without_cells_fine_enough_nothing_is_proved(monkeypatch, name, value):
+    monkeypatch.setattr(basin_edge, name, value)
+    assert "alone" in failing(replace(FOUND))
+
+
+def test_a_cycle_that_is_left_out_is_seen():
+    """With a disc elsewhere the attracting triangle itself is what stays."""
+    wrong = replace(FOUND)
+    wrong.__dict__["disc"] = replace(FOUND.disc, centre=(FOUND.disc.centre[0] + 0.5, FOUND.disc.centre[1]))
+    assert not wrong._alone()
+
+
+def test_edges_found_by_bisection_lead_to_the_saddle():
+    """Between a start that goes to the triangle and one that does not lies a start that comes next to the saddle."""
+    map = PinballMap("egg", lam="0.66", alpha="0.08")
+    theta, steps = np.random.default_rng(3).uniform(-np.pi, np.pi, 40), np.linspace(0, 1.03, 60)
+
+    def taken(theta, phi):
+        end = map.orbit(theta, phi, 400)
+        return (end.phi[-1] > 0.3) & (np.abs(end.phi[-1] - end.phi[-2]) < 1e-6)
+
+    fates = taken(*(x.ravel() for x in np.meshgrid(theta, steps, indexing="ij"))).reshape(40, 60)
+    assert not np.any(fates[:, 0])
+    which, step = np.nonzero(fates[:, 1:] & ~fates[:, :-1])
+    assert which.size > 40
+    theta, low, high = theta[which], steps[step], steps[step + 1]
+    for _ in range(60):
+        middle = (low + high) / 2
+        goes = taken(theta, middle)
+        low, high = np.where(goes, low, middle), np.where(goes, middle, high)
+    orbit = map.orbit(theta, low, 60)
+    turn, (x, y) = 2 * np.pi / 3, FOUND.place
+    off = orbit.theta - x - turn * np.round((orbit.theta - x) / turn)
+    assert np.all(np.min(np.hypot(off, orbit.phi - y), axis=0) < 1e-4)

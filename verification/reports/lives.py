@@ -240,8 +240,8 @@ def curves(
         heard(options)
         seen = [EventCurve(**each) for each in (*known, *found)]
         for curve in curves_along(branch, plane, other, seen, STEPS, lambda point: heard("curve")):
-            options += f" --switch {curve.depth}" if curve.depth else ""
-            found.append(curve.document() | {"command": asked.command("follow", options)})
+            deeper = f" --switch {curve.depth}" if curve.depth else ""
+            found.append(curve.document() | {"command": asked.command("follow", f"{options}{deeper}")})
     return [], [Effort(f"curves of cycle {number}", f"{len(found)} curves", 0.0)], {"curves": found}
 
 

@@ -184,6 +184,14 @@ def test_a_folder_is_read_without_running_anything(folder):
     assert {name for name in set(sys.modules) - before if name.startswith("claims_")} == set()
 
 
+def test_a_judge_that_returns_no_judgement_leaves_its_claim_open_and_is_told(folder):
+    changed(folder / "judges.py", "return identity(claim, (q + 1) ** 2)", "identity(claim, (q + 1) ** 2)")
+    (found,) = verify("x.square", claims=folder)
+
+    assert found.verdict is Verdict.OPEN
+    assert found.method == "the judge failed: TypeError: it returns None, and a judge returns a Judgement"
+
+
 def test_judges_that_were_edited_are_run_anew(folder):
     assert verdicts(folder, only="x.half") == {"x.half": Verdict.CORRECTED}
     before = codes(paper(folder).claims, 15)
@@ -204,6 +212,19 @@ def test_judges_that_were_edited_are_run_anew(folder):
         ("paper.toml", 'id = "x.half"', "", "paper.toml: 'id' is missing"),
         ("paper.toml", 'quote = "$q/3$"', "", "claim 'x.half': 'quote' is missing"),
         ("paper.toml", 'printed = "q/3"', "printed = 3", "'x.half': printed = 3 should be a text or a list"),
+        ("paper.toml", 'printed = "q/3"', 'printed = ["q", 3]', "printed = ['q', 3] should be a text or a list"),
+        (
+            "paper.toml",
+            'printed = "q/3"',
+            'printed = "q/3"\nover = { q = "(0; 1)" }',
+            "q = '(0; 1)' } is no range of a l",
+        ),
+        (
+            "paper.toml",
+            'printed = "q/3"',
+            'printed = "q/3"\nover = { p = "(0, 1)" }',
+            "p = '(0, 1)' } is no range of a l",
+        ),
         ("paper.toml", '"Squares" = ""', "", "claim 'x.square': no section is called 'Squares'; listed: 'Thirds'"),
         ("paper.toml", 'letters = ["q"]', 'claims = ["no.toml"]', "no.toml cannot be read: No such file or directory"),
         ("paper.toml", 'letters = ["q"]', 'judges = ["no.py"]', "no.py, and there is no such file"),

@@ -139,9 +139,14 @@ def _checked(where: Path, entry: Any, kinds: Mapping[str, Any], needed: Iterable
     for key, value in entry.items():
         if key not in kinds:
             raise ValueError(f"{label}: no key is called {key!r}; accepted: {', '.join(kinds)}")
-        texts = key == "printed" or not isinstance(value, list) or all(isinstance(each, str) for each in value)
+        rows = value if isinstance(value, list) else []
+        texts = all(isinstance(each, str) or (key == "printed" and _texts(each)) for each in rows)
         if not isinstance(value, kinds[key]) or not texts:
             raise ValueError(f"{label}: {key} = {value!r} should be {WANTED[kinds[key]]}")
+
+
+def _texts(row: Any) -> bool:
+    return isinstance(row, list) and all(isinstance(each, str) for each in row)
 
 
 WANTED = {str: "a text", list: "a list of texts", dict: "a table", (str, list): "a text or a list of them"}
@@ -160,7 +165,13 @@ def _claim(where: Path, entry: Any, sections: Mapping[str, str], letters: tuple[
         listed = ", ".join(map(repr, sections))
         raise ValueError(f"{where}, claim {entry['id']!r}: no section is called {entry['section']!r}; listed: {listed}")
     over = tuple(entry.get("over", {}).items())
-    return Claim(**{"kind": "property", **entry, "over": over, "letters": letters})
+    found = Claim(**{"kind": "property", **entry, "over": over, "letters": letters})
+    for name, text in over:
+        ranged = isinstance(text, str) and (text[:1] not in ("[", "(") or "," in text)  # others are in words
+        if name not in found.names or not ranged:
+            said = f"over = {{ {name} = {text!r} }} is no range of a letter"
+            raise ValueError(f'{where}, claim {entry["id"]!r}: {said}; accepted: over = {{ lam = "(0, 1/3)" }}')
+    return found
 
 
 def paper(claims: str | Path = OWN) -> Paper:

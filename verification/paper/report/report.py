@@ -142,6 +142,8 @@ def judge(claim: Claim, digits: int = 15) -> Result:
         found = judge_of(claim)
         start = time.perf_counter()  # importing a module is not judging
         judgement = found(claim)
+        if not isinstance(judgement, Judgement):
+            raise TypeError(f"it returns {judgement!r}, and a judge returns a Judgement")
     except Exception as error:  # a judge that fails leaves its claim open, and says so; the others go on
         judgement = _open(f"the judge failed: {type(error).__name__}: {error}")
     return _result(claim, judgement, digits, time.perf_counter() - start)

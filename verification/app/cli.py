@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symbolic.tables.definition import like
+from verification.app.lines import console, on_terminal
 from verification.arithmetic.iteration import heard
 
 if TYPE_CHECKING:
@@ -49,9 +50,7 @@ class Output:
     @cached_property
     def console(self) -> "Console":
         """Standard output, or standard error when the JSON document has standard output to itself."""
-        from rich.console import Console
-
-        return Console(stderr=self.path == "-", highlight=False, markup=False, soft_wrap=True)
+        return console(stderr=self.path == "-")
 
     def write(self, document: Mapping[str, Any], *results: Any) -> None:
         """Writes the JSON document where `--json` said, and where `--plot` said the picture of the same results."""
@@ -345,7 +344,7 @@ def _told(message: str, status: int) -> int:
     message = message if len(message) <= LONGEST else message[: LONGEST - 200] + " ... " + message[-195:]
     if os.environ.get("PINBALL_DEBUG") == "1":
         traceback.print_exc()
-    click.echo(f"pinball: {message}", err=True)
+    click.echo(on_terminal(f"pinball: {message}", sys.stderr), err=True)
     return status
 
 

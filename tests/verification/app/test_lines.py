@@ -28,6 +28,34 @@ def test_a_table_fits_eighty_columns(command, capsys, monkeypatch):
     assert max(map(len, numbers)) <= 80
 
 
+SENTENCES = {
+    "a search": ("cycles", *EGG, "--lam", "1/2", "--period", "2"),
+    "exponents": ("lyapunov", "cuspless", "--lam", "0.8", "--bounces", "100", "--orbits", "20"),
+    "attractors": ("attractor", *EGG, "--lam", "0.6", "--orbits", "20", "--certify"),
+    "sets": ("morse", "circle", "--lam", "1/2", "--columns", "16", "--rows", "8"),
+    "a checklist": ("locate", "lambda-star", "--digits", "50"),
+    "figures": ("figure", "--list"),
+    "an error": ("locate", "nothing"),
+}
+
+
+@pytest.mark.parametrize("command", SENTENCES.values(), ids=SENTENCES)
+def test_sentences_break_at_words_on_a_terminal_and_stand_on_one_line_in_a_file(command, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    status = main(list(command))
+    whole = capsys.readouterr()
+    monkeypatch.setenv("FORCE_COLOR", "1")  # which is how Rich is told of a terminal
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    assert main(list(command)) == status
+    broken = capsys.readouterr()
+
+    one, two = (said.out + (said.err if status == 2 else "") for said in (whole, broken))
+    seconds = re.compile(r"\d+(\.\d+)? s\b")
+    assert max(map(len, two.splitlines())) <= 80
+    assert seconds.sub("", two).split() == seconds.sub("", one).split()
+    assert len(two.splitlines()) > len(one.splitlines()) or command[0] == "attractor"
+
+
 def test_a_wide_terminal_has_all_digits_and_the_status_of_each_bounce(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
     main(list(PRINTED["one component"]))

@@ -9,6 +9,7 @@ import click
 
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, INTERRUPTED, Output, json_option, plot_option
+from verification.app.lines import table, widest
 from verification.app.scene import scene_options
 
 if TYPE_CHECKING:
@@ -114,30 +115,42 @@ def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
 
 
 def show_attractor(console: "Console", document: dict[str, Any]) -> None:
-    """A line for each attractor."""
-    console.print("family  symmetry  attractor          share of the starts (95%)    nu_plus        nu_minus")
-    for a in document["attractors"]:
-        kind = {"cycle": f"period {a['period']}", "chaotic": "chaotic", "stopped": f"stopped: {a['status']}"}
-        name = kind.get(a["kind"], f"neutral, period {a['period']}" if a["period"] else "neutral")
-        share = f"{a['share']:.4f} ({a['share_low']:.4f}, {a['share_high']:.4f})"
-        proof = "  " + said(a["checks"]) if a.get("checks") else ""
-        console.print(
-            f"{a['family']:<8}{a['symmetry']:<10}{name:<19}{share:<29}"
-            f"{_number(a['nu_plus'], a['nu_plus_stderr']):<15}{_number(a['nu_minus'], a['nu_minus_stderr'])}{proof}"
-        )
+    """A line for each attractor; where that is too wide, with fewer digits, and what is proved below."""
+    names = "family", "symmetry", "attractor", "share (95%)", "nu_plus", "nu_minus"
+    found = document["attractors"]
+    proofs = [said(a.get("checks")) for a in found]
+    lines = table((*names, ""), [(*_row(a, 4, 5), word) for a, word in zip(found, proofs, strict=True)])
+    if widest(lines) > console.width:
+        lines = table(names, [_row(a, 3, 4) for a in found])
+        for word in dict.fromkeys(filter(None, proofs)):
+            families = dict.fromkeys(str(a["family"]) for a, proof in zip(found, proofs, strict=True) if proof == word)
+            lines.append(f"{word}: family {', '.join(families)}")
+    for line in lines:
+        console.print(line)
     console.print(f"{document['orbits']} starts, seed {document['seed']}; {document['unsettled']} did not settle")
 
 
-def said(checks: dict[str, bool | None]) -> str:
-    """`proved`, or what is not."""
+def _row(a: dict[str, Any], places: int, digits: int) -> tuple[str, ...]:
+    """An attractor in words: its share to so many places, its exponents to so many digits after the point."""
+    kind = {"cycle": f"period {a['period']}", "chaotic": "chaotic", "stopped": f"stopped: {a['status']}"}
+    name = kind.get(a["kind"], f"neutral, period {a['period']}" if a["period"] else "neutral")
+    share = f"{a['share']:.{places}f} ({a['share_low']:.{places}f}, {a['share_high']:.{places}f})"
+    exponents = (_number(a[nu], a[f"{nu}_stderr"], digits) for nu in ("nu_plus", "nu_minus"))
+    return str(a["family"]), str(a["symmetry"]), name, share, *exponents
+
+
+def said(checks: dict[str, bool | None] | None) -> str:
+    """`proved`, or what is not; nothing where no proof was asked for."""
+    if not checks:
+        return ""
     missing = [name for name, value in checks.items() if value is not True]
     return "proved" if not missing else f"not proved: {', '.join(missing)}"
 
 
-def _number(value: float | None, error: float | None) -> str:
+def _number(value: float | None, error: float | None, digits: int) -> str:
     if value is None:
         return "-"
-    return f"{value:.5f}" + (f"({error:.0e})" if error else "")
+    return f"{value:.{digits}f}" + (f"({error:.0e})" if error else "")
 
 
 LAWS = {

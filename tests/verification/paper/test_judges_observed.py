@@ -1,5 +1,7 @@
 """Canaries: the judges of what simulations of the cardioids show, and of domains, driven to other verdicts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sympy import S
@@ -8,6 +10,7 @@ from symbolic.expressions.signs import Finding, Outcome
 from verification.paper.claims.claim import Verdict
 from verification.paper.judges import cardioid_attractor as on_observed
 from verification.paper.judges import cuspless as on_domains
+from verification.paper.judges import cuspless_chaos as on_chaos
 from verification.paper.judges import ellipse as on_ellipse
 from verification.paper.judges import ellipse_stability as on_ellipse_stability
 from verification.paper.judges.exponents import Spectrum
@@ -28,11 +31,12 @@ def test_a_period_4_orbit_could_be_stable_because_the_coefficient_changes_sign(m
     assert verdict(on_observed.stable_if_flatter, "cuspless.stable_if_flatter") is not Verdict.CONFIRMED
 
 
-def test_a_ball_from_the_join_that_does_not_settle_is_no_support(monkeypatch):
-    assert verdict(on_observed.below_star, "cuspless.below_star_converges") is Verdict.SUPPORTED
+def test_what_leaves_the_join_below_lambda_star_converges_by_all_of_the_proof(monkeypatch):
+    assert verdict(on_chaos.below_star, "cuspless.below_star_converges") is Verdict.CONFIRMED
 
-    monkeypatch.setattr(on_observed, "BELOW", ("0.09", "0.2"))
-    assert verdict(on_observed.below_star, "cuspless.below_star_converges") is Verdict.OPEN
+    gap = replace(on_chaos.below(), fates=on_chaos.below().fates[::2])
+    monkeypatch.setattr(on_chaos, "below", lambda: gap)
+    assert verdict(on_chaos.below_star, "cuspless.below_star_converges") is Verdict.OPEN
 
 
 @pytest.mark.parametrize("half", ["settles_near_zero", "chaos"])

@@ -284,9 +284,6 @@ def near_cusp(claim: Claim) -> Judgement:
     )
 
 
-BELOW = ("0.01", "0.03", "0.05", "0.07", "0.071")
-
-
 @judges("cuspless.stable_if_flatter")
 def stable_if_flatter(claim: Claim) -> Judgement:
     """The normal form of the flip in the wall's jets: its sign changes when the wall bends away from its centre."""
@@ -305,24 +302,6 @@ def stable_if_flatter(claim: Claim) -> Judgement:
         ),
         f"stable when the curvature at s = 0 stays 0 and has kappa''(0) < {-24 * least_bend()}",
     )
-
-
-def from_the_join(contraction: str, bounces: int = 4000) -> Array:
-    """The exit angles after so many bounces of particles that leave the upper join at 41 angles up to 0.05."""
-    map = PinballMap("cuspless", lam=contraction)
-    start = np.linspace(-0.05, 0.05, 41)
-    return np.asarray(map.orbit(np.full(41, 2 * np.pi / 3), start, bounces).phi[-1])
-
-
-@judges("cuspless.below_star_converges")
-def below_star(claim: Claim) -> Judgement:
-    """From the join, at angles near 0, below `lambda_star`."""
-    worst = max(float(np.max(np.abs(from_the_join(x)))) for x in BELOW)
-    said = (
-        f"sampled at lam = {', '.join(BELOW)}: each of 41 that leave the upper join at angles from -0.05 to 0.05 "
-        f"has come to the horizontal orbit after 4000 bounces, exit angles up to {worst:.0e}"
-    )
-    return sampled("the horizontal orbit, proved to attract below lambda_c", said, worst < 1e-9)
 
 
 @judges("cuspless.nontrivial_larger")

@@ -6,18 +6,35 @@ Not shown is that what attracts has one dense orbit: claims that there is a chao
 one attracts globally, or that it is the only one, are not.
 """
 
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+
 from flint import arb
 
 from symbolic.cycles.returns import HIGHEST, LOWEST
 from symbolic.cycles.splitting import least_rate, splits
 from symbolic.expressions.signs import Finding
+from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import real_ball
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
-from verification.paper.judges.attractors import STARTS, chaotic, found, unsettled
+from verification.paper.judges.attractors import (
+    HORIZONTAL,
+    NEAR_ZERO,
+    STARTS,
+    chaotic,
+    found,
+    near_zero,
+    unsettled,
+)
+from verification.paper.judges.cuspless import attracting_below
 from verification.paper.judges.hyperbolicity import PROVED_TO, chaos
 from verification.paper.judges.located import certified, value
+from verification.proofs.global_dynamics.fates import Fate
 from verification.proofs.global_dynamics.returns import every_return
+from verification.proofs.starts.below_star import ANGLE, NEXT, BelowStar
+from verification.proofs.starts.core import Core
 from verification.proofs.starts.mean import HIGH, LOW, MULTIPLIER, RATE, average
 
 NEAR_ONE = ("0.7", "0.8", "0.9", "0.95", "0.99")
@@ -96,6 +113,38 @@ def only_attractor(claim: Claim) -> Judgement:
         f"from lam = {LOWEST} on",
         said,
         "one and the same" in said and bool(unstable()),
+    )
+
+
+@cache
+def below() -> BelowStar:
+    """What leaves the upper join at small angles below `lambda*`: three graphs of boxes, and the corners from there on.
+
+    The cores are about the horizontal orbit; those of graphs are small, the last one comes near to the joins.
+    """
+    cuts, grids = (NEAR_ZERO, Fraction("0.06"), NEXT), ((2048, 128), (4096, 256))
+    graphs = (Fate(Scene("cuspless"), x, g, 8, (HORIZONTAL,)) for x, g in zip(pairwise(cuts), grids, strict=True))
+    small = Core(1, 0.056, -0.0202, 0.0025, 0.06, 0.2, 200), Core(1, 0.0649, -0.0227, 0.002, 0.06, 0.2, 200)
+    wide = Core(1, 0.0702, -0.0241, 0.0012, 0.05, 0.41, 410, ((0.405, 0.003), (0.4, 0.006), (0.38, 0.012)))
+    return BelowStar(((near_zero(), None), *zip(graphs, small, strict=True)), wide)
+
+
+@judges("cuspless.below_star_converges")
+def below_star(claim: Claim) -> Judgement:
+    """From the join, at angles near 0, for every contraction below `lambda_star`."""
+    return Judgement(
+        by(
+            f"for every 0 <= lam < lambda* and every exit angle up to {ANGLE}",
+            answer(
+                below().proved,
+                f"up to {NEXT} walks of boxes from the upper join end about the horizontal orbit alone; from there to "
+                "lambda* half a return next to the corners moves the landing on, along the wall, by a factor and by a "
+                "positive number, until it is in a set all of which converges to the horizontal orbit",
+            ),
+            attracting_below(),
+        ),
+        f"each trajectory from the upper join with an exit angle of at most {ANGLE} converges to the horizontal orbit, "
+        "for every 0 <= lam < lambda*",
     )
 
 

@@ -88,7 +88,7 @@ def pieces(region: Polygon, e: tuple[float, float]) -> Pieces:
         found = {}
         for component in (ARC, WALL):
             boxes = (box for time in cuts(*e, LONGEST_E) for box in _boxes(region, component, time))
-            images = [image for box in boxes for image in _followed(component, *box)]
+            images = [image for box in boxes for image in followed(component, *box)]
             hull = [joined([image[k].slopes[i] for image in images]) for k in (0, 1) for i in (0, 1)]
             found[component] = Piece(((hull[0], hull[1]), (hull[2], hull[3])), shift, (arb(base), arb(0)))
         return found
@@ -107,12 +107,12 @@ def _boxes(region: Polygon, component: int, e: arb) -> list[tuple[arb, arb, arb]
 
 def _shift(base: float, times: list[arb]) -> Row:
     """`H(e*base, 0, e)/e` for every `e` up to the end of the last of these balls, which begin at 0."""
-    images = [image for e in times for image in _followed(ARC, base * e, arb(0), e)]
+    images = [image for e in times for image in followed(ARC, base * e, arb(0), e)]
     first, second = (joined([base * image[k].slopes[0] + image[k].slopes[2] for image in images]) for k in (0, 1))
     return first, second
 
 
-def _followed(component: int, u: arb, v: arb, e: arb, depth: int = 0) -> list[Image]:
+def followed(component: int, u: arb, v: arb, e: arb, depth: int = 0) -> list[Image]:
     """The images of a box, in halves where it is not enclosed as a whole."""
     try:
         return _images(component, u, v, e)
@@ -120,8 +120,8 @@ def _followed(component: int, u: arb, v: arb, e: arb, depth: int = 0) -> list[Im
         if depth == DEEPEST:
             raise
     if v.rad() > e.rad():
-        return [image for half in halves(v) for image in _followed(component, u, half, e, depth + 1)]
-    return [image for half in halves(e) for image in _followed(component, u, v, half, depth + 1)]
+        return [image for half in halves(v) for image in followed(component, u, half, e, depth + 1)]
+    return [image for half in halves(e) for image in followed(component, u, v, half, depth + 1)]
 
 
 def _images(component: int, u: arb, v: arb, e: arb) -> list[Image]:

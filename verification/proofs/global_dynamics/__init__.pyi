@@ -6,7 +6,7 @@ from .branch import unstable_branch
 from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed, kept_apart
 from .database import KNOWN, Numbers, continued
-from .fates import NEAR, Fate, clusters, invertible
+from .fates import NEAR, Cluster, Fate, clusters, invertible
 from .flights import Flights, Matrix, incidence, matrix, times, turn_between
 from .graph import BLOCK, Cells, Grid, Indices, Mask, MorseGraph, morse_graph, ranges, refined, sparse, walked
 from .images import PinballImages
@@ -23,6 +23,7 @@ __all__ = [
     "BoundaryCrisis",
     "Boxes",
     "Cells",
+    "Cluster",
     "CommonBoundary",
     "Disc",
     "Fate",

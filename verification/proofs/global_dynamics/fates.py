@@ -225,10 +225,19 @@ class Fate:
     cycles: tuple[tuple[Point, ...], ...]
 
     @cached_property
+    def map(self) -> PinballImages:
+        """The map, over all of the range at once; `ValueError` unless the table is convex."""
+        return PinballImages(self.scene, self.lam)
+
+    @cached_property
+    def graph(self) -> Transitions:
+        """The graph of boxes, finest where orbits may return."""
+        return refined(self.map, Grid(self.map.charts, *self.grid), self.coarsest)
+
+    @cached_property
     def parts(self) -> list[Cluster] | None:
-        """The components of clusters, over all of the range at once; `ValueError` unless the table is convex."""
-        map = PinballImages(self.scene, self.lam)
-        return None if not invertible(map) else clusters(map, refined(map, Grid(map.charts, *self.grid), self.coarsest))
+        """The components of clusters, over all of the range at once."""
+        return clusters(self.map, self.graph) if invertible(self.map) else None
 
     @cached_property
     def checks(self) -> dict[str, bool | None]:

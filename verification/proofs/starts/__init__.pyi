@@ -2,17 +2,21 @@
 
 from .alternating import Alternating
 from .basin_edge import BasinEdge
+from .below_star import ANGLE, NEXT, BelowStar
 from .core import Core
 from .division import Division, Ring
 from .mean import HIGH, LOW, MULTIPLIER, RATE, average
 
 __all__ = [
+    "ANGLE",
     "HIGH",
     "LOW",
     "MULTIPLIER",
+    "NEXT",
     "RATE",
     "Alternating",
     "BasinEdge",
+    "BelowStar",
     "Core",
     "Division",
     "Ring",

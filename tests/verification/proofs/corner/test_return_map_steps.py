@@ -239,9 +239,9 @@ def test_boxes_of_a_half_return_are_halved_along_the_longer_of_two_sides_up_to_s
     box = arb(5), arb(0, 1), arb(0, 1)
     if not told:
         with pytest.raises(ArithmeticError):
-            half_return._followed(WALL, *box)
+            half_return.followed(WALL, *box)
         return
-    assert half_return._followed(WALL, *box) == [(WALL, v) for _, v, _ in done]
+    assert half_return.followed(WALL, *box) == [(WALL, v) for _, v, _ in done]
     for v, e in [(arb(i) / 8, arb(k) / 8) for i in range(-8, 9) for k in range(-8, 9)]:
         assert any(a.contains(v) and b.contains(e) for _, a, b in done)
     assert all(u == 5 for u, _, _ in done)

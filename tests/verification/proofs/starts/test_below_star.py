@@ -1,0 +1,103 @@
+"""What leaves the upper join below `lambda*`, and what is refused."""
+
+from dataclasses import replace
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from flint import arb
+
+from numeric import PinballMap
+from verification.arithmetic.balls import working
+from verification.paper.judges.cuspless_chaos import below
+from verification.proofs.corner.corner import ARC, BITS, WALL, enclosed
+from verification.proofs.starts import below_star
+from verification.proofs.starts.below_star import ANGLE, NEXT, BelowStar, begins, first_hull, hulls, inner
+
+FOUND = below()
+STAR = float(enclosed()[1].mid())
+
+
+def failing(found: BelowStar) -> set[str]:
+    """The checks that are not proved."""
+    return {name for name, held in found.checks.items() if held is not True}
+
+
+def test_all_that_leaves_the_join_at_small_angles_is_proved_to_converge() -> None:
+    assert FOUND.proved
+
+
+@pytest.mark.parametrize(
+    ("changes", "items"),
+    [
+        ({"fates": FOUND.fates[:2]}, {"boxes"}),  # nothing is said from 0.06 on
+        ({"fates": FOUND.fates[1:]}, {"boxes"}),
+        ({"core": replace(FOUND.core, cubic=0.2)}, {"core", "exits"}),
+        ({"core": replace(FOUND.core, gates=())}, {"exits"}),
+    ],
+)
+def test_each_step_fails_alone(changes: dict, items: set[str]) -> None:
+    assert items <= failing(replace(FOUND, **changes))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "items"),
+    [
+        ("V_HIGH", 0.02, {"exits"}),  # nearer to the join than the core comes
+        ("K", 0.1, {"starts"}),
+        ("K", 9.0, {"inner"}),
+        ("BESIDE", 0.03, {"starts"}),
+        ("BESIDE", 1e-3, {"carried"}),  # next to the join sets do not come to the core in time, or lie on both sides
+    ],
+)
+def test_other_inequalities_do_not_hold(monkeypatch, name: str, value: float, items: set[str]) -> None:
+    monkeypatch.setattr(below_star, name, value)
+    assert items <= failing(replace(FOUND, fates=()))
+
+
+def test_a_core_that_holds_no_cells_and_a_graph_that_returns_elsewhere_prove_nothing(monkeypatch) -> None:
+    fate, core = FOUND.fates[1]
+    assert below_star.unreturning(fate, core)
+    assert not below_star.unreturning(fate, replace(core, outer=0.06))
+    assert not below_star.unreturning(fate, None)  # these boxes do not contract
+    monkeypatch.setattr(below_star, "MIDDLE", 0.01)  # boxes return farther from the middle of the arc
+    assert not below_star.unreturning(fate, core)
+
+
+def test_above_lambda_star_the_fixed_points_are_there_and_nothing_is_moved_on() -> None:
+    """With the sign of `lam - lambda*` turned the inequalities fail."""
+    with working(BITS):
+        depth = enclosed()[1] - arb(NEXT.numerator) / NEXT.denominator
+        whole, first = hulls(depth), first_hull(depth)
+        assert inner(whole, depth)
+        assert begins(first, depth)
+        turned = {side: [[a, b, -c] for a, b, c in rows] for side, rows in whole.items()}
+        assert not inner(turned, depth)
+        assert not inner({ARC: whole[WALL], WALL: whole[ARC]}, depth)
+        assert not begins([first[0], -first[1]], depth)
+
+
+def test_in_float64_such_starts_converge_and_a_little_above_lambda_star_some_do_not() -> None:
+    phi = np.random.default_rng(2).uniform(-ANGLE, ANGLE, 200)
+    for lam, good in ((0.03, True), (0.0687, True), (STAR - 1e-4, True), (STAR - 1e-6, True), (STAR + 1e-3, False)):
+        end = PinballMap("cuspless", lam=lam).orbit(np.full(200, 2 * pi / 3), phi, 6000, np.zeros(200, dtype=int))
+        assert np.all(np.abs(end.phi[-1]) < 1e-6) == good
+
+
+def test_next_to_the_corners_the_landing_moves_along_the_wall() -> None:
+    """Of successive bounces in float64: `V1 > V` from `V > 0`, and `U1`, `V1` in their bounds."""
+    theta1, count = float(enclosed()[0].mid()), 0
+    for lam in (0.0688, 0.0705, STAR - 1e-5):
+        phi = np.linspace(-0.04, -0.017, 200)
+        orbit = PinballMap("cuspless", lam=lam).orbit(np.full(200, 2 * pi / 3), phi, 40, np.zeros(200, dtype=int))
+        edge = np.where(orbit.component == 0, 2 * pi / 3, -sqrt(3) / 4)
+        for k in range(2, 38):
+            for sign in (1, -1):  # mirrored, half the return leads from a state to one of the same form
+                u, v = sign * orbit.theta[k - 1] + theta1, sign * orbit.theta[k] - edge[k]
+                u1, v1 = -sign * orbit.theta[k + 1] + theta1, -sign * orbit.theta[k + 2] - edge[k + 2]
+                held = (orbit.component[k - 1] == 0) & (np.abs(u) < 0.045) & (v > -0.03) & (v < 0.0285)
+                count += held.sum()
+                assert np.all((u1[held] > 0) & (v1[held] > 0) & (v1[held] < 0.1))
+                assert np.all(v1[held & (v > 0) & (u >= 0)] > v[held & (v > 0) & (u >= 0)])
+                assert np.all(u1[held] < 0.8 * v1[held] + 0.004)
+    assert count > 1000

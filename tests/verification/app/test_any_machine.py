@@ -151,6 +151,7 @@ def completed(folder, shell, *words):
 def test_commands_and_options_are_completed_for_each_shell(shell, tmp_path):
     assert "report" in completed(tmp_path, shell, "pinball", "repo")
     assert "--minutes" in completed(tmp_path, shell, "pinball", "report", "stadium", "--min")
+    assert "saddle-node" in completed(tmp_path, shell, "pinball", "locate", "sadd")
 
 
 def test_a_real_shell_completes_after_the_line_that_the_page_gives(tmp_path):

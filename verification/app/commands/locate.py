@@ -28,8 +28,15 @@ PARAMETERS = ("lam", "alpha", "n", "period")
 TANGENCY = "tangency"  # asked of a scene
 
 
+def _names(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+    """The names that complete what is typed in a shell."""
+    from verification.named.locate import NAMES
+
+    return [name for name in (*NAMES, TANGENCY) if name.startswith(begun)]
+
+
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
-@click.argument("name")
+@click.argument("name", shell_complete=_names)
 @optional_options
 @click.option("--digits", type=click.IntRange(1, 20_000), default=30, show_default=True, help="Decimal digits.")
 @click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat; LOW:HIGH for a table.")

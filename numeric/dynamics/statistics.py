@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 from numeric import PinballMap
 from numeric.backends import elementary
@@ -69,9 +70,7 @@ class Estimate:
     @property
     def interval(self) -> float:
         """Half the 95 per cent interval: Student's factor for this many batches times the error."""
-        from scipy.stats import t
-
-        return float(t.ppf(0.975, max(self.level.count - 1, 1)) * self.error)
+        return float(stdtrit(max(self.level.count - 1, 1), 0.975) * self.error)
 
 
 def levels(blocks: Array) -> list[Batches]:

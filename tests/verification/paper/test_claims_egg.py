@@ -1,23 +1,19 @@
 """The judges of the egg's attractors and of named values, driven to each verdict that they can reach."""
 
 from dataclasses import replace
-from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flint import arb
 from sympy import Rational
 
 from numeric import PinballMap
 from symbolic.expressions.signs import Finding, Outcome
-from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha as shape_letter
 from verification.named.locate import locate
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg import barriers as on_barriers
 from verification.paper.egg import basins as on_basins
-from verification.paper.egg import crises as on_crises
 from verification.paper.egg import elastic as on_elastic
 from verification.paper.egg import nearly_round as on_round
 from verification.paper.egg import period2 as on_egg_period2
@@ -27,8 +23,6 @@ from verification.paper.judges import attractors as on_attractors
 from verification.paper.judges import ellipse as on_circle
 from verification.paper.judges import located as on_located
 from verification.paper.report.report import catalogue
-from verification.proofs.global_dynamics.crisis import kept_apart
-from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.slap_map import exponent as slap_critical
 from verification.proofs.slap_map.exponent import PeriodicPoints, one_zero
 
@@ -119,28 +113,6 @@ def test_the_cycle_of_ten_bounces_beyond_the_crisis_has_three_images_since_it_is
     assert [gap(1, k) < 1e-9 for k in range(3)] == [True, False, False]
     assert sum(gap(-1, k) < 1e-9 for k in range(3)) == 1
     assert "six" not in on_barriers.beyond(CLAIMS["egg.after_crisis"]).derived
-
-
-def test_three_attractors_are_kept_apart_below_the_crisis_and_not_above(monkeypatch):
-    claim = CLAIMS["egg.three_attractors"]
-    assert on_crises.three(claim).verdict is Verdict.SUPPORTED  # three regions; not one attractor in each
-
-    monkeypatch.setattr(on_crises, "SEEN", {"0.45": 40})  # one attractor visits all vertices
-    assert on_crises.three(claim).verdict is Verdict.OPEN
-    monkeypatch.undo()
-    monkeypatch.setattr(on_crises, "apart", lambda: Finding(Outcome.UNKNOWN, ""))
-    assert on_crises.three(claim).verdict is Verdict.OPEN
-    monkeypatch.undo()
-
-    at = Fraction(428, 1000), Fraction(429, 1000)
-    monkeypatch.setattr(on_crises, "CELLS_APART", (192, 64, 1))  # boxes that meet those of another diameter
-    assert not on_crises.apart(at)
-    monkeypatch.setattr(on_crises, "CELLS_APART", (3071, 1024, 2))  # a turn by a third is no whole number of columns
-    assert not on_crises.apart(at)
-    monkeypatch.undo()
-    assert not on_crises.apart((Fraction(45, 100), Fraction(46, 100)))  # the tangency is not there
-    map = PinballImages(Scene("egg", alpha="0.08"), (Fraction(9, 20), Fraction(9, 20)))
-    assert kept_apart(map, (768, 256, 2), [(arb(0), arb(0))]) is None  # one attractor, beyond the crisis
 
 
 def test_localised_and_delocalised_chaos_are_told_apart(monkeypatch):

@@ -92,7 +92,7 @@ def test_a_long_claim_tells_the_share_that_is_done():
     assert told[-1][1] > 0.99
 
 
-@pytest.mark.parametrize("name", ["egg.merging_crisis", "egg.boundary_crisis", "egg.cascade"])
+@pytest.mark.parametrize("name", ["egg.boundary_crisis", "egg.cascade"])
 def test_what_sampling_or_extrapolation_shows_is_supported_and_not_confirmed(name: str):
     (result,) = verify(name)
 

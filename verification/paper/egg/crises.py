@@ -1,43 +1,31 @@
 """Claims on the egg's crises, and on how its attractor and the basins of period 3 grow. Paper: section 6.7.
 
-A crisis is a tangency of manifolds, with particles that leave beside it. Proved are the three regions about the
-diameters, and that the period-3 orbits attract; all else is sampled.
+A crisis is a tangency of manifolds, with particles that leave beside it. That the period-3 orbits attract is proved;
+all else is sampled. The merging crisis has a module of its own.
 """
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 
 import mpmath
 import numpy as np
-from flint import acb, arb, fmpq
 from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.backends import elementary
 from numeric.pinball.sampling import interior_starts
-from symbolic.cycles.cycle import egg_diameter, is_double_normal
-from symbolic.expressions.signs import Finding
-from symbolic.tables.scene import Scene
-from verification.arithmetic.balls import FLOAT64, balls, working
+from verification.arithmetic.balls import FLOAT64
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, judges, sampled, shown
+from verification.paper.claims.judges import judges, sampled
 from verification.paper.judges.attractors import (
     SHAPE,
-    chaotic,
     cycles,
     egg,
     proved_at,
-    strange,
     unsettled,
-    vertices,
 )
-from verification.proofs.global_dynamics.crisis import kept_apart
-from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.manifolds.enclosed import complex_balls, enclosed_cycle
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
 from verification.proofs.manifolds.saddle import local, saddle
@@ -59,11 +47,10 @@ def seen(kind: str) -> crises.Crisis:
     return crises.crisis(kind, str(EXACT_SHAPE), tolerance=2e-5, budget=10**7)
 
 
-@judges("egg.merging_crisis", "egg.boundary_crisis")
+@judges("egg.boundary_crisis")
 def values(claim: Claim) -> Judgement:
     """Where the manifolds touch, by two methods, and where particles begin to leave."""
-    kind, printed = ("merging", "0.4435") if "merging" in claim.id else ("boundary", "0.66")
-    found, particles = located(kind), seen(kind)
+    printed, found, particles = "0.66", located("boundary"), seen("boundary")
     gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
     value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
     together = found.agrees and abs(particles.lam - float(found.parameter)) <= particles.error + 2e-5
@@ -132,53 +119,6 @@ ONE = ("0.445", "0.48", "0.52", "0.56", "0.6", "0.63", "0.655")  # one attractor
 CELLS = 300  # along each side of phase space, in (theta, sin(phi))
 STARTS, MANY = 200, 4000
 LEFT = "0.7"
-
-
-APART = Fraction(42, 100), Fraction(43, 100)
-CELLS_APART = (3072, 1024, 2)
-SEEN = {"0.43": STARTS, "0.443": 40}  # contractions, and how many random starts
-NEAR = 0.8  # radians from the ends of a diameter, at most
-
-
-@cache
-def apart(lam: tuple[Fraction, Fraction] = APART) -> Finding:
-    """Three trapping regions, each about one diameter, with the saddle at whose tangency strange attractors are."""
-    low, high = (arb(fmpq(x.numerator, x.denominator)) for x in lam)
-    chaos, value = strange(SHAPE, "interior-crisis-1")
-    said = f"for {lam[0]} <= lam <= {lam[1]}"
-    if not low < value < high:
-        return answer(None, f"{said}: the tangency lies elsewhere")
-    orbit = CONTACTS["interior-crisis-1"].unstable
-    with working(BITS):
-        plane = table(EXACT_SHAPE).over(complex_balls(BITS))
-        before, here = (x.real for x in enclosed_cycle(orbit, plane, acb(value))[:2])
-        angle = table(EXACT_SHAPE).over(balls(BITS)).angle(before, here)[0]
-    map = PinballImages(Scene("egg", alpha=SHAPE), lam)
-    kept = kept_apart(map, CELLS_APART, [(arb(0), arb(0)), (before, angle)])
-    near = kept is not None and bool(np.all(np.abs(elementary.arcsin(np.sin(kept))) < NEAR))
-    return by(
-        f"{said} the boxes that grow from an end of a diameter, and from the saddle of a tangency there, are a "
-        f"trapping region, within {NEAR} radians of that diameter, and apart from its copies turned by thirds. What is "
-        "near an orbit of tangency lies in the region of its saddle",
-        answer(near or None, f"{CELLS_APART[0]} by {CELLS_APART[1]} cells"),
-        shown("the diameter is normal to the boundary at both ends", is_double_normal(egg_diameter())),
-        chaos,
-    )
-
-
-@judges("egg.three_attractors")
-def three(claim: Claim) -> Judgement:
-    """Apart for every contraction of a part of the range; how many attractors each region holds is sampled."""
-    proof, seen = apart(), {x: chaotic(egg(x, starts)) for x, starts in SEEN.items()}
-    good = all([len(vertices(a)) for a in some] == [1, 1, 1] for some in seen.values())
-    return sampled(
-        "three trapping regions, one about each diameter, for every lam from 0.42 to 0.43, and a strange attractor in "
-        "each for a set of lam of positive measure, next to 0.42842: proved; that there is one in each, and up to "
-        "the crisis, is sampled; in windows cycles attract there, in some two to a region",
-        f"proved: {proof.reason}; sampled: random starts at lam = {', '.join(SEEN)} find three chaotic attractors, "
-        "each at one vertex",
-        bool(proof) and good,
-    )
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,6 @@ from typing import Any
 import numpy as np
 from flint import acb, arb
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
@@ -36,9 +35,10 @@ from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, working
 from verification.arithmetic.series import Jet
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap, Refusal
+from verification.proofs.global_dynamics.apart import reached
 from verification.proofs.global_dynamics.boxes import Boxes, Images
 from verification.proofs.global_dynamics.branch import OUTER, Branch, exact, unstable_branch
-from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Rectangles, mapped
+from verification.proofs.global_dynamics.graph import CELLS, Cells, Grid, Mask, Rectangles
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import whole
 from verification.proofs.manifolds.claim import orbit_of, orbit_said
@@ -270,32 +270,13 @@ def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: tuple[Gri
 
 def grown(map: PinballImages, grid: tuple[int, int, int], start: Boxes) -> tuple[Grid, Mask] | None:
     """The cells that boxes meet, with all that their images meet, again and again; None where they have no end."""
-    cells = Grid(map.charts, *grid[:2])
-    member = new = _marked(cells, cells.met(_as_images(start)))
-    while new.any():
-        met, lost = mapped(map, cells, marked_cells(new), grid[2])
-        if lost.any() or met.out.any():
-            return None
-        new = _marked(cells, met) & ~member
-        member = member | new
-    return cells, member
-
-
-def kept_apart(map: PinballImages, grid: tuple[int, int, int], points: Sequence[tuple[arb, arb]]) -> Array | None:
-    """The polar angles of a trapping region grown from phase points, apart from its copies turned by thirds; or None.
-
-    `grid` is columns, a multiple of three, rows and parts; the map is that of a table which turns by thirds.
-    """
-    start = boxed(points)
-    found = None if start is None or grid[0] % 3 or not map.closed else grown(map, grid, start)
-    if found is None:
+    fine = Grid(map.charts, *grid[:2])
+    numbers = reached(map, fine, start, grid[2], most=CELLS)
+    if numbers is None:
         return None
-    member = found[1][0]
-    wide = binary_dilation(np.pad(member, ((1, 1), (0, 0)), mode="wrap"), np.ones((3, 3)))[1:-1]
-    if np.any(wide & np.roll(member, grid[0] // 3, 0)):  # and so apart from the copy turned back
-        return None
-    low, high = map.charts[0].x
-    return low + (high - low) * (np.flatnonzero(member.any(1)) + 0.5) / grid[0]
+    member = np.zeros((len(map.charts), *grid[:2]), dtype=bool)
+    member.ravel()[numbers] = True
+    return fine, member
 
 
 def boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:

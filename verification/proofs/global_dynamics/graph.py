@@ -56,7 +56,7 @@ class Rectangles(NamedTuple):
 
 @dataclass(frozen=True)
 class Grid:
-    """`columns` by `rows` cells in each chart of a map.
+    """`columns` by `rows` cells in each chart of a map, at most so many in all that arrays of them are not too large.
 
     >>> from verification.proofs.global_dynamics.boxes import Chart
     >>> grid = Grid((Chart("plane", (0, 1), (0, 1)),), 4, 2)
@@ -67,12 +67,13 @@ class Grid:
     charts: tuple[Chart, ...]
     columns: int
     rows: int
+    most: int = CELLS
 
     def __post_init__(self) -> None:
         if not (1 <= self.columns <= LARGEST and 1 <= self.rows <= LARGEST):
             raise ValueError(f"grid: {self.columns} by {self.rows} cells; accepted: 1 to {LARGEST} each way")
-        if self.columns * self.rows * len(self.charts) > CELLS:
-            raise ValueError(f"grid: {self.columns} by {self.rows} cells in each chart; accepted: {CELLS} in all")
+        if self.columns * self.rows * len(self.charts) > self.most:
+            raise ValueError(f"grid: {self.columns} by {self.rows} cells in each chart; accepted: {self.most} in all")
 
     def whole(self, size: int = 1) -> Cells:
         """All of phase space in blocks of `size` by `size` cells."""

@@ -364,6 +364,7 @@ PROVED = {  # contractions of contacts at alpha = 0.08, and to how many digits t
     "band-merging": ("0.39768736899279139077682306799053", 20),
     "band-merging-16": ("0.393711849308008935479606", 20),
     "interior-crisis-1": ("0.428419190754595226515935", 12),
+    "merging": ("0.4434352460818512182485087598866334", 12),
     "window-merging-9": ("0.504527312767549985147168", 12),
 }
 

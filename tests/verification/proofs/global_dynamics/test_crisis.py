@@ -15,6 +15,7 @@ from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.recurrence import Closure
 from verification.maps.enclosed import Refusal
 from verification.proofs.global_dynamics import crisis
+from verification.proofs.global_dynamics.apart import kept_apart
 from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images
 from verification.proofs.global_dynamics.crisis import (
     CHECKS,
@@ -27,7 +28,6 @@ from verification.proofs.global_dynamics.crisis import (
     bracket,
     enters,
     grown,
-    kept_apart,
 )
 from verification.proofs.global_dynamics.graph import Grid, Rectangles
 from verification.proofs.manifolds.enclosed import TooWideError
@@ -346,7 +346,7 @@ def test_a_set_that_grows_holds_its_image_and_none_is_found_where_a_box_is_lost(
 
 
 def test_a_region_apart_from_its_turned_copies_is_told_by_its_angles():
-    here = [(arb(0.05, 0.01), arb(0, 0.01))]
+    here = at(0.05)
     angles = kept_apart(Thirds(0.0), (30, 8, 1), here)
     width = 2 * np.pi / 30
 
@@ -356,7 +356,7 @@ def test_a_region_apart_from_its_turned_copies_is_told_by_its_angles():
     assert kept_apart(Thirds(1 / 3), (30, 8, 1), here) is None  # a copy is reached
     assert kept_apart(Thirds(2 / 3), (30, 8, 1), here) is None
     assert kept_apart(Thirds(0.0), (32, 8, 1), here) is None  # thirds are no columns
-    assert kept_apart(Thirds(0.0), (30, 8, 1), [(arb("nan"), arb(0))]) is None
+    assert kept_apart(Thirds(0.0), (30, 8, 1), boxed([(arb("nan"), arb(0))])) is None
     open_ = Thirds(0.0)
     open_.closed = False
     assert kept_apart(open_, (30, 8, 1), here) is None

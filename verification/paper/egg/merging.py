@@ -1,0 +1,184 @@
+"""Claims on the egg's three attractors, one about each diameter, and on the crisis in which they merge. Section 6.7.
+
+Boxes about the ends of one diameter grow until they are taken into themselves. Up to 0.442 they stay apart from their
+copies turned by thirds; at 0.44345 an orbit goes from near one diameter to near another. So a first contraction in
+between has no trapping region that holds all starts near the ends of one diameter, apart from its turned copies: such
+a region is one for all nearby contractions too. A tangency of manifolds is proved there, at 0.4434352.
+"""
+
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+from flint import acb, arb, fmpq
+from sympy import Rational
+
+from numeric import PinballMap
+from numeric.backends import elementary
+from symbolic.cycles.cycle import egg_diameter, is_double_normal
+from symbolic.expressions.signs import Finding
+from symbolic.tables.scene import Scene
+from symbolic.tables.table import lam as letter
+from verification.arithmetic.balls import balls, working
+from verification.maps.enclosed import EnclosedMap, Refusal
+from verification.paper.claims.claim import Claim, Judgement
+from verification.paper.claims.judges import answer, by, counterexample, judges, shown
+from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, strange, vertices
+from verification.proofs.global_dynamics.apart import kept_apart
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.crisis import boxed
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.manifolds.enclosed import complex_balls, enclosed_cycle
+from verification.proofs.manifolds.known import CONTACTS, table
+
+Range = tuple[str, str]
+EXACT_SHAPE = Rational(2, 25)
+PARTS = (  # contractions, and a grid for all of them at once
+    ("0.42", "0.43", (3072, 1024, 2)),
+    ("0.43", "0.435", (6144, 4096, 2)),
+    ("0.435", "0.438", (12288, 8192, 2)),
+    ("0.438", "0.44", (12288, 8192, 2)),
+)
+LAST, FINEST = "0.442", (24576, 16384, 2)  # the last contraction at which they are proved apart, and its grid
+MERGED, START = "0.44345", (-0.001490727851852957, -0.0035529044873255713)  # an orbit that goes over
+CLOSE, CUT = "0.02", 40  # of starts about the ends of a diameter; parts of the box about them, each way
+FAR = 0.8  # radians from the ends of a diameter, at most
+WINDOW, PERIOD = "0.4201", 20  # where two cycles attract in each region
+BITS, LONG, MOST_BOUNCES = 160, 640, 200
+
+
+def about(theta: float = 0.0) -> Boxes:
+    """Boxes that hold all phase points within `CLOSE` of `(theta, 0)` in either coordinate."""
+    size = float(CLOSE) * (1 + 1e-12)
+    x, y = ((np.array([at - size]), np.array([at + size])) for at in (theta, 0.0))
+    return Boxes(np.zeros(1, dtype=np.int64), x, y).parts(CUT, CUT)[0]
+
+
+def together(first: Boxes, more: Boxes) -> Boxes:
+    """The boxes of both."""
+    ends = [(np.append(a[0], b[0]), np.append(a[1], b[1])) for a, b in zip(first[1:], more[1:], strict=True)]
+    return Boxes(np.append(first.chart, more.chart), *ends)
+
+
+def saddle_point() -> Boxes | None:
+    """A box about a phase point of the saddle at whose tangency strange attractors are."""
+    around, orbit = strange(SHAPE, "interior-crisis-1")[1], CONTACTS["interior-crisis-1"].unstable
+    with working(BITS):
+        plane = table(EXACT_SHAPE).over(complex_balls(BITS))
+        before, here = (x.real for x in enclosed_cycle(orbit, plane, acb(around))[:2])
+        return boxed([(before, table(EXACT_SHAPE).over(balls(BITS)).angle(before, here)[0])])
+
+
+@cache
+def region(lam: Range, grid: tuple[int, int, int], tangency: bool = False) -> Finding:
+    """A region about one diameter that is trapping for all contractions of a range, apart from its turned copies.
+
+    It holds all starts near the ends of the diameter, and with `tangency` the saddle of one.
+    """
+    start: Boxes | None = about()
+    if tangency:
+        held = saddle_point()
+        start = None if held is None else together(about(), held)
+    kept = kept_apart(PinballImages(Scene("egg", alpha=SHAPE), (Fraction(lam[0]), Fraction(lam[1]))), grid, start)
+    near = kept is not None and bool(np.all(np.abs(elementary.arcsin(np.sin(kept))) < FAR))
+    return answer(near or None, f"{grid[0]} by {grid[1]} cells for {lam[0]} <= lam <= {lam[1]}")
+
+
+@cache
+def apart() -> Finding:
+    """Three trapping regions, each about one diameter, from 0.42 to 0.44; a strange attractor in each for some."""
+    chaos, tangency = strange(SHAPE, "interior-crisis-1")
+    (low, high, grid), *others = PARTS
+    first = region((low, high), grid, True)
+    inside = bool(ball(low) < tangency) and bool(tangency < ball(high))
+    return by(
+        f"for {low} <= lam <= {PARTS[-1][1]} the boxes that grow from those within {CLOSE} of the ends of a diameter "
+        f"are a trapping region, within {FAR} radians of that diameter, and apart from its copies turned by thirds",
+        first,
+        *(region((a, b), cells) for a, b, cells in others),
+        shown("the diameter is normal to the boundary at both ends", is_double_normal(egg_diameter())),
+        answer(inside or None, "what is near an orbit of tangency lies in the region of its saddle"),
+        chaos,
+    )
+
+
+@judges("egg.three_attractors")
+def three(claim: Claim) -> Judgement:
+    """At least three, always; in windows cycles attract, and at one there are two to a region, proved."""
+    near = [sorted(vertices(a)) for a in cycles(egg(WINDOW), PERIOD)]
+    six = by(
+        f"six cycles of period {PERIOD} attract at lam = {WINDOW}, in three regions",
+        proved_at(WINDOW, PERIOD),
+        answer(sorted(near) == [[k] for k in (0, 0, 1, 1, 2, 2)] or None, "two near each diameter"),
+    )
+    return Judgement(
+        counterexample(
+            "in windows of the range there are more, and they are cycles", six, at={letter: Rational(WINDOW)}
+        ),
+        f"three regions without a common point, one about each diameter, are trapping for every lam from 0.42 to 0.44, "
+        f"and at {LAST}: so there are three attractors or more, apart, near one diameter each; for a set of lam of "
+        "positive measure, next to 0.42842, strange ones in each. That there is only one in each is not so in windows",
+        by("boxes", apart(), region((LAST, LAST), FINEST)),
+        f"At alpha = 0.08 each diameter has its own region of attractors, apart from the others, for every lambda from "
+        f"0.42 to 0.44 and at {LAST}; a region may hold more than one attractor: at lambda = {WINDOW} two cycles of "
+        f"period {PERIOD} attract in each.",
+    )
+
+
+def goes_over(lam: str, start: tuple[float, float]) -> bool:
+    """Does the orbit of a phase point near one diameter come near another? In balls, each landing a first hit."""
+    map = EnclosedMap(PinballMap(Scene("egg", alpha=SHAPE), lam=float(lam)), Fraction(lam), LONG)
+    if not max(abs(x) for x in start) < float(CLOSE):
+        return False
+    here = map.start(arb(start[0]), arb(start[1]))
+    for _ in range(MOST_BOUNCES):
+        landed = map.bounce(here)
+        if isinstance(landed, Refusal) or landed.code:
+            return False
+        here = landed
+        with working(LONG):
+            for turn in (1, 2):
+                away = here.theta - 2 * arb.pi() * turn / 3
+                away -= 2 * arb.pi() * round(float(away.mid()) / (2 * np.pi))
+                if abs(away) < ball(CLOSE) and abs(here.phi) < ball(CLOSE):
+                    return True
+    return False
+
+
+@cache
+def merges() -> Finding:
+    """Between which contractions the regions are lost, and the tangency there."""
+    chaos, tangency = strange(SHAPE, "merging")
+    inside = bool(ball(LAST) < tangency) and bool(tangency < ball(MERGED))
+    return by(
+        f"a first contraction above {LAST}, and not above {MERGED}, has no trapping region that holds all starts "
+        f"within {CLOSE} of the ends of one diameter, apart from its copies turned by thirds",
+        region((LAST, LAST), FINEST),
+        answer(
+            goes_over(MERGED, START) or None,
+            f"at {MERGED} an orbit goes from within {CLOSE} of an end of one diameter to within {CLOSE} of another",
+        ),
+        answer(inside or None, "the manifolds of a saddle touch in between"),
+        chaos,
+    )
+
+
+@judges("egg.merging_crisis")
+def merging_crisis(claim: Claim) -> Judgement:
+    """The printed contraction is a first one to two digits, with the fourth digit off by one."""
+    found, (_, tangency) = merges(), strange(SHAPE, "merging")
+    gap = Fraction(str(claim.printed)) - Fraction(tangency.str(9, radius=False))
+    close = answer(abs(gap) < Fraction(1, 10**4) or None, f"{claim.printed} differs by {float(gap):.1e}")
+    return Judgement(
+        by("three regions are apart, and no longer", found, close),
+        f"the three regions are apart at {LAST} and lost at {MERGED}, proved; in between, at "
+        f"{tangency.str(10, radius=False)}, the manifolds of a cycle of period 8 touch, and strange attractors are "
+        "next to it, proved. That each region holds one attractor alone, and one holds all after, is not part of this",
+    )
+
+
+def ball(decimal: str) -> arb:
+    """A decimal, enclosed."""
+    x = Fraction(decimal)
+    with working(BITS):
+        return arb(fmpq(x.numerator, x.denominator))

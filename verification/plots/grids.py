@@ -93,7 +93,7 @@ def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
     bottom.set_ylim(max(float(np.nanmin(nu)), -2.0) - 0.05, None)
     bottom.set_xlabel(AXES.get(parameter, parameter))
     bottom.set_ylabel(r"$\nu_+$")
-    bottom.legend(loc="lower right")
+    made.legend(loc="outside lower center", ncols=2)
     labelled(top, bottom, sorted(mark for mark in marks if edges[0] <= mark.value <= edges[1]), edges)
     top.set_xlim(*edges)
     fine(made, top, values.size, rows)

@@ -103,7 +103,7 @@ def diagram(parts: Parts, name: str, found: Arrays, parameter: str, events: Iter
         bottom.set_ylabel(r"$\nu_+$")
         bottom.set_xlabel(AXES.get(parameter, parameter))
         bottom.set_ylim(max(float(np.nanmin(found["least"])), -2.0) - 0.05, None)
-        bottom.legend(loc="lower right")
+        drawn.legend(loc="outside lower center", ncols=2)
         _events(top, bottom, sorted(events), (low, high))
         top.set_xlim(low, high)
         saved(parts, name, drawn)

@@ -44,7 +44,7 @@ SAYS |= {
 }
 WHAT = {"fold": "the multiplier 1: a fold", "flip": "the multiplier -1: a flip", "focus": "two equal multipliers"}
 FACTORS = Fraction(1), Fraction(1), Fraction(1, 2), Fraction(1, 6)  # of Taylor's series
-WAYS = ("table", "polar", "parametric", "component")  # to say a boundary; more of it: undefined, origin
+WAYS, SHORT = ("table", "polar", "parametric", "component"), 32  # to say a boundary; bounces of a short cycle
 
 
 def need(holds, why, error=Unproved):
@@ -551,7 +551,7 @@ def checked(given):
     fit = fit and isinstance(parts, list) and 2 <= len(parts) <= 1024 and type(given.get("mirror", False)) is bool
     fit = fit and (free in letters if letters else type(free) is str and free != "") and max(map(abs, centre)) < 10**6
     need(fit, "bits, digits, free or radius is out of range", Wrong)
-    p = 16 * len(parts) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
+    p = 16 * min(len(parts), SHORT) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
     sign, wanted = -1 if given.get("mirror") else 1, {"corner": 2, "tangency": 3}.get(kind, len(parts) + (free != ""))
     fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts)
@@ -568,8 +568,8 @@ def checked(given):
         box, reach = boxes.pop() if free else None, table.letters.get(free)
         table.letters |= {free: box} if reach else {}
         boxes = [table.ends(0, p)[1].wide(I.of(radius, p)), *boxes] if kind == "corner" else boxes  # the first bounce
-        cycle = Cycle(table, kind, parts, boxes, sign, "lam" if kind == "corner" else free, box, lam)
-        image, bounces = cycle.solved()
+        known, letter = beside("long").Long if len(parts) > SHORT else Cycle, "lam" if kind == "corner" else free
+        image, bounces = (cycle := known(table, kind, parts, boxes, sign, letter, box, lam)).solved()
         need(not reach or image[2].inside(reach), f"{free} is not in its range", Wrong)
         beside("corner").cornered(cycle, image, bounces[1]) if kind == "corner" else cycle.admissible(bounces, image[2])
         cycle.generic(image) if kind in ("fold", "flip") else None

@@ -100,7 +100,7 @@ def embedded(table, curve, names, p):
         if None in boxes:
             return False
         (x, y, dx, dy), (u, v, du, dv) = boxes
-        if one != other and (0 not in x - u or 0 not in y - v):
+        if 0 not in x - u or 0 not in y - v:
             return True
         if not (one == other or followed(one, other) or followed(other, one)):
             return False

@@ -34,6 +34,7 @@ HERE = Path(__file__).parent
 REPORTS = HERE.parent / "docs" / "reports"
 NINE = (-2.2794, 0.0999, 2.9941, 2.5028, 1.9891, 1.3928, 0.7008, -0.1020, -1.0494)  # near a cycle at lam = 9/10
 DIGITS = 20
+LONGER = 32  # bounces from which the second reader has equations of its own, which lose no digits
 LONG = {6: 60}  # the second reader follows a cycle all round, and needs two digits for each bounce of a long one
 LAW = (
     "-lam*tanh(eta) + exp(eta)/90 + log(eta**2 + 1)/20 - tan(eta/2)/9 - atan(eta)/9 + sinh(eta)*cosh(eta)/99"
@@ -103,7 +104,7 @@ def kept(report: str, name: str) -> Proof:
         period = len(given["components"])
         table = tables.polar(given["scene"]["polar"])
         problem = Problem(table, (0,) * period, BifurcationKind.FLIP, "lam", None, Closure(1))
-        return certify(problem, start, int(2.5 * period))
+        return certify(problem, start, DIGITS if period > LONGER else int(2.5 * period))
 
     return proof
 
@@ -159,7 +160,7 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
         **{f"beside-{12 * 2**k}": doubling_beside(12, k) for k in range(2)},
         **{f"beside-{8 * 2**k}": doubling_beside(8, k) for k in range(2)},
         "limacon-12": kept("limacon.json", "cascade-3-12-0"),
-        "limacon-24": kept("limacon.json", "cascade-3-24-0"),
+        **{f"limacon-{3 * 2**k}": kept("limacon.json", f"cascade-3-{3 * 2**k}-0") for k in (3, 4)},
         **{f"flower-tangency-{k}": touching("flower.json", f"tangency-{k}") for k in range(4)},
         "tangency-under-a-law": lambda: locate("boundary-crisis", DIGITS, Law(CUBIC), alpha=EGG).proof,
         "marked-point": cycle(tables.polar("1 + cos(5*theta)/40", "polar", (), [Mark("m", 0, HALF)]), [0.0, pi], THIRD),

@@ -31,6 +31,7 @@ SAMPLES = (
     *("marked-point", "law-in-all-words", "own-mirror", "law-parameter", "free-parameter"),  # of one's own
     *("phi-star", "alpha-tilde", "five-waves"),
 )
+LONGER = "limacon-48"  # by the equations for long cycles
 REGION = "triangle-region"
 CRISIS_FILE = "crisis-between"  # a minute and a half for the first, and less where cells are known
 # of the kind of its own; the damage to manifolds and orbit stands for that to bounces
@@ -461,7 +462,7 @@ def main() -> int:
     false = 0
     remember_images()
     remember_manifolds()
-    for name in [given.only] if given.only else (*SAMPLES, REGION, *TOUCH, CRISIS_FILE):
+    for name in [given.only] if given.only else (*SAMPLES, LONGER, REGION, *TOUCH, CRISIS_FILE):
         original = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
         first, found = check.checked(original).splitlines()[0], kept.setdefault(name, [])
         for k in range(len(found), given.each):

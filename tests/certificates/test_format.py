@@ -56,7 +56,7 @@ def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
     named = {name if name[0] != "-" else f"doubling{name}" for name in said}
     examples = {"minor-axis", "cardioid", "egg-triangle", "five-waves"}  # a cycle each, and no result
     examples |= {"cardioid-period-9", "egg-period-3", "beside-8", "beside-12", "beside-16", "beside-24", "limacon-12"}
-    examples |= {"limacon-24"}  # of claims of the report, and of a report of a table of one's own
+    examples |= {"limacon-24", "limacon-48"}  # of claims of the report, and of a report of a table of one's own
     examples |= {"law-in-all-words", "radius-in-words", "free-parameter", "marked-point", "own-mirror"}
     examples |= {"spline", "scatterer", "moved-waves", "law-parameter", "tangency-under-a-law"}
     examples |= {f"flower-tangency-{k}" for k in range(4)}  # of the same report

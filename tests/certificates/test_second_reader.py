@@ -36,6 +36,7 @@ BESIDE = (
     "crisis.py",
     "curves.py",
     "formulas.py",
+    "long.py",
     "region.py",
     "tangency.py",
 )  # each for what few certificates need

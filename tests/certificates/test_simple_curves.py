@@ -31,6 +31,9 @@ SIMPLE = {
     "a bean, which is no star about the origin": curve("cos(theta)", "sin(theta)/2 + 9*cos(theta)**2/10"),
     "a limacon without a loop": curve("(1 + 9*cos(theta)/10)*cos(theta)", "(1 + 9*cos(theta)/10)*sin(theta)"),
     "a loop that has just opened": curve("(1 + 99*cos(theta)/100)*cos(theta)", "(1 + 99*cos(theta)/100)*sin(theta)"),
+    "an ellipse whose formulas have no value on wide arcs": curve(
+        "cos(theta)/(1 + cos(theta)/2 + sin(theta)/2)", "sin(theta)/(1 + cos(theta)/2 + sin(theta)/2)"
+    ),
     "a square": pieces(*SQUARE),
     "a square with a sharp corner": pieces(
         ("theta", "1 - theta"), ("1 - theta/100", "theta"), ("99*(1 - theta)/100", "1")

@@ -88,8 +88,8 @@ def cuspless_intermingled(claim: Claim) -> Judgement:
         ),
         "next to the stable manifold of the vertical orbit: on each smooth curve across it infinitely many intervals, "
         "of the one basin and of the other in turn, come to the point of crossing (where its orbit misses the joins). "
-        "Both basins are open, so elsewhere they are not; by samples the strips shrink by the orbit's multiplier and "
-        "are no Cantor set",
+        "Both basins are open, so at no point of either are they; of other points nothing is proved, and by samples "
+        "the strips shrink by the orbit's multiplier and are no Cantor set",
     )
 
 

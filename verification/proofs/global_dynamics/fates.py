@@ -83,6 +83,8 @@ def clusters(
     cells = graph.chosen(recurrent)
     if not cells.chart.size:
         return []  # no orbit stays for ever
+    if not graph.complete(recurrent):
+        return None  # orbits may walk where these edges do not show it
     names = _named(graph, cells, near)
     chosen = recurrent[:-1] & graph.leaf
     inner = graph.edges[:-1, :-1][chosen][:, chosen].tocoo()

@@ -198,6 +198,15 @@ class Transitions:
         sizes = np.bincount(self.components)
         return np.asarray((sizes[self.components] > 1) | self.edges.diagonal())
 
+    def complete(self, members: Mask) -> bool:
+        """Are all edges on closed walks through some leaves edges between leaves?
+
+        None may lead by way of a block that was cut: those who ask for edges between leaves would not see it. Where
+        the images of parts lie in those of the block, as enclosures need not, this never fails.
+        """
+        cut = np.append(~self.leaf, False) & self.recurrent
+        return not np.any(np.isin(self.components[cut], self.components[members & np.append(self.leaf, False)]))
+
     @cached_property
     def condensed(self) -> tuple[csr_matrix, csr_matrix]:
         """The graph whose vertices are the strongly connected components, and the same with its edges turned."""

@@ -278,6 +278,8 @@ def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int 
     inner = graph.edges[:-1, :-1][chosen][:, chosen].tocsr()
     if cells.chart.size == 0 or np.any(np.diff(inner.indptr) == 0):
         raise ValueError("expansion: a box has no edge within the set; give a trapping region or a Morse set")
+    if not graph.complete(members):  # orbits may walk where these edges do not show it
+        return Expansion(-np.inf, steps, (np.full(cells.chart.size, np.inf), np.full(cells.chart.size, -np.inf)))
     found = derivatives(map, graph.grid, cells, parts)
     count = cells.chart.size
     low, high = np.full(count, np.inf), np.full(count, -np.inf)

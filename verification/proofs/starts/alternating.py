@@ -3,15 +3,17 @@
 What is proved, at one contraction between `lambda*` and `lambda_c`:
 
 - the vertical orbit of period 2 is a saddle, and its unstable manifold is a power series, with a bound for the rest;
+  all chords of that series have their ends on the arc, so they are flights, the table being convex;
 - all of a core about the horizontal orbit converges to it (`core`);
 - a polygon about the orbit through both corners is taken into its interior (`verification.proofs.corner.half_return`),
   and every orbit in it that misses the joins has a positive exponent;
 - of the orbits that leave the saddle along its unstable manifold one enters the core and one the polygon. Both are
   followed in balls until then, each landing a first hit inside a component, so near each the map is a diffeomorphism.
 
-So *on each smooth curve that crosses the saddle's stable manifold infinitely many intervals, of the one basin and of
-the other in turn, come to the point of crossing*. Let `x` be that point, with an orbit that misses the joins. For
-`lam > 0` the map is a diffeomorphism near each of its bounces, so the images of the curve are curves across, and by
+So *on each smooth curve that crosses the saddle's stable manifold, and is not tangent to it, infinitely many intervals,
+of the one basin and of the other in turn, come to the point of crossing*. Let `x` be that point, with an orbit that
+misses the joins. For `lam > 0` the map is a diffeomorphism near each of its bounces, so the images of the curve are
+curves across, and by
 the inclination lemma they come near each compact piece of the unstable manifold, as smooth curves. Each piece from a
 point to its image under two bounces holds a point of either orbit, and what follows that orbit into the core or the
 polygon is open. What part of the curve comes there after `2*n` bounces shrinks to `x` as `n` grows.
@@ -36,7 +38,7 @@ from verification.maps.exact import Bounce
 from verification.proofs.corner.border_collision import holds
 from verification.proofs.corner.corner import ARC, WALL, corner_parameters, enclosed
 from verification.proofs.corner.half_return import Step, limit, step
-from verification.proofs.global_dynamics.branch import unstable_branch
+from verification.proofs.global_dynamics.branch import Branch, unstable_branch
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.saddle import Orbit
@@ -62,6 +64,11 @@ class Alternating:
     starts: tuple[float, float] = STARTS
     side: int = 1
 
+    def __post_init__(self) -> None:
+        if self.side not in (1, -1) or not all(0 <= start <= 1 for start in self.starts):
+            given = f"side = {self.side}, starts = {self.starts}"
+            raise ValueError(f"strips: {given}; accepted: side 1 or -1, starts 0 to 1")
+
     @cached_property
     def checks(self) -> dict[str, bool | None]:
         """What is proved, item by item; None where nothing is."""
@@ -69,9 +76,11 @@ class Alternating:
         images = PinballImages(Scene("cuspless"), (self.lam, self.lam))
         found["core"] = all(attracts(images, self.core).values()) or None
         found["polygon"] = self.polygon is not None or None
-        try:  # the chords of the saddle and of the series next to it lie on the arc, which is the cardioid's
+        try:
             branch = unstable_branch(VERTICAL, Pinball(tables.cardioid), self.lam, BITS)
         except (ValueError, ArithmeticError):
+            return found
+        if not on_the_arc(branch):
             return found
         found["saddle"] = True
         for name, start, inside in zip(("first", "second"), self.starts, (self.in_core, self.in_polygon), strict=True):
@@ -89,7 +98,7 @@ class Alternating:
         """The trapping polygon, in units of `lam - lambda*`; None where it is not proved."""
         with working(BITS):
             e = float((arb(fmpq(self.lam.numerator, self.lam.denominator)) - enclosed()[1]).mid())
-        found = step(limit(), (e - WIDE, e + WIDE)) if e > WIDE else None
+            found = step(limit(), (e - WIDE, e + WIDE)) if e > WIDE else None
         return found and found[1]
 
     def in_core(self, before: Bounce, here: Bounce) -> bool:
@@ -129,3 +138,11 @@ class Alternating:
                     return True
             here = landed
         return False
+
+
+def on_the_arc(branch: Branch) -> bool:
+    """Do all chords of the series, for `abs(z) <= 1`, end on the arc? It is the cardioid's, and the table is convex."""
+    with working(BITS):
+        last = corner_parameters()[ARC]
+        series = [jet.c for jet in branch.series.pair()]
+        return all(bool(sum(map(abs, c), branch.error) < last) for c in series)

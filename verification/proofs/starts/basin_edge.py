@@ -3,7 +3,8 @@
 On one smooth closed convex curve, let a barrier be given: what comes below it stays below. Above it one cycle attracts
 a disc, and there is a saddle; a round of either is one bounce and a turn of the table by `1/turns`. What is proved:
 
-- all orbits that enter the disc converge to the cycle (`disc`); the saddle exists (`saddle`);
+- all orbits that enter the disc, which lies above the barrier, converge to the cycle (`disc`); the saddle exists
+  (`saddle`);
 - in a rectangle about the saddle the difference of two points, in the coordinates of its two directions, either grows,
   or has the larger part along the contracted direction, and shrinks (`hyperbolic`);
 - of the cells that cover what lies above the barrier and outside the disc, up to turns, those that meet a smaller
@@ -13,8 +14,8 @@ a disc, and there is a saddle; a round of either is one bounce and a turn of the
 Let `S` be the starts whose orbits neither come below the barrier nor enter the disc. Such an orbit walks from cell to
 cell for ever, so from some bounce on it is in the cells about the saddle; and what leaves these never returns. There
 its difference to the saddle does not grow, hence shrinks: it converges to the saddle. And what converges to the saddle
-is in `S`. So *`S` is the stable manifold of the saddle*, and it is closed, since the other starts are two open sets:
-the basin, and what comes below the barrier.
+is in `S`. So *`S` is the stable manifold of the saddle*, and it is closed, since the other starts are two open sets
+that do not meet, the cycle being above the barrier: the basin, and what comes below the barrier.
 
 *It is an embedded curve, as smooth as the map.* Let the orbit of `x` in `S` be in the interior of the cells about the
 saddle from bounce `n` on. Points of `S` near `x` are there at bounce `n` too, and stay: they would never come back, and
@@ -85,7 +86,7 @@ class BasinEdge:
         """What is proved, item by item; None where nothing is."""
         found: dict[str, bool | None] = dict.fromkeys(CHECKS)
         found["barrier"] = self.barrier.heights is not None or None
-        found["disc"] = attracts(self.barrier.map, self.disc, self.turn) or None
+        found["disc"] = (attracts(self.barrier.map, self.disc, self.turn) and self._disc_above()) or None
         if self.place is None or found["barrier"] is None:
             return found
         found["saddle"] = True
@@ -117,6 +118,12 @@ class BasinEdge:
             phi = map.over(balls(BITS)).angle(here, after)[0]
             close = here.rad() < NEAR / 4 and phi.rad() < NEAR / 4
             return (float(here.mid()), float(phi.mid())) if close else None
+
+    def _disc_above(self) -> bool:
+        """Does the disc lie above the barrier? Else its basin is among what comes below."""
+        sides = zip(self.disc.centre, self.disc.rectangle, strict=True)
+        about = Boxes(np.array([0]), *((np.array([c - half]), np.array([c + half])) for c, half in sides))
+        return bool(np.all(self.barrier.above(about)))
 
     def _about(self, half: float) -> Boxes:
         assert self.place is not None

@@ -192,13 +192,18 @@ def _leaving(theta: arb) -> arb:
     return angle(Bounce(ARC, constant(here, ())), Bounce(ARC, constant(there, ())))[0]
 
 
+def _end(depth: arb) -> float:
+    """A double above it: rounded to the nearest one, contractions next to `NEXT` might be left out."""
+    return float(depth.upper()) * (1 + 2.0**-40)
+
+
 def hulls(depth: arb) -> dict[int, Hull]:
     """The derivatives of `(U1, V1)` by `U`, `V` and `-e` over all inner states, on either side of `V = 0`."""
     found = {}
     for component, ends in ((ARC, (V_LOW, 0.0)), (WALL, (0.0, V_HIGH))):
         boxes = [
             image
-            for e in cuts(-float(depth.upper()), 0.0, SIDES[2])
+            for e in cuts(-_end(depth), 0.0, SIDES[2])
             for u in cuts(-U_END, U_END, SIDES[0])
             for v in cuts(*ends, SIDES[1])
             for image in followed(component, u, v, e)
@@ -228,7 +233,7 @@ def first_hull(depth: arb) -> list[arb]:
     """The derivatives of `V1` by `U` and `-e` for what leaves the upper join for the arc at `theta1 - U`."""
     theta1, star = enclosed()
     found = []
-    for e in cuts(-float(depth.upper()), 0.0, SIDES[2]):
+    for e in cuts(-_end(depth), 0.0, SIDES[2]):
         for u in cuts(-BESIDE, BESIDE, SIDES[1]):
             spread = u - arb(u.mid()), e - arb(e.mid())
             at, lam = parameter(arb(u.mid()), 0, spread), parameter(star + e.mid(), 1, spread)

@@ -51,11 +51,16 @@ class Ring:
     cone: float
     growth: float
 
+    def __post_init__(self) -> None:
+        if not (0 <= self.low < self.high and self.width > 0 and self.cone > 0):
+            raise ValueError(f"{self}: accepted: 0 <= low < high, width > 0 and cone > 0")
+
     def part(self, chart: int, side: int) -> Boxes:
         """Boxes that cover one part."""
         edges = np.linspace(self.low, self.high, PARTS + 1)
         middle = self.slope * edges + self.offset
-        low, high = middle[:-1] - self.width, middle[1:] + self.width
+        low = np.minimum(middle[:-1], middle[1:]) - self.width
+        high = np.maximum(middle[:-1], middle[1:]) + self.width
         x = (edges[:-1], edges[1:]) if side > 0 else (-edges[1:], -edges[:-1])
         y = (low, high) if side > 0 else (-high, -low)
         slack = 1e-12  # more than the rounding of an edge
@@ -68,8 +73,9 @@ class Ring:
         for side in (1, -1):
             (left, right), (low, high) = (boxes.x, boxes.y) if side > 0 else (boxes.mirrored().x, boxes.mirrored().y)
             inside = (boxes.chart == chart) & (self.low <= left) & (right <= self.high)
-            inside &= low >= (self.slope * right + self.offset) - self.width * NEARLY
-            inside &= high <= (self.slope * left + self.offset) + self.width * NEARLY
+            middles = self.slope * left + self.offset, self.slope * right + self.offset
+            inside &= low >= np.maximum(*middles) - self.width * NEARLY
+            inside &= high <= np.minimum(*middles) + self.width * NEARLY
             found[inside] = side
         return found
 

@@ -197,3 +197,14 @@ def test_boxes_that_return_are_judged_only_where_all_of_them_land_on_one_arc_les
         assert part.factor == pytest.approx(0.5, abs=1e-6)
         assert np.all(part.boxes.x[1] - part.boxes.x[0] == pytest.approx(np.pi / 4))
         assert np.all(part.boxes.y[1] - part.boxes.y[0] == pytest.approx(0.5))
+
+
+@pytest.mark.parametrize(("edges", "complete"), [([(4, 5), (5, 6), (6, 4)], False), ([(4, 5), (5, 6), (6, 6)], True)])
+def test_walks_that_return_by_way_of_a_block_that_was_cut_leave_edges_between_leaves_in_doubt(edges, complete):
+    """Leaf 4 is larger than a cell and leads to block 5, since cut: into 6, which leads back, or to itself alone."""
+    grid = Grid((Chart("turning", (-np.pi, np.pi), (-1.0, 1.0), True, True),), 8, 4)
+    cells, leaf = grid.whole(), np.ones(32, dtype=bool)
+    leaf[5] = False
+    cut = Transitions(grid, cells, leaf, graph(33, (4, 4), (6, 6), *edges))
+    assert cut.complete(cut.recurrent) == complete
+    assert (clusters(Landings(), cut, near=0) is not None) == complete

@@ -5,11 +5,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import arb
 
 from numeric import PinballMap
 from symbolic.cycles.cycle import cuspless_vertical, trace_and_determinant
 from symbolic.tables.table import lam
 from verification.paper.egg.basins import alternating
+from verification.proofs.starts import alternating as strips
 from verification.proofs.starts.alternating import STARTS
 
 FOUND = alternating()
@@ -40,6 +42,18 @@ def test_both_basins_come_to_the_stable_manifold_of_the_vertical_orbit() -> None
 )
 def test_what_is_not_so_is_refused(changes: dict[str, object], items: set[str]) -> None:
     assert items <= failing(**changes)
+
+
+def test_points_beyond_the_disc_where_the_remainder_is_bounded_are_refused() -> None:
+    for changes in ({"starts": (0.6, 1.2)}, {"side": 2}):
+        with pytest.raises(ValueError, match="starts 0 to 1"):
+            replace(FOUND, **changes)
+
+
+def test_a_series_whose_chords_may_end_beyond_the_arc_is_no_manifold_of_the_table(monkeypatch) -> None:
+    """Its chords end within 0.002 of pi/3: an arc that ended there would not hold them."""
+    monkeypatch.setattr(strips, "corner_parameters", lambda: (arb(np.pi / 3 + 0.0018), arb(0)))
+    assert {"saddle", "first", "second"} <= failing()
 
 
 def fates(theta: np.ndarray, phi: float) -> np.ndarray:

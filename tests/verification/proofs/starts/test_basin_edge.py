@@ -54,6 +54,16 @@ def test_each_step_fails_alone(changes, items):
     assert failing(replace(FOUND, **changes)) == items
 
 
+def test_a_cycle_below_the_barrier_has_no_edge_above_it():
+    """What converges to it comes below the barrier: a staircase that goes over the disc alone is no barrier for it."""
+    over = replace(FOUND.barrier)
+    middles = np.mean(over.grid.boxes(over.grid.whole()).x, axis=0)[: over.columns]
+    off = middles - FOUND.sink[0]
+    beside = np.abs(off - FOUND.turn * np.rint(off / FOUND.turn)) < 2 * FOUND.disc.rectangle[0]
+    over.__dict__["heights"] = np.where(beside, FOUND.sink[1] + 2 * FOUND.disc.rectangle[1], FOUND.barrier.heights)
+    assert failing(replace(FOUND, barrier=over)) == {"disc"}
+
+
 def test_beyond_the_crisis_boundaries_are_not_said_to_be_smooth():
     """No barrier keeps the middle from the triangle: what is found is no barrier below the saddle."""
     assert "alone" in failing(placed("0.08", "0.67", (-0.9096821, 0.4201331), -0.1605810))

@@ -65,6 +65,39 @@ def test_a_ring_that_does_not_stretch_is_refused(change):
     assert not replace(RING, **change).stretches(FOUND.map, CHART)
 
 
+@pytest.mark.parametrize("change", [{"low": -0.1}, {"low": 0.3}, {"width": 0.0}, {"cone": -0.1}])
+def test_a_ring_without_two_parts_that_are_apart_is_refused(change):
+    with pytest.raises(ValueError, match="accepted: 0 <= low < high"):
+        replace(RING, **change)
+
+
+@pytest.mark.parametrize("slope", [RING.slope, -3.0])
+def test_boxes_cover_a_part_and_its_points_are_in_it(slope):
+    """Random points of either part, whether the line rises or falls; those beside it by more than the width are out."""
+    ring, rng = replace(RING, slope=slope), np.random.default_rng(5)
+    x = rng.uniform(ring.low, ring.high, 2000)
+    off = ring.width * rng.uniform(-1, 1, x.size)
+    for side in (1, -1):
+        part = ring.part(CHART, side)
+        for aside, inside in ((off, True), (off + np.sign(off) * ring.width, False)):
+            place = side * x, side * (ring.slope * x + ring.offset + aside)
+            boxes = Boxes(np.full(x.size, CHART), *((end, end) for end in place))
+            assert np.array_equal(ring.sides(boxes, CHART), np.full(x.size, side * inside))
+        at = np.searchsorted(part.x[1] if side > 0 else -part.x[0], x)
+        y = side * (ring.slope * x + ring.offset + off)
+        assert np.all((part.x[0][at] <= side * x) & (side * x <= part.x[1][at]))
+        assert np.all((part.y[0][at] <= y) & (y <= part.y[1][at]))
+
+
+def test_a_box_is_in_a_falling_part_only_if_all_its_corners_are():
+    ring = replace(RING, slope=-3.0)
+    x, width = np.array([0.15]), 1.9 * ring.width / 3
+    y = ring.slope * (x + width / 2) + ring.offset
+    assert ring.sides(Boxes(np.array([CHART]), (x, x + width), (y, y)), CHART) == 1
+    tall = y + 0.1 * ring.width
+    assert ring.sides(Boxes(np.array([CHART]), (x, x + width), (y, tall)), CHART) == 0
+
+
 def test_boxes_are_in_a_part_of_the_ring_only_as_a_whole():
     """A box on the line is in, its mirror image in the other part; one that juts out, or is elsewhere, in neither."""
     x = np.array([0.15, 0.15, 0.139, 0.15, -0.16])

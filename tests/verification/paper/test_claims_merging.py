@@ -78,3 +78,17 @@ def test_a_region_that_is_kept_apart_holds_its_start_and_stays_near_both_ends():
     assert [np.min(away[np.cos(angles) * side > 0]) < 0.01 for side in (1, -1)] == [True, True]
     assert np.max(away) < 0.6
     assert kept_apart(map, COARSE, None) is None
+
+
+def test_windows_and_chaos_in_turn_lie_in_one_region_and_strange_attractors_may_be_tiny(monkeypatch):
+    """Not proved where a cycle is none, or the contractions stand in another order."""
+    claim = CLAIMS["egg.windows_above"]
+    assert merging.windows(claim).verdict is Verdict.SUPPORTED
+    for changed in ((("0.42", 20), ("0.4291", 28)), (("0.42906", 28), ("0.42", 20))):
+        merging.alternates.cache_clear()
+        merging.region.cache_clear()
+        monkeypatch.setattr(merging, "ALONG", changed)
+        assert not merging.alternates()
+    assert merging.windows(claim).verdict is Verdict.OPEN
+    merging.alternates.cache_clear()
+    merging.region.cache_clear()

@@ -215,34 +215,22 @@ def test_at_the_end_of_the_convex_shapes_strange_attractors_lie_beside_a_triangl
     assert 0.4717 < value < 0.4718
 
 
-@pytest.mark.parametrize(
-    ("judge", "name", "best"),
-    [
-        ("windows", "windows_above", Verdict.SUPPORTED),  # strange attractors next to a tangency may be tiny
-        ("near_tenth", "coexistence_near_tenth", Verdict.SUPPORTED),  # a set of positive measure is no range
-    ],
-)
-def test_windows_and_chaos_side_by_side_need_both_proved(judge, name, best, monkeypatch):
+def test_chaos_beside_a_triangle_that_attracts_needs_both_proved(monkeypatch):
+    """A set of contractions of positive measure is no range."""
     yes, no = Finding(Outcome.PROVED, ""), Finding(Outcome.UNKNOWN, "")
-    values = {"interior-crisis-1": "0.428", "window-merging-9": "0.505", "boundary": "0.662"}
-    place = {"0.1": "0.4717157975"}
-    monkeypatch.setattr(
-        on_attractors, "strange", lambda alpha, kind="boundary": (yes, arb(place.get(alpha, values[kind])))
-    )
-    monkeypatch.setattr(on_attractors, "proved_at", lambda *_, **__: yes)
+    judge, name, place = on_attractors.near_tenth, "egg.coexistence_near_tenth", arb("0.4717157975")
+    monkeypatch.setattr(on_attractors, "strange", lambda *_: (yes, place))
     on_attractors.both_near_tenth.cache_clear()
-    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is best
+    assert verdict(judge, name) is Verdict.SUPPORTED
 
-    monkeypatch.setattr(
-        on_attractors, "strange", lambda alpha, kind="boundary": (no, arb(place.get(alpha, values[kind])))
-    )
+    monkeypatch.setattr(on_attractors, "strange", lambda *_: (no, place))
     on_attractors.both_near_tenth.cache_clear()
-    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is Verdict.OPEN
+    assert verdict(judge, name) is Verdict.OPEN
 
-    monkeypatch.setattr(on_attractors, "strange", lambda alpha, kind="boundary": (yes, arb("0.43")))  # in no order
+    monkeypatch.setattr(on_attractors, "strange", lambda *_: (yes, place))
     monkeypatch.setattr(on_attractors, "attracting", lambda *_: None)
     on_attractors.both_near_tenth.cache_clear()
-    assert verdict(getattr(on_attractors, judge), f"egg.{name}") is Verdict.OPEN
+    assert verdict(judge, name) is Verdict.OPEN
     on_attractors.both_near_tenth.cache_clear()
 
 

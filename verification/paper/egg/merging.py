@@ -7,7 +7,8 @@ a region is one for all nearby contractions too. A tangency of manifolds is prov
 """
 
 from fractions import Fraction
-from functools import cache
+from functools import cache, reduce
+from itertools import pairwise
 
 import numpy as np
 from flint import acb, arb, fmpq
@@ -22,8 +23,9 @@ from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, working
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, judges, shown
-from verification.paper.judges.attractors import SHAPE, cycles, egg, proved_at, strange, vertices
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, shown
+from verification.paper.egg.barriers import bounces
+from verification.paper.judges.attractors import SHAPE, chaotic, cycles, egg, proved_at, strange, vertices
 from verification.proofs.global_dynamics.apart import kept_apart
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.crisis import boxed
@@ -43,8 +45,11 @@ LAST, FINEST = "0.442", (24576, 16384, 2)  # the last contraction at which they 
 MERGED, START = "0.44345", (-0.001490727851852957, -0.0035529044873255713)  # an orbit that goes over
 CLOSE, CUT = "0.02", 40  # of starts about the ends of a diameter; parts of the box about them, each way
 FAR = 0.8  # radians from the ends of a diameter, at most
+ALONG = ("0.42", 20), ("0.42906", 28)  # two windows, and the period of what attracts in each, in every region
+BETWEEN = ("0.43", "0.55", "0.65")  # contractions, each between two of the windows or above them
+BEYOND = ("0.493", 9, "window-merging-9"), ("0.641", 18, "boundary")  # further ones, and the tangencies after them
 WINDOW, PERIOD = "0.4201", 20  # where two cycles attract in each region
-BITS, LONG, MOST_BOUNCES = 160, 640, 200
+BITS, LONG, MOST_BOUNCES, STARTS = 160, 640, 200, 40
 
 
 def about(theta: float = 0.0) -> Boxes:
@@ -69,16 +74,21 @@ def saddle_point() -> Boxes | None:
         return boxed([(before, table(EXACT_SHAPE).over(balls(BITS)).angle(before, here)[0])])
 
 
+def in_window(lam: str, period: int) -> Boxes | None:
+    """Boxes about a cycle that attracts near the first diameter; None where none is proved."""
+    near = [a for a in cycles(egg(lam, STARTS), period) if vertices(a) == {0}]
+    return bounces(lam, near[0].points) if near else None
+
+
 @cache
-def region(lam: Range, grid: tuple[int, int, int], tangency: bool = False) -> Finding:
+def region(lam: Range, grid: tuple[int, int, int], more: bool = False) -> Finding:
     """A region about one diameter that is trapping for all contractions of a range, apart from its turned copies.
 
-    It holds all starts near the ends of the diameter, and with `tangency` the saddle of one.
+    It holds all starts near the ends of the diameter, and with `more` the saddle of a tangency and the cycles `ALONG`.
     """
-    start: Boxes | None = about()
-    if tangency:
-        held = saddle_point()
-        start = None if held is None else together(about(), held)
+    places = [saddle_point(), *(in_window(*one) for one in ALONG)] if more else []
+    known = [place for place in places if place is not None]
+    start = reduce(together, known, about()) if len(known) == len(places) else None
     kept = kept_apart(PinballImages(Scene("egg", alpha=SHAPE), (Fraction(lam[0]), Fraction(lam[1]))), grid, start)
     near = kept is not None and bool(np.all(np.abs(elementary.arcsin(np.sin(kept))) < FAR))
     return answer(near or None, f"{grid[0]} by {grid[1]} cells for {lam[0]} <= lam <= {lam[1]}")
@@ -122,6 +132,45 @@ def three(claim: Claim) -> Judgement:
         f"At alpha = 0.08 each diameter has its own region of attractors, apart from the others, for every lambda from "
         f"0.42 to 0.44 and at {LAST}; a region may hold more than one attractor: at lambda = {WINDOW} two cycles of "
         f"period {PERIOD} attract in each.",
+    )
+
+
+@cache
+def alternates() -> Finding:
+    """One trapping region that holds, as `lam` grows, attracting cycles, strange attractors and attracting cycles."""
+    low, high, grid = PARTS[0]
+    chaos, tangency = strange(SHAPE, "interior-crisis-1")
+    ends = [ball(ALONG[0][0]), tangency, ball(ALONG[1][0]), ball(high)]
+    windows = " and ".join(f"a cycle of period {period} that attracts at {x}" for x, period in ALONG)
+    return by(
+        f"for {low} <= lam <= {high} one region about a diameter, the same for all, is trapping and apart from its "
+        f"copies turned by thirds; it holds starts near the ends of the diameter, {windows}, and a saddle",
+        region((low, high), grid, True),
+        answer(all(a < b for a, b in pairwise(ends)) or None, "at whose tangency, in between, strange attractors are"),
+        chaos,
+    )
+
+
+@judges("egg.windows_above")
+def windows(claim: Claim) -> Judgement:
+    """Cycles of long periods and strange attractors, in turn, proved; that the latter are what is seen is sampled."""
+    (first, one), (second, other) = ALONG
+    calm = [proved_at(x, period, starts=STARTS) for x, period, _ in BEYOND]
+    wild = [strange(SHAPE, kind) for *_, kind in BEYOND]
+    places = [(ball(x), value) for (x, *_), (_, value) in zip(BEYOND, wild, strict=True)]
+    ends = [ball(second), *(end for pair in places for end in pair)]
+    order = answer(all(a < b for a, b in pairwise(ends)) or None, "each of the contractions is above the one before")
+    proof = by("windows and chaos in turn", alternates(), order, *calm, *(finding for finding, _ in wild))
+    rates = {x: max((a.nu_plus for a in chaotic(egg(x, STARTS))), default=-1.0) for x in BETWEEN}
+    said = ", ".join(f"{nu:.2f} at {x}" for x, nu in rates.items())
+    return sampled(
+        f"in one trapping region about a diameter, the same from 0.42 to 0.43: at {first} cycles of period {one} "
+        "attract, next to 0.42842 there are strange attractors for a set of contractions of positive measure, at "
+        f"{second} a cycle of period {other} attracts; at 0.493 and 0.641 cycles of period 9 and 18 attract, and "
+        "strange attractors, in that sense, are next to 0.50453 and 0.66214: proved. That these are the attractor "
+        "seen, and not tiny ones, is sampled. Such are found below 0.42 too (egg.chaotic_interval)",
+        f"proved: {proof.reason}; sampled, between the windows: nu_+ of random starts is {said}",
+        bool(proof) and min(rates.values()) > 0.01,
     )
 
 

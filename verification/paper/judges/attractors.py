@@ -8,7 +8,6 @@ attracts is sampled: none of `n` random starts reached anything else, so the sha
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -338,26 +337,4 @@ def only_smooth(claim: Claim) -> Judgement:
         ),
         "no chaotic attractor in the circle nor in any ellipse, for 0 < lam < 1; strange attractors in the egg at "
         f"alpha = {SHAPE}, for a set of lam of positive measure",
-    )
-
-
-BETWEEN = ("0.43", "0.55", "0.65")  # contractions, each between two of the windows or above them
-
-
-@judges("egg.windows_above")
-def windows(claim: Claim) -> Judgement:
-    """Cycles of long periods and strange attractors, in turn, proved; that the latter are what is seen is sampled."""
-    calm = {x: proved_at(x, period, starts=FEW) for x, period in (("0.42", 20), ("0.493", 9), ("0.641", 18))}
-    wild = {kind: strange(SHAPE, kind) for kind in ("interior-crisis-1", "window-merging-9", "boundary")}
-    ends = [x for pair in zip(map(arb, calm), (value for _, value in wild.values()), strict=True) for x in pair]
-    order = answer(all(a < b for a, b in pairwise(ends)), "each of the six contractions lies above the one before")
-    proof = by("windows and chaos in turn", order, *calm.values(), *(finding for finding, _ in wild.values()))
-    rates = {x: max((a.nu_plus for a in chaotic(egg(x, FEW))), default=-1.0) for x in BETWEEN}
-    said = ", ".join(f"{nu:.2f} at {x}" for x, nu in rates.items())
-    return sampled(
-        "at lam = 0.42, 0.493, 0.641 cycles of period 20, 9, 18 attract; next to 0.42842, 0.50453, 0.66214 there are "
-        "strange attractors for sets of contractions of positive measure: proved. That these are the attractor seen, "
-        "and not tiny ones, is sampled. Such are found below 0.42 too (egg.chaotic_interval)",
-        f"proved: {proof.reason}; sampled, between the windows: nu_+ of random starts is {said}",
-        bool(proof) and min(rates.values()) > 0.01,
     )

@@ -50,6 +50,7 @@ body { margin: 0; }
   body { background: #fff; filter: invert(0.92) hue-rotate(180deg); min-height: 100vh; }
 }
 """
+HANDLE = ".noUi-handle { background-color: #0072b5; }"  # of a slider: the blue of the button, seen in the dark as well
 READY = """
 function named(root) {  // what the widgets leave without a name, for those who listen to the page
   for (const each of root.querySelectorAll("*")) {
@@ -86,6 +87,8 @@ class LiveTable:
         self.law = pn.widgets.TextInput(name="Exit angle, a formula in eta and lam", value=self.choice.law)
         self.lam = pn.widgets.FloatSlider(name="Contraction lambda", start=0, end=1, step=0.001, value=0.45)
         self.bounces = pn.widgets.IntSlider(name="Bounces drawn", start=1, end=MOST, value=self.choice.bounces)
+        for slider in (self.lam, self.bounces):
+            slider.stylesheets = [HANDLE]
         self.find = pn.widgets.Button(name="Find the cycle", button_type="primary")
         self.basins = pn.widgets.Button(name="Show the basins")
         self.said = pn.pane.Markdown("", min_height=90)

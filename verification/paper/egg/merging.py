@@ -1,8 +1,8 @@
 """Claims on the egg's three attractors, one about each diameter, and on the crisis in which they merge. Section 6.7.
 
-Boxes about the ends of one diameter grow until they are taken into themselves. Up to 0.442 they stay apart from their
+Boxes about an end of one diameter grow until they are taken into themselves. Up to 0.442 they stay apart from their
 copies turned by thirds; at 0.44345 an orbit goes from near one diameter to near another. So a first contraction in
-between has no trapping region that holds all starts near the ends of one diameter, apart from its turned copies: such
+between has no trapping region that holds all starts near an end of one diameter, apart from its turned copies: such
 a region is one for all nearby contractions too. A tangency of manifolds is proved there, at 0.4434352.
 """
 
@@ -43,7 +43,7 @@ PARTS = (  # contractions, and a grid for all of them at once
 )
 LAST, FINEST = "0.442", (24576, 16384, 2)  # the last contraction at which they are proved apart, and its grid
 MERGED, START = "0.44345", (-0.001490727851852957, -0.0035529044873255713)  # an orbit that goes over
-CLOSE, CUT = "0.02", 40  # of starts about the ends of a diameter; parts of the box about them, each way
+CLOSE, CUT = "0.02", 40  # of starts about an end of a diameter; parts of the box about them, each way
 FAR = 0.8  # radians from the ends of a diameter, at most
 ALONG = ("0.42", 20), ("0.42906", 28)  # two windows, and the period of what attracts in each, in every region
 BETWEEN = ("0.43", "0.55", "0.65")  # contractions, each between two of the windows or above them
@@ -84,7 +84,7 @@ def in_window(lam: str, period: int) -> Boxes | None:
 def region(lam: Range, grid: tuple[int, int, int], more: bool = False) -> Finding:
     """A region about one diameter that is trapping for all contractions of a range, apart from its turned copies.
 
-    It holds all starts near the ends of the diameter, and with `more` the saddle of a tangency and the cycles `ALONG`.
+    It holds all starts near the end at `theta = 0`, and with `more` the saddle of a tangency and the cycles `ALONG`.
     """
     places = [saddle_point(), *(in_window(*one) for one in ALONG)] if more else []
     known = [place for place in places if place is not None]
@@ -102,7 +102,7 @@ def apart() -> Finding:
     first = region((low, high), grid, True)
     inside = bool(ball(low) < tangency) and bool(tangency < ball(high))
     return by(
-        f"for {low} <= lam <= {PARTS[-1][1]} the boxes that grow from those within {CLOSE} of the ends of a diameter "
+        f"for {low} <= lam <= {PARTS[-1][1]} the boxes that grow from those within {CLOSE} of an end of a diameter "
         f"are a trapping region, within {FAR} radians of that diameter, and apart from its copies turned by thirds",
         first,
         *(region((a, b), cells) for a, b, cells in others),
@@ -144,7 +144,7 @@ def alternates() -> Finding:
     windows = " and ".join(f"a cycle of period {period} that attracts at {x}" for x, period in ALONG)
     return by(
         f"for {low} <= lam <= {high} one region about a diameter, the same for all, is trapping and apart from its "
-        f"copies turned by thirds; it holds starts near the ends of the diameter, {windows}, and a saddle",
+        f"copies turned by thirds; it holds starts near an end of the diameter, {windows}, and a saddle",
         region((low, high), grid, True),
         answer(all(a < b for a, b in pairwise(ends)) or None, "at whose tangency, in between, strange attractors are"),
         chaos,
@@ -175,7 +175,7 @@ def windows(claim: Claim) -> Judgement:
 
 
 def goes_over(lam: str, start: tuple[float, float]) -> bool:
-    """Does the orbit of a phase point near one diameter come near another? In balls, each landing a first hit."""
+    """Does an orbit from near `(0, 0)` come near a turned copy of it? In balls, each landing a first hit."""
     map = EnclosedMap(PinballMap(Scene("egg", alpha=SHAPE), lam=float(lam)), Fraction(lam), LONG)
     if not max(abs(x) for x in start) < float(CLOSE):
         return False
@@ -201,11 +201,11 @@ def merges() -> Finding:
     inside = bool(ball(LAST) < tangency) and bool(tangency < ball(MERGED))
     return by(
         f"a first contraction above {LAST}, and not above {MERGED}, has no trapping region that holds all starts "
-        f"within {CLOSE} of the ends of one diameter, apart from its copies turned by thirds",
+        f"within {CLOSE} of an end of one diameter, apart from its copies turned by thirds",
         region((LAST, LAST), FINEST),
         answer(
             goes_over(MERGED, START) or None,
-            f"at {MERGED} an orbit goes from within {CLOSE} of an end of one diameter to within {CLOSE} of another",
+            f"at {MERGED} an orbit goes from within {CLOSE} of that end to within {CLOSE} of a turned copy",
         ),
         answer(inside or None, "the manifolds of a saddle touch in between"),
         chaos,

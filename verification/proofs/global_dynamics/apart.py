@@ -3,9 +3,9 @@
 A set that has stopped growing is taken into its interior. Only its cells are kept in mind, by their numbers, so that
 the grid may be as fine as the gap between two thin sets asks for.
 
-A table that turns by thirds has three copies of each set. A set grown from about the ends of one diameter that has no
-point in common with its turned copies says that *three regions, one about each diameter, hold three attractors*, and
-that no orbit that starts near one diameter ever comes near another.
+A table that turns by thirds has three copies of each set. A set grown from about an end of one diameter that has no
+point in common with its turned copies says that *three regions, one about each diameter, hold an attractor each, or
+more*, and that no orbit that starts near that end ever comes near one of its copies.
 """
 
 from collections.abc import Sequence

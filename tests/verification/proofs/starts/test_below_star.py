@@ -55,6 +55,54 @@ def test_other_inequalities_do_not_hold(monkeypatch, name: str, value: float, it
     assert items <= failing(replace(FOUND, fates=()))
 
 
+GOOD = {"a": 0.05, "b": 0.5, "c": 0.5, "f": 0.1, "g": 1.5, "h": 2.0}  # inner states stay so, by hand
+
+
+@pytest.mark.parametrize("side", [ARC, WALL])
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"b": 0.09},  # below K*a: U1 may be negative, where U is
+        {"c": 0.09},
+        {"b": 1.5, "g": 2.2},  # 0.05*U_END + 1.5*0.03 is more than U_END
+        {"g": 3.2},  # V1 may be beyond FAR
+        {"b": 1.1},  # 0.8*(g - K*f) is 1.04: U1 may be beyond LEAN*V1
+        {"c": 1.5},
+        {"a": 0.1},  # a*U_END is more than THICK
+        {"g": 0.9},  # V does not grow; of the wall alone
+        {"a": -0.05},
+        {"f": -0.1},
+    ],
+)
+def test_each_inequality_of_inner_states_fails_alone(side: int, changed: dict[str, float]) -> None:
+    """Derivatives by `U`, `V` and `-e`, in numbers; a growth below 1 is asked of the wall alone."""
+
+    def rows(of: int, numbers: dict[str, float]) -> list[list[arb]]:
+        a, b, c, f, g, h = (arb(numbers[name]) for name in "abcfgh")
+        sign = 1 if of == WALL else -1
+        return [[a, sign * b, -c], [f, sign * g, -h]]
+
+    depth = arb("0.0024")
+    whole = {ARC: rows(ARC, GOOD), WALL: rows(WALL, GOOD)}
+    assert inner(whole, depth)
+    assert inner(whole | {side: rows(side, GOOD | changed)}, depth) == (changed == {"g": 0.9} and side == ARC)
+
+
+@pytest.mark.parametrize(
+    ("changed", "depth"),
+    [
+        ((1.8, -0.1), "0.0024"),
+        ((1.8, 4.0), "0.0024"),  # K*r is less than c: where U is negative V1 need not be
+        ((1.0, 0.9), "0.0024"),  # U may be more than LEAN*V1
+        ((1.9, 0.9), "0.0024"),  # V1 may lie before V_LOW
+        ((1.8, 0.9), "0.04"),  # beyond V_HIGH with a negative U
+    ],
+)
+def test_each_inequality_of_the_first_landing_fails_alone(changed: tuple[float, float], depth: str) -> None:
+    assert begins([arb(1.8), arb(-0.9)], arb("0.0024"))
+    assert not begins([arb(changed[0]), arb(-changed[1])], arb(depth))
+
+
 def test_a_core_that_holds_no_cells_and_a_graph_that_returns_elsewhere_prove_nothing(monkeypatch) -> None:
     fate, core = FOUND.fates[1]
     assert below_star.unreturning(fate, core)

@@ -6,6 +6,7 @@ The page has formulas as MathML, pictures and certificates inside; the article's
 import base64
 import json
 import re
+from collections.abc import Iterable
 from functools import partial
 from importlib.resources import files
 
@@ -25,13 +26,28 @@ MEANINGS = {
     Known.SAMPLED: "from random or gridded samples; the error is a standard error or half a 95 % interval",
 }
 
+STEPS = {  # in words
+    "scene": "the scene",
+    "slap": "the slap map",
+    "portrait": "phase portraits",
+    "diagram": "the bifurcation diagram",
+    "plane": "the plane of both parameters",
+    "census": "attractors and their basins",
+    "derivation": "thresholds in closed form",
+    "search": "the search for cycles",
+    "life": "cycles followed",
+    "curves": "curves of events",
+    "crises": "the search for tangencies",
+    "tangency": "proofs of tangencies",
+    "cascade": "doublings",
+}
 FRAME = '<div class="{}" tabindex="0" role="group" aria-label="{}">{}</div>'  # can be scrolled by keyboard
 
 
 def page(report: Report, parts: Parts) -> str:
     """The whole page. Two runs differ in seconds, and in how far they got."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {"remark": remark, "said": said}
+    environment.filters |= {"remark": remark, "said": said, "further": further}
     environment.filters["block"] = partial(shown, parts=parts)
     template = environment.from_string((files("verification.reports") / "page.html").read_text(encoding="utf-8"))
     asked = report.asked
@@ -46,6 +62,15 @@ def page(report: Report, parts: Parts) -> str:
         made=", ".join(f"{name} {number}" for name, number in report.versions.items()),
         again=asked.command("report", *again(report)),
     )
+
+
+def further(left: Iterable[str]) -> str:
+    """The steps for which there was no time, in words, each kind once.
+
+    >>> further(("search-0", "search-1", "diagram-1"))
+    'the search for cycles, the bifurcation diagram'
+    """
+    return ", ".join(dict.fromkeys(STEPS[name.split("-")[0]] for name in left))
 
 
 def said(text: str) -> Markup:

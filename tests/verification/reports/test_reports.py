@@ -27,7 +27,7 @@ from verification.reports import lives
 from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Certificate, Known, Listing, Number, Picture, Section
 from verification.reports.dynamics import diagram
-from verification.reports.page import again
+from verification.reports.page import STEPS, again, further
 from verification.reports.report import FIRST, composed, report
 from verification.reports.scene import double_normals, inflections, properties
 
@@ -73,7 +73,8 @@ def test_what_does_not_fit_the_time_is_left_and_the_page_says_so(made):
     out, done, *_ = made
 
     assert done.left
-    assert all(name in out.read_text() for name in done.left)
+    assert f"Left for more time, or to be refined: {further(done.left)}." in out.read_text()
+    assert "attractors and their basins" in further(done.left)
 
 
 def test_the_page_shows_what_the_json_says_and_needs_no_network(made):
@@ -221,6 +222,11 @@ def test_bad_input_is_one_sentence(arguments, said, tmp_path, capsys):
     error = capsys.readouterr().err
     assert said in error
     assert len(error.splitlines()) == 1
+
+
+def test_every_kind_of_step_has_words(made):
+    _, done, first, second, _ = made
+    assert {name.split("-")[0] for name in (*done.left, *first, *second, *FIRST)} <= set(STEPS)
 
 
 def test_a_first_guess_of_the_seconds_exists_for_each_kind_of_later_step():

@@ -98,6 +98,7 @@ def command(
     """
     needed()
     from numeric.sweeps.run import UnfinishedError
+    from verification.reports.page import further
     from verification.reports.report import report
 
     page, folder = Path(out), Path(out).suffix != ".html"
@@ -137,5 +138,6 @@ def command(
         page.with_suffix(".json").write_text(json.dumps(made.document(), indent=1), encoding="utf-8")
     output.console.print(f"{page}: {len(made.sections)} sections, {made.seconds:.0f} s of work")
     if made.left:
-        output.console.print(f"left for more time: {', '.join(made.left)}; the same command goes on from here")
+        words = further(made.left)
+        output.console.print(f"left for more time, or to be refined: {words}; the same command goes on from here")
     return DONE

@@ -3,6 +3,8 @@
 import copy
 import json
 import re
+import shutil
+from decimal import Decimal
 from pathlib import Path
 
 import jsonschema
@@ -84,6 +86,30 @@ def test_every_number_that_pages_and_reports_call_certified_has_a_certificate(pr
     assert lines[0] == "egg.doubling.4: no certificate holds 0.388761023460843"
     assert lines[1] == "new.claim: no certificate holds a sentence that says certified"
     assert lines[2].endswith(" numbers, 2 without")
+
+
+def test_an_event_of_a_kept_report_that_no_certificate_holds_is_named(printed, monkeypatch, capsys, tmp_path):
+    """Each of the four reports with its last digits changed in turn, where it calls an event certified."""
+    shutil.copytree(
+        ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("*.html", "*.png", "*.svg", "gallery")
+    )
+    shutil.copy(ROOT / "README.md", tmp_path)
+    monkeypatch.setattr(printed.sys, "argv", ["printed.py"])
+    monkeypatch.setattr(printed, "REPORT", tmp_path / "report.json")
+    monkeypatch.setattr(printed, "ROOT", tmp_path)
+    for name, count in (("egg", 3), ("flower", 7), ("limacon", 11), ("stadium", 0)):
+        path = tmp_path / "docs" / "reports" / f"{name}.json"
+        report = json.loads(path.read_text())
+        certified = [event for event in report["events"] if event["certified"]]
+        for event in certified:
+            event["value"] = str(Decimal(event["value"]) + Decimal("1e-15"))
+        path.write_text(json.dumps(report))
+
+        assert len(certified) == count
+        assert printed.main() == (1 if count else 0)
+        lines = capsys.readouterr().out.splitlines()
+        assert [line.partition(": ")[0] for line in lines[:-1]] == [f"docs/reports/{name}.json"] * count
+        shutil.copy(ROOT / "docs" / "reports" / path.name, path)
 
 
 def test_a_printed_number_is_held_within_one_of_its_last_digit(printed):

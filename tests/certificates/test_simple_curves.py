@@ -2,6 +2,7 @@
 
 import copy
 import json
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -78,3 +79,26 @@ def test_a_certificate_is_refused_whose_boundary_has_a_loop_far_from_its_cycle(c
     assert check.checked(given).startswith("proved: ")
     with pytest.raises(check.Unproved, match="the boundary may cross itself"):
         check.checked(looped)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "answer"),
+    [
+        ("0", "0", None),
+        ("3/2", "-1/3", None),
+        ("2", "0", "the boundary may run through a chord"),
+        ("0", "-1", "the boundary may run through a chord"),
+        ("5/2", "0", "does not run once round a chord"),
+        ("-2", "-2", "does not run once round a chord"),
+        ("-2", "-2/3", "does not run once round a chord"),
+    ],
+)
+def test_a_point_is_proved_to_be_inside_of_an_ellipse_or_not(check, x, y, answer):
+    """On the boundary nothing is decided; before and behind it on the line that is looked along, it is outside."""
+    table = check.read_scene(SIMPLE["an ellipse"] | {"lam": "1/3"}, "", 128)[0]
+    inside = lambda: check.beside("curves").inside(table, *(check.I.of(Fraction(z), 64) for z in (x, y)), table.letters)  # noqa: E731
+    if answer is None:
+        inside()
+    else:
+        with pytest.raises(check.Unproved, match=answer):
+            inside()

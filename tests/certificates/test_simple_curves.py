@@ -102,3 +102,17 @@ def test_a_point_is_proved_to_be_inside_of_an_ellipse_or_not(check, x, y, answer
     else:
         with pytest.raises(check.Unproved, match=answer):
             inside()
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_a_crossing_behind_a_point_is_counted_only_where_it_is_not_at_the_end_of_an_arc(check, clockwise):
+    """Behind (3/2, -1/2) the line meets the ellipse at (0, -1), where an arc ends. Half a crossing counted as none
+    makes one round of two: two ovals, one round the other, both counterclockwise, bound no table."""
+    turn = "-" if clockwise else ""
+    oval = {"x": "2*cos(theta)", "y": f"{turn}sin(theta)", "from": "-pi", "to": "pi"}
+    outer = oval | {"x": "9*cos(theta)", "y": "9*sin(theta)"}
+    table = check.read_scene({"component": [outer, oval], "lam": "1/3"}, "", 128)[0]
+    point = [check.I.of(Fraction(z), 64) for z in ("3/2", "-1/2")]
+
+    with pytest.raises(check.Unproved, match="the boundary may run through a chord"):
+        check.beside("curves").inside(table, *point, table.letters)

@@ -182,3 +182,58 @@ def test_the_second_and_third_order_at_a_doubling_are_those_of_the_rule_on_cycle
         assert (c + d - here * 2).real() / 2 / float(e) ** 2 == pytest.approx(0, abs=1e-4)
         assert cubic.real() / float(e) ** 3 == pytest.approx(third.real(), rel=1e-4, abs=1e-4)
         assert (c - d).real() / 2 / float(e) == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize("bounces", [3, 5])
+@pytest.mark.parametrize(
+    ("kind", "det", "cubic", "answer"),
+    [
+        ("fold", "1/2", "0", None),
+        ("fold", "1", "0", "other_multiplier"),
+        ("fold", "-3/2", "0", "other_multiplier"),
+        ("flip", "1/2", "0", None),
+        ("flip", "1/2", "-2/27", "nondegenerate"),
+        ("flip", "-1/2", "-2/9", "nondegenerate"),
+        ("flip", "-1/2", "-1/9", None),
+        ("flip", "3/2", "0", "other_multiplier"),
+        ("flip", "-1", "0", "other_multiplier"),
+    ],
+)
+def test_a_degenerate_bifurcation_is_refused(check, bounces, kind, det, cubic, answer):
+    """Of `x[k+1] = F(x[k]) - d*x[k-1]` at 0, whose slope of F makes a multiplier -1 or 1, and the other one -d or d.
+
+    By hand the doubling has the coefficient `c + q**2/(1 + d)`, with q and c those of `x**2` and `x**3` in F.
+    """
+    p, long = 200, check.beside("long")
+    d, number = Fraction(det), lambda x: check.I.of(Fraction(x), 200).wide(check.I.of(Fraction(1, 2**150), 200))
+    slope = -1 - d if kind == "flip" else 1 + d
+    cycle = long.Long.__new__(long.Long)
+    cycle.p, cycle.sign, cycle.kind, cycle.parts, cycle.border = p, 1, kind, [0] * bounces, (0, 0)
+    cycle.twist, cycle.bounces = -1 if kind == "flip" else 1, [check.I.of(0, p)] * bounces
+    cycle.end = [check.I.of(0, p)] * bounces + [check.I.of(1, p)]
+
+    def chords(_bounces, _letter, degree):
+        before, x = (check.Jet.of(check.I.of(0, p), degree, k) for k in (0, 1))
+        zero = check.Jet.of(check.I.of(0, p), degree)
+        law = x * number(slope) + x * x * number("1/3") + x * x * x * number(cubic) - before * number(d)
+        return [(x + zero, law)] * (bounces + 1)
+
+    cycle.chords = chords
+    if answer is None:
+        cycle.generic([None, None, None])
+    else:
+        with pytest.raises(check.Unproved, match=answer):
+            cycle.generic([None, None, None])
+
+
+@pytest.mark.parametrize("bounces", [("pi", "pi", "0"), ("pi", "0", "0"), ("0", "0", "pi")])
+def test_a_chord_that_leaves_or_arrives_on_the_far_side_of_a_disc_is_refused(check, bounces):
+    """Along the axis of a disc in a disc: from one end of it to a bounce on the inner disc, and on to the other end."""
+    outer = {"x": "5*cos(theta)", "y": "5*sin(theta)", "from": "-pi", "to": "pi"}
+    disc = {"x": "cos(theta)", "y": "-sin(theta)", "from": "-pi", "to": "pi"}
+    table, lam, _ = check.read_scene({"component": [outer, disc], "lam": "1/3"}, "", 128)
+    at = [check.pi(128) if text == "pi" else check.I.of(0, 128) for text in bounces]
+    cycle = check.beside("long").Long(table, "cycle", [0, 1, 0], at, 1, "", None, lam)
+    cycle.free = False
+    with pytest.raises(check.Unproved, match="may not leave or arrive inwards"):
+        cycle.chords(at, lam, 1)

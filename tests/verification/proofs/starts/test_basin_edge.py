@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from numeric import PinballMap
 from symbolic import Scene
 from verification.paper.egg.nearly_round import edge
 from verification.proofs.global_dynamics.barrier import Barrier
+from verification.proofs.global_dynamics.boxes import BallArray
+from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.starts import basin_edge
 from verification.proofs.starts.basin_edge import BasinEdge
@@ -78,11 +81,71 @@ def test_without_cells_fine_enough_nothing_is_proved(monkeypatch, name, value):
     assert "alone" in failing(replace(FOUND))
 
 
+def test_images_of_random_points_lie_in_cells_to_which_edges_lead():
+    """Of 40 points of each cell, borders included; what lands below the first row is below the barrier."""
+    columns, rows = 96, 48
+    column, row = (index.ravel() for index in np.indices((columns, rows)))
+    edges = FOUND._edges(column, row, FOUND._boxes(column, row, columns, rows), columns, rows)
+    drawn = np.random.default_rng(7).beta(0.3, 0.3, (2, 40, column.size))
+    wide, tall = FOUND.turn / columns, FOUND.barrier.map.top / rows
+    theta, phi = (column + drawn[0]) * wide - FOUND.turn / 2, (row + drawn[1]) * tall
+    step = PinballMap("egg", lam="0.66", alpha="0.08").step(theta.ravel(), phi.ravel())
+    at = np.floor((step.theta + FOUND.turn / 2) / wide).astype(int) % columns, np.floor(step.phi / tall).astype(int)
+    above = at[1] >= 0
+    source = np.broadcast_to(np.arange(column.size), theta.shape).ravel()
+    led = set(zip(*(ends.tolist() for ends in edges), strict=True))
+    assert np.mean(above) > 0.2
+    assert set(zip(source[above].tolist(), (at[0] * rows + at[1])[above].tolist(), strict=True)) <= led
+    assert np.unique(edges[1]).size < columns * rows  # and not to all
+
+
+@pytest.mark.parametrize(
+    ("middle", "radius", "held"),
+    [
+        ((2, 0, 0, 0.5), (0, 0, 0, 0), True),
+        ((2, 0, 0, 0.5), (0.1, 0.8, 0.4, 0.05), True),
+        ((2, 0, 0, 0.5), (0, 1.1, 0, 0), False),  # the expanded part may grow by 0.9 alone
+        ((2, 0, 0, 0.5), (0, 0, 0.6, 0), False),  # the other may grow by 1.1
+        ((2, 0, 0, 0.5), (0, 0, 0, 0.6), False),
+        ((0.9, 0, 0, 0.5), (0, 0, 0, 0), False),
+        ((2, 0, 0, 1.2), (0, 0, 0, 0), False),
+        ((1100, 0, 0, 0.5), (0, 0, 0, 0), False),  # half a turn of the table, and points may be near another copy
+    ],
+)
+@pytest.mark.parametrize("turned_back", [False, True])
+def test_differences_grow_or_shrink_where_the_derivative_says_so(middle, radius, held, turned_back):
+    """Of matrices `[[a, b], [c, d]]` within radii; nothing is proved where some of them turn the expanded part back."""
+    (a, b, c, d), (p, q, r, t) = middle, radius
+    along = np.full(16, a) * np.where(turned_back & (np.arange(16) % 4 == 0), -1, 1)
+    still = BallArray(np.zeros(16), np.zeros(16))
+    law = BallArray(np.full(16, -d), np.full(16, t))
+    bend = BallArray(np.full(16, c), np.full(16, r)) / law.m
+    slopes = Slopes(BallArray(along, np.full(16, p)), BallArray(np.full(16, b), np.full(16, q)), bend, still, law)
+    piece = SimpleNamespace(on=np.arange(16))
+    some = SimpleNamespace(map=SimpleNamespace(derivatives=lambda _: ((piece, slopes),)))
+    stub = SimpleNamespace(barrier=some, turn=FOUND.turn, _about=FOUND._about)
+    assert BasinEdge._hyperbolic(stub) is (held and not turned_back)
+
+
 def test_a_cycle_that_is_left_out_is_seen():
     """With a disc elsewhere the attracting triangle itself is what stays."""
     wrong = replace(FOUND)
     wrong.__dict__["disc"] = replace(FOUND.disc, centre=(FOUND.disc.centre[0] + 0.5, FOUND.disc.centre[1]))
     assert not wrong._alone()
+
+
+def test_a_cell_that_leads_to_itself_alone_is_seen(monkeypatch):
+    """All cells lead to the first, as to a fixed point: it is about the saddle, or an orbit stays elsewhere."""
+    stays = replace(FOUND)
+    away = FOUND.place[0] - FOUND.turn / 2 + 1e-5, FOUND.place[1]
+    for place, alone in ((FOUND.place, True), (away, False)):
+
+        def edges(self, column, row, boxes, columns, rows, place=place):
+            x, y = self._beside(np.mean(boxes.x, axis=0), place[0]), np.mean(boxes.y, axis=0) - place[1]
+            return np.arange(column.size, dtype=np.int32), np.full(column.size, np.argmin(x**2 + y**2), dtype=np.int32)
+
+        monkeypatch.setattr(BasinEdge, "_edges", edges)
+        assert stays._alone() is alone
 
 
 def test_edges_found_by_bisection_lead_to_the_saddle():

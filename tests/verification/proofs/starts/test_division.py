@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,9 +11,12 @@ from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
 from symbolic import Scene
 from verification.paper.egg.basins import division
-from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.graph import Cells, Grid, Transitions, sparse
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts import division as division_of
 from verification.proofs.starts.core import attracts
+from verification.proofs.starts.division import Division
 
 FOUND = division()
 RING, CHART = FOUND.ring, FOUND.core.chart
@@ -108,6 +112,69 @@ def test_boxes_are_in_a_part_of_the_ring_only_as_a_whole():
     assert RING.sides(boxes, CHART).tolist() == [1, 0, 0, 0, -1]
     part = RING.part(CHART, -1)
     assert part.x[0].min() <= -RING.high < -RING.low <= part.x[1].max()
+
+
+@pytest.mark.parametrize(
+    ("rows", "held"),
+    [
+        ((-1.5, -0.15), True),
+        ((-1.1, -0.15), False),  # by less than is asked
+        ((-1.5, -0.30), False),  # to slopes of 0.17 and more
+        ((np.where(np.arange(division_of.PARTS) % 9, 1.5, -1.5), -0.15), False),  # vectors may cancel along a segment
+    ],
+)
+def test_a_cone_is_kept_and_stretched_only_if_each_of_three_inequalities_holds(monkeypatch, rows, held):
+    """Of matrices `[[a, 0], [c, -2*c]]`, by hand: slopes from 0.05 to 0.15 go to 0.07 to 0.09 where a is -1.5."""
+    ring = replace(RING, slope=0.1, cone=0.05, growth=1.2)
+    a, c = (np.broadcast_to(np.asarray(x, dtype=float), (division_of.PARTS,)) for x in rows)
+    c = c * np.sign(a) * -1
+    entries = [[BallArray(a), BallArray(0 * a)], [BallArray(c), BallArray(-2 * c)]]
+    monkeypatch.setattr(division_of, "derivative", lambda *_: entries)
+    assert ring.stretches(FOUND.map, CHART) is held
+    monkeypatch.setattr(division_of, "derivative", lambda *_: None)
+    assert not ring.stretches(FOUND.map, CHART)
+
+
+RIGHT, LEFT, ARC, OTHER, BESIDE = range(5)  # boxes of the two parts, two on the arc, and one on the wall beside
+
+
+@pytest.mark.parametrize(
+    ("edges", "good"),
+    [
+        ([(RIGHT, ARC), (ARC, LEFT), (LEFT, OTHER), (OTHER, RIGHT)], {RIGHT, LEFT, ARC, OTHER}),
+        ([(RIGHT, ARC), (ARC, RIGHT)], set()),  # back to the same part
+        ([(RIGHT, ARC), (ARC, LEFT), (LEFT, OTHER), (OTHER, RIGHT), (OTHER, LEFT)], set()),  # to either part
+        ([(RIGHT, LEFT), (LEFT, RIGHT)], set()),  # on the wall twice
+        ([(RIGHT, ARC), (ARC, LEFT), (LEFT, OTHER), (OTHER, RIGHT), (ARC, OTHER)], set()),  # on the arc twice
+        ([(ARC, OTHER), (OTHER, ARC)], set()),  # on the arc alone
+        ([(BESIDE, ARC), (ARC, LEFT), (LEFT, OTHER), (OTHER, BESIDE)], set()),
+        ([(RIGHT, ARC), (ARC, LEFT), (LEFT, OTHER), (OTHER, RIGHT), (BESIDE, BESIDE)], {RIGHT, LEFT, ARC, OTHER}),
+    ],
+)
+def test_orbits_are_in_the_ring_where_walks_go_from_one_part_to_the_other_by_way_of_the_arc(edges, good):
+    x, chart = np.array([0.17, -0.17, 1.0, -1.0, 0.3]), np.array([CHART, CHART, 1 - CHART, 1 - CHART, CHART])
+    y = np.where(chart == CHART, np.sign(x) * (RING.slope * np.abs(x) + RING.offset), 0.0)
+    grid = Grid(FOUND.map.charts, *FOUND.grid)
+    sides = [np.array([getattr(c, side) for c in grid.charts])[chart].T for side in ("x", "y")]
+    at = [
+        np.floor((value - low) / (high - low) * count).astype(np.int64)
+        for value, (low, high), count in zip((x, y), sides, FOUND.grid, strict=True)
+    ]
+    links = sparse(*(np.array(ends, dtype=np.int32) for ends in zip(*edges, strict=True)), 6)
+    some = Transitions(grid, Cells(chart, *at, np.ones(5, dtype=np.int64)), np.ones(5, dtype=bool), links)
+    rest = np.array([True] * 5 + [False])
+    found = Division._around(SimpleNamespace(graph=SimpleNamespace(transitions=some), ring=RING, core=FOUND.core), rest)
+    inside = set(np.flatnonzero(found).tolist())
+    assert {box for edge in edges for box in edge if edge[0] != edge[1]} & inside == good
+
+
+def test_points_of_settled_boxes_converge_in_float64():
+    graph, map = FOUND.graph.transitions, PinballMap("cuspless", lam="0.09")
+    boxes, rng = graph.grid.boxes(graph.cells), np.random.default_rng(2)
+    some = rng.choice(np.flatnonzero(FOUND.settled), 2000)
+    theta, phi = (low[some] + rng.random(2000) * (high[some] - low[some]) for low, high in (boxes.x, boxes.y))
+    end = map.exponents(theta, phi, 1, 2000, graph.cells.chart[some])
+    assert np.all(np.abs(end.phi) < 1e-6)
 
 
 def test_what_is_left_out_is_not_proved():

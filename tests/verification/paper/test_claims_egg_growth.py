@@ -111,8 +111,6 @@ def test_strips_are_supported_by_chaos_at_shapes_side_by_side(monkeypatch: pytes
 
 
 GROWING = {
-    "egg.attractor_expands": on_egg_growth.attractor_expands,
-    "egg.single_expands": on_egg_growth.single_expands,
     "egg.both_grow": on_egg_growth.both_grow,
 }
 

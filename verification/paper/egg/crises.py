@@ -114,7 +114,6 @@ def sides(lam: float, offset: float = 1e-5) -> tuple[float, float]:
     return shares[0], shares[1]
 
 
-THREE = ("0.43", "0.436", "0.443")  # three attractors, no windows
 ONE = ("0.445", "0.48", "0.52", "0.56", "0.6", "0.63", "0.655")  # one attractor, no windows
 CELLS = 300  # along each side of phase space, in (theta, sin(phi))
 STARTS, MANY = 200, 4000
@@ -164,27 +163,6 @@ def grows(lams: tuple[str, ...]) -> bool:
 def listed(lams: tuple[str, ...]) -> str:
     """The extents in words."""
     return "; ".join(f"{extent(x).height:.3f}, {extent(x).share:.2%} at {x}" for x in lams)
-
-
-@judges("egg.attractor_expands")
-def attractor_expands(claim: Claim) -> Judgement:
-    """Above the joining of the mirror images the three attractors and then the one grow with the contraction."""
-    return sampled(
-        "it grows in angle and in area visited at the contractions tried; inside windows it is a cycle",
-        f"largest |sin(phi)| and the share of {CELLS}^2 cells that are met, by 200 orbits of 2000 bounces: "
-        f"{listed(THREE + ONE)}",
-        grows(THREE + ONE),
-    )
-
-
-@judges("egg.single_expands")
-def single_expands(claim: Claim) -> Judgement:
-    """The single attractor between the two crises."""
-    return sampled(
-        "it grows from the merging crisis to the boundary crisis, at the contractions tried",
-        f"largest |sin(phi)| and the share of cells that are met: {listed(ONE)}",
-        grows(ONE),
-    )
 
 
 @judges("egg.both_grow")

@@ -1,0 +1,96 @@
+"""How far the egg's attractor reaches: bounds that orbits agree with, known answers, and what proves nothing."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from numeric import PinballMap
+from symbolic import Scene
+from symbolic.expressions.signs import Outcome
+from verification.paper.claims.claim import Verdict
+from verification.paper.egg import expanding
+from verification.paper.report.report import catalogue
+from verification.proofs.global_dynamics.barrier import Barrier
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.starts.extent import Extent
+
+CLAIMS = {claim.id: claim for claim in catalogue()}
+
+
+def egg(lam: str, columns: int = 8192) -> Barrier:
+    """A barrier at one contraction."""
+    return Barrier(Scene("egg", alpha="0.08"), (Fraction(lam), Fraction(lam)), columns)
+
+
+def test_orbits_reach_as_far_as_the_bounds_say():
+    """Of 200 orbits of 2000 bounces the largest exit angle at 0.5 is below the upper bound, and close to both."""
+    found = expanding.extent("0.5")
+    map = PinballMap("egg", lam="0.5", alpha="0.08")
+    start = np.random.default_rng(1).uniform(-0.05, 0.05, (2, 200))
+    settled = map.exponents(start[0], start[1], 500, 2000)
+    seen = float(np.max(np.abs(map.orbit(settled.theta, settled.phi, 2000).phi)))
+    assert seen < found.high
+    assert found.low <= found.high
+    assert abs(found.low - seen) < 0.001
+    assert found.high - seen < 0.001
+
+
+def test_the_curve_crosses_all_that_is_kept_and_its_points_go_the_same_way():
+    """Its ends lie beyond both barriers; those within are, after its bounces, within a hundredth of one another."""
+    found = expanding.extent("0.5")
+    theta, phi = found.curve
+    zero = np.zeros(theta.size, dtype=np.int64)
+    points = Boxes(zero, (theta, theta), (phi, phi))
+    above, below = found.barrier.above(points), found.barrier.above(points.mirrored())
+    assert above[-1]
+    assert below[0]
+    map = PinballMap("egg", lam="0.5", alpha="0.08")
+    at = theta[~(above | below)], phi[~(above | below)]
+    assert np.ptp(at[1]) > 0.01
+    for _ in range(found.bounces):
+        step = map.step(*at)
+        at = step.theta, step.phi
+    assert np.ptp(np.unwrap(at[0])) < 0.01
+    assert np.ptp(at[1]) < 0.01
+
+
+def test_in_the_circle_nothing_is_kept_but_the_diameters():
+    """Every exit angle is multiplied by `lam`: what is kept has `phi = 0`, and both bounds say so."""
+    circle = Extent(Barrier(Scene("circle"), (Fraction(1, 2), Fraction(1, 2)), 256), (0.0, 0.0), 3, 0.1)
+    assert circle.low <= 0 < circle.high < 1e-5
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"height": 0.01},  # its ends lie between the barriers
+        {"barrier": egg("0.5", 256)},  # too few steps: no barrier
+        {"barrier": egg("0.67")},  # beyond the crisis there is none
+    ],
+)
+def test_where_a_step_is_not_proved_nothing_is_said(change):
+    assert replace(expanding.extent("0.5"), **change).low == 0
+
+
+def test_the_attractor_expands_where_each_lower_bound_is_above_the_upper_ones_before(monkeypatch):
+    """Nothing is confirmed without a lower bound, or with a ceiling that is not proved."""
+    claim, judge = CLAIMS["egg.attractor_expands"], expanding.attractor_expands
+    assert judge(claim).verdict is Verdict.CONFIRMED
+    assert expanding.single_expands(CLAIMS["egg.single_expands"]).verdict is Verdict.CONFIRMED
+    for name, broken in (("ceiling", lambda *_: np.inf), ("ceiling", lambda *_: 0.17)):
+        expanding.expands.cache_clear()
+        monkeypatch.setattr(expanding, name, broken)
+        assert judge(claim).verdict is Verdict.OPEN
+    monkeypatch.undo()
+    expanding.expands.cache_clear()
+    lower = replace(expanding.extent("0.5"))
+    object.__setattr__(lower, "low", 0.0)
+    monkeypatch.setattr(expanding, "extent", lambda _: lower)
+    assert expanding.expands().outcome is Outcome.UNKNOWN
+    expanding.expands.cache_clear()
+
+
+def test_bounds_are_printed_outwards():
+    assert (expanding.down(0.18796), expanding.up(0.18841), expanding.up(np.inf)) == ("0.1879", "0.1885", "nothing")

@@ -40,6 +40,8 @@ class Program(NamedTuple):
     def __call__(self, ops: NumberSystem[R], *values: R) -> list[R]:
         """The outputs, in the arithmetic of `ops`; every rational enters as `ops.q(p, n)`."""
         known = list(values)
+        turned: dict[int, tuple[R, R]] = {}
+        both = getattr(ops, "turned", None)  # number systems may have cosine and sine at the cost of one
         for word, *operands in self.lines:
             if word in BINARY:
                 i, j = operands
@@ -50,6 +52,10 @@ class Program(NamedTuple):
                 known.append(ops.pi)
             elif word in ROOTS:
                 known.append(getattr(ops, "root")(known[operands[0]], ROOTS[word]))  # noqa: B009  (few number systems have it)
+            elif both and word in ("cos", "sin"):
+                i = operands[0]
+                turned[i] = turned.get(i) or both(known[i])
+                known.append(turned[i][word == "sin"])
             else:
                 x = known[operands[0]]
                 known.append(-x if word == "neg" else getattr(ops, word)(x))

@@ -8,7 +8,7 @@ from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_aroun
 from .crisis import BoundaryCrisis, boxed
 from .database import KNOWN, Numbers, continued
 from .fates import NEAR, Cluster, Fate, clusters, invertible
-from .flights import Flights, Matrix, incidence, matrix, times, turn_between
+from .flights import End, Flights, Matrix, Piece, incidence, matrix, norm, times, turn_between
 from .graph import BLOCK, Cells, Grid, Indices, Mask, MorseGraph, morse_graph, ranges, refined, sparse, walked
 from .images import PinballImages
 from .regions import KIND, Region, checked, expansion, region, sampled_share, shares
@@ -28,6 +28,7 @@ __all__ = [
     "Cluster",
     "CommonBoundary",
     "Disc",
+    "End",
     "Fate",
     "Flights",
     "Grid",
@@ -36,6 +37,7 @@ __all__ = [
     "Matrix",
     "MorseGraph",
     "Numbers",
+    "Piece",
     "PinballImages",
     "Region",
     "attracts",
@@ -54,6 +56,7 @@ __all__ = [
     "lost",
     "matrix",
     "morse_graph",
+    "norm",
     "ranges",
     "refined",
     "region",

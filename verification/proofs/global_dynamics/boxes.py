@@ -12,9 +12,9 @@ A map is named by its charts, rectangles with two coordinates each; one of the p
 and that of its derivative, and takes a box by the mean-value theorem.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -91,7 +91,9 @@ class BallArray:
         return BallArray(other).__truediv__(self)
 
     def __getitem__(self, index: Any) -> "BallArray":
-        m, r = np.broadcast_arrays(self.m, self.r)
+        m, r = self.m, self.r
+        if np.shape(m) != np.shape(r):
+            m, r = np.broadcast_arrays(m, r)
         return BallArray(m[index], r[index])
 
     def upper(self) -> Array:
@@ -164,7 +166,9 @@ class ArrayOps:
     Of a library's logarithm or root only a guess is used, which the exponential or a power then judges.
     """
 
-    def q(self, p: int, n: int) -> BallArray:
+    @staticmethod
+    @cache
+    def q(p: int, n: int) -> BallArray:
         """`p/n`, enclosed."""
         return exactly(Fraction(p, n))
 
@@ -182,11 +186,15 @@ class ArrayOps:
 
     def sin(self, x: BallArray) -> BallArray:
         """The sine: of the midpoint, and it moves by no more than the radius."""
-        return turned(x)[1]
+        return self.turned(x)[1]
 
     def cos(self, x: BallArray) -> BallArray:
         """The cosine."""
-        return turned(x)[0]
+        return self.turned(x)[0]
+
+    def turned(self, x: BallArray) -> tuple[BallArray, BallArray]:
+        """Both, at the cost of one."""
+        return turned(x)
 
     def exp(self, x: BallArray) -> BallArray:
         """The exponential: of the midpoint, by powers of 2 and Taylor's sum, times `exp(r) <= 1 + r + r**2`."""
@@ -227,21 +235,15 @@ class ArrayOps:
         """The absolute value, which moves by no more than its argument."""
         return BallArray(np.abs(x.m), x.r)
 
-    def __getattr__(self, word: str) -> Callable[[BallArray], BallArray]:
-        """`root3`, `root4` and so on."""
-        if not word.startswith("root") or not word[4:].isdigit():
-            raise AttributeError(word)
-        return lambda x: self._root(x, int(word[4:]))
-
-    def _root(self, x: BallArray, n: int) -> BallArray:
+    def root(self, x: BallArray, n: int) -> BallArray:
         """A guess `w`, times `(1 + d)**(1/n)` with `1 + d = x/w**n`, within `d**2` of `1 + d/n` while `d` is small."""
         with np.errstate(all="ignore"):
             w = power = BallArray(elementary.root(x.m, n))
             for _ in range(n - 1):
                 power = power * w
             d = x / power - 1
-            size = d.magnitude()
-        return w * (1 + d / n + BallArray(0.0, np.where(size <= 0.5, size**2 * GROWTH, np.inf)))
+            size = d.magnitude()  # where it is not small the radius is infinite, and of the product infinite or nan
+            return w * (1 + d / n + BallArray(0.0, np.where(size <= 0.5, size**2 * GROWTH, np.inf)))
 
 
 def turned(x: BallArray) -> tuple[BallArray, BallArray]:
@@ -257,7 +259,7 @@ def turned(x: BallArray) -> tuple[BallArray, BallArray]:
         t = m - k * HALF_PI[0] - k * HALF_PI[1] - k * HALF_PI[2]
         z = t * t
         sine, cosine = t * _horner(SINE, z), _horner(COSINE, z)
-        quarter = np.mod(k, 4.0)
+        quarter = k - 4 * np.floor(k / 4)  # exact
     odd, behind, below = quarter % 2 == 1, (quarter == 1) | (quarter == 2), quarter >= 2
     c, s = np.where(odd, sine, cosine), np.where(odd, cosine, sine)
     r = (x.r + UNIT_ERROR) * GROWTH
@@ -281,9 +283,10 @@ def direction(c: BallArray, s: BallArray) -> BallArray:
 
 
 def _horner(coefficients: list[float], z: Array) -> Array:
-    value = np.full_like(z, coefficients[-1])
-    for coefficient in reversed(coefficients[:-1]):
-        value = value * z + coefficient
+    value = coefficients[-1] * z + coefficients[-2]
+    for coefficient in reversed(coefficients[:-2]):
+        value *= z
+        value += coefficient
     return value
 
 

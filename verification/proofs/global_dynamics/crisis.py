@@ -284,7 +284,7 @@ def boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
     (left, right), (bottom, top) = (
         [np.array([_outwards(x, up) for x in values]) for up in (False, True)] for values in zip(*points, strict=True)
     )
-    if not np.all(np.isfinite(left + right + bottom + top)):
+    if not np.isfinite([left, right, bottom, top]).all():
         return None
     return _turned_back(Boxes(np.zeros(len(points), dtype=np.int64), (left, right), (bottom, top)))
 

@@ -4,7 +4,8 @@ The arc of a box comes from two signs of a cross product, as in `images`; within
 landing and incidence.
 """
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,10 +31,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 TRIES = 7  # widenings of a guessed arc
-DOUBLINGS = 4  # of what is added to an arc beyond a join
-REACH = 3.0  # about the length of a flight
+SIDES = "x", "y", "v", "w", "cos", "speed", "bend"  # on which the side of a flight depends
 CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
 PLACES, CLOSE = (Rational(1, 7), Rational(1, 5)), 1e-9  # where a bend that varies is seen to do so
 CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # of a boundary point
@@ -79,7 +78,8 @@ class Flights:
         self.theta, self.phi = theta, phi
         self.centre = self._leaving(theta, phi)
         self.whole = self._leaving(self.thetas, self.phis)
-        self.last: tuple[BallArray, list[BallArray]] | None = None  # an arc, and the boundary over it
+        self.landed: tuple[Indices, Array, list[BallArray]]  # of the midpoints, in float64, and the boundary there
+        self.last: tuple[BallArray, list[BallArray], BallArray] | None = None  # an arc, the boundary, and incidences
 
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
         """Start, velocity and acceleration of the boundary, its speed and bend, and the direction of flight."""
@@ -89,29 +89,27 @@ class Flights:
         found = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy, "v": v, "w": w, "cos": c, "speed": speed}
         return found | {"bend": (dx * ddy - dy * ddx) / square}
 
-    def sides(self, end: End) -> BallArray:
+    def sides(self, end: End, on: Indices) -> BallArray:
         """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""
         x, y, *_ = self.map.place(end[0], BallArray(end[1]))
-        at, all_of = self.centre, self.whole
+        at, all_of = ({name: some[name][on] for name in SIDES} for some in (self.centre, self.whole))
         value = at["v"] * (y - at["y"]) - at["w"] * (x - at["x"])
         along = all_of["v"] * (x - all_of["x"]) + all_of["w"] * (y - all_of["y"])
         by_theta = all_of["cos"] * all_of["speed"] - all_of["bend"] * along
-        return value + by_theta * self.reach[0] + along * self.reach[1]
+        return value + by_theta * self.reach[0][on] + along * self.reach[1][on]
 
     def arcs(self) -> tuple[End, End]:
         """An arc for each box that holds its landings; parameters are nan where none is proved."""
-        chart, theta, ahead, behind = self.guess()
+        chart, theta, *widths = self.guess()
         found = []
-        for sign in (-1, 1):
-            where, at = chart.copy(), np.full(theta.shape, np.nan)
-            width, open_ = np.where(sign < 0, ahead, behind), np.ones(theta.shape, dtype=bool)
+        for sign, width in zip((-1, 1), widths, strict=True):
+            where, at, on = chart.copy(), np.full(theta.shape, np.nan), np.arange(theta.size)
             for attempt in range(TRIES):
-                trial = self._moved(chart, theta, sign * width * 1.4**attempt)
-                side = self.sides(trial)
-                good = open_ & (side.negative() if sign < 0 else side.positive())
-                where[good], at[good] = trial[0][good], trial[1][good]
-                open_ &= ~good
-                if not np.any(open_):
+                trial = self._moved(chart[on], theta[on], sign * width[on] * 1.4**attempt)
+                side = self.sides(trial, on)
+                good = side.negative() if sign < 0 else side.positive()
+                where[on[good]], at[on[good]] = trial[0][good], trial[1][good]
+                if not (on := on[~good]).size:
                     break
             found.append((where, at))
         if not self.map.closed:  # a landing comes after every start of the box, and before that start comes again
@@ -129,7 +127,8 @@ class Flights:
         step = self.map.map.step(theta, self.phi.m, self.chart)
         chart = np.where(step.code == 0, step.component, self.chart)
         landed = np.where(step.code == 0, step.theta, np.nan)
-        x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(np.nan_to_num(landed))))
+        self.landed = chart, landed, self.map.place(chart, BallArray(np.nan_to_num(landed)))
+        x, y, dx, dy, *_ = (value.m for value in self.landed[2])
         with np.errstate(all="ignore"):
             at = {name: value.m for name, value in self.centre.items()}
             along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
@@ -145,18 +144,17 @@ class Flights:
         if self.map.closed:
             return chart, theta + by
         count = len(self.map.ends)
-        low = np.array([float(end[0].upper()) for end in self.map.ends])
-        high = np.array([float(end[1].lower()) for end in self.map.ends])
-        place = [value.m for value in self.map.place(chart, BallArray(np.nan_to_num(theta)))]
-        speed = np.hypot(place[2], place[3])
-        chart, moved = chart.copy(), theta + by
+        low, high = self.map.inner
+        first, chart, moved = chart, chart.copy(), theta + by
         for edge, step, start in ((high, 1, low), (low, -1, high)):
-            over = moved > edge[chart] if step > 0 else moved < edge[chart]
-            length = np.abs(moved - edge[chart]) * speed
-            following = np.where(over, (chart + step) % count, chart)
-            place = [value.m for value in self.map.place(following, BallArray(start[following]))]
-            moved = np.where(over, start[following] + step * length / np.hypot(place[2], place[3]), moved)
-            chart = following
+            over = np.flatnonzero(step * (moved - edge[chart]) > 0)
+            if not over.size:
+                continue
+            after = (chart[over] + step) % count
+            ends = (first[over], theta[over]), (after, start[after])
+            speed = [np.hypot(*(x.m for x in self.map.place(on, BallArray(at))[2:4])) for on, at in ends]
+            moved[over] = start[after] + step * np.abs(moved[over] - edge[chart[over]]) * speed[0] / speed[1]
+            chart[over] = after
         return chart, np.clip(moved, low[chart], high[chart])
 
     def pieces(self, low: End, high: End) -> list[Piece]:
@@ -164,7 +162,6 @@ class Flights:
         if self.map.closed:
             return [Piece(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
         count = len(self.map.ends)
-        ends = [(float(a.lower()), float(b.upper())) for a, b in self.map.ends]
         whole = (low[0] == high[0]) & (low[1] < high[1]) & ~np.isnan(low[1])
         found = [Piece(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True)]
         joined = np.flatnonzero(~whole)
@@ -174,7 +171,7 @@ class Flights:
             on = joined[steps >= step]
             last = steps[steps >= step] == step
             chart = (low[0][on] + step) % count
-            bottom, top = (np.array([end[i] for end in ends])[chart] for i in (0, 1))
+            bottom, top = self.map.outer[:, chart]
             a = low[1][on] if step == 0 else bottom
             found.append(Piece(on, chart, a, np.where(last, high[1][on], top), False))
         return found
@@ -186,20 +183,24 @@ class Flights:
         """
         on, chart, low, high, smooth = piece
         arc = hull(low, high)
-        eta = incidence(self.phis[on] + turn_between(self.tangent(on, self.thetas), self.over(chart, arc)[2:4]))
+        eta = self.over(on, chart, arc)[1]
         if not smooth:
             return piece, arc, eta, None
         theta, eta, phi = self.mean_value(on, chart, arc, eta)
         return piece, common_part(arc, theta), eta, phi
 
-    def over(self, chart: Indices, arc: BallArray) -> list[BallArray]:
-        """The boundary over an arc; one that is asked for again at once is not worked out again."""
+    def over(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[list[BallArray], BallArray]:
+        """The boundary over an arc, and incidences there; of one that is asked for again at once as they were."""
         if self.last is None or self.last[0] is not arc:
-            self.last = arc, self.map.place(chart, arc)
-        return self.last[1]
+            place = self.map.place(chart, arc)
+            turn = turn_between(self.tangent(on, self.whole), place[2:4])
+            self.last = arc, place, incidence(self.phis[on] + turn)
+        return self.last[1:]
 
-    def tangent(self, on: Indices, theta: BallArray) -> list[BallArray]:
-        return self.map.place(self.chart[on], theta[on])[2:4]
+    @staticmethod
+    def tangent(on: Indices, at: Places) -> list[BallArray]:
+        """The velocity at the starts of the boxes `on`: at their midpoints, or over all of each."""
+        return [at["dx"][on], at["dy"][on]]
 
     def mean_value(
         self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
@@ -209,7 +210,7 @@ class Flights:
         reach = self.reach[0][on], self.reach[1][on]
         middle = self.midpoint(on, chart, arc)
         theta = middle + by_theta * reach[0] + by_phi * reach[1]
-        turn = turn_between(self.tangent(on, self.theta), self.map.place(chart, middle)[2:4])
+        turn = turn_between(self.tangent(on, self.centre), self.map.place(chart, middle)[2:4])
         by = there * by_theta - here, there * by_phi + 1
         fine = self.phi[on] + turn + by[0] * reach[0] + by[1] * reach[1]
         phi = None
@@ -217,6 +218,21 @@ class Flights:
             phi = self.map.exit(incidence(self.phi[on] + turn), middle)
             phi = phi + (drift * by_theta - law * by[0]) * reach[0] + (drift * by_phi - law * by[1]) * reach[1]
         return theta, common_part(eta, incidence(fine)), phi
+
+    @cached_property
+    def speed(self) -> BallArray:
+        """How fast the parameter runs over each box."""
+        here = [self.whole[name] for name in CURVE]
+        return speed(self.centre["speed"], self.whole["speed"], here, self.reach[0])
+
+    @cached_property
+    def bend(self) -> BallArray:
+        """How fast the tangent turns over each box."""
+        return closer(lambda: self.whole["bend"], self.map, self.chart)
+
+    def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
+        """A double in each arc, about which the mean-value theorem is used, and the boundary there."""
+        return (at := BallArray(np.asarray(arc.m))), self.map.place(chart, at)
 
     def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
         """The derivatives over the boxes `on`, whose landings lie in an arc.
@@ -228,32 +244,30 @@ class Flights:
 
         The length, which hardly varies, the speeds and the incidence are enclosed by the mean-value theorem.
         """
-        ops, beside, aside = self.map.ops, BallArray(0.0 * arc.m, arc.r), self.reach[0][on]
-        start, centre = ({name: value[on] for name, value in places.items()} for places in (self.whole, self.centre))
-        here, first = ([places[name] for name in CURVE] for places in (start, centre))
-        there, last = self.over(chart, arc), self.map.place(chart, BallArray(np.asarray(arc.m)))
-        gap, middle = (
-            [z1 - z0 for z0, z1 in zip(a[:2], b[:2], strict=True)] for a, b in ((here, there), (first, last))
-        )
-        rough, length = (ops.sqrt(x * x + y * y) for x, y in (gap, middle))
-        shorter, longer = ((gap[0] * place[2] + gap[1] * place[3]) / rough for place in (here, there))
+        ops, aside, (there, rough_eta) = self.map.ops, self.reach[0][on], self.over(on, chart, arc)
+        at, last = self.near(on, chart, arc)
+        beside = arc - at
+        start, first = ({name: places[name][on] for name in CURVE} for places in (self.whole, self.centre))
+        gap = [there[0] - start["x"], there[1] - start["y"]]
+        rough, length = norm(ops, gap), norm(ops, [last[0] - first["x"], last[1] - first["y"]])
+        shorter = (gap[0] * start["dx"] + gap[1] * start["dy"]) / rough
+        longer = (gap[0] * there[2] + gap[1] * there[3]) / rough
         length = common_part(length - shorter * aside + longer * beside, rough)
-        bends = closer(start["bend"], self.map, self.chart[on]), closer(turn_rate(there), self.map, chart)
-        speeds = speed(ops, first, here, aside), speed(ops, last, there, beside)
-        eta = self.phi[on] + turn_between(first[2:4], last[2:4]) + self.reach[1][on]
-        eta = incidence(eta + bends[1] * beside - bends[0] * aside)
-        eta = common_part(eta, incidence(self.phis[on] + turn_between(here[2:4], there[2:4])))
-        across = speeds[1] * turned(eta)[0]
+        here, bend = self.bend[on], closer(lambda: turn_rate(there), self.map, chart)
+        fast = speed(norm(ops, last[2:4]), norm(ops, there[2:4]), there, beside)
+        eta = self.phi[on] + turn_between([first["dx"], first["dy"]], last[2:4]) + self.reach[1][on]
+        eta = common_part(incidence(eta + bend * beside - here * aside), rough_eta)
+        across = fast * turned(eta)[0]
         across = BallArray(across.m, np.where(across.positive(), across.r, np.inf))
-        by_theta = (bends[0] * length - start["cos"] * speeds[0]) / across
-        return Slopes(by_theta, -length / across, *bends, *self.map.slopes(eta, arc))
+        by_theta = (here * length - self.whole["cos"][on] * self.speed[on]) / across
+        return Slopes(by_theta, -length / across, here, bend, *self.map.slopes(eta, arc))
 
     def across(
         self, on: Indices, chart: Indices, arc: BallArray
     ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
         """The boxes `on`; velocity and acceleration over an arc; how far it is, and how fast it leaves the lines."""
         at = {name: value[on] for name, value in self.whole.items()}
-        x, y, *velocity = self.over(chart, arc)
+        (x, y, *velocity), _ = self.over(on, chart, arc)
         along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
         slope = at["v"] * velocity[1] - at["w"] * velocity[0]
         return at, velocity, along, BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
@@ -262,7 +276,7 @@ class Flights:
         """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
         at = {name: value[on] for name, value in self.centre.items()}
         guess = BallArray(np.asarray(arc.m))
-        place, slopes = self.map.place(chart, guess), self.over(chart, arc)
+        place, (slopes, _) = self.map.place(chart, guess), self.over(on, chart, arc)
         for _ in range(2):  # of Newton's method, in float64
             value = at["v"].m * (place[1].m - at["y"].m) - at["w"].m * (place[0].m - at["x"].m)
             guess = BallArray(guess.m - value / (at["v"].m * place[3].m - at["w"].m * place[2].m))
@@ -272,36 +286,6 @@ class Flights:
         inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
         found = guess - value / slope
         return BallArray(found.m, np.where(inside, found.r, np.inf))
-
-    def beyond(self, on: Indices, chart: Indices, low: Array, high: Array) -> tuple[BallArray, Mask]:
-        """Arcs that go on past the join at which a component ends, along the same formulas; and which are told.
-
-        They are so long that every flight of the box crosses the longer component within them; and once, since the
-        derivative is known only where flights cross all of the arc from one side to the other. Where a landing lies on
-        the component it is that crossing; and the crossing is a smooth function on all of the box.
-        """
-        first, last = (np.array([float(end[k].m) for end in self.map.ends])[chart] for k in (0, 1))
-        up, down = high >= last, low <= first
-        step = (self.reach[0].r + REACH * self.reach[1].r)[on]
-        where, found = self.chart.copy(), [low.copy(), high.copy()]
-        told = ~(up & down) & (low < high)
-        for side, moving, sign in ((0, down, -1.0), (1, up, 1.0)):
-            open_ = moving & told
-            for attempt in range(DOUBLINGS):
-                at = self.theta.m + 0.0 * self.thetas.m
-                where[on], at[on] = chart, found[side] + sign * step * 2.0**attempt
-                value = self.sides((where, at))[on]
-                good = open_ & (value.positive() if sign > 0 else value.negative())
-                found[side] = np.where(good, at[on], found[side])
-                open_ &= ~good
-            told &= ~open_
-        return hull(*found), told
-
-    def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
-        """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""
-        turn = turn_between(self.tangent(on, self.thetas), self.over(chart, arc)[2:4])
-        exit, top = self.map.exit(incidence(self.phis[on] + turn), arc), self.map.top
-        return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
 
 
 def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
@@ -336,19 +320,24 @@ def turn_rate(place: list[BallArray]) -> BallArray:
     return (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
 
 
-def speed(ops: ArrayOps, middle: list[BallArray], whole: list[BallArray], beside: BallArray) -> BallArray:
-    """The speed of the parameter, by the mean-value theorem."""
-    rough = ops.sqrt(whole[2] * whole[2] + whole[3] * whole[3])
-    at = ops.sqrt(middle[2] * middle[2] + middle[3] * middle[3])
-    return common_part(rough, at + (whole[2] * whole[4] + whole[3] * whole[5]) / rough * beside)
+def norm(ops: ArrayOps, vector: list[BallArray]) -> BallArray:
+    """The length of vectors."""
+    return ops.sqrt(vector[0] * vector[0] + vector[1] * vector[1])
 
 
-def closer(bend: BallArray, map: "PinballImages", chart: Indices) -> BallArray:
-    """A bend that is known to be constant on the component, or the one that is given."""
+def speed(at: BallArray, rough: BallArray, place: list[BallArray], beside: BallArray) -> BallArray:
+    """The speed of the parameter, by the mean-value theorem, from that at a point and a rough one over a range."""
+    return common_part(rough, at + (place[2] * place[4] + place[3] * place[5]) / rough * beside)
+
+
+def closer(rough: Callable[[], BallArray], map: "PinballImages", chart: Indices) -> BallArray:
+    """How fast the tangent turns: where that is known to be constant on the component that constant, else as given."""
     known = np.array([np.nan if x is None else float(x) for x in constant_bends(map.map.table)])[chart]
-    held = ~np.isnan(known)
-    m, r = np.broadcast_arrays(bend.m, bend.r)
-    return BallArray(np.where(held, known, m), np.where(held, np.abs(known) * ROUNDING, r))
+    held, given = ~np.isnan(known), BallArray(known, np.abs(known) * ROUNDING)
+    if held.all():
+        return given
+    bend = rough()
+    return BallArray(np.where(held, given.m, bend.m), np.where(held, given.r, bend.r))
 
 
 @lru_cache(maxsize=16)

@@ -15,6 +15,7 @@ Where the arc holds a join, the image is given for both sides of it. Paper: sect
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -118,13 +119,22 @@ class PinballImages:
         slope, drift = self.law.slopes(self.ops, eta, self.lam, theta if self.placed else BallArray(0.0))
         return spread(slope, np.asarray(eta.m)), spread(drift, np.asarray(eta.m)) if self.placed else BallArray(0.0)
 
+    @cached_property
+    def outer(self) -> Array:
+        """Doubles below the first end of each component, and above the last."""
+        return np.array([(float(first.lower()), float(last.upper())) for first, last in self.ends]).T
+
+    @cached_property
+    def inner(self) -> Array:
+        """Doubles above the first end of each component, and below the last."""
+        return np.array([(float(first.upper()), float(last.lower())) for first, last in self.ends]).T
+
     @property
     def charts(self) -> tuple[Chart, ...]:
-        parts = self.map.ir.parts
-        return tuple(
-            Chart(part.name, (float(low.m), float(high.m)), (-self.top, self.top), self.closed, True)
-            for part, (low, high) in zip(parts, self.ends, strict=True)
-        )
+        """The components from end to end, rounded outwards; of a closed curve the period to the nearest double."""
+        ends = [[float(end.m) for end in self.ends[0]]] if self.closed else self.outer.T.tolist()
+        parts = zip(self.map.ir.parts, ends, strict=True)
+        return tuple(Chart(part.name, (*x,), (-self.top, self.top), self.closed, True) for part, x in parts)
 
     @property
     def label(self) -> str:
@@ -137,9 +147,9 @@ class PinballImages:
         if self.closed:
             return [spread(value, theta.m) for value in self.map.ir.parts[0].curve(self.ops, theta, *self.shape)]
         m, r = np.broadcast_arrays(theta.m, theta.r)
-        made = [BallArray(np.zeros(m.shape), np.zeros(m.shape)) for _ in range(6)]
+        made = [BallArray(np.empty(m.shape), np.empty(m.shape)) for _ in range(6)]
         for index, part in enumerate(self.map.ir.parts):
-            on = chart == index
+            on = np.flatnonzero(chart == index)
             for whole, value in zip(made, part.curve(self.ops, BallArray(m[on], r[on]), *self.shape), strict=True):
                 whole.m[on], whole.r[on] = value.m, value.r
         return made

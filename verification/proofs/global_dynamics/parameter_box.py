@@ -172,7 +172,7 @@ class ParameterFlights(Flights):
         reach = self.reach[0][on], self.reach[1][on], self.map.reach
         middle = self.middle.midpoint(on, chart, arc)
         theta = middle + by_theta * reach[0] + by_phi * reach[1] + by_shape * reach[2]
-        turn = turn_between(self.middle.tangent(on, self.theta), self.map.middle.place(chart, middle)[2:4])
+        turn = turn_between(self.middle.tangent(on, self.middle.centre), self.map.middle.place(chart, middle)[2:4])
         fine = self.phi[on] + turn + (there * by_theta - here) * reach[0] + (there * by_phi + 1) * reach[1]
         fine = fine + (there * by_shape + turned) * reach[2]
         return theta, common_part(eta, incidence(fine)), None

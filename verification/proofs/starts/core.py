@@ -10,6 +10,7 @@ curve along which orbits approach; the cycle has two bounces, one of them at `th
   `M*v <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the one that is fixed, at 0;
 - a gate is a wider and shorter set of the same kind, whose second image lies in the core.
 
+The table is its own mirror image in the axis through the cycle, so that the half `theta >= 0` is enough.
 An orbit that converges to a cycle has the exponents of the cycle, or less. Paper: section 5.3.
 """
 
@@ -18,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from verification.cycles.systems import reflected
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
 from verification.proofs.global_dynamics.flights import Matrix, matrix, times
 from verification.proofs.global_dynamics.images import PinballImages
@@ -28,7 +30,8 @@ Mask = NDArray[np.bool_]
 ROUND = 2  # bounces of the cycle
 NEARLY = 1 - 2.0**-40  # covers the roundings of a comparison
 CUT = 64, 4  # parts of a rectangle over which the derivative is enclosed
-THICK = 1e-3  # of a slab of a gate
+THICK, COARSER = 1e-3, 205  # of a slab of a gate; and its cells
+UNMOVED = np.zeros(1)
 
 
 @dataclass(frozen=True)
@@ -47,34 +50,36 @@ class Core:
     cells: int
     gates: tuple[tuple[float, float], ...] = ()
 
-    def holds(self, sets: Parallelograms, outer: float | None = None, width: float | None = None) -> Mask:
-        """Which sets lie within the core, or within a set of its kind with other bounds."""
+    def holds(self, sets: Parallelograms, *gates: tuple[float, float]) -> Mask:
+        """Which sets lie within the core, or within a set of its kind with one of other pairs of bounds."""
         theta, phi = sets.middle
         with np.errstate(invalid="ignore"):
             far = sets.reach()
             tilt = self.slope + 3 * self.cubic * theta**2
             bend = 3 * abs(self.cubic) * (np.abs(theta) + far) * far**2  # of p, beside its tangent
             aside = np.abs(phi - (self.slope + self.cubic * theta**2) * theta) + sets.reach(-tilt, 1.0) + bend
-            near = np.abs(theta) + far <= (self.outer if outer is None else outer) * NEARLY
-            thin = aside <= (self.width if width is None else width) * NEARLY
-        return np.asarray((sets.chart == self.chart) & near & thin)
+            far += np.abs(theta)
+            found = [(far <= outer * NEARLY) & (aside <= width * NEARLY) for outer, width in gates or (self.bounds,)]
+        return np.asarray((sets.chart == self.chart) & np.logical_or.reduce(found))
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Of the core itself."""
+        return self.outer, self.width
 
     def enters(self, sets: Parallelograms) -> Mask:
         """Which sets lie within the core or one of its gates."""
-        found = self.holds(sets)
-        for gate in self.gates:
-            found = found | self.holds(sets, *gate)
-        return found
+        return self.holds(sets, self.bounds, *self.gates)
 
-    def parts(self, aside: float = 0.0) -> Parallelograms:
-        """Parallelograms that cover the core, moved by `aside` in `phi`: from 0 outwards, on both sides in turn."""
+    def parts(self, aside: Array = UNMOVED) -> Parallelograms:
+        """Parallelograms that cover the half `theta >= 0`, from 0 outwards, moved by each `aside` in `phi` in turn."""
         edges = np.linspace(0, self.outer, self.cells + 1)
         middle, half = (edges[1:] + edges[:-1]) / 2, (edges[1:] - edges[:-1]) / 2 * (1 + 1e-9)
-        middle, half = np.stack([middle, -middle], axis=1).ravel(), np.repeat(half, 2)
+        aside, middle, half = (x.ravel() for x in np.broadcast_arrays(aside[:, None], middle, half))
         sides, rest = np.zeros((2, 2, middle.size)), np.zeros((2, middle.size))
         sides[0, 0], sides[1, 0] = half, (self.slope + 3 * self.cubic * middle**2) * half
         sides[1, 1] = self.width * (1 + 1e-9)
-        rest[1] = 3 * abs(self.cubic) * (np.abs(middle) + half) * half**2 * (1 + 1e-9) + 1e-15
+        rest[1] = 3 * abs(self.cubic) * (middle + half) * half**2 * (1 + 1e-9) + 1e-15
         phi = (self.slope + self.cubic * middle**2) * middle + aside
         return Parallelograms(np.full(middle.size, self.chart), np.stack([middle, phi]), sides, rest)
 
@@ -93,9 +98,9 @@ def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
 def attracts(map: PinballImages, core: Core) -> dict[str, bool]:
     """Is all of the core taken to the cycle, step by step? The items are those of the module's docstring."""
     images = twice(map, core.parts())
-    if images is None:
+    if images is None or not reflected(map.map.table):
         return {"orbits come to the middle": False, "they converge there": False, "gates lead in": False}
-    far = (np.abs(images.middle[0]) + images.reach()).reshape(core.cells, 2).max(axis=1)
+    far = np.abs(images.middle[0]) + images.reach()
     edges = np.linspace(0, core.outer, core.cells + 1)
     beyond = edges[1:] > core.inner
     nearer = np.maximum.accumulate(far)[beyond] < edges[:-1][beyond] * NEARLY
@@ -110,9 +115,9 @@ def attracts(map: PinballImages, core: Core) -> dict[str, bool]:
 def _leads(map: PinballImages, core: Core, outer: float, width: float) -> bool:
     """Is the second image of a gate within the core?"""
     slabs = int(np.ceil(width / THICK))
-    one = replace(core, outer=outer, width=width / slabs)
-    images = [twice(map, one.parts((2 * k + 1 - slabs) * (width / slabs))) for k in range(slabs)]
-    return all(image is not None and bool(core.holds(image).all()) for image in images)
+    one = replace(core, outer=outer, width=width / slabs, cells=COARSER)
+    images = twice(map, one.parts(np.arange(1 - slabs, slabs, 2) * np.float64(width / slabs)))
+    return images is not None and bool(core.holds(images).all())
 
 
 def _converges(map: PinballImages, core: Core) -> bool:

@@ -15,14 +15,16 @@ continuous but has a kink. There one set goes on for each component: the landing
 give beyond the join, which are a smooth function of all of the set, or else a rectangle about those on the component.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
-from verification.proofs.global_dynamics.flights import Flights, incidence, matrix, turn_between
+from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.chords import Chords
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -30,7 +32,6 @@ Mask = NDArray[np.bool_]
 OUTWARDS = 1 + 2.0**-46  # more than the roundings of a sum of six doubles
 PAD = 1e-300
 WIDER = 1.5  # a parallelogram may be so much wider than the rectangle, for what it keeps of directions
-ENDS = 1e-14  # more than the rounding of an end of a component
 FIELDS = "chart", "middle", "sides", "rest"
 
 
@@ -55,6 +56,11 @@ class Parallelograms:
         sides = np.zeros((2, 2, boxes.chart.size))
         sides[0, 0], sides[1, 1] = half
         return cls(boxes.chart, middle, sides, np.zeros_like(middle))
+
+    @classmethod
+    def joined(cls, parts: Sequence["Parallelograms"]) -> "Parallelograms":
+        """All sets of a list."""
+        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in FIELDS))
 
     def __getitem__(self, chosen: NDArray[np.bool_] | Indices) -> "Parallelograms":
         return Parallelograms(
@@ -101,14 +107,15 @@ def carried(map: PinballImages, sets: Parallelograms) -> tuple[Indices, Parallel
     Of a lost set no image is known: its image is lost. A set without an image holds no phase point of the table.
     """
     with np.errstate(all="ignore"):
-        whole, part = sets.boxes(), _on_the_table(map, sets)
-        held = np.flatnonzero(~((part.x[0] > part.x[1]) | (part.y[0] > part.y[1])))
-        rows = _carried(map, sets, whole, held) or [(held, sets[held])]
-        lost = np.unique(np.concatenate([on[~images.known] for on, images in rows]))
-        rows = [(on[keep := ~np.isin(on, lost)], images[keep]) for on, images in rows] + _carried(map, sets, part, lost)
-    source = np.concatenate([on for on, _ in rows])
-    fields = ([getattr(images, name) for _, images in rows] for name in FIELDS)
-    images = Parallelograms(*(np.concatenate(field, axis=-1) for field in fields))
+        whole, again = sets.boxes(), np.zeros(sets.chart.size, dtype=bool)
+        part = _on_the_table(map, whole)
+        rows = _carried(map, sets, whole, np.flatnonzero(~((part.x[0] > part.x[1]) | (part.y[0] > part.y[1]))))
+        for on, images in rows:
+            again[on[~images.known]] = True
+        again &= np.any([*part.x, *part.y] != np.array([*whole.x, *whole.y]), axis=0)
+        rows = [(on[keep := ~again[on]], images[keep]) for on, images in rows]
+        rows += _carried(map, sets, part, np.flatnonzero(again))
+    source, images = np.concatenate([on for on, _ in rows]), Parallelograms.joined([images for _, images in rows])
     images.rest[:, ~images.known] = np.inf
     return source, images
 
@@ -122,18 +129,16 @@ def _carried(map: PinballImages, sets: Parallelograms, boxes: Boxes, on: Indices
     A set may go on past the end of its component, along the same formulas: its flights are those of a longer curve.
     """
     if not on.size:
-        return []
+        return [(on, sets[on])]
     sets, boxes = sets[on], Boxes(boxes.chart[on], *((a[on], b[on]) for a, b in (boxes.x, boxes.y)))
-    flights = Flights(map, boxes)
+    flights = Chords(map, boxes)
     low, high = flights.arcs()
     if not map.closed:
-        ends = [np.array([c.x[k] for c in map.charts])[boxes.chart] for k in (0, 1)]
+        ends = map.inner[:, boxes.chart]
         guessed = (low[1] == boxes.x[0]) | (high[1] == boxes.x[1])  # the start in the place of an end of the arc
         low[1][guessed & ((boxes.x[0] < ends[0]) | (boxes.x[1] > ends[1]))] = np.nan
     rows: Rows = []
-    for some, chart, first, last, smooth in flights.pieces(low, high):
-        if not some.size:
-            continue
+    for some, chart, first, last, smooth in flights.split(low, high):
         image, met = _image(flights, sets[some], some, chart, hull(first, last), smooth)
         if not smooth:
             arc, told = flights.beyond(some, chart, first, last)
@@ -143,34 +148,27 @@ def _carried(map: PinballImages, sets: Parallelograms, boxes: Boxes, on: Indices
     return rows
 
 
-def _on_the_table(map: PinballImages, sets: Parallelograms) -> Boxes:
-    """What the rectangle about each set has in common with phase space."""
-    boxes = sets.boxes()
-    sides = [np.array([getattr(c, side) for c in map.charts])[boxes.chart].T for side in ("x", "y")]
-    x, y = (
-        (np.maximum(low, ends[0] - ENDS), np.minimum(high, ends[1] + ENDS))
-        for (low, high), ends in zip((boxes.x, boxes.y), sides, strict=True)
-    )
-    return Boxes(boxes.chart, boxes.x if map.closed else x, y)
+def _on_the_table(map: PinballImages, boxes: Boxes) -> Boxes:
+    """What rectangles have in common with phase space."""
+    (left, right), (below, above), (first, last) = boxes.x, boxes.y, map.outer[:, boxes.chart]
+    x = boxes.x if map.closed else (np.maximum(left, first), np.minimum(right, last))
+    return Boxes(boxes.chart, x, (np.maximum(below, -map.top), np.minimum(above, map.top)))
 
 
 def _image(
-    flights: Flights, sets: Parallelograms, on: Indices, chart: Indices, arc: BallArray, smooth: bool
+    flights: Chords, sets: Parallelograms, on: Indices, chart: Indices, arc: BallArray, smooth: bool
 ) -> tuple[Parallelograms, NDArray[np.bool_]]:
     """The image of sets whose landings lie in one arc of one component: as parallelograms where that arc is all.
 
     And which of them have one: where an arc is a part of what may be met, no landing in it may have such an angle.
     """
-    map = flights.map
     known, low, high = flights.exits(on, chart, arc)
     none = known & (high < low)
     whole = Parallelograms.about(Boxes(chart, (arc.lower(), arc.upper()), (np.where(none, np.nan, low), high)))
     if not smooth:
         return whole, ~none
-    derivative = matrix(flights.slopes(on, chart, arc))
-    place = flights.midpoint(on, chart, arc)
-    turn = turn_between(flights.tangent(on, flights.theta), map.place(chart, place)[2:4])
-    landing = [place, map.exit(incidence(flights.phi[on] + turn), place)]
+    derivative = matrix(slopes := flights.slopes(on, chart, arc))
+    landing = flights.midpoints(on, chart, arc, slopes.bend_there)
     middle, sides, rest = np.empty_like(sets.middle), np.empty_like(sets.sides), np.empty_like(sets.rest)
     aside = [np.abs(sets.middle[k] - (flights.theta, flights.phi)[k].m[on]) * OUTWARDS + sets.rest[k] for k in (0, 1)]
     for row, (value, entries) in enumerate(zip(landing, derivative, strict=True)):

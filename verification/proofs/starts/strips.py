@@ -24,27 +24,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from verification.cycles.systems import reflected
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull, turned
-from verification.proofs.global_dynamics.flights import Flights, Matrix, matrix, times
+from verification.proofs.global_dynamics.flights import Matrix, matrix, norm, times
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.chords import Chords
 from verification.proofs.starts.core import Core
-from verification.proofs.starts.parallelograms import ENDS, Parallelograms, carried
+from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 SLACK = 1 + 2.0**-40  # covers the roundings of a sum
+MIDDLE = 1e-14  # more than the rounding of a midpoint
 WIDE = 0.05  # distance of these orbits, at most
 WIDEST = 0.3  # a parallelogram that is wider is given up
-BLOCK = 1 << 15  # strips at once
+LOOK, BLOCK = 1 << 12, 1 << 15  # strips at once: in float64, and closely
+FEW = 0.08  # the share of strips that are cut rather than followed on when all others have come home or failed
 LEAN = 5  # bounces after which strips that lean as they do are thinnest
 STEEPEST = 0.3  # of lines, in theta by eta
-LOOKS = (-1.0, 0.0, 1.0)  # places across and along a strip, at which orbits are looked at before anything is proved
-SHARE = 1.0  # how much wider than the distances of these orbits a gate has to be
+MORE = 2.0  # times what has to be settled is looked at closely, the widest first: some of it fails
+CORNERS = (-1, -1, 1, 1), (-1, 1, -1, 1)  # across and along a strip: orbits looked at before anything is proved
 BENT = 1.0  # how much more than its first side a parallelogram may owe to the rest, before a strip is cut across
 EARLY = 1  # the bounce after which that is looked at
 BOUNCES = 20
-FIRST = 256, 16  # parts of a component over which the norm is asked first
+FIRST = 128, 4  # parts of a component over which the norm is asked first
 QUARTER = 1.5707963267948968  # above pi/2
 
 
@@ -82,7 +86,7 @@ class Strips(NamedTuple):
         wide, tall = (self.right - self.left) / 2 * (1 + 1e-12), self.half * (1 + 1e-12)
         sides, rest = np.zeros((2, 2, middle.size)), np.zeros((2, middle.size))
         sides[0, 0], sides[0, 1], sides[1, 1] = wide, lean * tall, -float(lam.m) * tall
-        rest[0] = np.abs(self.right_lean - self.left_lean) / 2 * tall * SLACK + ENDS
+        rest[0] = np.abs(self.right_lean - self.left_lean) / 2 * tall * SLACK + MIDDLE
         rest[1] = exit.r + (float(lam.r) + 1e-16) * tall * SLACK + 1e-15
         return Parallelograms(self.chart, np.stack([middle, exit.m]), sides, rest)
 
@@ -113,8 +117,7 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
     for chart, count in enumerate(columns):
         low, high = map.charts[chart].x
         line = np.linspace(low, high, count + 1)
-        for eta, tall in zip(middle, half, strict=True):
-            lean = _leaning(map.map, chart, line, float(eta))
+        for eta, tall, lean in zip(middle, half, _leaning(map.map, chart, line, middle), strict=True):
             lean[0] = lean[-1] = 0.0
             most = np.diff(line) / tall * 0.9
             for _ in range(2):  # lines do not cross
@@ -127,50 +130,47 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
     return joined(pieces)
 
 
-def _leaning(map: PinballMap, chart: int, theta: Array, eta: float) -> Array:
-    """`d theta/d eta` of curves that a few bounces make short."""
+def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
+    """`d theta/d eta` of curves that a few bounces make short: a row for each `eta`, a column for each `theta`."""
     lam = float(np.max(map.lam))
-    inside = np.clip(theta, theta[0] + 1e-6, theta[-1] - 1e-6)
-    at, phi, on = inside, np.full(theta.size, -lam * eta), np.full(theta.size, chart)
-    product = np.tile(np.eye(2), (theta.size, 1, 1))
+    inside, on = np.clip(theta, theta[0] + 1e-6, theta[-1] - 1e-6), np.full(theta.size * eta.size, chart)
+    at, phi = np.tile(inside, eta.size), -lam * np.repeat(eta, theta.size)
+    dx, dy = (np.gradient(z, inside) for z in map.states.point(on[: theta.size], inside))
+    product = np.tile(np.eye(2), (on.size, 1, 1))
     for _ in range(LEAN):
         product = map.derivative(at, phi, on) @ product
         step = map.step(at, phi, on)
         at, phi, on = step.theta, step.phi, step.component
-    dx, dy = (np.gradient(z, inside) for z in map.states.point(np.full(theta.size, chart), inside))
-    lean = lam * product[:, 0, 1] / product[:, 0, 0] / np.sqrt(dx * dx + dy * dy)
+    lean = (lam * product[:, 0, 1] / product[:, 0, 0]).reshape(eta.size, theta.size) / np.sqrt(dx * dx + dy * dy)
     return np.asarray(np.clip(np.nan_to_num(lean), -STEEPEST, STEEPEST))
 
 
 def hopeful(map: PinballMap, core: Core, given: Strips) -> tuple[Mask, Mask]:
-    """Which strips may be settled, by nine float64 orbits of each; and which others had rather be cut across.
+    """Which strips may be settled, by float64 orbits of their corners; and which others had rather be cut across.
 
     What is hopeful is looked at closely; a wrong guess costs time.
     """
-    lam, count = float(np.max(map.lam)), given.left.size
-    across, along = (x.ravel()[:, None] for x in np.meshgrid(LOOKS, LOOKS, indexing="ij"))
+    lam, count, corners = float(np.max(map.lam)), given.left.size, len(CORNERS[0])
+    across, along = (np.array(side)[:, None] for side in CORNERS)
     u = along * given.half
     left, right = given.left + given.left_lean * u, given.right + given.right_lean * u
     theta, phi = (left + right + across * (right - left)) / 2, -lam * (given.middle + u)
     low, high = (np.array([end[k] for end in map.states.ends])[given.chart] for k in (0, 1))
-    orbit = map.orbit(np.clip(theta, low, high).ravel(), phi.ravel(), BOUNCES, np.tile(given.chart, 9))
-    at = orbit.theta.reshape(BOUNCES + 1, 9, count)
-    exit = orbit.phi.reshape(at.shape)
-    one = np.ptp(orbit.component.reshape(at.shape), axis=1) == 0
-    spread = np.ptp(at, axis=1)
+    start = np.clip(theta, low, high).ravel(), phi.ravel(), BOUNCES, np.tile(given.chart, corners)
+    orbit = map.orbit(*start, fields=("component", "theta", "phi"))
+    chart, at, exit = (orbit[name].reshape(BOUNCES + 1, corners, count) for name in ("component", "theta", "phi"))
+    low, high = at.min(axis=1), at.max(axis=1)
+    spread, far = high - low, np.maximum(high, -low)
     aside = np.abs(exit - (core.slope + core.cubic * at**2) * at)
+    most = 2 * aside.max(axis=1) - aside.min(axis=1)
+    fine = np.logical_and.accumulate((chart == chart[:, :1]).all(axis=1) & (spread < WIDE), axis=0)
     inside = np.zeros((BOUNCES + 1, count), dtype=bool)
     for outer, width in ((core.outer, core.width), *core.gates):
-        near = np.max(np.abs(at), axis=1) + SHARE * spread < outer
-        thin = np.max(aside, axis=1) + SHARE * np.ptp(aside, axis=1) < width
-        inside |= near & thin
-    inside &= orbit.component.reshape(at.shape)[:, 0] == core.chart
-    fine = np.logical_and.accumulate(one & (spread < WIDE), axis=0)
-    good = np.any(inside & fine, axis=0)
-    last = np.clip(np.sum(fine, axis=0), 1, BOUNCES)
-    places = at.reshape(BOUNCES + 1, 3, 3, count)
-    sides = [np.max(np.ptp(places, axis=k), axis=1)[last, np.arange(count)] for k in (1, 2)]
-    return good, np.asarray(sides[1] > sides[0])
+        inside |= (far + spread < outer) & (most < width)
+    good = np.any(inside & fine & (chart[:, 0] == core.chart), axis=0)
+    last = np.clip(np.sum(fine, axis=0), 1, BOUNCES), np.arange(count)
+    a, b, c, d = (at[last[0], k, last[1]] for k in range(4))
+    return good, np.asarray(np.maximum(np.abs(a - b), np.abs(c - d)) > np.maximum(np.abs(a - c), np.abs(b - d)))
 
 
 def settled(map: PinballImages, core: Core, given: Strips) -> tuple[Mask, Mask]:
@@ -182,8 +182,8 @@ def settled(map: PinballImages, core: Core, given: Strips) -> tuple[Mask, Mask]:
         entered[owner[home]] = True
         open_ = ~home & ~failed[owner]
         sets, owner = sets[open_], owner[open_]
-        if not owner.size:
-            return entered & ~failed, flat
+        if owner.size <= FEW * entered.size:
+            break
         source, images = carried(map, sets)
         with np.errstate(invalid="ignore"):
             lost = ~images.known | ~(images.reach() < WIDEST)
@@ -209,16 +209,16 @@ def unsettled(map: PinballImages, core: Core, first: Strips, enough: float, roun
     """
     cells, asked, left = first, 0, np.inf
     for _ in range(rounds):
-        sizes = 2 * SLACK * cells.measures(map)
-        open_, across = np.ones(sizes.size, dtype=bool), np.zeros(sizes.size, dtype=bool)
-        for start in range(0, sizes.size, BLOCK):
-            some = cells.some(slice(start, start + BLOCK))
-            good, flat = hopeful(map.map, core, some)
-            chosen = np.flatnonzero(good)
-            if chosen.size:
-                done, flat[chosen] = settled(map, core, some.some(chosen))
-                open_[start + chosen[done]] = False
-            across[start : start + BLOCK] = flat
+        sizes, open_ = 2 * SLACK * cells.measures(map), np.ones(cells.left.size, dtype=bool)
+        looks = [hopeful(map.map, core, cells.some(slice(k, k + LOOK))) for k in range(0, sizes.size, LOOK)]
+        good, across = (np.concatenate(answers) for answers in zip(*looks, strict=True))
+        hopes = np.flatnonzero(good)
+        hopes = hopes[np.argsort(-sizes[hopes], kind="stable")]
+        hopes = hopes[np.cumsum(sizes[hopes]) - sizes[hopes] <= MORE * (np.sum(sizes) - enough)]
+        for k in range(0, hopes.size, BLOCK):
+            chosen = hopes[k : k + BLOCK]
+            done, across[chosen] = settled(map, core, cells.some(chosen))
+            open_[chosen[done]] = False
             asked += chosen.size
             left = float(np.sum(sizes[open_])) * SLACK
             if left <= enough:
@@ -241,8 +241,7 @@ def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> A
 
 def speeds(map: PinballImages, chart: Indices, theta: BallArray) -> BallArray:
     """How fast the boundary's parameters run, in arc length."""
-    _, _, dx, dy, *_ = map.place(chart, theta)
-    return map.ops.sqrt(dx * dx + dy * dy)
+    return norm(map.ops, map.place(chart, theta)[2:4])
 
 
 def _steepest(
@@ -267,11 +266,9 @@ def _steepest(
             np.maximum.at(found, owner, np.where(np.isfinite(most), most, np.inf))
             return
         seen = np.zeros(owner.size, dtype=bool)
-        whole = Flights(map, boxes)
-        for piece in whole.pieces(*whole.arcs()):
+        whole = Chords(map, boxes)
+        for piece in whole.split(*whole.arcs()):
             on = piece.on
-            if not on.size:
-                continue
             seen[on] = True
             arc = hull(piece.low, piece.high)
             known, low, high = whole.exits(on, piece.chart, arc)
@@ -286,10 +283,13 @@ def _steepest(
 
 
 def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvings: int = 8) -> bool:
-    """Is `nu_plus` at most `rate` for every orbit? The norm of so many bounces says so, over boxes cut as needed."""
-    goal = exp(rate * bounces) / SLACK
+    """Is `nu_plus` at most `rate` for every orbit? The norm of so many bounces says so, over boxes cut as needed.
+
+    Where the table is its own mirror image, boxes of `phi >= 0` are enough.
+    """
+    goal, mirrored = exp(rate * bounces) / SLACK, reflected(map.map.table)
     for chart, ends in enumerate(map.charts):
-        sides = [(np.array([low - ENDS]), np.array([high + ENDS])) for low, high in (ends.x, ends.y)]
+        sides = [(np.array([low]), np.array([high])) for low, high in (ends.x, (0.0, map.top) if mirrored else ends.y)]
         boxes = Boxes(np.array([chart]), *sides).parts(*FIRST)[0]
         for _ in range(halvings):
             open_ = ~(steepest(map, boxes, bounces, weight) <= goal)

@@ -4,13 +4,16 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import arb
 from numpy.typing import NDArray
 
 from numeric import PinballMap
 from symbolic import Scene, tables
+from verification.arithmetic.balls import enclose, working
 from verification.proofs.global_dynamics.boxes import Boxes, hull
-from verification.proofs.global_dynamics.flights import Flights, constant_bends, matrix
+from verification.proofs.global_dynamics.flights import constant_bends, matrix
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.chords import Chords
 from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
@@ -69,7 +72,7 @@ def test_derivatives_hold_those_of_the_kernels() -> None:
     ]
     factors = np.array([[speed[0] / speed[1], 1 / speed[1]], [speed[0], np.ones_like(theta)]])
     told = told * factors.transpose(2, 0, 1)
-    flights, asked = Flights(images, boxes), 0
+    flights, asked = Chords(images, boxes), 0
     for on, chart, low, high, _ in flights.pieces(*flights.arcs()):
         arc = hull(low, high)
         entries = matrix(flights.slopes(on, chart, arc))
@@ -89,7 +92,7 @@ def test_beyond_a_join_every_flight_crosses_the_longer_component() -> None:
     images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
     boxes, rng = drawn(images, 5, 6000, 0.03), np.random.default_rng(6)
     theta, phi = (a + (b - a) * rng.random(6000) for a, b in (boxes.x, boxes.y))
-    flights, beyond = Flights(images, boxes), 0
+    flights, beyond = Chords(images, boxes), 0
     for on, chart, low, high, smooth in flights.pieces(*flights.arcs()):
         if smooth or not on.size:
             continue
@@ -114,6 +117,34 @@ def leaving(chart: Array, theta: Array, phi: Array) -> tuple[Array, ...]:
     x, y = np.where(chart == 0, (1 + c) * c, -0.25), np.where(chart == 0, (1 + c) * s, -theta)
     tangent = np.arctan2(dy, dx)
     return x, y, np.cos(tangent + np.pi / 2 - phi), np.sin(tangent + np.pi / 2 - phi)
+
+
+def test_charts_hold_the_ends_of_components_and_inner_ends_lie_on_them() -> None:
+    """The arc of the cuspless table ends at `2*pi/3`, which is no double, the wall at `3*sqrt(3)/4/2`."""
+    images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
+    with working(200):
+        for chart, inner, part in zip(images.charts, images.inner.T, tables.cuspless.components, strict=True):
+            first, last = (enclose(end).real for end in (part.start, part.end))
+            assert all((arb(chart.x[0]) < first, first < arb(inner[0]), arb(inner[1]) < last, last < arb(chart.x[1])))
+            assert max(chart.x[1] - inner[1], inner[0] - chart.x[0]) < 1e-14
+
+
+def test_the_double_about_which_landings_are_enclosed_lies_in_the_arc() -> None:
+    """Also where the midpoint lands beyond the arc, or on another component: arcs cut from those of their boxes."""
+    images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
+    boxes, rng = drawn(images, 7, 4000, 0.02), np.random.default_rng(8)
+    flights, moved = Chords(images, boxes), 0
+    for on, chart, low, high, smooth in flights.split(*flights.arcs()):
+        cut = low + (high - low) * rng.random(on.size)
+        for arc in (hull(low, high), hull(low, cut), hull(cut, high)):
+            with np.errstate(all="ignore"):
+                (at, place), told = flights.near(on, chart, arc), np.isfinite(arc.r)
+            assert np.all((arc.lower() <= at.m)[told] & (at.m <= arc.upper())[told])
+            again = images.place(chart, at)
+            assert all(np.array_equal(a.m, b.m, equal_nan=True) for a, b in zip(place, again, strict=True))
+            moved += int(np.sum(at.m[told] == arc.m[told]))
+        assert smooth or np.any(chart != flights.landed[0][on])
+    assert moved > 100
 
 
 def test_only_constant_bends_are_known() -> None:

@@ -10,6 +10,7 @@ from sympy import Rational, S
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
 from symbolic import Scene
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.core import Core, attracts
 from verification.proofs.starts.mean import CORE, HIGH, LOW, average, diameter, stable
@@ -43,6 +44,41 @@ def test_a_core_that_is_none_is_refused(map: PinballImages, core: Core, item: st
 def test_a_repelling_cycle_has_no_core() -> None:
     """Beyond lambda_c = 0.0934 the orbit of period 2 attracts nothing."""
     assert not any(attracts(PinballImages(Scene("cuspless", lam="1/10")), replace(SHORT, gates=SHORT.gates)).values())
+
+
+def test_half_of_a_core_is_no_proof_where_the_table_is_not_its_own_mirror_image(
+    map: PinballImages, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Images of `theta >= 0` say nothing of the others there; and the norm is asked of `phi < 0` too."""
+    monkeypatch.setattr("verification.proofs.starts.core.reflected", lambda table: False)
+    assert not any(attracts(map, SHORT).values())
+    monkeypatch.setattr("verification.proofs.starts.strips.reflected", lambda table: False)
+    asked: list[float] = []
+
+    def noted(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> np.ndarray:
+        asked.append(float(np.min(boxes.y[0])))
+        return np.zeros(boxes.chart.size)
+
+    monkeypatch.setattr("verification.proofs.starts.strips.steepest", noted)
+    assert bounded(map, 0.54, 2, 0.05)
+    assert asked == [-map.top] * 2
+
+
+def test_a_core_and_its_gates_are_their_own_mirror_images_and_the_kernel_takes_them_in(map: PinballImages) -> None:
+    """Random points of both halves, `theta` of either sign: after two bounces they are in the core."""
+    rng = np.random.default_rng(8)
+    for lam in (LOW, HIGH):
+        pinball = PinballMap("cuspless", lam=str(float(lam)))
+        for outer, width in (CORE.bounds, *CORE.gates):
+            theta = outer * (2 * rng.random(4000) - 1)
+            phi = (CORE.slope + CORE.cubic * theta**2) * theta + width * (2 * rng.random(4000) - 1)
+            theta, phi = (x[np.abs(phi) < map.top] for x in (theta, phi))
+            for sign in (1, -1):
+                step = pinball.step(sign * theta, sign * phi, CORE.chart)
+                step = pinball.step(step.theta, step.phi, step.component)
+                aside = np.abs(step.phi - (CORE.slope + CORE.cubic * step.theta**2) * step.theta)
+                assert np.all(step.component == CORE.chart)
+                assert np.all((np.abs(step.theta) <= CORE.outer) & (aside <= CORE.width))
 
 
 def thin(chart: int, theta: np.ndarray, eta: np.ndarray, wide: float, tall: float) -> Strips:

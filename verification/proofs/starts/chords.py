@@ -1,0 +1,92 @@
+"""Flights of parallelograms: also along the formulas of a component beyond its end; and where their midpoints land.
+
+A kernel's landing in float64 is a double in the arc of landings; about it derivative and landing are enclosed.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.proofs.global_dynamics.boxes import BallArray, hull
+from verification.proofs.global_dynamics.flights import End, Flights, Piece, incidence, turn_between
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+NEARLY = 1 - 2.0**-40  # covers the roundings of a comparison
+DOUBLINGS = 4  # of what is added to an arc beyond a join
+REACH = 3.0  # about the length of a flight
+
+
+class Chords(Flights):
+    """The flights that leave a block of boxes."""
+
+    kept: tuple[BallArray, BallArray, list[BallArray]] | None = None  # an arc, and what is near it
+
+    def split(self, low: End, high: End) -> list[Piece]:
+        """The arcs that lie on one component, and all parts of the others; without those of which there are none."""
+        smooth, *parts = self.pieces(low, high)
+        if parts:
+            on, chart, first, last = (np.concatenate(column) for column in list(zip(*parts, strict=True))[:4])
+            parts = [Piece(on, chart, first, last, False)]
+        return [piece for piece in (smooth, *parts) if piece.on.size]
+
+    def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
+        """A double in each arc, the landing of the box's midpoint but for rounding, and the boundary there."""
+        if self.kept is None or self.kept[0] is not arc:
+            self.kept = arc, *self._near(on, chart, arc)
+        return self.kept[1:]
+
+    def _near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
+        m, r, (where, landed, place) = np.asarray(arc.m), arc.r * NEARLY, self.landed
+        at = np.where(where[on] == chart, landed[on], np.nan)
+        far = np.flatnonzero(~(np.abs(at - m) <= r))
+        if not far.size:
+            return BallArray(at), [value[on] for value in place]
+        start = {name: self.centre[name].m[on[far]] for name in ("x", "y", "v", "w")}
+        at[far] = m[far]
+        for _ in range(2):  # of Newton's method, in float64
+            x, y, dx, dy, *_ = (value.m for value in self.map.place(chart[far], BallArray(at[far])))
+            value = start["v"] * (y - start["y"]) - start["w"] * (x - start["x"])
+            at[far] -= value / (start["v"] * dy - start["w"] * dx)
+        at = np.where(np.abs(at - m) <= r, at, m)
+        return BallArray(at), self.map.place(chart, BallArray(at))
+
+    def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
+        """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""
+        exit, top = self.map.exit(self.over(on, chart, arc)[1], arc), self.map.top
+        return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
+
+    def midpoints(self, on: Indices, chart: Indices, arc: BallArray, bend: BallArray) -> tuple[BallArray, BallArray]:
+        """Where the midpoints of boxes land, by a step of interval Newton within the arc, and how they leave.
+
+        `bend` is how fast the tangent turns over the arc.
+        """
+        (at, place), (there, _) = self.near(on, chart, arc), self.over(on, chart, arc)
+        x, y, v, w = (self.centre[name][on] for name in ("x", "y", "v", "w"))
+        step = (w * (place[0] - x) - v * (place[1] - y)) / (v * there[3] - w * there[2])
+        turn = turn_between(self.tangent(on, self.centre), place[2:4])
+        eta, landing = incidence(self.phi[on] + turn + bend * step), at + step
+        return landing, self.map.exit(eta, landing)
+
+    def beyond(self, on: Indices, chart: Indices, low: Array, high: Array) -> tuple[BallArray, Mask]:
+        """Arcs that go on past the join at which a component ends, along the same formulas; and which are known.
+
+        They are so long that every flight of the box crosses the longer component within them; and once, since the
+        derivative is known only where flights cross all of the arc from one side to the other. Where a landing lies on
+        the component it is that crossing; and the crossing is a smooth function on all of the box.
+        """
+        first, last = self.map.outer[:, chart]
+        up, down = high >= last, low <= first
+        step = (self.reach[0].r + REACH * self.reach[1].r)[on]
+        found, known = [low.copy(), high.copy()], ~(up & down) & (low < high)
+        for side, moving, sign in ((0, down, -1.0), (1, up, 1.0)):
+            open_ = np.flatnonzero(moving & known)
+            for attempt in range(DOUBLINGS):
+                at = found[side][open_] + sign * step[open_] * 2.0**attempt
+                value = self.sides((chart[open_], at), on[open_])
+                good = value.positive() if sign > 0 else value.negative()
+                found[side][open_[good]] = at[good]
+                if not (open_ := open_[~good]).size:
+                    break
+            known[open_] = False
+        return hull(*found), known

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from rich.console import Console
 
-
 LARGEST = 1 << 26  # bytes of a sweep's results that are written as JSON
 RARELY = 50_000, 20, 20  # objects between searches for unused cycles: SymPy makes many, and hardly any is unused
 PATIENCE = 2.0  # seconds before a progress bar appears
@@ -50,7 +49,10 @@ class Output:
     @cached_property
     def console(self) -> "Console":
         """Standard output, or standard error when the JSON document has standard output to itself."""
-        return console(stderr=self.path == "-")
+        from rich.console import Console
+
+        people = Console(stderr=self.path == "-", highlight=False, markup=False, soft_wrap=True)
+        return console(people.stderr) if people.is_terminal else people
 
     def write(self, document: Mapping[str, Any], *results: Any) -> None:
         """Writes the JSON document where `--json` said, and where `--plot` said the picture of the same results."""
@@ -363,14 +365,13 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
     """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
     fields: dict[str, Any] = {}
     for name, values in found.data_vars.items():
-        fields[str(name)] = {"dims": list(values.dims), "units": values.attrs["units"]}
-        fields[str(name)]["about"] = values.attrs["long_name"]
+        units, about = values.attrs["units"], values.attrs["long_name"]
+        fields[str(name)] = {"dims": list(values.dims), "units": units, "about": about}
         if store is None and found.nbytes <= LARGEST:
             fields[str(name)]["values"] = finite(values.values.tolist())
     coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
     labels = {str(key): _read(value) for key, value in found.attrs.items()}
-    whole = {**labels, "coords": coords, "fields": fields}
-    return whole if store is None else {**whole, "store": str(store)}
+    return {**labels, "coords": coords, "fields": fields} | ({} if store is None else {"store": str(store)})
 
 
 def _read(value: Any) -> Any:

@@ -2,18 +2,20 @@
 
 Between a barrier and its mirror image a largest set is kept that attracts all orbits there and holds every attractor.
 Its largest exit angle is bounded from above for all contractions of a range, and from below at its ends, so closely
-that at each end it is larger than at every contraction from 0.43 to the end before. In windows a cycle attracts most
-orbits, and is a smaller attractor within; of those nothing is said.
+that at each end it is larger than at every contraction from 0.43 to the end before. So no attractor there reaches as
+far before. That the chaotic one reaches as far as all that is kept, at each end, is sampled: it may be a part, as a
+cycle is in windows.
 """
 
 from fractions import Fraction
 from functools import cache
-from math import ceil, floor, inf
+from math import asin, ceil, floor, inf
 
 from symbolic.expressions.signs import Finding
 from symbolic.tables.scene import Scene
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, judges
+from verification.paper.claims.judges import answer, by, judges, sampled
+from verification.paper.egg import crises
 from verification.paper.judges.attractors import SHAPE
 from verification.proofs.global_dynamics.barrier import Barrier
 from verification.proofs.starts.extent import Extent
@@ -65,13 +67,18 @@ def up(x: float) -> str:
 
 
 def judged(range: str) -> Judgement:
-    """The proof in words."""
+    """What is proved of all that is kept, and what is sampled of the chaotic attractor within."""
     bounds = ", ".join(f"{down(extent(lam).low)} to {up(extent(lam).high)} at {lam}" for lam in CURVES)
-    return Judgement(
-        expands(),
-        f"{range}: of the largest attractor between a barrier and its mirror image, which attracts all orbits there, "
-        f"the largest exit angle is {bounds}; at each of these it is larger than at every contraction from {FIRST} to "
-        "the one before. In windows most orbits may end on a cycle within it, of which nothing is said",
+    seen = {lam: asin(crises.extent(lam).height) for lam in CURVES}
+    reaches = all(extent(lam).low <= angle <= extent(lam).high for lam, angle in seen.items())
+    said = ", ".join(f"{angle:.4f} at {lam}" for lam, angle in seen.items())
+    return sampled(
+        f"{range}: of all that is kept between a barrier and its mirror image, where it attracts every orbit, the "
+        f"largest exit angle is {bounds}; at each of these it is larger than at every contraction from {FIRST} to the "
+        "one before. That the chaotic attractor, which is a part of it, reaches as far is sampled; in windows a cycle "
+        "attracts",
+        f"proved: {expands().reason}; sampled: chaotic orbits have exit angles up to {said}",
+        bool(expands()) and reaches,
     )
 
 

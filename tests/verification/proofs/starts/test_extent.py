@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -75,14 +76,18 @@ def test_where_a_step_is_not_proved_nothing_is_said(change):
 
 
 def test_the_attractor_expands_where_each_lower_bound_is_above_the_upper_ones_before(monkeypatch):
-    """Nothing is confirmed without a lower bound, or with a ceiling that is not proved."""
+    """Nothing is said without a lower bound, a ceiling that is proved, or chaotic orbits that reach as far."""
     claim, judge = CLAIMS["egg.attractor_expands"], expanding.attractor_expands
-    assert judge(claim).verdict is Verdict.CONFIRMED
-    assert expanding.single_expands(CLAIMS["egg.single_expands"]).verdict is Verdict.CONFIRMED
+    assert judge(claim).verdict is Verdict.SUPPORTED
+    assert expanding.single_expands(CLAIMS["egg.single_expands"]).verdict is Verdict.SUPPORTED
     for name, broken in (("ceiling", lambda *_: np.inf), ("ceiling", lambda *_: 0.17)):
         expanding.expands.cache_clear()
         monkeypatch.setattr(expanding, name, broken)
         assert judge(claim).verdict is Verdict.OPEN
+    monkeypatch.undo()
+    expanding.expands.cache_clear()
+    monkeypatch.setattr(expanding.crises, "extent", lambda _: SimpleNamespace(height=0.15))
+    assert judge(claim).verdict is Verdict.OPEN
     monkeypatch.undo()
     expanding.expands.cache_clear()
     lower = replace(expanding.extent("0.5"))

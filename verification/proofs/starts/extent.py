@@ -71,11 +71,12 @@ class Extent:
             step = map.step(*at)
             at = step.theta, step.phi
         square = np.einsum("nji,njk->nik", product, product)
-        angle = np.arctan2(2 * square[:, 0, 1], square[:, 0, 0] - square[:, 1, 1]) / 2
+        y, x = 2 * square[:, 0, 1], square[:, 0, 0] - square[:, 1, 1]
         ahead, behind = (np.array(map.states.point(place, theta + side * STEP)) for side in (1, -1))
         speed = np.hypot(*(ahead - behind)) / (2 * STEP)
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.clip(-np.tan(angle) / speed, -STEEPEST, STEEPEST))
+        with np.errstate(divide="ignore", invalid="ignore"):  # the tangent of half the angle of (x, y)
+            half = np.where(x > 0, y / (np.hypot(x, y) + x), (np.hypot(x, y) - x) / y)
+            return np.asarray(np.clip(-half / speed, -STEEPEST, STEEPEST))
 
     @cached_property
     def low(self) -> float:

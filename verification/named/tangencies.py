@@ -41,7 +41,8 @@ SAME = 1e-6  # parameters of bounces that a symmetry exchanges, and of one tange
 def objection_of(scene: Scene) -> str:
     """Why no tangency is sought in a scene; empty where the boundary is one smooth formula and the law one of angles.
 
-    >>> objection_of(Scene("stadium"))
+    >>> from symbolic import tables
+    >>> objection_of(Scene(tables.stadium()))
     'its boundary has 4 pieces, and the map has kinks where they join: a manifold breaks there and is not followed'
     >>> objection_of(Scene("egg", alpha="2/25"))
     ''

@@ -41,9 +41,9 @@ def reached(
             if lost.any() or met.out.any():
                 return None
             found.append(numbered(grid, met))
-        after = np.unique(np.concatenate(found))
+        after = _ordered(np.concatenate(found))
         new = after[~_held(after, member)]
-        member = np.union1d(member, new)
+        member = np.sort(np.concatenate((member, new)))  # which have none in common
     return member
 
 
@@ -53,13 +53,19 @@ def numbered(grid: Grid, met: Rectangles) -> Indices:
     owner = np.repeat(np.arange(across.size), across)
     column = met.chart[owner] * grid.columns + ranges(met.left, met.right + 1) % grid.columns
     first = column * grid.rows + met.bottom[owner]
-    return np.unique(ranges(first, first + high[owner]))
+    return _ordered(ranges(first, first + high[owner]))
 
 
 def cells(grid: Grid, numbers: Indices) -> Cells:
     """The cells with these numbers."""
     column = numbers // grid.rows
     return Cells(column // grid.columns, column % grid.columns, numbers % grid.rows, np.ones_like(numbers))
+
+
+def _ordered(numbers: Indices) -> Indices:
+    """Each number once, in order; where most stand side by side, sorting is quicker than the tables of `np.unique`."""
+    found = np.sort(numbers)
+    return found[np.append(True, found[1:] != found[:-1])] if found.size else found
 
 
 def _held(some: Indices, ordered: Indices) -> NDArray[np.bool_]:

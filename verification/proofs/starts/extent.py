@@ -22,7 +22,7 @@ from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 Array = NDArray[np.float64]
-STEPS, SIDES = 200, 12_000  # of the direction's curve, each way, and of the polygon
+STEPS, SIDES = 100, 12_000  # of the direction's curve, each way, and of the polygon
 STEEPEST = 6.0  # of dtheta/dphi along the curve
 STEP = 1e-6  # of a difference quotient
 WIDEST = 0.3  # a parallelogram that is wider is given up

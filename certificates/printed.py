@@ -26,9 +26,6 @@ LISTED = tomllib.loads((ROOT / "verification/paper/claims/focusing/certificates.
 CLAIMS: dict[str, list[str]] = LISTED["files"]  # of the paper's report: what says `certified`, or has such a value
 WITHOUT: dict[str, str] = LISTED["without"]  # and why
 ALSO: dict[str, str] = LISTED["partly"]  # parts of a sentence that have none here
-TOO_LONG = {  # of so many bounces that the second reader does not follow them: `pinball check` proves it
-    "0.433637098975994064821": 164,  # a tangency in the limacon, from one manifold to the other
-}
 FOLLOWING = ("nu_plus", "nu_minus", "multiplier of a round, out", "in")  # columns
 FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enough digits to be followed all round
 
@@ -109,7 +106,7 @@ def of_claims(path: Path) -> Iterator[tuple[str, str, str]]:
 def main() -> int:
     """One line for each number without a certificate, and the counts."""
     files, missing, count = committed(), [], 0
-    found = [(page, number, [*files.values()]) for page, number in of_pages() if number not in TOO_LONG]
+    found = [(page, number, [*files.values()]) for page, number in of_pages()]
     found += [("docs/trust.md", number, [files[name]] if name in files else []) for name, number in of_trust()]
     for page, inside, told in kept_reports():
         counts = [len(given.get("components", ())) for given in inside]  # a tangency has none

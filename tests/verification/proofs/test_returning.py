@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from flint import arb
 from sympy import Rational
 
 from numeric import PinballMap
@@ -16,6 +17,7 @@ from verification.proofs.periodic.returning import (
     _hull,
     _joined,
     _judged,
+    _lands_within,
     _leads,
     _once_round,
     _parts,
@@ -46,6 +48,16 @@ def test_balls_of_a_cell_land_in_its_image_and_arrive_within_its_angles(low):
     assert np.all(np.any(inside, axis=0))
     eta = -step.phi / lam
     assert np.all((eta >= found.incidence[0] - 1e-12) & (eta <= found.incidence[1] + 1e-12))
+
+
+@pytest.mark.parametrize(
+    ("end", "reach", "held"), [(1, 0.2, True), (1, 0.05, False), (0.95, 0.12, False), (1.05, 0.12, False)]
+)
+def test_a_landing_lies_within_reach_where_all_angles_are_met_on_either_side(end, reach, held):
+    """The chord's angle is `1 - x`, and those of the cell reach from -1/10 to 1/10."""
+    zero = arb(0)
+
+    assert _lands_within(lambda _, x: (1 - x, zero), zero, zero, end, reach, (-0.1, 0.1)) is held
 
 
 def test_differences_of_landings_lie_within_the_bounds_of_the_derivative():

@@ -79,7 +79,7 @@ def test_a_ring_without_two_parts_that_are_apart_is_refused(change):
 def test_boxes_cover_a_part_and_its_points_are_in_it(slope):
     """Random points of either part, whether the line rises or falls; those beside it by more than the width are out."""
     ring, rng = replace(RING, slope=slope), np.random.default_rng(5)
-    x = rng.uniform(ring.low, ring.high, 2000)
+    x = rng.uniform(ring.low, ring.high, 3000)
     off = ring.width * rng.uniform(-1, 1, x.size)
     for side in (1, -1):
         part = ring.part(CHART, side)
@@ -171,9 +171,9 @@ def test_orbits_are_in_the_ring_where_walks_go_from_one_part_to_the_other_by_way
 def test_points_of_settled_boxes_converge_in_float64():
     graph, map = FOUND.graph.transitions, PinballMap("cuspless", lam="0.09")
     boxes, rng = graph.grid.boxes(graph.cells), np.random.default_rng(2)
-    some = rng.choice(np.flatnonzero(FOUND.settled), 2000)
-    theta, phi = (low[some] + rng.random(2000) * (high[some] - low[some]) for low, high in (boxes.x, boxes.y))
-    end = map.exponents(theta, phi, 1, 2000, graph.cells.chart[some])
+    some = rng.choice(np.flatnonzero(FOUND.settled), 3000)
+    theta, phi = (low[some] + rng.random(3000) * (high[some] - low[some]) for low, high in (boxes.x, boxes.y))
+    end = map.exponents(theta, phi, 1, 3000, graph.cells.chart[some])
     assert np.all(np.abs(end.phi) < 1e-6)
 
 

@@ -188,7 +188,7 @@ LETTER = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[T1]{fontenc}
 \IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \usepackage{amsmath}
-\usepackage[margin=16mm]{geometry}
+\usepackage[margin=13mm,footskip=7mm]{geometry}
 \usepackage{enumitem}
 \setlist{nosep,leftmargin=*}
 \setlength{\parindent}{0pt}

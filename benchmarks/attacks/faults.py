@@ -76,9 +76,9 @@ def squares(size: int, cut: int, number: int, done: list[tuple[int, ...]]) -> An
 
 def _parts(store: Path, whole: Path) -> set[str]:
     """The parts of which the files of both fields have the bytes of a sweep that nothing disturbed."""
-    found = _files(store)
+    found, right = _files(store), _files(whole)
     names = [{name for name in found if name.startswith(f"{field}/c/")} for field in ("square", "noise")]
-    same = [{name[name.index("c/") :] for name in each if found[name] == _files(whole).get(name)} for each in names]
+    same = [{name[name.index("c/") :] for name in each if found[name] == right.get(name)} for each in names]
     return same[0] & same[1]
 
 

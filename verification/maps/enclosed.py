@@ -143,6 +143,15 @@ class EnclosedMap:
             refusal = Refusal.UNPROVED
         return refusal
 
+    def orbit(self, here: Bounce, bounces: int) -> Iterator[Bounce]:
+        """So many landings, each proved to be the first hit; fewer where one is not proved, or the particle stops."""
+        for _ in range(bounces):
+            landed = self.bounce(here)
+            if isinstance(landed, Refusal) or landed.code:
+                return
+            yield landed
+            here = landed
+
     def curve(self, component: int, theta: arb) -> list[arb]:
         """Point, velocity and acceleration."""
         return self.parts[component](self.ops, theta, *self.shape)

@@ -21,7 +21,7 @@ from symbolic.expressions.signs import Finding
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, working
-from verification.maps.enclosed import EnclosedMap, Refusal
+from verification.maps.enclosed import EnclosedMap
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, shown
 from verification.paper.egg.barriers import bounces
@@ -174,12 +174,7 @@ def goes_over(lam: str, start: tuple[float, float]) -> bool:
     map = EnclosedMap(PinballMap(Scene("egg", alpha=SHAPE), lam=float(lam)), Fraction(lam), LONG)
     if not max(abs(x) for x in start) < float(CLOSE):
         return False
-    here = map.start(arb(start[0]), arb(start[1]))
-    for _ in range(MOST_BOUNCES):
-        landed = map.bounce(here)
-        if isinstance(landed, Refusal) or landed.code:
-            return False
-        here = landed
+    for here in map.orbit(map.start(arb(start[0]), arb(start[1])), MOST_BOUNCES):
         with working(LONG):
             for turn in (1, 2):
                 away = here.theta - 2 * arb.pi() * turn / 3

@@ -94,8 +94,7 @@ class Barrier:
         """Each step `ABOVE` the images of those that changed and of borders beside them; None where one is lost."""
         boxes, raised = self._pieces(heights, changed | np.roll(changed, 1)), heights.copy()
         for start in range(0, boxes.chart.size, BLOCK):
-            cut = slice(start, start + BLOCK)
-            some = Boxes(boxes.chart[cut], *((low[cut], high[cut]) for low, high in (boxes.x, boxes.y)))
+            some = boxes.chosen(slice(start, start + BLOCK))
             images = self.map.images(some) if proved else self._sampled(some)
             met, top = self.grid.met(images), images.boxes.y[1] + ABOVE
             if images.lost.size:

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from numeric.backends import elementary
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 ROUNDING = 2.0**-52  # twice the largest relative error of one operation
 GROWTH = 1.0 + 2.0**-48  # covers sixteen roundings of a radius
 TINY = 1e-300
@@ -290,15 +291,16 @@ def _horner(coefficients: list[float], z: Array) -> Array:
     return value
 
 
-Indices = NDArray[np.int64]
-
-
 class Boxes(NamedTuple):
     """Boxes in the charts of a phase space: the chart, and the ends of both coordinates, one entry for each box."""
 
     chart: Indices
     x: tuple[Array, Array]
     y: tuple[Array, Array]
+
+    def chosen(self, which: Indices | NDArray[np.bool_] | slice) -> "Boxes":
+        """Some of the boxes, by their numbers, by which they are, or a stretch of them."""
+        return Boxes(self.chart[which], *((low[which], high[which]) for low, high in (self.x, self.y)))
 
     def parts(self, across: int, up: int) -> tuple["Boxes", Indices]:
         """The boxes cut into equal parts, and for each part the index of its box."""
@@ -314,8 +316,7 @@ class Boxes(NamedTuple):
 
     def mirrored(self) -> "Boxes":
         """The boxes of `(-theta, -phi)`."""
-        (left, right), (bottom, top) = self.x, self.y
-        return Boxes(self.chart, (-right, -left), (-top, -bottom))
+        return Boxes(self.chart, *((-high, -low) for low, high in (self.x, self.y)))
 
 
 class Images(NamedTuple):

@@ -30,7 +30,7 @@ from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import working
 from verification.cycles.systems import symmetries
-from verification.maps.enclosed import EnclosedMap, Refusal
+from verification.maps.enclosed import EnclosedMap
 from verification.proofs.global_dynamics.boxes import BallArray, Boxes
 from verification.proofs.global_dynamics.branch import unstable_branch
 from verification.proofs.global_dynamics.flights import matrix
@@ -113,13 +113,8 @@ def _length(x: BallArray, y: BallArray) -> Array:
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turns: Sequence[Fraction]) -> bool:
     """Does the orbit of a phase point enter the disc, or a turned copy? Followed in balls, each landing a first hit."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, BITS)
-    here = map.start(*start)
     (a, b), (c, d) = disc.inverse
-    for _ in range(MOST_BOUNCES):
-        landed = map.bounce(here)
-        if isinstance(landed, Refusal) or landed.code:
-            return False
-        here = landed
+    for here in map.orbit(map.start(*start), MOST_BOUNCES):
         with working(BITS):
             pi, det = arb.pi(), arb(a) * d - arb(b) * c
             y = here.phi - disc.centre[1]

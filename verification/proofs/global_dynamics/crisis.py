@@ -34,7 +34,7 @@ from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, working
 from verification.arithmetic.series import Jet
 from verification.cycles.systems import symmetries
-from verification.maps.enclosed import EnclosedMap, Refusal
+from verification.maps.enclosed import EnclosedMap
 from verification.proofs.global_dynamics.apart import reached
 from verification.proofs.global_dynamics.boxes import Boxes, Images
 from verification.proofs.global_dynamics.branch import OUTER, Branch, exact, unstable_branch
@@ -257,12 +257,8 @@ def bracket(
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: tuple[Grid, Mask]) -> bool:
     """Does the orbit of a phase point enter the cells? Followed in balls, each landing a first hit."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, MANY_BITS)
-    here = map.start(*start)
-    for _ in range(MOST_BOUNCES):
-        landed = map.bounce(here)
-        if isinstance(landed, Refusal) or landed.code:
-            return False
-        here, box = landed, boxed([(landed.theta, landed.phi)])
+    for here in map.orbit(map.start(*start), MOST_BOUNCES):
+        box = boxed([(here.theta, here.phi)])
         if box is not None and _within(cells, box):
             return True
     return False

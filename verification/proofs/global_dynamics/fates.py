@@ -112,7 +112,7 @@ def clusters(
         on = np.isin(source, own)
         some = Slopes(*(BallArray(*(np.broadcast_to(x, source.shape)[on] for x in (s.m, s.r))) for s in slopes))
         where = np.searchsorted(own, source[on])
-        held = Boxes(boxes.chart[own], *((low[own], high[own]) for low, high in (boxes.x, boxes.y)))
+        held = boxes.chosen(own)
         single = bool(np.all(np.diff(inside.indptr) == 1))
         shrinks = _contraction(some, where, inside) if single else np.inf
         if shrinks < 1:

@@ -33,7 +33,7 @@ from flint import arb, fmpq
 from numeric import PinballMap
 from symbolic import Scene, tables
 from verification.arithmetic.balls import working
-from verification.maps.enclosed import EnclosedMap, Refusal
+from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import Bounce
 from verification.proofs.corner.border_collision import holds
 from verification.proofs.corner.corner import ARC, WALL, corner_parameters, enclosed
@@ -128,15 +128,12 @@ class Alternating:
     def _comes(self, point: tuple[arb, arb], inside: Callable[[Bounce, Bounce], bool]) -> bool:
         """Does the orbit of a phase point come there? Each landing is proved to be the first hit, off the joins."""
         map = EnclosedMap(PinballMap("cuspless", lam=float(self.lam)), self.lam, BITS)
-        here = map.start(*point)
-        for _ in range(MOST_BOUNCES):
-            landed = map.bounce(here)
-            if isinstance(landed, Refusal) or landed.code:
-                return False
+        before = map.start(*point)
+        for here in map.orbit(before, MOST_BOUNCES):
             with working(BITS):
-                if inside(here, landed):
+                if inside(before, here):
                     return True
-            here = landed
+            before = here
         return False
 
 

@@ -160,7 +160,7 @@ class BasinEdge:
             kept = ~(self.barrier.below(boxes) | self._absorbed(boxes))
             if np.any(self._meets(boxes) & ~kept):
                 return False  # the saddle may lie below the barrier
-            column, row, boxes = column[kept], row[kept], _chosen(boxes, kept)
+            column, row, boxes = column[kept], row[kept], boxes.chosen(kept)
             edges = self._edges(column, row, boxes, columns, rows)
             if edges is None:
                 return False
@@ -169,7 +169,7 @@ class BasinEdge:
             graph = walked(sparse(names[edges[0]], names[edges[1]], int(names.max(initial=0)) + 1))
             label = connected_components(graph, directed=True, connection="strong")[1]
             recurrent = ((np.bincount(label)[label] > 1) | (graph.diagonal() > 0))[names]
-            inner = self._inside(_chosen(boxes, near))
+            inner = self._inside(boxes.chosen(near))
             if not np.any(recurrent & ~near) and inner:
                 return True
             cut = recurrent | near
@@ -197,7 +197,7 @@ class BasinEdge:
         parts, owner = boxes.parts(PARTS, PARTS)
         for start in range(0, owner.size, BLOCK):
             block = np.arange(start, min(start + BLOCK, owner.size))
-            found = self.barrier.map.images(_chosen(parts, block))
+            found = self.barrier.map.images(parts.chosen(block))
             if found.lost.size:
                 return None
             left, right = _cells(found.boxes.x, -self.turn / 2, wide)
@@ -250,7 +250,3 @@ def _cells(ends: tuple[Array, Array], start: float, size: float) -> tuple[Indice
         np.floor((end - start) / size + pad).astype(np.int64) for end, pad in zip(ends, (-PAD, PAD), strict=True)
     )
     return first, last
-
-
-def _chosen(boxes: Boxes, which: Mask | Indices) -> Boxes:
-    return Boxes(boxes.chart[which], *((low[which], high[which]) for low, high in (boxes.x, boxes.y)))

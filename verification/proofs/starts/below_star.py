@@ -91,15 +91,11 @@ def unreturning(fate: Fate, core: Core | None) -> bool:
     on = reached[:-1]
     arc, wall = on & (cells.chart == ARC), on & (cells.chart != ARC)
     if core is None:
-        return _within(_chosen(boxes, on), fate.parts)
+        return _within(boxes.chosen(on), fate.parts)
     near = np.all(np.abs(np.concatenate([side[arc] for side in boxes.x])) < MIDDLE)
     stays = graph.edges[:-1, :-1][arc][:, arc].nnz > 0
-    held = core.holds(Parallelograms.about(_chosen(boxes, wall))).all()
+    held = core.holds(Parallelograms.about(boxes.chosen(wall))).all()
     return bool(near and not stays and held and all(attracts(fate.map, core).values()))
-
-
-def _chosen(boxes: Boxes, which: Mask) -> Boxes:
-    return Boxes(boxes.chart[which], *((low[which], high[which]) for low, high in (boxes.x, boxes.y)))
 
 
 def _within(boxes: Boxes, parts: Sequence[Cluster]) -> bool:

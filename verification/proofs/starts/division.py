@@ -128,8 +128,7 @@ class Division:
         """The leaves where orbits may return that lie within the core or its gates, or that a bounce takes there."""
         graph = self.graph.transitions
         some = np.flatnonzero(graph.recurrent[:-1] & graph.leaf)
-        boxes = graph.grid.boxes(graph.cells)
-        boxes = Boxes(boxes.chart[some], *((low[some], high[some]) for low, high in (boxes.x, boxes.y)))
+        boxes = graph.grid.boxes(graph.cells).chosen(some)
         sets = Parallelograms.about(boxes)
         source, images = carried(self.map, sets)
         home = np.bincount(source, minlength=some.size) > 0
@@ -181,8 +180,7 @@ class Division:
         some = np.flatnonzero(rest[:-1])
         inner = walked(graph.edges[:-1, :-1][some][:, some].tocsr())
         count, labels = connected_components(inner, directed=True, connection="strong")
-        boxes = graph.grid.boxes(graph.cells)
-        boxes = Boxes(boxes.chart[some], *((low[some], high[some]) for low, high in (boxes.x, boxes.y)))
+        boxes = graph.grid.boxes(graph.cells).chosen(some)
         sides, own = self.ring.sides(boxes, self.core.chart), boxes.chart == self.core.chart
         good = np.ones(count, dtype=bool)
         good[labels[own & (sides == 0)]] = False

@@ -13,7 +13,7 @@ from symbolic.tables.scene import Scene
 from verification.app import cli
 from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.recurrence import Closure
-from verification.maps.enclosed import Refusal
+from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.proofs.global_dynamics import crisis
 from verification.proofs.global_dynamics.apart import kept_apart
 from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images
@@ -213,6 +213,8 @@ def test_an_orbit_enters_cells_where_each_landing_on_its_way_is_proved(monkeypat
         code: int = 0
 
     class Map:
+        orbit = EnclosedMap.orbit
+
         def __init__(self, map, lam, bits):
             self.left = [x if isinstance(x, Refusal) else Landing(arb(x or 0), arb(0), int(x is None)) for x in bounces]
 

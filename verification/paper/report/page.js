@@ -40,7 +40,6 @@ for (const part of parts) part.querySelector("summary").addEventListener("click"
 document.getElementById("all").addEventListener("click", () => {
   const open = parts.some((part) => !part.hidden && !part.open);
   for (const part of parts) { part.open = open; open ? opened.add(part) : opened.delete(part); }
-  reach();
 });
 function arrive() {  // a link opens what it names, whatever is folded or left out
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -55,7 +54,6 @@ function arrive() {  // a link opens what it names, whatever is folded or left o
     if (each.matches(".part")) opened.add(each);
   }
   target.scrollIntoView();
-  reach();
 }
 addEventListener("hashchange", arrive);
 const dialog = document.querySelector("dialog");
@@ -65,11 +63,13 @@ for (const button of all("button.picture")) button.addEventListener("click", () 
   dialog.showModal();
 });
 dialog.addEventListener("click", () => dialog.close());
-function reach() {  // what must be scrolled sideways can be scrolled with the keyboard
-  const wide = all(".quoted, dd, .erratum p").map((each) => [each, each.scrollWidth > each.clientWidth]);
+function reach(within = document) {  // what must be scrolled sideways can be with the keyboard; not measured while folded
+  const wide = all(".quoted, dd, .erratum p", within).filter((each) => each.closest("details:not([open])") === null)
+    .map((each) => [each, each.scrollWidth > each.clientWidth]);
   for (const [each, is] of wide) is ? each.setAttribute("tabindex", "0") : each.removeAttribute("tabindex");
 }
-addEventListener("resize", reach);
+addEventListener("resize", () => reach());
+for (const each of all("details")) each.addEventListener("toggle", () => reach(each));
 addEventListener("beforeprint", () => all("details").forEach((each) => each.open = true));
 filter();
 arrive();

@@ -32,6 +32,7 @@ from mutation_mutants import ROOT, STOREYS
 
 LIBRARIES = ("sympy", "numpy", "scipy.optimize", "mpmath", "flint", "hypothesis.strategies", "doctest", "pytest")
 QUIET = ["-q", "-x", "--tb=no", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:faulthandler"]
+WAITING = 30  # seconds by the clock for one of processor, after which a test waits for something that does not come
 MEMORY = 8 << 30  # bytes of address space; a mutant that asks for more fails
 
 
@@ -160,8 +161,8 @@ class Mutated(SourceFileLoader, importlib.abc.MetaPathFinder):
 class Chosen:
     """Pytest plugin: only the chosen tests, quickest first, each with its time; the one that runs is written down."""
 
-    def __init__(self, seconds: dict[str, float], report: Path, patience: int):
-        self.seconds, self.report, self.patience = seconds, report, patience
+    def __init__(self, seconds: dict[str, float], report: Path, keep: bool):
+        self.seconds, self.report, self.keep = seconds, report, keep
         self.functions = {function_of(node): value for node, value in seconds.items()}
 
     def pytest_sessionstart(self):
@@ -182,9 +183,15 @@ class Chosen:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
-        signal.setitimer(signal.ITIMER_REAL, self.patience * (3 * self.own(item.nodeid) + 5))
+        limit(3 * self.own(item.nodeid) + 5, self.keep)
         self.report.write_text(item.nodeid)
         return (yield)
+
+
+def limit(seconds: float, of_processor: bool) -> None:
+    """Stops this process after so many seconds: by the clock, or of processor, and then far later by the clock."""
+    signal.setitimer(signal.ITIMER_PROF, seconds if of_processor else 0.0)
+    signal.setitimer(signal.ITIMER_REAL, WAITING * seconds if of_processor else seconds)
 
 
 def judge(path: str, text: str, seconds: dict[str, float], folder: Path, keep: bool) -> None:
@@ -197,7 +204,7 @@ def judge(path: str, text: str, seconds: dict[str, float], folder: Path, keep: b
     tempfile.tempdir = os.environ["TMPDIR"] = str(folder)
     if not keep:
         os.environ["PINBALL_CACHE"] = str(folder / "cache")
-    signal.setitimer(signal.ITIMER_REAL, 60)  # for imports and collection
+    limit(60, keep)  # for imports and collection
     status = 1
     try:
         if path:
@@ -206,9 +213,9 @@ def judge(path: str, text: str, seconds: dict[str, float], folder: Path, keep: b
         own = mirrors(path, seconds)
         for stage in (own, seconds.keys() - own):  # to collect the tests of all other files takes a second
             if stage:
-                signal.setitimer(signal.ITIMER_REAL, 60)  # and not what the last test of the stage before has left
+                limit(60, keep)  # and not what the last test of the stage before has left
                 files = sorted({file_of(node) for node in stage})
-                chosen = Chosen({node: seconds[node] for node in stage}, folder / "test", 6 if keep else 1)
+                chosen = Chosen({node: seconds[node] for node in stage}, folder / "test", keep)
                 status = int(pytest.main([*QUIET, *files], plugins=[chosen]))
                 if status:
                     break
@@ -220,7 +227,7 @@ def ask(path: str, text: str, seconds: dict[str, float], keep: bool = False) -> 
     """What the tests say of a mutant (survived, killed, timeout), the test that said it, and the seconds it took.
 
     `keep` is for mutants of what writes nothing into the cache of kernels: they may share it. Their tests' seconds are
-    of processor, and six times as many by the clock pass before a test counts as stopped.
+    of processor, so that what else the machine does stops none.
     """
     folder, start = Path(tempfile.mkdtemp(prefix="mutant-")), time.perf_counter()
     child = os.fork()
@@ -234,7 +241,7 @@ def ask(path: str, text: str, seconds: dict[str, float], keep: bool = False) -> 
     status = "killed"
     if os.WIFEXITED(how):
         status = {0: "survived", 5: "uncovered"}.get(os.WEXITSTATUS(how), "killed")
-    elif os.WTERMSIG(how) == signal.SIGALRM:
+    elif os.WTERMSIG(how) in (signal.SIGALRM, signal.SIGPROF):
         status = "timeout"
     return status, "" if status in ("survived", "uncovered") else test, round(time.perf_counter() - start, 2)
 

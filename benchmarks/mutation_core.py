@@ -74,9 +74,12 @@ def groups() -> list[Group]:
 
 
 @cache
-def proposing() -> dict[str, set[str]]:
-    """The functions of each module that only propose what a proof then checks."""
-    return {module: set(names) for module, names in tomllib.loads(CORE.read_text())["proposes"].items()}
+def proposing() -> dict[str, list[str]]:
+    """The functions of each module that only propose what a proof then checks; `Class.*` are all of a class."""
+    found: dict[str, list[str]] = {}
+    for entry in tomllib.loads(CORE.read_text())["proposes"]:
+        found.setdefault(entry["module"], []).extend(entry["functions"])
+    return found
 
 
 class Text:
@@ -132,6 +135,8 @@ def harmless(tree: ast.Module) -> Iterator[ast.AST]:
             yield node.annotation
         elif uncounted(node):
             yield node
+        elif isinstance(node, ast.If) and all(isinstance(x, ast.Expr) and uncounted(x.value) for x in node.body):
+            yield node.test  # when it is told of progress
         elif isinstance(node, ast.arguments):
             named = [*node.posonlyargs, *node.args][::-1]
             pairs = [
@@ -139,7 +144,10 @@ def harmless(tree: ast.Module) -> Iterator[ast.AST]:
                 *zip(node.kwonlyargs, node.kw_defaults, strict=True),
             ]
             yield from (default for arg, default in pairs if default and arg.arg in COUNTS)
-        elif getattr(node, "arg", "") == "strict" or ast.unparse(getattr(node, "test", ast.Pass())) == "TYPE_CHECKING":
+        elif (
+            getattr(node, "arg", "") in ("strict", "repr")
+            or ast.unparse(getattr(node, "test", ast.Pass())) == "TYPE_CHECKING"
+        ):
             yield node
     for node in tree.body:  # of the module itself
         if isinstance(node, ast.Assign):
@@ -233,10 +241,10 @@ def population(path: str) -> list[Change]:
     """All mutants of a module that proves, in the order of its lines."""
     source = source_of(path)
     tree, counts, places = ast.parse(source), Counter(), {}
-    found, left_out = [], proposing().get(path, set())
+    found, left_out = [], proposing().get(path, ())
     for kind, line, text in sorted(changes(source), key=lambda change: change[1]):
         function = places.setdefault(line, function_at(tree, line))
-        if function in left_out:
+        if any(fnmatch(function, name) for name in left_out):
             continue
         found.append(Change(path, kind, function, counts[function, kind], line, text))
         counts[function, kind] += 1

@@ -26,6 +26,7 @@ from verification.maps.exact import Bounce, ExactMap, closed_length
 from verification.maps.first_hit import BITS, Boundary, Frame, free
 
 GUESSED = 40  # digits of a guess by mpmath
+Flight = Callable[[arb], tuple[arb, arb]]  # by the place on the wall: 0 where the ray meets it, and its slope there
 NEWTON = Stop(small=1e-6, steps=40)  # the digits of a guess double from 15 on
 MARGIN = 2.0**-20  # how far a ball's angle must stay within what the kernels take
 
@@ -193,6 +194,17 @@ class EnclosedMap:
         guess = exact.bounce(exact.start(exact.middle(here.theta), exact.middle(here.phi), here.component))
         yield Bounce(guess.component, as_ball(guess.theta), None, (None, None), None, None, code=guess.code)
 
+    @staticmethod
+    def _polished(flight: Flight, near: arb) -> arb:
+        """A guess of the landing that is sharper, by Newton's method, which proves nothing."""
+
+        def correction(at: Vector) -> Vector:
+            value, slope = (each.mid() for each in flight(*at))
+            return [(value / slope).mid()]
+
+        middle: arb = iterated(correction, [near], NEWTON, kept=arb.mid).x[0]
+        return middle
+
     def _landed(self, here: Bounce, guess: Bounce) -> Bounce | None:
         """The enclosed landing near a guess, or None when Newton's step does not close."""
         vx, vy = here.v
@@ -201,14 +213,10 @@ class EnclosedMap:
             x, y, dx, dy, _, _ = self.curve(guess.component, theta)
             return vx * (y - here.y) - vy * (x - here.x), vx * dy - vy * dx
 
-        def correction(at: Vector) -> Vector:
-            value, slope = (each.mid() for each in flight(*at))
-            return [(value / slope).mid()]
-
-        (middle,) = iterated(correction, [guess.theta], NEWTON, kept=arb.mid).x
+        middle = self._polished(flight, guess.theta)
         value, slope = flight(middle)
         radius = abs(value / slope) * 4 + (abs(middle) + 1) * arb(2) ** (4 - self.bits)
-        if slope.contains(0) or not radius.is_finite():
+        if not radius.is_finite():  # nor is it where the slope may be 0
             return None
         box = arb(middle, radius.upper())
         newton = middle - value / flight(box)[1]

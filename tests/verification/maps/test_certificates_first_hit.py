@@ -247,6 +247,39 @@ def test_sums_of_cosines_are_nonnegative_where_their_polynomial_is(bend, nonnega
     assert first_hit._exactly_nonnegative(bend, {}) is nonnegative
 
 
+def test_random_sums_of_cosines_are_nonnegative_where_their_least_value_is():
+    """Of multiples of a frequency, with rational coefficients; the least value in floats decides, where it is not 0."""
+    chance, at, seen = random.Random(8), np.linspace(0, 2 * np.pi, 4001), []
+    for _ in range(40):
+        step = chance.choice([1, 1, 2, 3])
+        numbers = [Rational(chance.randint(-8, 8), 4) for _ in range(chance.choice([2, 3, 4]))]
+        numbers[0] = Rational(chance.randint(-2, 16), 4)
+        bend = sum(c * cos(step * k * theta) for k, c in enumerate(numbers))
+        least = np.min(sum(float(c) * np.cos(step * k * at) for k, c in enumerate(numbers)))
+        if abs(least) > 1e-3:
+            varies = any(numbers[1:])
+            assert first_hit._exactly_nonnegative(S(bend), {}) is bool(
+                least > 0 and varies
+            )  # a number is asked of SymPy
+            seen.append(bool(least > 0))
+    assert min(sum(seen), len(seen) - sum(seen)) > 5
+
+
+def test_a_number_and_what_has_other_letters_are_no_sums_of_cosines():
+    a, b = Symbol("a", real=True), Symbol("b", real=True)
+    for bend in (S(2), S(-1), 2 + cos(theta) + sin(theta), 2 + cos(theta / 2), 3 + sqrt(a) * cos(theta)):
+        assert first_hit._exactly_nonnegative(bend, {a: Interval(0, 1)}) is False
+    assert first_hit._exactly_nonnegative(3 + a * b * cos(theta), {a: Interval(-1, 1), b: Interval(0, 1)})
+    assert not first_hit._exactly_nonnegative(3 + a * b * cos(theta), {a: Interval(-1, 1), b: Interval(0, 4)})
+
+
+def test_a_table_has_as_many_joins_as_components_unless_it_is_one_whole_curve():
+    whole = Component("hole", (2 + cos(theta), sin(theta)), 0, 2 * pi)
+    for table in (cuspless, sinai(), drawn((0, 0), (1, 0), (0, 1)), Table("two", (whole, whole))):
+        assert len(list(first_hit._joins(table))) == len(table.components)
+    assert not list(first_hit._joins(Table("one", (whole,))))
+
+
 def test_a_sum_of_cosines_with_a_parameter_is_nonnegative_over_the_range_alone():
     a = Symbol("a", real=True)
     for end, nonnegative in ((1, True), (Rational(11, 10), False)):

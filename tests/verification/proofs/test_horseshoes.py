@@ -15,6 +15,7 @@ from verification.proofs.manifolds import horseshoe as horseshoes
 from verification.proofs.manifolds.horseshoe import (
     BITS,
     Edge,
+    Horseshoe,
     HSet,
     _apart,
     _crosses,
@@ -147,6 +148,7 @@ def test_a_horseshoe_of_the_egg_is_refused_with_another_symmetry_at_its_end():
         ({2: (True, False)}, True, True, {"cones"}),
         ({-1: (True, False)}, True, True, {"cones"}),
         ({0: (False, False)}, True, True, {"covering", "cones"}),
+        ({2: (True, False), -1: (False, True)}, True, True, {"covering", "cones"}),
         ({-1: (False, True)}, True, True, {"covering", "cones"}),
         ({}, False, True, {"disjoint"}),
         ({}, True, None, {"admissible"}),
@@ -167,6 +169,43 @@ def test_each_item_of_a_horseshoe_is_what_its_own_step_proves(monkeypatch, edges
 def point(h, x, y):
     """The point of an h-set with these coordinates."""
     return np.array(h.centre) + x * np.array(h.expanded) + y * np.array(h.contracted)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_covering_is_that_the_images_of_the_corners_lie_as_they_must_for_each_parameter(sign):
+    """Of h-sets so small that the Henon map is affine over them, but for less than a hundredth of a side."""
+    random, seen, size = np.random.default_rng(6), [], 1e-4
+    map, spread = HENON.over(balls(BITS)), 1e-6
+    for _ in range(500):
+        source, at = random_h_set(random, size), random.uniform(-0.8, 0.8, 2)
+        source = HSet(tuple(at), source.expanded, source.contracted)
+        corners = {
+            (x, y, move): (point(source, x, y)[1], HENON.following(*point(source, x, y), 1.4 + move))
+            for x in (1, -1) for y in (1, -1) for move in (spread, -spread)
+        }  # fmt: skip
+        middle = np.mean(list(corners.values()), axis=0)
+        way = (np.subtract(corners[1, 1, spread], corners[-1, 1, spread])) / 2  # about the image of the expanded side
+        target = HSet(
+            tuple(sign * (middle + random.uniform(-0.5, 0.5, 2) * size)),
+            tuple(way * random.choice([0.3, 0.6, 1.1])),
+            tuple(random.uniform(0.5, 4.0) * size * np.array((-way[1], way[0])) / np.hypot(*way)),
+        )
+        frame = np.column_stack([target.expanded, target.contracted]) * sign
+        placed = {k: np.linalg.solve(frame, c - sign * np.array(target.centre)) for k, c in corners.items()}
+        ends = [[c[0] for (x, _, _), c in placed.items() if x == side] for side in (1, -1)]
+        left = any(min(a) > 1 and max(b) < -1 for a, b in (ends, ends[::-1]))
+        covers = bool(left and max(abs(c[1]) for c in placed.values()) < 1)
+        d = np.linalg.solve(
+            frame, [[0, 1], [0.3, -2.8 * at[1]]] @ np.column_stack([source.expanded, source.contracted])
+        )
+        least = np.linalg.eigvalsh(d.T @ np.diag([1.0, -1.0]) @ d - np.diag([1.0, -1.0]))[0]
+        if min(abs(abs(x) - 1) for c in placed.values() for x in c) < 0.02 or abs(least) < 0.1:
+            continue
+        found = Horseshoe(HENON, 1.4, spread, 1, (source, target), ())
+        with working(BITS):
+            assert found._covering(map, arb(1.4, spread), Edge(0, 1, sign)) == (covers, least > 0)
+        seen.append((covers, bool(least > 0)))
+    assert all(seen.count(each) > 20 for each in ((True, True), (False, True), (False, False)))
 
 
 def random_h_set(random, size=1.0):

@@ -265,3 +265,11 @@ def test_a_bounce_of_a_pair_has_the_derivatives_of_its_polynomials_and_cauchys_b
     for z in (arb(0.5), arb(-0.5), arb(0.4, 0.2)):
         with pytest.raises(TooWideError, match="radius 1/2"):
             made.at(1, z, arb(0))
+
+
+def test_what_is_left_out_is_bounded_by_the_larger_end_of_a_ball():
+    """A remainder known as a ball is at most its upper end, whichever sign it has."""
+    for bound in (arb("1e-9", "5e-10"), -arb("1e-9", "5e-10"), arb(0, "1.5e-9")):
+        around = tangency._around(bound)
+        assert all(around.contains(arb("1.499e-9") * sign) for sign in (1, -1))
+        assert around.rad() < 1.6e-9

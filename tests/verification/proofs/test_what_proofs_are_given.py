@@ -9,11 +9,14 @@ from flint import arb
 from symbolic.tables import circle, egg
 from symbolic.tables.law import PAPERS_LAW
 from symbolic.tables.scene import Scene
+from verification.arithmetic.balls import exact_balls, working
+from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
 from verification.proofs.global_dynamics.boxes import BallArray
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.periodic import bifurcation
-from verification.proofs.periodic.interval_newton import Cover, stays_below
+from verification.proofs.periodic.interval_newton import Cover, Enclosure, Status, stays_below
 
 
 @pytest.mark.parametrize("half", [2.0**-10, 1 / 300, 2.0**-20])
@@ -70,3 +73,15 @@ def test_a_box_whose_centre_was_rounded_is_no_box_about_a_known_cycle(last, answ
     cover = Cover(Problem(circle, (0, 0, 0), lam=arb(1) / 2), None, None, 0.5, known)
 
     assert cover.settled([(1.0, 0.01), (2.25, 0.01), (last, 0.01)], 1) is answer
+
+
+@pytest.mark.parametrize("wide", range(4))
+def test_a_value_is_precise_where_it_is_known_and_not_where_a_bounce_is(monkeypatch, wide):
+    """Of the four unknowns the last one is the value; the others may be known less well."""
+    problem = Problem(egg(3).at(alpha=Fraction(2, 25)), (0, 0, 0), BifurcationKind.FOLD, "lam")
+    centre = exact_balls(refined(problem, [-0.55, 1.54, 3.63, 0.378], 40).z)
+    zero = [arb(x, 1e-9 if k == wide else 1e-20) for k, x in enumerate(centre)]
+    monkeypatch.setattr(bifurcation, "interval_newton", lambda *_: Enclosure(Status.UNIQUE, zero))
+    with working(100):
+        checks = bifurcation.proved(bifurcation.Claim(problem, tuple(centre), arb(2) ** -40, 100, 12)).checks
+    assert checks["precise"] is (wide != 3)

@@ -46,7 +46,7 @@ from verification.proofs.global_dynamics.regions import carried
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Point = tuple[int, float, float]  # component, theta, phi
-ROUNDS = 400  # of power iterations, whose last step is the proof
+ROUNDS = 400  # of power iterations, and of cones that grow
 SLACK = 1e-9  # more than a dozen roundings of doubles, relatively
 CUT = 48, 4  # parts of a rectangle along theta and along phi, over each of which the derivative is enclosed
 WIDENED = 1.02  # a cone that has grown, so that the next rounds find it large enough
@@ -165,15 +165,21 @@ def _contraction(s: Slopes, where: Indices, walks: csr_matrix) -> float:
     if not np.all(np.isfinite(size)):
         return np.inf
     size = size.reshape(2, 2, -1) * (1 + SLACK) + 1e-300
-    vectors, target = np.ones((2, size.shape[2])), walks.indices
+    vectors = _vectors(size, walks.indices)
+    moved = np.einsum("ijk,jk->ik", size, vectors)
+    return float(np.max(moved / vectors[:, walks.indices])) * (1 + SLACK)
+
+
+def _vectors(size: Array, target: Indices) -> Array:
+    """Positive vectors of clusters that their matrices, by power iterations, nearly keep: whichever they are."""
+    vectors = np.ones((2, size.shape[2]))
     for _ in range(ROUNDS):
         image = np.zeros_like(vectors)
         moved = np.einsum("ijk,jk->ik", size, vectors)
         np.maximum.at(image.T, target, moved.T)
         vectors = vectors + image
         vectors /= vectors.max()
-    moved = np.einsum("ijk,jk->ik", size, vectors)
-    return float(np.max(moved / vectors[:, target])) * (1 + SLACK)
+    return vectors
 
 
 def _staying(s: Slopes, where: Indices, walks: csr_matrix) -> float | None:

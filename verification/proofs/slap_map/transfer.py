@@ -215,12 +215,7 @@ def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Invert
     (True, True)
     """
     matrix, size_of = ulam(cells, sign), spread if sign == 1 else largest
-    identity = np.eye(cells)
-    if inverse is None:
-        mass = np.full(cells, 1 / cells)
-        for _ in range(60):
-            mass = matrix @ mass
-        inverse = np.linalg.inv(identity - matrix.toarray() + (mass[:, None] if sign == 1 else 0))
+    identity, inverse = np.eye(cells), _in_floats(matrix, sign) if inverse is None else inverse
     entries = int(np.diff(matrix.indptr).max())
     rounding = (entries + 4) * UNIT * (2 * largest(inverse) + 1)
     size = size_of(inverse)
@@ -228,6 +223,15 @@ def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Invert
     defect = size_of(identity - inverse + (matrix.T @ inverse.T).T) + rounding * BLANKET + size * displaced
     bound = size / (1 - defect) * BLANKET if sign in (1, -1) and defect < 0.5 else None
     return Inverted(cells, bound, defect, sign)
+
+
+def _in_floats(matrix: csc_matrix, sign: int) -> Matrix:
+    """About an inverse of `I - Q` on vectors of sum 0, or on all."""
+    cells = matrix.shape[0]
+    mass = np.full(cells, 1 / cells)
+    for _ in range(60):
+        mass = matrix @ mass
+    return np.asarray(np.linalg.inv(np.eye(cells) - matrix.toarray() + (mass[:, None] if sign == 1 else 0)))
 
 
 def largest(matrix: Matrix) -> float:

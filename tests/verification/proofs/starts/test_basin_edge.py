@@ -11,7 +11,8 @@ from numeric import PinballMap
 from symbolic import Scene
 from verification.paper.egg.nearly_round import edge
 from verification.proofs.global_dynamics.barrier import Barrier
-from verification.proofs.global_dynamics.boxes import BallArray
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.common_boundary import Disc
 from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.starts import basin_edge
@@ -109,6 +110,7 @@ def test_images_of_random_points_lie_in_cells_to_which_edges_lead():
         ((2, 0, 0, 0.5), (0, 0, 0, 0.6), False),
         ((0.9, 0, 0, 0.5), (0, 0, 0, 0), False),
         ((2, 0, 0, 1.2), (0, 0, 0, 0), False),
+        ((600, 600, 0, 0.5), (0, 0, 0, 0), False),  # half a turn of the table along a diagonal
         ((1100, 0, 0, 0.5), (0, 0, 0, 0), False),  # half a turn of the table, and points may be near another copy
     ],
 )
@@ -125,6 +127,26 @@ def test_differences_grow_or_shrink_where_the_derivative_says_so(middle, radius,
     some = SimpleNamespace(map=SimpleNamespace(derivatives=lambda _: ((piece, slopes),)))
     stub = SimpleNamespace(barrier=some, turn=FOUND.turn, _about=FOUND._about)
     assert BasinEdge._hyperbolic(stub) is (held and not turned_back)
+
+
+def test_a_cell_is_in_the_disc_where_its_corners_are():
+    """In the coordinates of discs of all shapes, and up to turns of the table."""
+    rng, seen = np.random.default_rng(5), []
+    for _ in range(60):
+        inverse, centre = rng.uniform(-2, 2, (2, 2)), rng.uniform(-0.5, 0.5, 2)
+        low = centre[:, None] + rng.uniform(-0.3, 0.3, (2, 40))
+        high, turns = low + rng.uniform(0, 0.2, (2, 40)), rng.integers(-2, 3, 40) * FOUND.turn
+        corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) - centre[:, None]
+        sizes = np.max(
+            np.hypot(*np.linalg.solve(inverse, np.moveaxis(corners, 1, 0).reshape(2, -1))).reshape(4, 40), axis=0
+        )
+        edge = BasinEdge(FOUND.barrier, FOUND.sink, FOUND.saddle, 0.2)
+        edge.__dict__["disc"] = Disc(tuple(centre), tuple(map(tuple, inverse)), 0.2)
+        boxes = Boxes(np.zeros(40, dtype=int), (low[0] + turns, high[0] + turns), (low[1], high[1]))
+        told = np.abs(sizes / 0.2 - 1) > 1e-6
+        assert np.array_equal(edge._absorbed(boxes)[told], sizes[told] < 0.2)
+        seen += list(sizes < 0.2)
+    assert 30 < sum(seen) < len(seen) - 30
 
 
 def test_a_cycle_that_is_left_out_is_seen():

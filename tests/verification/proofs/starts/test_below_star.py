@@ -11,6 +11,8 @@ from numeric import PinballMap
 from verification.arithmetic.balls import working
 from verification.paper.judges.cuspless_chaos import below
 from verification.proofs.corner.corner import ARC, BITS, WALL, enclosed
+from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.global_dynamics.fates import Cluster
 from verification.proofs.starts import below_star
 from verification.proofs.starts.below_star import ANGLE, NEXT, BelowStar, begins, first_hull, hulls, inner
 
@@ -53,6 +55,33 @@ def test_each_step_fails_alone(changes: dict, items: set[str]) -> None:
 def test_other_inequalities_do_not_hold(monkeypatch, name: str, value: float, items: set[str]) -> None:
     monkeypatch.setattr(below_star, name, value)
     assert items <= failing(replace(FOUND, fates=()))
+
+
+def test_boxes_come_to_the_cycle_that_lie_in_a_sink_and_meet_no_other_part() -> None:
+    """On the same component; a rectangle that has one point of another part is none."""
+
+    def part(chart: int, sink: bool, *ends: float) -> Cluster:
+        left, right, low, high = (np.array([end]) for end in ends)
+        return Cluster(Boxes(np.array([chart]), (left, right), (low, high)), sink, None)
+
+    def inside(chart: int, *ends: float) -> bool:
+        return below_star._within(part(chart, True, *ends).boxes, parts)
+
+    parts = [
+        part(1, True, 0, 4, 0, 4),
+        part(0, False, 1, 2, 1, 2),
+        part(1, False, 5, 6, 0, 4),
+        part(1, False, 1, 2, 1, 2),
+    ]
+    for ends in ((2.5, 4, 0, 4), (0, 0.5, 0, 4), (0, 4, 2.5, 4), (0, 4, 0, 0.5)):  # on each side of the other part
+        assert inside(1, *ends)
+        assert not inside(0, *ends)
+    for ends in ((2, 4, 0, 4), (0, 1, 0, 4), (0, 4, 2, 4), (0, 4, 0, 1), (1.2, 1.5, 1.2, 1.5)):  # that it touches
+        assert not inside(1, *ends)
+    for ends in ((2.5, 4.1, 0, 4), (-0.1, 0.5, 0, 4), (0, 4, 2.5, 4.1), (0, 4, -0.1, 0.5)):  # and beyond the sink
+        assert not inside(1, *ends)
+    boxes = Boxes(np.array([1, 1]), (np.array([2.5, 1.5]), np.array([4.0, 2.0])), (np.zeros(2), np.full(2, 4.0)))
+    assert not below_star._within(boxes, parts)  # all of them must
 
 
 GOOD = {"a": 0.05, "b": 0.5, "c": 0.5, "f": 0.1, "g": 1.5, "h": 2.0}  # inner states stay so, by hand

@@ -121,6 +121,29 @@ def test_every_start_is_in_a_strip_and_half_of_the_measure_is_the_perimeter(map:
         made = made.cut(np.full(made.left.size, across))
 
 
+def test_a_strip_is_in_the_parallelogram_after_its_bounce_and_hardly_smaller(map: PinballImages) -> None:
+    """Random points of strips that lean: `phi = -lam*eta`, and what the sides leave of them is within the rest."""
+    rng, count = np.random.default_rng(9), 200
+    left, middle = rng.uniform(-1, 1, count), rng.uniform(0, 1.5, count)
+    right, half = left + rng.uniform(0.01, 0.1, count), rng.uniform(0.005, 0.05, count)
+    leans = rng.uniform(-0.3, 0.3, (2, count))
+    sets = Strips(np.zeros(count, dtype=np.int64), left, right, *leans, middle, half).started(map)
+    (wide, along), (none, down) = sets.sides
+    assert np.all(none == 0)
+    for lam in (float(LOW), float(HIGH)):
+        for _ in range(20):
+            u, share = half * rng.choice([-1, 1, rng.uniform(-1, 1)], count), rng.choice([0, 1, rng.random()], count)
+            first, last = left + leans[0] * u, right + leans[1] * u
+            off = np.array([first + share * (last - first), -lam * (middle + u)]) - sets.middle
+            v = u / half
+            assert np.all(np.abs(off[1] - v * down) <= sets.rest[1] + 1e-13)
+            over = np.abs(off[0] - v * along) - np.abs(wide)
+            assert np.all(over <= sets.rest[0] + 1e-13)
+    assert np.all(sets.rest[0] < np.abs(leans[1] - leans[0]) / 2 * half * 1.001 + 1e-13)
+    assert np.all(np.abs(wide) < (right - left) / 2 * 1.001)
+    assert np.all(np.abs(down) < 0.0714 * half)
+
+
 def test_lines_that_cross_have_no_measure(map: PinballImages) -> None:
     """The area between them would be counted with a sign."""
     one = np.ones(1)

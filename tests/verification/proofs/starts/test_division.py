@@ -189,3 +189,56 @@ def test_a_core_beyond_the_cycle_of_period_4_and_one_of_an_unstable_cycle_are_re
     assert not attracts(FOUND.map, replace(FOUND.core, outer=0.18))["orbits come to the middle"]
     beyond = PinballImages(Scene("cuspless", lam="0.095"), (Fraction(95, 1000),) * 2)
     assert not attracts(beyond, FOUND.core)["they converge there"]
+
+
+STEPS = {
+    "invertible": set(division_of.CHECKS),
+    "core": {"core"},
+    "no region": set(division_of.CHECKS) - {"core"},
+    "expansion": {"unstable"},
+    "just as much": set(),
+    "ring": {"ring"},
+    "a sink": {"saddles"},
+    "all stay": {"saddles"},
+    "not told": {"saddles"},
+    "lost": {"saddles"},
+    "none": set(),
+    "no rate": {"unstable"},
+    "no contraction": set(division_of.CHECKS),
+}
+
+
+@pytest.mark.parametrize(("step", "missing"), STEPS.items())
+def test_each_item_of_a_division_is_what_its_own_step_proves(monkeypatch, step, missing):
+    """With all others proved; and the rest that is asked for saddles is neither region, settled nor about the ring."""
+    rate, low = (0.0 if step == "no rate" else 0.1), Fraction(0 if step == "no contraction" else "0.09")
+    made, asked = replace(FOUND, rate=rate, lam=(low, Fraction("0.09"))), []
+    returning, region, settled, around = (
+        np.array([k in some for k in range(7)]) for some in ({0, 1, 2, 3}, {0, 5}, {1}, {2})
+    )
+    made.__dict__.update(settled=settled, region=None if step == "no region" else region)
+    made.__dict__["graph"] = SimpleNamespace(transitions=SimpleNamespace(recurrent=returning))
+    factor = {"all stay": 1.0, "not told": None}.get(step, 0.9)
+    found = None if step == "lost" else [SimpleNamespace(sink=step == "a sink", factor=factor)] * (step != "none")
+
+    def clusters(map, graph, near, among):
+        asked.append(among.tolist())
+        return found
+
+    def expansion(map, graph, members, steps, parts):
+        asked.append(members.tolist())
+        return SimpleNamespace(low={"expansion": 0.05, "just as much": 0.1}.get(step, 0.2) if rate else 0.2)
+
+    monkeypatch.setattr(division_of, "invertible", lambda _: step != "invertible")
+    monkeypatch.setattr(division_of, "attracts", lambda *_: {"one": True, "other": step != "core"})
+    monkeypatch.setattr(division_of, "expansion", expansion)
+    monkeypatch.setattr(division_of, "clusters", clusters)
+    monkeypatch.setattr(division_of.Ring, "stretches", lambda *_: step != "ring")
+    monkeypatch.setattr(Division, "_around", lambda self, rest: asked.append(rest.tolist()) or around)
+    monkeypatch.setattr(Division, "map", None)
+
+    assert {name for name, held in made.checks.items() if held is not True} == missing
+    assert made.proved is (not missing)
+    if len(missing) < 4:
+        kept = [np.flatnonzero(some).tolist() for some in asked]
+        assert kept == [[0], [2, 3], [3]]

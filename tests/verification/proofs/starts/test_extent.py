@@ -15,7 +15,9 @@ from verification.paper.egg import expanding
 from verification.paper.report.report import catalogue
 from verification.proofs.global_dynamics.barrier import Barrier
 from verification.proofs.global_dynamics.boxes import Boxes
+from verification.proofs.starts import extent as extent_of
 from verification.proofs.starts.extent import Extent
+from verification.proofs.starts.parallelograms import Parallelograms
 
 CLAIMS = {claim.id: claim for claim in catalogue()}
 
@@ -99,3 +101,45 @@ def test_the_attractor_expands_where_each_lower_bound_is_above_the_upper_ones_be
 
 def test_bounds_are_printed_outwards():
     assert (expanding.down(0.18796), expanding.up(0.18841), expanding.up(np.inf)) == ("0.1879", "0.1885", "nothing")
+
+
+KEPT = 0.5  # what is kept has a smaller exit angle, and all smaller ones are
+
+
+def moved(bounces: int = 2, by: float = 0.25, ends: tuple[float, float] = (-1.0, 1.0), mirrored: bool = True) -> Extent:
+    """Of the map `phi -> phi + by`, along a curve of one `theta`."""
+    barrier = SimpleNamespace(
+        heights=np.array([0.1, KEPT, 0.3]), mirrored=mirrored, map=by, above=lambda boxes: boxes.y[0] > KEPT
+    )
+    found = Extent(barrier, (0.0, 0.0), bounces, 1.0)
+    found.__dict__["curve"] = np.zeros(extent_of.SIDES + 1), np.linspace(*ends, extent_of.SIDES + 1)
+    return found
+
+
+def test_of_each_point_of_the_curve_the_farthest_image_counts_and_of_all_points_the_least(monkeypatch):
+    """Worked out by hand: within two bounces the points at -0.375 come to -0.125 and 0.125, and none stays nearer."""
+
+    def shifted(by, sets):
+        middle = sets.middle + np.array([[0.0], [by]])
+        return np.arange(sets.chart.size), Parallelograms(sets.chart, middle, sets.sides, sets.rest)
+
+    monkeypatch.setattr(extent_of, "carried", shifted)
+    fine = 2 / extent_of.SIDES
+    assert 0.125 - 2 * fine < moved().low <= 0.125
+    assert 0.125 - 2 * fine < moved(by=-0.25).low <= 0.125
+    assert 0.0 <= moved(bounces=1).low + 2 * fine < 3 * fine
+    assert 0.25 - 2 * fine < moved(bounces=3, by=0.25).low <= 0.25
+    assert moved().high == KEPT
+    assert (moved(mirrored=False).high, moved(mirrored=False).low) == (np.inf, 0.0)
+    for ends in ((-1.0, 0.4), (-0.4, 1.0), (1.0, -1.0)):  # it does not cross all that is kept, from below
+        assert moved(ends=ends).low == 0.0
+    monkeypatch.setattr(
+        extent_of, "carried", lambda by, sets: shifted(by, replace(sets, rest=np.full_like(sets.rest, 0.4)))
+    )
+    assert moved().low == 0.0  # sets so wide are given up
+
+
+def test_only_what_a_barrier_bounds_has_a_highest_angle():
+    found = moved()
+    found.barrier.heights = None
+    assert (found.high, found.low) == (np.inf, 0.0)

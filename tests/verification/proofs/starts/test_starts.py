@@ -12,9 +12,10 @@ from numeric.pinball.sampling import interior_starts
 from symbolic import Scene
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts import mean
 from verification.proofs.starts.core import Core, attracts
 from verification.proofs.starts.mean import CORE, HIGH, LOW, average, diameter, stable
-from verification.proofs.starts.strips import Strips, bounded, settled, strips, unsettled
+from verification.proofs.starts.strips import Left, Strips, bounded, settled, strips, unsettled
 
 SHORT = replace(CORE, gates=((0.36, 0.03),))
 
@@ -187,3 +188,31 @@ def test_the_average_is_negative_where_the_attractor_is_born() -> None:
     sampled = PinballMap("cuspless", lam="0.0713").exponents(start.theta, start.phi, 300, 2000, start.component)
     assert np.mean(sampled.nu_plus) < found.mean
     assert not all(attracts(PinballImages(Scene("cuspless", lam=str(Fraction(9, 100)))), CORE).values())
+
+
+@pytest.mark.parametrize("failing", [None, "core", "no orbit grows faster", "period 2 is as stable"])
+@pytest.mark.parametrize("measure", [0.0, 0.5, 200.0])
+def test_the_mean_is_that_of_what_is_settled_and_of_the_rest_at_its_worst(monkeypatch, failing, measure) -> None:
+    """`(1 - s)*log(0.928)/2 + s*0.52` for a share `s` of `measure*2.6/(2*pi*A)`; the area is `15*sqrt(3)/16 + pi`."""
+    asked = []
+
+    def unsettled(map, core, first, enough):
+        asked.append(enough)
+        return Left(measure, 7)
+
+    monkeypatch.setattr(mean, "unsettled", unsettled)
+    monkeypatch.setattr(mean, "attracts", lambda *_: {"core": failing != "core"})
+    monkeypatch.setattr(mean, "bounded", lambda *_: failing != "no orbit grows faster")
+    monkeypatch.setattr(mean, "stable", lambda *_: failing != "period 2 is as stable")
+    monkeypatch.setattr(mean, "strips", lambda *_: None)
+    monkeypatch.setattr(mean, "diameter", lambda _: 2.6)
+    found = mean.average.__wrapped__(LOW, HIGH)
+    ratio = 2.6 / (2 * np.pi * (15 * 3**0.5 / 16 + np.pi))
+    share, nu, rate = measure * ratio, np.log(0.928) / 2, 0.52
+    assert found.share == pytest.approx(share, rel=1e-9)
+    assert found.share >= share * (1 - 1e-14)
+    assert {name for name, held in found.checks.items() if not held} == ({failing} if failing else set())
+    proved = failing is None and share < 1
+    assert found.mean == (pytest.approx((1 - share) * nu + share * rate, rel=1e-9) if proved else np.inf)
+    assert found.mean >= (1 - share) * nu + share * rate
+    assert asked == [pytest.approx(0.98 * -nu / (rate - nu) / ratio, rel=1e-9)]

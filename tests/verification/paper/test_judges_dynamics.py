@@ -130,6 +130,16 @@ def test_that_there_is_no_rotation_elsewhere_rests_on_each_proof(step, monkeypat
     assert verdict(on_attractors.no_rotation, "map.no_irrational_rotation") is Verdict.REFUTED
 
 
+@pytest.mark.parametrize("step", ["two_cycles", "settles", "splits", "strange"])
+def test_a_third_type_of_attractor_rests_on_a_strange_one_and_the_other_tables_on_their_proofs(step, monkeypatch):
+    assert verdict(on_attractors.two_types, "map.two_attractor_types") is Verdict.CORRECTED
+    missing = Finding(Outcome.UNKNOWN, "a step is missing")
+    monkeypatch.setattr(on_attractors, step, lambda *_: (missing, arb(0.66)) if step == "strange" else missing)
+
+    left = Verdict.OPEN if step == "strange" else Verdict.REFUTED
+    assert verdict(on_attractors.two_types, "map.two_attractor_types") is left
+
+
 @pytest.mark.parametrize(
     "other",
     [

@@ -4,7 +4,7 @@ from . import fields, space
 from .fields import attractors_of, basins, bifurcation
 from .orbits import written
 from .run import Results, UnfinishedError, connected, on_cluster, on_processes, on_threads
-from .space import egg, parameter_space
+from .space import egg, parameter_space, periods
 from .store import Memory
 from .sweep import Array, Axis, Field, Measured, Part, Sweep, Task, cores, floor_of, map_of, measured, text_of, versions
 from .workers import Lost, in_processes
@@ -36,6 +36,7 @@ __all__ = [
     "on_processes",
     "on_threads",
     "parameter_space",
+    "periods",
     "space",
     "text_of",
     "versions",

@@ -130,6 +130,8 @@ FORMATS: dict[str, dict[str, Any]] = {  # of files, and what keeps the time and 
     ".pdf": {"metadata": {"CreationDate": None, "Producer": None}},
     ".webp": {"pil_kwargs": {"quality": 85, "method": 6}},
 }
+VECTORS = (".svg", ".pdf")  # of 72 units an inch
+SMALL: dict[str, Any] = {"pil_kwargs": {"quality": 55, "method": 2}}  # of a WebP for a page
 OUTLINE: dict[str, Any] = {"color": "0.35", "lw": 1.1, "solid_joinstyle": "miter"}
 FAINT: dict[str, Any] = {"color": "0.6", "lw": 0.5, "ls": ":"}
 CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew": 1.4, "zorder": 5}
@@ -160,8 +162,24 @@ def image(drawn: "Figure", ending: str) -> bytes:
     """A figure as a file of the kind that the ending names; the same figure gives the same bytes."""
     from matplotlib import rcParams
 
+    return encoded(drawn, ending, dpi=max(rcParams["savefig.dpi"], drawn.dpi))
+
+
+def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> bytes:
+    """A figure as the bytes of a file, with whatever `savefig` may be told besides.
+
+    It is laid out here, and once: `savefig` would do that in a drawing of its own, which it throws away.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(drawn)
+    drawn.set_dpi(72.0 if ending in VECTORS else dpi)
+    layout = drawn.get_layout_engine()
+    if layout is not None:
+        layout.execute(drawn)
+        drawn.set_layout_engine("none")
     buffer = BytesIO()
-    drawn.savefig(buffer, format=ending[1:], dpi=max(rcParams["savefig.dpi"], drawn.dpi), **FORMATS[ending])
+    drawn.savefig(buffer, format=ending[1:], dpi=dpi, **{**FORMATS[ending], **form})
     return buffer.getvalue()
 
 

@@ -69,7 +69,7 @@ def engine(monkeypatch, tmp_path):
         return Paper(tmp_path, "A paper", (), "", {section: ""}, tuple(claims), ())
 
     monkeypatch.setattr(folder, "paper", paper)
-    monkeypatch.setattr(report, "judged", lambda *asked: closable(fake.judged(*asked)))
+    monkeypatch.setattr(report, "answered", lambda claims, _, *asked: closable(fake.judged(claims, *asked)))
     monkeypatch.chdir(tmp_path)
     return fake
 

@@ -24,10 +24,11 @@ from verification.paper.report import report
 from verification.paper.report.report import codes
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping
+    from collections.abc import Mapping
 
     from rich.console import Console
 
+    from verification.measure.work.row import Diagram
     from verification.paper.claims.claim import Claim
     from verification.paper.claims.folder import Paper
     from verification.paper.figures.catalogue import Picture as Figure
@@ -194,7 +195,7 @@ def command(
     The report does not depend on --jobs, but for the seconds in it.
     """
     from verification.paper.claims.folder import OWN, paper
-    from verification.paper.report.page import diagrams
+    from verification.paper.report.page import Picture, diagrams
 
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy is not loaded yet; it is the judges that share the cores
     about = paper(source or OWN)
@@ -207,18 +208,24 @@ def command(
     missing = [claim for claim in claims if claim.id not in found]
     if changed:
         output.console.print(f"{len(missing)} of {len(claims)} claims depend on code that has changed.")
-    costs = {claim.id: report.seconds([claim]) for claim in claims}
+    images, sections = dict(last.images), {claim.section for claim in claims}
+    wanted: list[Figure | Diagram] = [*(each for each in pictured if figures and each.section in sections), *measured]
+    drawings = [each for each in wanted if each.name not in images] if drawable(output, wanted) else []
+    costs = {claim.id: report.seconds([claim]) for claim in claims} | {each.name: each.seconds for each in drawings}
     with (
-        output.progress("Judging", report.seconds(missing)) as step,
-        closing(report.judged(missing, digits, jobs)) as judged,
+        output.progress("Judging", report.seconds([*missing, *drawings])) as step,
+        closing(report.answered(missing, drawings, digits, jobs)) as answers,
     ):
-        for result in judged:
-            found[result.id] = result
-            step(f"{len(found)} of {len(claims)}: {result.id}", costs[result.id])
+        for answer in answers:
+            if isinstance(answer, report.Drawn):
+                images[answer.name] = answer.image
+                step(f"{len(found)} of {len(claims)}: the figure {answer.name}", costs[answer.name])
+            else:
+                found[answer.id] = answer
+                step(f"{len(found)} of {len(claims)}: {answer.id}", costs[answer.id])
     results = [found[claim.id] for claim in claims]
-    sections = {claim.section for claim in claims}
-    shown = drawn([each for each in pictured if each.section in sections], output, jobs, last.images) if figures else []
-    write_report(directory, results, [*shown, *measured], codes(claims, digits, pictured), about)
+    shown = [Picture.of(each, images[each.name]) for each in wanted if each.name in images]
+    write_report(directory, results, shown, codes(claims, digits, pictured), about)
     output.write(report.document(results, about.about))
     show(output.console, results)
     output.console.print(
@@ -316,47 +323,12 @@ def prepared(folder: str) -> Path:
     return directory
 
 
-def drawn(
-    wanted: "Sequence[Figure]", output: Output, jobs: int | None = 1, known: "Mapping[str, bytes] | None" = None
-) -> "list[Picture]":
-    """The figures wanted, as drafts, in their order; those known already are not drawn again.
-
-    There are none where Matplotlib is missing.
-    """
-    from verification.paper.report.page import Picture
-
-    if find_spec("matplotlib") is None:
-        output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
-        return []
-    images = dict(known or {})
-    missing = [picture for picture in wanted if picture.name not in images]
-    with output.progress("Drawing", len(missing)) as step, closing(_images(missing, jobs)) as found:
-        for picture, image in found:
-            images[picture.name] = image
-            step(picture.name)
-    return [
-        Picture(each.name, each.caption, each.section, images[each.name], each.shows)
-        for each in wanted
-        if each.name in images
-    ]
-
-
-def _images(wanted: "Sequence[Figure]", jobs: int | None) -> "Generator[tuple[Figure, bytes], None, None]":
-    from numeric.sweeps.workers import Lost, in_processes
-
-    if jobs == 1 or len(wanted) < 2:
-        yield from ((picture, _image(picture)) for picture in wanted)
-        return
-    modules = sorted({picture.module for picture in wanted})
-    with closing(in_processes(_image, [[picture] for picture in wanted], jobs, modules)) as found:
-        for picture, image in found:
-            if isinstance(image, Lost):
-                raise RuntimeError(f"the figure {picture.name} could not be drawn: {image}")
-            yield picture, image
-
-
-def _image(picture: "Figure") -> bytes:
-    return picture.small(picture.data())
+def drawable(output: Output, wanted: "Sequence[object]") -> bool:
+    """Is Matplotlib there? Where pictures are wanted and it is not, that is said."""
+    if not wanted or find_spec("matplotlib") is not None:
+        return True
+    output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
+    return False
 
 
 def write_report(

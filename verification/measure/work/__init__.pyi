@@ -6,7 +6,7 @@ from .calls import BARS, KERNEL, Call, call_rows, pieces_at_rest, table_rows
 from .choice import QUESTIONS, digits_for, earlier, for_orbit, moved, of_bench
 from .figure import drawn, image
 from .question import Question, measured
-from .row import diagram, duration, facts, footer, plain
+from .row import Diagram, diagram, duration, facts, footer, plain
 from .scaling import sweep_rows
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "QUESTIONS",
     "SCALAR",
     "Call",
+    "Diagram",
     "Question",
     "Row",
     "baseline_rows",

@@ -28,7 +28,8 @@ from verification.cycles.problem import Linearised, Problem
 from verification.measure.work.bench import module
 from verification.measure.work.cycles import EGG, HALF, first_exit, triangle_start, whole
 from verification.measure.work.question import Claimed, Method, Question, available
-from verification.measure.work.sought import DIGITS, WITHOUT, Sought, to_digits
+from verification.measure.work.row import WITHOUT
+from verification.measure.work.sought import DIGITS, Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
 from verification.named.locate import certify
 from verification.proofs.manifolds.enclosed import complex_balls

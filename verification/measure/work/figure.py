@@ -5,15 +5,12 @@ digits, so that float64 and a thousand digits are told apart on one page. Marks 
 Sentences made from the same rows say which method wins where, what a proof costs, and what the usual methods lose.
 """
 
-import io
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from verification.measure.work.choice import crossovers, entries
-from verification.measure.work.row import Row, duration, footer, front, short
-from verification.measure.work.sought import WITHOUT
-from verification.plots.sheet import BLACK, DARK, MIDDLE, WIDTH, styled
+from verification.measure.work.row import WITHOUT, Row, duration, footer, front, short
+from verification.plots.sheet import BLACK, DARK, MIDDLE, SMALL, WIDTH, encoded, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,11 +72,8 @@ def looks(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
 
 def image(figure: "Figure", ending: str = "svg") -> bytes:
     """A figure as the bytes of a file, the same for the same figure; small ones for a page, as WebP."""
-    buffer = io.BytesIO()
-    small: dict[str, Any] = {"dpi": 110, "pil_kwargs": {"quality": 55}} if ending == "webp" else {}
     with styled():
-        figure.savefig(buffer, format=ending, metadata={"Date": None} if ending == "svg" else None, **small)
-    return buffer.getvalue()
+        return encoded(figure, f".{ending}", **({"dpi": 110, **SMALL} if ending == "webp" else {}))
 
 
 def height(magnitude: float, wide: bool) -> float:
@@ -180,6 +174,8 @@ def quickest(rows: Sequence[Row]) -> str:
 
 def picked(rows: Sequence[Row]) -> str:
     """Which of this package's ways is the cheapest, by digits."""
+    from verification.measure.work.choice import crossovers, entries  # which needs the map
+
     known = entries(rows)
     if not known or _with_bars(rows):
         return ""

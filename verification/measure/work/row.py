@@ -13,6 +13,7 @@ from statistics import median, quantiles
 from typing import Any
 
 BALLS = ("error", "least", "promise")  # fields that a float may not hold
+WITHOUT = "mpmath, no gmpy2"  # the method that says what gmpy2 is worth
 SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # of the errors that are written as floats
 
 
@@ -259,3 +260,27 @@ def _power(y: float) -> str:
     exponent = int(y // 1)
     lead = round(10 ** (y - exponent))
     return f"{1 if lead == 10 else lead}e{exponent + (lead == 10)}"
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """The diagram of a question, still to be drawn, for a page: its rows, and the machine they were measured on."""
+
+    name: str
+    caption: str
+    title: str
+    unit: str
+    rows: tuple[Row, ...]
+    machine: dict[str, str]
+    section: str = ""
+    shows: str = ""
+    seconds: float = 0.2
+    module: str = "verification.measure.work.figure"
+
+    def drawn(self) -> bytes:
+        """The diagram as a WebP on no ground, so that the page may be dark."""
+        from verification.measure.work.figure import drawn, image
+
+        figure = drawn(self.title, self.unit, self.rows, self.machine)
+        figure.patch.set_alpha(0)
+        return image(figure, "webp")

@@ -44,12 +44,12 @@ from verification.cycles.newton import (
 )
 from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question, available, power
+from verification.measure.work.row import WITHOUT
 from verification.named.locate import lambda_star
 from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 Read = Callable[[Arithmetic, list[Any]], list[Any]]
 DIGITS = (16, 30, 100, 300, 1000)
-WITHOUT = "mpmath, no gmpy2"
 LONG_PI = np.longdouble("3.14159265358979323846264338327950288")
 LONG: Arithmetic = replace(
     ARRAYS,

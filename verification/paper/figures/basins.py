@@ -19,18 +19,19 @@ if TYPE_CHECKING:
 
 ACROSS, UP = 360, 240  # cells of a draft
 TRANSIENT = 1000  # bounces before a particle is first looked at
+SOON = 250  # the same where most particles are on a cycle by then: those that are not go on
 BLANK, SHADE = (1.0, 1.0, 1.0), (0.78, 0.84, 0.78)
 RED = (0.87, 0.55, 0.5)
 
 
-def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
+def basins(map: PinballMap, fine: float, angle: bool, transient: int = TRANSIENT) -> Panel:
     """Which attractor the particle in each cell of phase space reaches, and the attractors.
 
     The abscissa is `theta` where `angle` is true, else arc length; cells are equal in arc length either way.
     """
     grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
     particles = grid.starts
-    label, attractors = classify(map, particles.theta, particles.phi, particles.component, TRANSIENT)
+    label, attractors = classify(map, particles.theta, particles.phi, particles.component, transient)
     curves, names, count = {}, [], scaled(4000, fine, 50)
     for i, attractor in enumerate(attractors):
         name = "chaotic" if attractor.kind is Kind.CHAOTIC else f"period {attractor.period}"
@@ -42,7 +43,7 @@ def basins(map: PinballMap, fine: float, angle: bool) -> Panel:
     order = np.argsort(x)
     table = label.reshape(grid.sin_phi.size, grid.s.size)[:, order]
     raster = Raster(x[order], grid.sin_phi, np.where(table < 0, len(names), table), (*names, "unsettled"))
-    known = facts(map, transient=TRANSIENT, columns=x.size, rows=grid.sin_phi.size)
+    known = facts(map, transient=transient, columns=x.size, rows=grid.sin_phi.size)
     return Panel(rf"$\lambda = {float(map.lam):g}$", "theta" if angle else "s", "sin_phi", curves, raster, known)
 
 
@@ -79,7 +80,8 @@ def draw_cuspless(panels: Panels) -> "Figure":
 
 def egg(fine: float = 1.0) -> Panels:
     """The basins just below the boundary crisis and above it."""
-    return tuple(basins(PinballMap("egg", lam=lam, alpha="0.08"), fine, angle=True) for lam in ("0.66", "0.7"))
+    maps = [PinballMap("egg", lam=lam, alpha="0.08") for lam in ("0.66", "0.7")]
+    return tuple(basins(map, fine, angle=True, transient=SOON) for map in maps)
 
 
 def draw_egg(panels: Panels) -> "Figure":

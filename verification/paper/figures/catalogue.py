@@ -7,16 +7,34 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib import import_module
 from importlib.resources import files
-from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from verification.plots.sheet import Panels
 
 DRAFT, FULL = 1.0, 8.0  # resolutions
-LINES, HEAVY = 2500, 100_000  # points that may be small as lines, and bytes that are not
+LINES, HEAVY = 2000, 100_000  # points that may be small as lines, and bytes that are not
 WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
+
+
+class Drawing(Protocol):
+    """A picture that is still to be drawn: a figure of the paper, or a diagram of what was measured."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+    @property
+    def seconds(self) -> float:
+        """What drawing it is said to take."""
+
+    @property
+    def module(self) -> str:
+        """What draws it, with all that it needs."""
+
+    def drawn(self) -> bytes:
+        """The image, of any kind that a page shows."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +42,7 @@ class Picture:
     """A figure: its name, the module and function that compute its data, and its place in the paper.
 
     `labels` are the paper's own, empty for a figure that it only speaks of; the caption is quoted with its misprints,
-    and `shows` says what is to be seen here.
+    and `shows` says what is to be seen here. A draft for a page takes some `seconds`.
     """
 
     name: str
@@ -33,6 +51,7 @@ class Picture:
     section: str
     caption: str
     shows: str
+    seconds: float = 0.2
 
     @cached_property
     def _pair(self) -> tuple[Callable[[float], "Panels"], Callable[["Panels"], Any]]:
@@ -55,24 +74,23 @@ class Picture:
         with styled():
             return image(self._pair[1](panels), ending)
 
-    def small(self, panels: "Panels") -> bytes:
-        """The drawn panels for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
-        from verification.plots.sheet import FORMATS
+    def drawn(self) -> bytes:
+        """A draft for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
+        from verification.plots.sheet import SMALL
 
+        panels = self.data()
         count = sum(curve.x.size for panel in panels for curve in panel.curves.values())
         if count <= LINES and all(panel.raster is None for panel in panels):
-            lines = self._saved(panels, {"format": "svg", **FORMATS[".svg"]})
+            lines = self._saved(panels, ".svg")
             if len(lines) <= HEAVY:
                 return lines
-        return self._saved(panels, {"format": "webp", "dpi": 140, "pil_kwargs": {"quality": 55}})
+        return self._saved(panels, ".webp", dpi=140, **SMALL)
 
-    def _saved(self, panels: "Panels", form: dict[str, Any]) -> bytes:
-        from verification.plots.sheet import styled
+    def _saved(self, panels: "Panels", ending: str, **form: Any) -> bytes:
+        from verification.plots.sheet import encoded, styled
 
-        buffer = BytesIO()
         with styled():
-            self._pair[1](panels).savefig(buffer, transparent=True, **form)
-        return buffer.getvalue()
+            return encoded(self._pair[1](panels), ending, transparent=True, **form)
 
     def document(self, panels: "Panels", fine: float) -> dict[str, Any]:
         """The data as JSON has them."""

@@ -3,8 +3,6 @@
 The figures on the circle and the ellipse. Paper: section 3.
 """
 
-from collections.abc import Callable
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,10 +11,8 @@ from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
 from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import lambda_minus, stability_number, trace_of
-from symbolic.tables.geometry import evolute
 from symbolic.tables.table import a as a_letter
 from symbolic.tables.table import lam as lam_letter
-from symbolic.tables.table import theta
 from verification.paper.figures.phase import SEED, facts, flights, outline
 from verification.paper.figures.phase import slap_by_angle as by_angle
 from verification.plots.sheet import BLACK, DARK, FAINT, OUTLINE, Array, Curve, Panel, Panels, graphs, scaled, sheet
@@ -33,15 +29,19 @@ TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 
 
-@cache
-def centres(table: str, **shape: str) -> Callable[[Array], tuple[Array, Array]]:
-    """The centre of curvature of the first component against `theta`, from the exact formula."""
-    from symbolic.expressions.text import kernel, load
-    from symbolic.tables import named
-    from verification.arithmetic.balls import ARRAYS
+def centres(map: PinballMap, theta: Array) -> tuple[Array, Array]:
+    """The centre of curvature of the first component at each `theta`: the curvature's radius along the inward normal.
 
-    x, y = evolute(named(table).at(**shape).components[0])
-    return load(kernel("evolute", [theta], {"x": x, "y": y}), ARRAYS)
+    Paper: section 2.2. The boundary must have a curvature there, which a cusp has not.
+
+    >>> x, y = centres(PinballMap("ellipse", a=2), np.array([0.0]))  # at the tip of the major axis, b**2/a from it
+    >>> float(x[0]), abs(float(y[0]))
+    (1.5, 0.0)
+    """
+    where = np.zeros(theta.shape, dtype=np.int64)
+    x, y, tx, ty = map.states.frame(where, theta)
+    radius = -1 / map.states.curvature(where, theta)
+    return x - radius * ty, y + radius * tx
 
 
 def evolutes(fine: float = 1.0) -> Panels:
@@ -53,11 +53,11 @@ def evolutes(fine: float = 1.0) -> Panels:
     for table, shape in TABLES:
         map = PinballMap(table, lam=0, **shape)
         low, high = map.states.ends[0]
-        starts = low + (high - low) * (np.arange(40) + 0.5) / 40
+        starts, points = (low + (high - low) * (np.arange(n) + 0.5) / n for n in (40, scaled(400, fine, 20)))
         curves = {
             "boundary": outline(map),
             "flights": flights(map.orbit(starts, np.zeros(40), 1)),
-            "evolute": Curve(*centres(table, **shape)(np.linspace(low, high, scaled(400, fine, 20)))),
+            "evolute": Curve(*centres(map, points)),
         }
         letters = {"alpha": r"\alpha"}
         title = table + "".join(f", ${letters.get(name, name)} = {value}$" for name, value in shape.items())

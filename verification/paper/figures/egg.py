@@ -1,20 +1,22 @@
 """The figures on the three-pointed egg. Paper: section 6.
 
-Elastic collisions, the slap map and cycles of period 3; the plane of parameters with chaos or none, from a small
-sweep on all cores; the attractors.
+Elastic collisions, the slap map and cycles of period 3; the plane of parameters with chaos or none; the attractors,
+and where they go as the contraction grows, from a small sweep on all cores.
 """
 
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from sympy import Rational
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.pinball.sampling import phase_starts
+from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_starts
 from numeric.sweeps.run import on_threads
+from numeric.sweeps.space import periods
 from numeric.sweeps.store import Memory
-from numeric.sweeps.sweep import Array, Sweep, cores
+from numeric.sweeps.sweep import Array, Sweep, cores, measured
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter
@@ -276,27 +278,53 @@ def draw_bifurcation(panels: Panels) -> "Figure":
 NAMES = ("no chaos found", "chaos", "undecided")
 
 
+EARLY = 200  # bounces after which most orbits are on their cycle; what is there need not be followed on
+
+
 def parameter_space(fine: float = 1.0) -> Panels:
     """Which pairs `(alpha, lam)` have a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
 
     Each sign counts beyond twice its error (`numeric.sweeps.sweep`); a pair with no chaotic orbit and one whose
-    sign its error leaves open is undecided.
+    sign its error leaves open is undecided. The starts differ from one `lam` to the next and are those of the elastic
+    egg of the middle shape, which any shape may have.
     """
-    from numeric.sweeps.space import parameter_space as sweep
     from symbolic.expressions.text import kernel, load
     from verification.arithmetic.balls import ARRAYS
 
-    side, starts = scaled(40, fine**0.5, 3), scaled(100, min(fine, 1.0), 4)
+    side, each = scaled(40, fine**0.5, 3), scaled(100, min(fine, 1.0), 4)
     bounces = scaled(1000, min(fine, 2.0), 40)
     alphas, lams = np.round(np.linspace(0, 0.1, side + 1), 12), np.round(np.linspace(0, 1, side + 1), 12)
-    found = swept(sweep(alphas, lams, starts, bounces, bounces, seed=SEED))
-    chaotic = found["chaotic"] > 0
-    undecided = ~chaotic & (found["regular"] < starts)
-    raster = Raster(lams, alphas, np.where(chaotic, 1, np.where(undecided, 2, 0)), NAMES)
+    starts = interior_starts(PinballMap("egg", lam=1, alpha="0.05"), lams.size * each, SEED)
+    rows = [signs(PinballMap("egg", alpha=repr(float(a))), lams, starts, bounces) for a in alphas]
+    raster = Raster(lams, alphas, np.array(rows), NAMES)
     lam = np.linspace(0, 1, 201)
     tilde = load(kernel("alpha_tilde", [lam_letter], {"alpha": alpha_tilde()}), ARRAYS)(lam)[0]
-    known: dict[str, Fact] = {"table": "egg", "seed": SEED, "starts": starts, "bounces": bounces, "transient": bounces}
+    known: dict[str, Fact] = {"table": "egg", "seed": SEED, "starts": each, "bounces": bounces, "transient": bounces}
     return (Panel("", "lam", "alpha", {"alpha_tilde": Curve(lam, tilde)}, raster, known),)
+
+
+def signs(table: PinballMap, lams: Array, starts: Starts, bounces: int) -> NDArray[np.int64]:
+    """For each contraction 1 where one of its starts is chaotic, 2 where that is undecided, else 0.
+
+    Orbits are measured over `bounces` after as many. One that is back where it was after `EARLY` is on a cycle that
+    attracts it, and is not followed on.
+
+    >>> starts = interior_starts(PinballMap("egg", lam=1, alpha="0.09"), 8, 1)
+    >>> signs(PinballMap("egg", alpha="0.09"), np.array([0.1, 0.3]), starts, 400).tolist()
+    [0, 1]
+    """
+    lam = np.repeat(lams, starts.theta.size // lams.size)
+    growth = Growth(table.at(lam), starts.theta, starts.phi, starts.component)
+    growth.skip(min(EARLY, bounces))
+    here = Starts(growth.component, growth.theta, growth.phi, starts.x, starts.y)
+    attracts = (periods(table.at(lam), here) > 0) & (lam < 1)
+    going = np.flatnonzero(~attracts & (growth.code == 0))
+    rest = Starts(here.component[going], here.theta[going], here.phi[going], here.x[going], here.y[going])
+    found = measured(table.at(lam[going]), rest, bounces, max(0, bounces - EARLY))
+    chaotic, decided = np.zeros(lam.size, dtype=bool), attracts
+    chaotic[going], decided[going] = found.chaotic, found.chaotic | found.regular
+    some, all_ = (np.reshape(rows, (lams.size, -1)) for rows in (chaotic, decided))
+    return np.where(some.any(axis=1), 1, np.where(all_.all(axis=1), 0, 2))
 
 
 def draw_parameter_space(panels: Panels) -> "Figure":
@@ -321,9 +349,8 @@ def draw_parameter_space(panels: Panels) -> "Figure":
 def swept(sweep: Sweep) -> dict[str, Array]:
     """The fields of a sweep by name.
 
-    >>> from numeric.sweeps.space import parameter_space
-    >>> import numpy as np
-    >>> int(swept(parameter_space(np.array([0.0]), np.array([0.5]), 3, 40, 40))["chaotic"][0, 0])
+    >>> from numeric.sweeps.space import parameter_space as sweep
+    >>> int(swept(sweep(np.array([0.0]), np.array([0.5]), 3, 40, 40))["chaotic"][0, 0])
     0
     """
     results = Memory(sweep)

@@ -24,7 +24,9 @@ from verification.paper.report.mathml import prose, remark
 from verification.paper.report.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
+    from verification.measure.work.row import Diagram
     from verification.paper.claims.folder import Paper
+    from verification.paper.figures.catalogue import Picture as Figure
     from verification.paper.report.report import Result
 
 
@@ -50,6 +52,11 @@ class Picture:
     section: str
     image: bytes
     shows: str = ""
+
+    @classmethod
+    def of(cls, drawing: "Figure | Diagram", image: bytes) -> "Picture":
+        """What was drawn, with its words."""
+        return cls(drawing.name, drawing.caption, drawing.section, image, drawing.shows)
 
     @property
     def source(self) -> str:
@@ -178,10 +185,9 @@ def _plain(text: str) -> str:
 WANTED = "accepted: what `pinball work --json FILE` writes"
 
 
-def diagrams(path: Path) -> list[Picture]:
-    """A picture for each question in the file, with its machine in the footer; `ValueError` when it is no such file."""
-    from verification.measure.work.figure import drawn, image
-    from verification.measure.work.row import Row
+def diagrams(path: Path) -> "list[Diagram]":
+    """A diagram for each question in the file, with its machine in the footer; `ValueError` when it is no such file."""
+    from verification.measure.work.row import Diagram, Row
 
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
@@ -193,12 +199,17 @@ def diagrams(path: Path) -> list[Picture]:
         raise ValueError(f"--work {str(path)!r} cannot be read ({error.strerror}); {WANTED}") from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"--work {str(path)!r} is no such file ({type(error).__name__}: {error}); {WANTED}") from None
-    found = []
-    for name, title, answers, unit in titles:
-        figure = drawn(title, unit, [row for row in rows if row.question == name], known)
-        figure.patch.set_alpha(0)  # so that the page may be dark
-        found.append(Picture(f"work-{name}", f"{title}: {answers}.", "", image(figure, "webp")))
-    return found
+    return [
+        Diagram(
+            f"work-{name}",
+            f"{title}: {answers}.",
+            title,
+            unit,
+            tuple(row for row in rows if row.question == name),
+            known,
+        )
+        for name, title, answers, unit in titles
+    ]
 
 
 def _listed(questions: Any) -> list[dict[str, str]]:

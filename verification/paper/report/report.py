@@ -25,16 +25,16 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from numeric.sweeps.workers import Lost, in_processes
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict
 from verification.paper.claims.folder import OWN, Paper, home, judge_of, module, paper
-from verification.paper.figures.catalogue import Picture
+from verification.paper.figures.catalogue import Drawing, Picture
 
-SMALL = 4.0  # seconds of judging that other processes would not save
+SMALL = 4.0  # seconds of work that other processes would not save
 STOREYS = ("symbolic", "numeric", "verification")
 OURS = rf"(?:{'|'.join(STOREYS)})"
 FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n(]*)", re.MULTILINE)
@@ -100,27 +100,61 @@ def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path 
                 yield found[order.popleft()]
 
 
+class Drawn(NamedTuple):
+    """A picture that was drawn, by its name."""
+
+    name: str
+    image: bytes
+
+
 def judged(claims: Sequence[Claim], digits: int, jobs: int | None) -> Generator[Result, None, None]:
     """The result of each claim as it comes; with more than one job from processes, the dearest begun first.
 
     The results do not depend on `jobs`, but for their seconds. A claim whose process died again and again is open.
     """
+    for answer in answered(claims, (), digits, jobs):
+        if isinstance(answer, Result):
+            yield answer
+
+
+def answered(
+    claims: Sequence[Claim], drawings: Sequence[Drawing], digits: int, jobs: int | None
+) -> Generator[Result | Drawn, None, None]:
+    """Claims judged and pictures drawn by the same processes, the dearest of all begun first: so no core waits.
+
+    As `judged`; a picture whose process died again and again is an error.
+    """
     for claim in claims:
         if claim.home.endswith(".py"):
             judge_of(claim)  # a module that cannot be run is refused before any work
-    groups = shared_out(claims)
-    if jobs == 1 or len(groups) < 2 or seconds(claims) < SMALL:
+    tasks: list[list[Claim | Drawing]] = [[*group] for group in shared_out(claims)]
+    for each in drawings:
+        tasks.append([each])
+    tasks.sort(key=seconds, reverse=True)
+    if jobs == 1 or len(tasks) < 2 or seconds([*claims, *drawings]) < SMALL:
         yield from (judge(claim, digits) for claim in claims)
+        yield from (Drawn(each.name, each.drawn()) for each in drawings)
         return
-    modules = sorted({claim.home for claim in claims if not claim.home.endswith(".py")})
-    with closing(in_processes(partial(judge, digits=digits), groups, jobs, modules)) as answers:
-        for claim, answer in answers:
-            yield _result(claim, _open(f"not judged: {answer}"), digits, 0.0) if isinstance(answer, Lost) else answer
+    homes = {claim.home for claim in claims if not claim.home.endswith(".py")}
+    modules = sorted(homes | {each.module for each in drawings})
+    with closing(in_processes(partial(answer, digits=digits), tasks, jobs, modules)) as answers:
+        for item, found in answers:
+            if not isinstance(found, Lost):
+                yield found
+            elif isinstance(item, Claim):
+                yield _result(item, _open(f"not judged: {found}"), digits, 0.0)
+            else:
+                raise RuntimeError(f"the picture {item.name} could not be drawn: {found}")
 
 
-def seconds(claims: Iterable[Claim]) -> float:
-    """What judging claims is said to take."""
-    return sum(claim.seconds for claim in claims)
+def answer(item: Claim | Drawing, digits: int) -> Result | Drawn:
+    """What one claim or picture comes to."""
+    return judge(item, digits) if isinstance(item, Claim) else Drawn(item.name, item.drawn())
+
+
+def seconds(items: Iterable[Claim | Drawing]) -> float:
+    """What judging claims and drawing pictures is said to take."""
+    return sum(each.seconds for each in items)
 
 
 def shared_out(claims: Iterable[Claim]) -> list[list[Claim]]:

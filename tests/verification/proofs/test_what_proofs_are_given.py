@@ -15,7 +15,7 @@ from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.proofs.global_dynamics.boxes import BallArray
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.periodic import bifurcation
+from verification.proofs.periodic import bifurcation, returning, triangles
 from verification.proofs.periodic.interval_newton import Cover, Enclosure, Status, stays_below
 
 
@@ -85,3 +85,45 @@ def test_a_value_is_precise_where_it_is_known_and_not_where_a_bounce_is(monkeypa
     with working(100):
         checks = bifurcation.proved(bifurcation.Claim(problem, tuple(centre), arb(2) ** -40, 100, 12)).checks
     assert checks["precise"] is (wide != 3)
+
+
+@pytest.mark.parametrize(("slope", "share", "excluded"), [(0, 0.4, True), (0, 0.3, False), (40, 0.4, False)])
+def test_triangles_are_excluded_by_the_sum_of_their_exit_angles_at_the_middle_and_its_slopes(slope, share, excluded):
+    """Three equal angles of 0.4 of the largest are too much; where their sum varies by as much they may not be."""
+    box = ((0.5, 2.0**-10), (2.25, 2.0**-10), (2.0, 2.0**-10))
+
+    def angles(*theta):
+        phi = arb(share) if theta[0].is_exact() else arb(share, 0.15)
+        return [phi] * 3 + [-2 * phi] * 3
+
+    def slopes(*theta):
+        row = [arb(0), arb(slope), arb(slope)]
+        return row * 3 + [arb(0)] * 9
+
+    with working(64):
+        assert triangles._impossible(angles, slopes, arb(1), arb(1), 0.25, box) is excluded
+
+
+def test_a_scalar_product_is_the_sum_of_three_products_and_a_volume_that_of_three_widths():
+    numbers = lambda *xs: [arb(x) for x in xs]  # noqa: E731
+    assert triangles._dot(numbers(1, 10, 100), numbers(2, 3, 5)) == 532
+    assert triangles._by_gaps(numbers(1, 10, 100)) == numbers(111, 110, 100)  # all move with the first, two with a gap
+    assert triangles._volume(((9.0, 2.0), (9.0, 3.0), (9.0, 5.0))) == 30
+    assert [triangles._slope(numbers(7, 8, 9), *ends) for ends in ((0, 1), (1, 2), (2, 0))] == [
+        [8, 9, 0], [0, 8, 9], [9, 0, 8]
+    ]  # fmt: skip
+
+
+def test_a_stretch_is_folded_into_the_sixth_of_the_turn_with_its_ends_and_signs():
+    """By the symmetries of the egg: turns by a third, and the reflection, which changes the sign of exit angles."""
+    rng = np.random.default_rng(3)
+    for end, reach in zip(rng.uniform(-7, 7, 300), rng.choice([0.0, 1e-3, 0.2, 0.5], 300), strict=True):
+        found = returning._folded(end, reach)
+        for x in end + reach * np.array([-1, 1, *rng.uniform(-1, 1, 5)]):
+            rest = np.remainder(x, 2 * np.pi / 3)
+            at, sign = (rest, 1) if rest <= np.pi / 3 else (2 * np.pi / 3 - rest, -1)
+            near = [(low, high) for low, high, told in found if told == sign]
+            assert any(low <= at <= high for low, high in near) or min(at, np.pi / 3 - at) < 1e-12
+        for low, high, _ in found:
+            assert 0 <= low <= high <= np.pi / 3 + 2e-9
+            assert high - low <= 2 * reach + 4e-9

@@ -3,14 +3,19 @@
 from dataclasses import replace
 from fractions import Fraction
 from math import pi, tau
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from flint import arb
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.paper.egg.basins import MIDDLE, beyond_the_crisis
-from verification.proofs.global_dynamics.common_boundary import CHECKS, attracts, disc, entered_around
+from verification.proofs.global_dynamics import common_boundary
+from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.common_boundary import CHECKS, Disc, attracts, disc, entered_around
+from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.manifolds.saddle import Orbit
 
 FOUND = beyond_the_crisis()
@@ -78,3 +83,65 @@ def test_every_check_may_fail_and_nothing_is_refuted():
         replace(FOUND, turn=(Fraction(1, 4), Fraction(2, 3)))
     with pytest.raises(ValueError, match="lam is in"):
         replace(FOUND, lam=Fraction(1))
+
+
+def stub(matrix, image, lost=False):
+    """A map with one derivative everywhere, `[[a, b], [c, d]]`, and the image of the centre within a radius."""
+    (a, b, c, d), count = map(float, np.ravel(matrix)), common_boundary.CUT**2
+    each = lambda x: BallArray(np.full(count, x))  # noqa: E731
+    slopes = Slopes(each(a), each(b), each(-c / d), each(0.0), each(-d), each(0.0))
+    boxes = Boxes(np.zeros(1, dtype=int), *(tuple(np.array([x + side * 1e-9]) for side in (-1, 1)) for x in image))
+    found = SimpleNamespace(lost=np.zeros(int(lost)), boxes=boxes)
+    piece = SimpleNamespace(on=np.arange(count))
+    return SimpleNamespace(derivatives=lambda _: ((piece, slopes),), images=lambda _: found)
+
+
+def test_a_disc_is_taken_into_itself_exactly_where_norm_and_offset_leave_room():
+    """Of matrices in frames of all shapes, by singular values; up to whole turns of the angle."""
+    rng, seen = np.random.default_rng(4), []
+    for _ in range(400):
+        inverse, centre, radius = rng.uniform(-1, 1, (2, 2)), rng.uniform(-1, 1, 2), rng.uniform(0.05, 1)
+        if abs(np.linalg.det(inverse)) < 0.2:
+            continue
+        m = rng.uniform(-0.6, 0.6, (2, 2))
+        norm = np.linalg.svd(np.linalg.solve(inverse, m @ inverse))[1][0]
+        off = rng.uniform(-0.1, 0.1, 2) * radius
+        spare = radius - norm * radius - np.hypot(*np.linalg.solve(inverse, off))
+        turn, whole = rng.uniform(-2, 2), 2 * pi * rng.integers(-2, 3)
+        one = Disc(tuple(centre), tuple(map(tuple, inverse)), radius)
+        some = stub(m, (centre[0] + turn + whole + off[0], centre[1] + off[1]))
+        if abs(spare) > 1e-6 and abs(norm - 1) > 1e-6:
+            assert attracts(some, one, turn) is bool(spare > 0)
+            seen.append(spare > 0)
+            assert not attracts(some, one, turn + 1.0 * np.linalg.norm(inverse) * radius + 0.5)
+    assert min(sum(seen), len(seen) - sum(seen)) > 10
+
+
+def test_an_orbit_enters_a_disc_when_a_landing_is_proved_to_lie_in_it_or_a_copy(monkeypatch):
+    """Of three landings the second is near a copy turned by thirds: within the disc, or hardly beyond."""
+    rng, seen, landings = np.random.default_rng(5), [], []
+    whole = SimpleNamespace(start=lambda *_: None, orbit=lambda *_: iter(landings))
+    monkeypatch.setattr(common_boundary, "EnclosedMap", lambda *_: whole)
+    monkeypatch.setattr(common_boundary, "PinballMap", lambda *_, lam: None)
+    for _ in range(200):
+        inverse, centre, radius = rng.uniform(-1, 1, (2, 2)), rng.uniform(-1, 1, 2), rng.uniform(0.1, 0.5)
+        part, u = int(rng.integers(0, 3)), rng.uniform(-1, 1, 2) * radius
+        if abs(np.linalg.det(inverse)) < 0.3 or abs(np.hypot(*u) / radius - 1) < 1e-6:
+            continue
+        at = centre + inverse @ u + np.array([tau * (part / 3 + rng.integers(-1, 2)), 0])
+        one, away = Disc(tuple(centre), tuple(map(tuple, inverse)), radius), SimpleNamespace(theta=arb(0), phi=arb(40))
+        landings[:] = [away, SimpleNamespace(theta=arb(at[0]), phi=arb(at[1])), away]
+        for turns in ((0, 1, 2), (part,), ((part + 1) % 3,)):
+            copies = [np.hypot(*np.linalg.solve(inverse, off(at, centre, k))) < radius for k in turns]
+            parts = tuple(Fraction(k, 3) for k in turns)
+            assert common_boundary.enters(FOUND.scene, FOUND.lam, (arb(0), arb(0)), one, parts) is any(copies)
+            seen.append(any(copies))
+        landings[1].phi = arb(at[1], 10)
+        assert not common_boundary.enters(FOUND.scene, FOUND.lam, (arb(0), arb(0)), one, (Fraction(part, 3),))
+    assert min(sum(seen), len(seen) - sum(seen)) > 30
+
+
+def off(at, centre, part):
+    """From the middle of a copy turned by thirds, up to whole turns."""
+    theta = at[0] - centre[0] - tau * part / 3
+    return np.array([theta - tau * np.rint(theta / tau), at[1] - centre[1]])

@@ -74,7 +74,7 @@ def command(
         step("ordered")
     leaves = int(graph.transitions.leaf.sum())
     regions = [region(map, graph, index, parts) for index in graph.attracting]
-    least = dict.fromkeys(graph.attracting) if exponents is None else growths(map, graph, exponents)
+    nu = dict.fromkeys(graph.attracting) if exponents is None else growths(map, graph, exponents)
     document: dict[str, Any] = {
         "scene": map.scene.document,
         "lam": [str(low), str(high)],
@@ -83,7 +83,7 @@ def command(
         "sets": [entry(graph, index) for index in range(len(graph.sets))],
         "regions": [
             {"set": index, "name": found.name, "boxes": int(found.cells.chart.size), "basin": shares(graph, index)}
-            | {"basin_sampled": sampled_share(map, graph, index), "nu_plus_least": least[index]}
+            | {"basin_sampled": sampled_share(map, graph, index), "nu_plus": nu[index]}
             for index, found in zip(graph.attracting, regions, strict=True)
             if found is not None
         ],
@@ -124,17 +124,19 @@ def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
     return found | {"attracting": index in graph.attracting, "leads_to": below}
 
 
-def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, float | None]:
-    """A lower bound for `nu_plus` in each trapping region, rounded down; None where no cones were found."""
-    from math import floor, isfinite
+def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, list[float] | None]:
+    """Bounds for `nu_plus` in each trapping region, rounded outwards; None where no cones were found."""
+    from math import ceil, floor, isfinite
 
     from verification.proofs.global_dynamics.regions import expansion
 
-    found: dict[int, float | None] = {}
+    found: dict[int, list[float] | None] = dict.fromkeys(graph.attracting)
     for index in graph.attracting:
         block = graph.trapping(index)
-        low = -float("inf") if block[-1] else expansion(map, graph.transitions, block, parts=parts).low
-        found[index] = floor(low * 1e6) / 1e6 if isfinite(low) else None
+        if not block[-1]:
+            bounds = expansion(map, graph.transitions, block, parts=parts)
+            if isfinite(bounds.low) and isfinite(bounds.high):
+                found[index] = [floor(bounds.low * 1e6) / 1e6, ceil(bounds.high * 1e6) / 1e6]
     return found
 
 
@@ -158,10 +160,9 @@ def show(console: "Console", label: str, document: dict[str, Any]) -> None:
         if found["basin_sampled"] is not None:
             share, error = found["basin_sampled"]
             console.print(f"        sampled: {share:.2%} +- {error:.2%} of random starts are in it after 2000 bounces")
-        if found["nu_plus_least"] is not None:
-            console.print(
-                f"        nu_plus >= {found['nu_plus_least']:.6f} for every orbit there that never lands on a join"
-            )
+        if found["nu_plus"] is not None:
+            low, high = found["nu_plus"]
+            console.print(f"        {low:.6f} <= nu_plus <= {high:.6f} for every orbit there that lands on no join")
 
 
 def written(region: "Region", path: Path, console: "Console") -> None:

@@ -102,21 +102,24 @@ def two_types(claim: Claim) -> Judgement:
     orbit, and of such a set in a disc `docs/global.md` proves that it has no dominated splitting.
     """
     chaos, where = strange(SHAPE)
+    tangency = f"lambda = {where.str(6, radius=False)}"
     return Judgement(
         counterexample(
-            "the egg has attractors that are neither cycles nor have dominated splitting",
+            f"the egg has, for some contractions as near to {tangency}... as one likes, attractors that are neither "
+            "cycles nor have dominated splitting",
             chaos,
             at={letter: Rational(SHAPE), lam: Rational(where.str(9, radius=False))},
         ),
-        "in the circle and the ellipses every orbit tends to a cycle; in both cardioids every invariant set of orbits "
-        "off the cusp and the joins has dominated splitting, for 0 <= lam < 1; the egg has strange attractors, for a "
-        "set of contractions of positive measure next to the tangency of a saddle's manifolds, and these have none: "
-        "each is the closure of an unstable manifold that folds in a disc in which areas shrink",
+        "in the circle and the ellipses every orbit tends to a cycle, for 0 < lam < 1; in both cardioids every "
+        "invariant set of orbits off the cusp and the joins has dominated splitting, for 0 <= lam < 1; the egg has "
+        "strange attractors, for a set of contractions of positive measure next to the tangency of a saddle's "
+        "manifolds, and these have none: each is the closure of an unstable manifold that folds in a disc in which "
+        "areas shrink. Of the chaotic attractors seen in the egg this decides nothing",
         by("the circle, the ellipses, both cardioids", settles(), two_cycles(), splits()),
-        "There is a third type: next to homoclinic tangencies the egg has strange attractors without dominated "
-        f"splitting, at alpha = {SHAPE} near lambda = {where.str(6, radius=False)}, for a set of lambda of positive "
-        "measure. In the ellipse every attractor is of type (i), and in both cardioids all invariant sets off the cusp "
-        "and the joins have dominated splitting.",
+        "There is a third type: in every neighbourhood of a homoclinic tangency of the egg, as at "
+        f"alpha = {SHAPE}, {tangency}, there is a set of lambda of positive measure for which it has strange "
+        "attractors without dominated splitting. In the ellipse every attractor is of type (i), and in both cardioids "
+        "all invariant sets off the cusp and the joins have dominated splitting.",
     )
 
 

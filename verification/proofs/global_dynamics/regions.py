@@ -10,8 +10,9 @@ has a range of slopes `dphi/dtheta`, its cone. If over each box the derivative t
 where the image may lie, then vectors of the cones stay in them along every orbit. In the length `|dtheta|` each box
 has a least factor by which they grow, so over `n` bounces the logarithm grows by at least the least sum over all
 walks of `n` steps, and over any number of bounces by that mean per bounce. One bounce may shrink vectors as long as
-no long walk does. The boundary parameter takes the place of arc length: that multiplies lengths by bounded factors,
-which no mean over a long time sees.
+no long walk does. The greatest factors bound it from above: a cone with an inside holds two vectors that span the
+plane, so the derivative of `n` bounces grows no faster than the greatest sum over walks. The boundary parameter takes
+the place of arc length: that multiplies lengths by bounded factors, which no mean over a long time sees.
 
 With `p = bend0 - slope0` the derivative takes a slope to `-sigma*(bend1 - p/(by_theta + by_phi*slope0))`, the mirror
 equation of a law with the slope `-sigma`, which is `-lam` for the paper's; a law of the place adds its drift.
@@ -238,12 +239,13 @@ class Derivatives(NamedTuple):
 
 @dataclass(frozen=True)
 class Expansion:
-    """`nu_plus >= low` for every orbit that stays in a set for ever; minus infinity says that no cones were found.
+    """`low <= nu_plus <= high` for every orbit that stays in a set for ever; infinite where no cones were found.
 
     `cones` are ranges of slopes, one for each box; `steps` the length of the walks.
     """
 
     low: float
+    high: float
     steps: int
     cones: tuple[Array, Array]
 
@@ -269,7 +271,7 @@ def carried(found: Slopes, slope: BallArray) -> tuple[BallArray, BallArray]:
 
 
 def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int = 100, parts: int = 2) -> Expansion:
-    """A lower bound for `nu_plus` of every orbit that stays in the leaves of a set for ever.
+    """Bounds for `nu_plus` of every orbit that stays in the leaves of a set for ever.
 
     Cones begin as what horizontal vectors become, and grow until each holds the images of those that lead to it.
     """
@@ -279,7 +281,8 @@ def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int 
     if cells.chart.size == 0 or np.any(np.diff(inner.indptr) == 0):
         raise ValueError("expansion: a box has no edge within the set; give a trapping region or a Morse set")
     if not graph.complete(members):  # orbits may walk where these edges do not show it
-        return Expansion(-np.inf, steps, (np.full(cells.chart.size, np.inf), np.full(cells.chart.size, -np.inf)))
+        none = np.full(cells.chart.size, np.inf)
+        return Expansion(-np.inf, np.inf, steps, (none, -none))
     found = derivatives(map, graph.grid, cells, parts)
     count = cells.chart.size
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
@@ -294,8 +297,11 @@ def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int 
         cones = bottom - more, top + more
         first = _arriving(map, found, inner, cells, cones)
         if np.all((cones[0] <= first[0]) & (first[1] <= cones[1])):
-            return Expansion(_least_mean(_factors(found, cones, count), inner, steps) - SLACK, steps, cones)
-    return Expansion(-np.inf, steps, (low, high))
+            least, most = _factors(found, cones, count)
+            wide = np.all((cones[0] < cones[1])[entered])
+            ends = _least_mean(least, inner, steps) - SLACK, -_least_mean(-most, inner, steps) + SLACK
+            return Expansion(ends[0], ends[1] if wide else np.inf, steps, cones)
+    return Expansion(-np.inf, np.inf, steps, (low, high))
 
 
 def _arriving(
@@ -319,15 +325,17 @@ def _arriving(
     return reached
 
 
-def _factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> Array:
-    """The logarithm of the least factor by which vectors of its cone grow, for each box."""
+def _factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> tuple[Array, Array]:
+    """The logarithms of the least and the greatest factor by which vectors of its cone grow, for each box."""
     with np.errstate(all="ignore"):
         stretch, _ = carried(found.slopes, hull(*cones)[found.source])
-        size = (np.abs(stretch.m) - stretch.r) * (1 - 1e-14)
-        size = np.where(np.isfinite(stretch.r) & (size > 0), size, 0.0)
-        least = np.full(count, np.inf)
-        np.minimum.at(least, found.source, elementary.log(size))
-    return least
+        known, middle = np.isfinite(stretch.r), np.abs(stretch.m)
+        low = np.where(known, np.maximum((middle - stretch.r) * (1 - 1e-14), 0.0), 0.0)
+        high = np.where(known, (middle + stretch.r) * (1 + 1e-14), np.inf)
+        least, most = np.full(count, np.inf), np.full(count, -np.inf)
+        np.minimum.at(least, found.source, elementary.log(low))
+        np.maximum.at(most, found.source, elementary.log(high))
+    return least, most
 
 
 def _least_mean(weights: Array, inner: csr_matrix, steps: int) -> float:

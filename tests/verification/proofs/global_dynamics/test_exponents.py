@@ -55,10 +55,12 @@ def test_the_derivative_over_a_small_box_is_that_of_the_map(scene):
 @pytest.mark.parametrize("lam", ["0.09", "0.12", "0.2"])
 def test_every_orbit_near_the_cuspless_attractor_has_a_positive_exponent(lam):
     map, graph, (block,) = regions(Scene("cuspless", lam=lam))
-    low = expansion(map, graph.transitions, block, parts=4).low
+    bounds = expansion(map, graph.transitions, block, parts=4)
     sampled = PinballMap("cuspless", lam=lam).exponents(np.full(5, 2.09), np.linspace(0.033, 0.037, 5), 4000, 200)
+    near = sampled.nu_plus[sampled.nu_plus > 0.01]
 
-    assert 0 < low < np.min(sampled.nu_plus[sampled.nu_plus > 0.01])
+    assert 0 < bounds.low < np.min(near)
+    assert np.max(near) < bounds.high < 0.6
 
 
 def test_a_vector_stays_in_the_cones_along_an_orbit_and_grows_by_more_than_the_bound():
@@ -80,13 +82,22 @@ def test_a_vector_stays_in_the_cones_along_an_orbit_and_grows_by_more_than_the_b
         grown += np.log(abs(factor))
 
         assert found.cones[0][where[i + 1]] - 1e-9 <= slope <= found.cones[1][where[i + 1]] + 1e-9
-    assert grown / bounces > found.low
+    assert found.low < grown / bounces < found.high
 
 
 def test_the_bound_holds_for_a_range_of_contractions_at_once():
     map, graph, (block,) = regions(Scene("cuspless", lam="0.12"), 512, 256, (Fraction("0.12"), Fraction("0.121")))
 
     assert expansion(map, graph.transitions, block, parts=4).low > 0
+
+
+def test_the_exponent_of_a_cycle_that_attracts_lies_within_the_bounds_of_its_region():
+    """That of the horizontal cycle of the cuspless table, by its orbit."""
+    map, graph, (block,) = regions(Scene("cuspless", lam="0.05"), 512, 256)
+    bounds = expansion(map, graph.transitions, block, parts=4)
+    sampled = PinballMap("cuspless", lam="0.05").exponents(np.array([0.01]), np.array([0.0]), 4000, 1000)
+
+    assert bounds.low <= sampled.nu_plus[0] <= bounds.high < 0
 
 
 @pytest.mark.parametrize(
@@ -125,10 +136,12 @@ def test_a_box_that_may_shrink_vectors_to_nothing_bounds_no_exponent():
     none = BallArray(np.zeros(4), np.zeros(4))
     found = Derivatives(np.arange(4), np.zeros(4, dtype=np.int64), Slopes(stretch, none, none, none, none))
 
-    least = _factors(found, (np.zeros(4), np.zeros(4)), 4)
+    least, most = _factors(found, (np.zeros(4), np.zeros(4)), 4)
 
     assert np.allclose(np.exp(least), [1.5, 0, 0, 3])
     assert least[0] < np.log(1.5)
+    assert np.allclose(np.exp(most), [2.5, 0.3, np.inf, 3])
+    assert most[0] > np.log(2.5)
 
 
 def random_slopes(random, size, radius=0.0):
@@ -217,16 +230,18 @@ def test_a_bound_holds_for_every_vector_of_a_cone_along_every_walk(monkeypatch, 
             )
         rate = np.log(max(abs(np.linalg.eigvals(product)))) / 3
         assert bound.low <= rate + 1e-9
+        assert bound.high >= rate - 1e-9
         if np.isfinite(bound.low) and not turned:
             found += 1
             low, high = bound.cones
             _, image = carried(s, statements.hull(low, high))
             assert np.all(low[inner.indices] <= image.lower())
             assert np.all(image.upper() <= high[inner.indices])
-            assert bound.low > rate - 1.0
+            assert rate - 1.0 < bound.low < bound.high < rate + 1.0
     assert found > 10 or turned
     missing = True  # of the edges some are not there: orbits may walk elsewhere
-    assert expansion(One(), Graph(), np.array([True, True, True, False])).low == -np.inf
+    unknown = expansion(One(), Graph(), np.array([True, True, True, False]))
+    assert (unknown.low, unknown.high) == (-np.inf, np.inf)
 
 
 def walks(*edges):

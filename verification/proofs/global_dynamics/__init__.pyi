@@ -3,7 +3,7 @@
 from .apart import kept_apart
 from .barrier import Barrier, lost
 from .boxes import BallArray, Boxes, hull, turned
-from .branch import Branch, unstable_branch
+from .branch import Branch, exact, unstable_branch
 from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed
 from .database import KNOWN, Numbers, continued
@@ -48,6 +48,7 @@ __all__ = [
     "disc",
     "entered_around",
     "every_return",
+    "exact",
     "expansion",
     "hull",
     "incidence",

@@ -6,7 +6,7 @@ from .grow import branch, touches
 from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis, decimals, settled, table
 from .plane_map import Pinball, pinball
 from .proof import LEAST_DIGITS, objection, sharpened, smooth
-from .saddle import Orbit, Saddle, horner, local
+from .saddle import Orbit, Saddle, horner, local, padded
 from .tangency import Contact, Gap, Touch, one_cycle, scale
 from .touching import bounce
 
@@ -44,6 +44,7 @@ __all__ = [
     "one_cycle",
     "orbit_of",
     "orbit_said",
+    "padded",
     "pinball",
     "remainder",
     "scale",

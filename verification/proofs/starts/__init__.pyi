@@ -5,7 +5,6 @@ from .basin_edge import BasinEdge
 from .below_star import ANGLE, NEXT, BelowStar
 from .core import Core
 from .division import Division, Ring
-from .extent import Extent
 from .mean import HIGH, LOW, MULTIPLIER, RATE, average
 
 __all__ = [
@@ -20,7 +19,6 @@ __all__ = [
     "BelowStar",
     "Core",
     "Division",
-    "Extent",
     "Ring",
     "average",
 ]

@@ -62,13 +62,15 @@ class Count:
     """What orbits grew by: blocks along the first axis, particles along the second, per bounce.
 
     Blocks begin with a single bounce; at `most` of them two become one. So there is an estimate at every moment, and
-    a run of any length fits in memory.
+    a run of any length fits in memory. Of a run that will be `long` bounces, blocks have at once the length that they
+    would come to, as far as an interruption is still heard.
     """
 
-    def __init__(self, growth: Growth, most: int = MOST) -> None:
+    def __init__(self, growth: Growth, most: int = MOST, long: int = 0) -> None:
         self.growth = growth
         self.most = max(2, min(most, KEPT // growth.theta.size // 2 * 2))
-        self.length, self.blocks = 1, 0
+        heard = max(1, HEARD // growth.theta.size)
+        self.length, self.blocks = 1 << min((long // self.most).bit_length(), heard.bit_length() - 1), 0
         self._rows = np.empty((2, self.most, growth.theta.size))
 
     @property
@@ -168,7 +170,7 @@ def surveyed(
     label, waited = _settled(map, growth, classified, max(transient, ALIGNED))
     classified, waited = classified._replace(label=label), waited + max(transient - ALIGNED, 0)
     growth.advance(min(transient, ALIGNED))
-    count = Count(growth)
+    count = Count(growth, long=bounces)
     goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
     ended, target = "bounces", bounces
     cycles = {i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE}  # known from their multipliers

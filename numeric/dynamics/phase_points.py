@@ -10,8 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from numeric import PinballMap
 
@@ -133,6 +131,9 @@ def joined(owner: Labels, cell: Labels) -> Labels:
     >>> joined(np.array([0, 0, 1, 1, 2, 2]), np.array([0, 1, 2, 3, 1, 4])).tolist()
     [0, 1, 0]
     """
+    from scipy.sparse import coo_array  # a quarter of a second that cycles do without
+    from scipy.sparse.csgraph import connected_components
+
     count, room = int(owner.max()) + 1, int(cell.max()) + 1
     links = coo_array((np.ones(owner.size), (owner, count + cell)), shape=(count + room, count + room))
     group = connected_components(links, directed=False)[1][:count]

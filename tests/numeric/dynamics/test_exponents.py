@@ -51,6 +51,18 @@ def test_a_run_shorter_than_its_memory_is_not_trusted():
     assert not found.trusted
 
 
+@pytest.mark.parametrize("bounces", [7, 8, 100, 1000])
+def test_a_run_of_known_length_begins_with_the_blocks_that_single_bounces_would_come_to(bounces):
+    map = PinballMap("cardioid", lam="0.5")
+    start = interior_starts(map, 5, seed=3)
+    counts = [Count(Growth(map, start.theta, start.phi, start.component), 8, long=n) for n in (0, bounces)]
+    steps = [len(list(count.until(bounces))) for count in counts]
+
+    assert counts[0].length == counts[1].length
+    assert steps[1] == counts[1].blocks == counts[0].blocks
+    assert np.max(np.abs(counts[0].up - counts[1].up)) < 1e-13
+
+
 @pytest.mark.parametrize(("name", "lam"), [("cardioid", "0"), ("cuspless", "0.5"), ("cardioid", "0.5")])
 def test_intervals_of_exponents_hold_a_long_runs_result(name, lam):
     map = PinballMap(name, lam=lam)

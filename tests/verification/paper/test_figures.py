@@ -10,9 +10,12 @@ import pytest
 from sympy import Rational
 
 from numeric import PinballMap
+from numeric.pinball.sampling import interior_starts
 from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import stability_number, trace_of
-from symbolic.tables.table import a, lam
+from symbolic.tables import named
+from symbolic.tables.geometry import evolute
+from symbolic.tables.table import a, lam, theta
 from verification.app.cli import main
 from verification.paper.figures import basins, cardioid, circle_ellipse, egg
 from verification.paper.figures.catalogue import pictures
@@ -121,9 +124,9 @@ def test_the_fourth_collision_touches_the_join_at_lambda_star_stays_off_below_an
 def test_islands_of_period_3_are_centred_on_the_sine_one_half_at_every_shape():
     for panel in egg.islands(2.0):
         centred = []
-        for theta, sine in panel.curves.values():
+        for angle, sine in panel.curves.values():
             off = np.abs(np.abs(sine) - 0.5)
-            near = np.abs(np.mod(theta, 2 * np.pi / 3) - np.pi / 3)
+            near = np.abs(np.mod(angle, 2 * np.pi / 3) - np.pi / 3)
             if off.max() < 0.12 and near.max() < 0.6:
                 centred.append(abs(sine.mean()))
 
@@ -161,6 +164,27 @@ def test_the_evolute_is_touched_by_the_flights_of_the_slap_map():
         assert np.max(np.min(np.abs(across), axis=1)) < 1e-3
 
 
+@pytest.mark.parametrize(("table", "shape"), [("ellipse", {"a": "1.2"}), ("cardioid", {})])
+def test_centres_of_curvature_in_float64_are_those_of_the_exact_formula(table, shape):
+    at = np.array([0.3, 1.1, -2.0])
+    exact = evolute(named(table).at(**shape).components[0])
+    x, y = circle_ellipse.centres(PinballMap(table, lam=0, **shape), at)
+
+    for k, value in enumerate(at):
+        expected = [float(z.subs(theta, Rational(float(value)))) for z in exact]
+        assert [x[k], y[k]] == pytest.approx(expected, abs=1e-13)
+
+
+def test_an_orbit_that_is_left_off_early_in_the_plane_of_parameters_has_no_positive_exponent(monkeypatch):
+    table, lams = PinballMap("egg", alpha="0.085"), np.array([0.2, 0.4, 0.6, 0.8])
+    starts = interior_starts(PinballMap("egg", lam=1, alpha="0.05"), 80, 1)
+    early = egg.signs(table, lams, starts, 1000)
+    monkeypatch.setattr(egg, "EARLY", 0)  # where each particle still is: none is back on a cycle
+
+    assert egg.signs(table, lams, starts, 1000).tolist() == early.tolist()
+    assert set(early) == {0, 1}
+
+
 def test_exponents_have_opposite_signs_and_their_sum_vanishes_at_lambda_one():
     (panel,) = cardioid.exponents(0.5)
     total = panel.curves["sum"].y
@@ -183,8 +207,8 @@ def test_below_lambda_star_nothing_is_chaotic_and_above_lambda_c_everything_is()
 def test_the_bifurcation_diagram_has_the_periods_of_the_certified_cascade():
     (panel,) = egg.bifurcation(0.1)
     each = -1, panel.facts["orbits"], panel.facts["points"]
-    theta, lams = (values.reshape(each) for values in panel.curves["attractors"])
-    periods = [[np.unique(ball.round(5)).size for ball in balls] for balls in theta]
+    angles, lams = (values.reshape(each) for values in panel.curves["attractors"])
+    periods = [[np.unique(ball.round(5)).size for ball in balls] for balls in angles]
     values = lams[:, 0, 0]
 
     assert set(periods[0]) == {4}  # lam = 0.36, below lambda_3 = 0.3712

@@ -126,3 +126,14 @@ def test_it_is_served_on_loopback_only(monkeypatch):
 
     assert given["address"] == "127.0.0.1"
     assert all(origin.split(":")[0] in ("127.0.0.1", "localhost") for origin in given["websocket_origin"])
+
+
+def test_on_a_phone_the_table_comes_before_the_controls_and_the_texts_to_copy_come_last(table):
+    table.set_viewport_size({"width": 390, "height": 844})
+    command(table, "pinball orbit egg")
+    room, space = (table.locator(".bk-Figure").nth(i) for i in (0, 1))
+    shown = (room, table.get_by_label("Table"), space, table.get_by_label("As a command"))
+    tops = [each.bounding_box()["y"] for each in shown]
+
+    assert tops == sorted(tops)
+    assert table.evaluate("document.documentElement.scrollWidth") <= 390

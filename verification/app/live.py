@@ -2,7 +2,7 @@
 
 import os
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -43,6 +43,7 @@ PATIENCE = 20.0  # seconds for a formula
 PORTIONS = 25  # of phase space before it rests: what a browser draws without effort
 EVERY = 200  # milliseconds between two of them
 WIDE, HIGH = 520, 440  # pixels of a picture, at most
+PHONE = 700  # pixels of a window, at most
 STYLE = """
 body { margin: 0; }
 @media (prefers-color-scheme: dark) {
@@ -140,34 +141,24 @@ class LiveTable:
             each.on_event(Tap, self._picked)
 
     def view(self) -> Any:
-        """The page."""
-        controls = pn.Column(
-            "# Pinball billiards",
-            self.table,
-            self.formula,
-            self.shape,
-            self.law,
-            self.lam,
-            self.bounces,
-            pn.FlexBox(self.find, self.basins),
-            self.said,
-            self.command,
-            self.copies[0],
-            self.python,
-            self.copies[1],
-            sizing_mode="stretch_width",
-            styles={"flex": "1 1 300px", "max-width": "360px"},
-        )
-        pairs = ((self.room,), (self.space,), (self.fan, self.nu))
-        wide = {"flex": f"1 1 {WIDE - 180}px", "max-width": f"{WIDE}px", "min-width": "0"}
-        looks = (wide, wide, {"flex": "1 1 100%", "max-width": f"{2 * WIDE + 8}px", "min-width": "0"})
-        columns = [
-            pn.Column(*(_pane(each) for each in pair), sizing_mode="stretch_width", styles=look)
-            for pair, look in zip(pairs, looks, strict=True)
-        ]
+        """The page; on a phone the table comes before the controls, and the texts to copy come last."""
+        controls = (self.table, self.formula, self.shape, self.law, self.lam, self.bounces)
+        texts = (self.command, self.copies[0], self.python, self.copies[1])
+        narrow = {"flex": "1 1 300px", "max-width": "360px"}
+        wide = {"flex": f"1 1 {WIDE - 80}px", "max-width": f"{WIDE}px", "min-width": "0"}
+        both = wide | {"flex": f"1 1 {WIDE}px", "max-width": f"{2 * WIDE + 8}px"}
         pn.state.add_periodic_callback(self.fill, EVERY)
-        pictures = pn.FlexBox(*columns, styles={"flex": "1 1 0", "min-width": "min(340px, 94vw)", "gap": "8px"})
-        return pn.FlexBox(controls, pictures, flex_wrap="wrap", styles={"gap": "12px"}, sizing_mode="stretch_width")
+        return pn.FlexBox(
+            _column(["# Pinball billiards"], {"flex": "1 1 100%"}, phone=-2),
+            _column([*controls, pn.FlexBox(self.find, self.basins), self.said], narrow),
+            _column([_pane(self.room)], wide, phone=-1),
+            _column([_pane(self.space)], wide),
+            _column(texts, narrow, phone=1),
+            _column([_pane(self.fan), _pane(self.nu)], both),
+            flex_wrap="wrap",
+            styles={"gap": "12px"},
+            sizing_mode="stretch_width",
+        )
 
     # ---- what changes
 
@@ -347,6 +338,12 @@ def in_turn(change: Callable[[], None]) -> None:
 def _pane(picture: Any) -> Any:
     picture.sizing_mode = "stretch_width"
     return pn.pane.Bokeh(picture, sizing_mode="stretch_width")
+
+
+def _column(parts: Sequence[Any], styles: dict[str, str], phone: int = 0) -> Any:
+    """Parts below each other; on a phone columns come in the order of that number."""
+    order = f"@media (max-width: {PHONE}px) {{ :host {{ order: {phone}; }} }}"
+    return pn.Column(*parts, sizing_mode="stretch_width", styles=styles, stylesheets=[order])
 
 
 def page() -> Any:

@@ -1,6 +1,7 @@
 """Canaries: the judges of exponents, driven to other verdicts by claims that are printed otherwise."""
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import numpy as np
@@ -218,30 +219,48 @@ def test_the_triangle_of_the_vertices_is_not_said_to_attract():
         assert attracting(SHARPER, map, acb(arb("0.51", 0.1))) is None  # balls that hold no proof
 
 
-def test_at_the_end_of_the_convex_shapes_strange_attractors_lie_beside_a_triangle_that_attracts():
-    proof, value = on_attractors.both_near_tenth()
+def test_at_the_end_of_the_convex_shapes_strange_attractors_lie_beside_triangles_over_a_range():
+    """A second method: of 40 starts some stay chaotic within the range, and others go to cycles of period 3."""
+    proof, (one, other) = on_attractors.both_near_tenth()
 
     assert proof
-    assert 0.4717 < value < 0.4718
+    assert 0.2956 < one < 0.2957
+    assert 0.4717 < other < 0.4718
+    for place in ("0.4", "0.45"):
+        some = on_attractors.egg(place, 40, "0.1")
+        assert on_attractors.chaotic(some)
+        assert on_attractors.cycles(some, 3)
 
 
-def test_chaos_beside_a_triangle_that_attracts_needs_both_proved(monkeypatch):
-    """A set of contractions of positive measure is no range."""
-    yes, no = Finding(Outcome.PROVED, ""), Finding(Outcome.UNKNOWN, "")
-    judge, name, place = on_attractors.near_tenth, "egg.coexistence_near_tenth", arb("0.4717157975")
-    monkeypatch.setattr(on_attractors, "strange", lambda *_: (yes, place))
-    on_attractors.both_near_tenth.cache_clear()
-    assert verdict(judge, name) is Verdict.SUPPORTED
+def test_no_triangle_attracts_from_below_its_fold_on():
+    """It is born at 0.28264, from a fold: a range that begins before has a part that is never proved."""
+    low, high, after = (Fraction(k, 1000) for k in (282, 300, 284))
+    assert on_attractors.triangles_attract(low, high).outcome is Outcome.UNKNOWN
+    assert on_attractors.triangles_attract(after, high).outcome is Outcome.PROVED
 
-    monkeypatch.setattr(on_attractors, "strange", lambda *_: (no, place))
-    on_attractors.both_near_tenth.cache_clear()
+
+@pytest.mark.parametrize(
+    ("ends", "chaos", "attracts"),
+    [
+        (("0.3", "0.47"), Outcome.PROVED, None),  # no triangle is proved to attract
+        (("0.3", "0.47"), Outcome.UNKNOWN, True),
+        (("0.29", "0.47"), Outcome.PROVED, True),  # next to a contraction outside of the range
+        (("0.3", "0.48"), Outcome.PROVED, True),
+        (("0.3", "0.3"), Outcome.PROVED, True),  # one contraction is no range
+    ],
+)
+def test_coexistence_over_a_range_needs_chaos_next_to_two_contractions_in_it(monkeypatch, ends, chaos, attracts):
+    judge, name = on_attractors.near_tenth, "egg.coexistence_near_tenth"
+    caches = on_attractors.both_near_tenth, on_attractors.triangles_attract
+    values = {"bands": arb(ends[0]), "boundary": arb(ends[1])}
+    monkeypatch.setattr(on_attractors, "strange", lambda alpha, kind="boundary": (Finding(chaos, ""), values[kind]))
+    monkeypatch.setattr(on_attractors, "attracting", lambda *_: attracts)
+    monkeypatch.setattr(on_attractors, "STEPS", 3)
+    for cached in caches:
+        cached.cache_clear()
     assert verdict(judge, name) is Verdict.OPEN
-
-    monkeypatch.setattr(on_attractors, "strange", lambda *_: (yes, place))
-    monkeypatch.setattr(on_attractors, "attracting", lambda *_: None)
-    on_attractors.both_near_tenth.cache_clear()
-    assert verdict(judge, name) is Verdict.OPEN
-    on_attractors.both_near_tenth.cache_clear()
+    for cached in caches:
+        cached.cache_clear()
 
 
 @pytest.mark.parametrize("name", ["period2_attracts", "compact_near_zero"])

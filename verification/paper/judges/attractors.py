@@ -33,13 +33,14 @@ from verification.named.curves import invariant_circle
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown
 from verification.paper.judges.ellipse import settles, two_cycles
+from verification.proofs.global_dynamics.branch import exact
 from verification.proofs.global_dynamics.fates import Fate
 from verification.proofs.global_dynamics.returns import every_return
 from verification.proofs.manifolds.enclosed import attracting, complex_balls
-from verification.proofs.manifolds.known import TRIANGLE, boundary, table, touching
+from verification.proofs.manifolds.known import TRIANGLE, bands, boundary, table, touching
 from verification.proofs.manifolds.saddle import Orbit
 
-SEED, STARTS, FEW, BITS = 1, 200, 40, 160
+SEED, STARTS, BITS, STEPS = 1, 200, 160, 200
 SHAPE = "0.08"
 JOIN = 3**0.5 / 4
 
@@ -83,8 +84,11 @@ def proved_at(contraction: str, period: int, name: str = "egg", alpha: str = SHA
 
 @cache
 def strange(alpha: str, kind: str = "boundary") -> tuple[Finding, arb]:
-    """That the egg of a shape has strange attractors near one of its tangencies, and the contraction there."""
-    found = boundary(Rational(alpha)) if kind == "boundary" else touching(kind)
+    """That the egg of a shape has strange attractors near one of its tangencies, and the contraction there.
+
+    The shape is `SHAPE`, but for the `boundary` tangency, which is known at more, and that of `bands`, at 1/10.
+    """
+    found = boundary(Rational(alpha)) if kind == "boundary" else bands() if kind == "bands" else touching(kind)
     held = found.certified and all(found.strange.values())
     said = (
         f"in every neighbourhood of lam = {found.value.str(9, radius=False)}, at alpha = {alpha}, strange attractors "
@@ -263,41 +267,49 @@ def higher_periods(claim: Claim) -> Judgement:
     )
 
 
+TENTH, RANGE = "0.1", (Fraction(295, 1000), Fraction(472, 1000))  # a shape, and contractions where triangles attract
+
+
 @cache
-def both_near_tenth(alpha: str = "0.1") -> tuple[Finding, arb]:
-    """Strange attractors next to the boundary tangency of a shape, where the triangles of period 3 attract."""
-    shape, (chaos, value) = Rational(alpha), strange(alpha)
-    start = float(near_flat().subs({letter: shape, lam: Rational(float(value))}))
+def triangles_attract(low: Fraction, high: Fraction) -> Finding:
+    """At that shape a cycle of period 3 attracts at every contraction of a range, halved until each part is proved."""
+    start, parts, tried = near_flat().subs(letter, Rational(TENTH)), [(low, high)], 0
     with working(BITS):
-        orbit, map = Orbit("triangle", (start,), TRIANGLE.closure), table(shape).over(complex_balls(BITS))
-        attracts = attracting(orbit, map, acb(value))
-    cycle = answer(attracts, "the triangle of period 3 attracts at that contraction, hence at all near it")
-    return by("both, next to the boundary tangency", chaos, cycle), value
+        map = table(Rational(TENTH)).over(complex_balls(BITS))
+        while parts and tried < STEPS:
+            (a, b), tried = parts.pop(), tried + 1
+            middle = (a + b) / 2
+            orbit = Orbit("triangle", (complex(start.subs(lam, float(middle))).real,), TRIANGLE.closure)
+            if not attracting(orbit, map, acb(exact(a).real.union(exact(b).real))):
+                parts += [(middle, b), (a, middle)]
+    return answer(not parts, f"a triangle of period 3 attracts at every lam from {float(low)} to {float(high)}")
 
 
-RANGE = ("0.4", "0.45")  # contractions at alpha = 1/10, below that of the boundary tangency
+@cache
+def both_near_tenth() -> tuple[Finding, list[arb]]:
+    """Strange attractors next to two contractions of a range over which the triangles of period 3 attract."""
+    low, high = RANGE
+    (first, one), (last, other) = strange(TENTH, "bands"), strange(TENTH)
+    inside = exact(low).real < one < other < exact(high).real
+    chaos = by("strange attractors next to two of them", first, last, answer(inside or None, "both within the range"))
+    return by(f"at alpha = {TENTH} both, over a range", triangles_attract(low, high), chaos), [one, other]
 
 
 @judges("egg.coexistence_near_tenth")
 def near_tenth(claim: Claim) -> Judgement:
-    """The boundary tangency at `alpha = 1/10`, where manifolds of one triangle touch and another one attracts.
+    """A range over which triangles attract, and in which, next to both of its ends, strange attractors are.
 
-    It lasts for all shapes nearby, but is a single contraction at each: a set of positive measure next to that is no
-    range, and what is seen over a range is sampled.
+    Both last for all shapes nearby: the zeros are regular, the rest are strict inequalities over a closed range. Of
+    each contraction of the range it is not said, and could not be, as there are windows: as in `egg.chaotic_interval`.
     """
-    (proof, value), each = both_near_tenth(), {x: egg(x, FEW, "0.1") for x in RANGE}
-    here, lams = value.str(7, radius=False), ", ".join(RANGE)
-    both = all(chaotic(some) and cycles(some, 3) for some in each.values())
-    said = (
-        f"{proof.reason}. Such a contact lasts: the zero is regular and the rest are strict inequalities, so there is "
-        f"one at each shape close enough to 1/10. Sampled: at alpha = 1/10, lam = {lams}, some of {FEW} random starts "
-        "stay on a chaotic set and others go to cycles of period 3"
-    )
-    return sampled(
-        "both, for every alpha close enough to 1/10, for a set of contractions of positive measure in every "
-        f"neighbourhood of one, {here} at alpha = 1/10: proved; over a range of lam, sampled at {lams}",
-        said,
-        bool(proof) and both,
+    proof, values = both_near_tenth()
+    low, high = map(float, RANGE)
+    here = " and ".join(value.str(7, radius=False) for value in values)
+    return Judgement(
+        proof,
+        "for every alpha close enough to 1/10 there is a range of lam over all of which triangles of period 3 attract, "
+        f"from {low} to {high} at alpha = 1/10, and near both of its ends, in every neighbourhood of {here} there, are "
+        "sets of lam of positive measure with strange attractors. That every lam in between has one is not said",
     )
 
 

@@ -3,7 +3,7 @@
 from .claim import TangencyClaim, TangencyProof, contact_of, contact_said, orbit_of, orbit_said, worked_through
 from .enclosed import Enclosed, TooWideError, attracting, complex_balls, enclosed_cycle, enclosed_saddle, remainder
 from .grow import branch, touches
-from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, boundary, contact, crisis, decimals, settled, table
+from .known import CONTACTS, SHAPE, TRIANGLE, Crisis, bands, boundary, contact, crisis, decimals, settled, table
 from .plane_map import Pinball, pinball
 from .proof import LEAST_DIGITS, objection, sharpened, smooth
 from .saddle import Orbit, Saddle, horner, local, padded
@@ -27,6 +27,7 @@ __all__ = [
     "TooWideError",
     "Touch",
     "attracting",
+    "bands",
     "bounce",
     "boundary",
     "branch",

@@ -59,7 +59,7 @@ from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpen
 from verification.proofs.manifolds.saddle import Orbit, horner
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
 from verification.proofs.manifolds.touching import composed
-from verification.proofs.manifolds.windows import WINDOWS
+from verification.proofs.manifolds.windows import WINDOWS, homoclinic
 
 
 @dataclass(frozen=True)
@@ -376,6 +376,19 @@ def touching(kind: str) -> TangencyProof:
     True
     """
     return worked_through(TangencyClaim(CONTACTS[kind], egg(3).at(alpha=SHAPE), *PROVED[kind]))
+
+
+BANDS = homoclinic(  # followed from 0.08, where it is `window-merging-9`, to the end of the convex shapes
+    Orbit("cycle of period 9", (-2.8419283836, -0.2524353493, 2.2503788186), Closure(1, (4, 3))),
+    12, 1, 0.0103226344, 0.0605500556, 0.29564321252129,
+)  # fmt: skip
+
+
+def bands() -> TangencyProof:
+    """The proof of this one at `alpha = 1/10`."""
+    return worked_through(
+        TangencyClaim(BANDS, egg(3).at(alpha=Rational(1, 10)), "0.295643212521289641615402176260", 12)
+    )
 
 
 def decimals(found: Crisis) -> tuple[str, str]:

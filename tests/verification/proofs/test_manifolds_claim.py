@@ -267,6 +267,14 @@ def test_a_bounce_of_a_pair_has_the_derivatives_of_its_polynomials_and_cauchys_b
             made.at(1, z, arb(0))
 
 
+def test_the_cycle_at_one_parameter_is_the_one_around_it_only_where_each_of_its_balls_lies_in_that():
+    wide = SimpleNamespace(points=(arb(1, 0.5), arb(2, 0.5)))
+    for places, one in (((1.25, 1.75), True), ((1.25, 2.75), False), ((0.25, 2), False)):
+        assert tangency.one_cycle(wide, SimpleNamespace(points=[arb(x, 0.125) for x in places])) is one
+    jutting = SimpleNamespace(points=(arb(1.375, 0.25), arb(2)))  # it overlaps, and has points outside
+    assert not tangency.one_cycle(wide, jutting)
+
+
 def test_what_is_left_out_is_bounded_by_the_larger_end_of_a_ball():
     """A remainder known as a ball is at most its upper end, whichever sign it has."""
     for bound in (arb("1e-9", "5e-10"), -arb("1e-9", "5e-10"), arb(0, "1.5e-9")):

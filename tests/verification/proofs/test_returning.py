@@ -223,6 +223,7 @@ def test_contracting_parts_have_one_hull_each_where_the_norm_contracts_over_all_
         assert np.allclose([(piece.low, piece.high) for piece in hulls], [(0.1, 0.3), (0.5, 0.7)])
         assert {phi for _, phi in asked} == {(-0.3, 0.2)}
         for piece in hulls:
+            assert (piece.least, piece.most) == pytest.approx((slope, slope))
             cells = [cell for cell, _ in asked if piece.low - 1e-9 <= cell[0] and cell[1] <= piece.high + 0.1 + 1e-9]
             assert min(a for a, _ in cells) == pytest.approx(piece.low)
             assert max(b for _, b in cells) >= piece.high - 1e-9

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -139,6 +140,13 @@ def test_a_core_that_holds_no_cells_and_a_graph_that_returns_elsewhere_prove_not
     assert not below_star.unreturning(fate, None)  # these boxes do not contract
     monkeypatch.setattr(below_star, "MIDDLE", 0.01)  # boxes return farther from the middle of the arc
     assert not below_star.unreturning(fate, core)
+
+
+@pytest.mark.parametrize(
+    ("parts", "sinks", "core"), [(None, True, None), ([], None, None), ([], False, None), (None, True, FOUND.core)]
+)
+def test_without_parts_or_without_a_contraction_of_all_boxes_nothing_is_said(parts, sinks, core) -> None:
+    assert not below_star.unreturning(SimpleNamespace(parts=parts, checks={"sinks": sinks}), core)
 
 
 def test_above_lambda_star_the_fixed_points_are_there_and_nothing_is_moved_on() -> None:

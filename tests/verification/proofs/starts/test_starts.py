@@ -109,6 +109,11 @@ def test_settled_strips_end_on_period_2_and_chaotic_ones_are_never_settled(map: 
 def test_every_start_is_in_a_strip_and_half_of_the_measure_is_the_perimeter(map: PinballImages) -> None:
     """Strips of all `theta` and `0 <= eta <= pi/2`, also after cuts; together a little more than `L`."""
     made, rng = strips(map, (96, 16), 24), np.random.default_rng(6)
+    middle, which = np.unique(made.middle, return_index=True)
+    half = made.half[which]
+    assert np.all((middle + half)[:-1] >= (middle - half)[1:])  # rows overlap by more than a rounding
+    assert middle[0] - half[0] <= 0
+    assert middle[-1] + half[-1] >= np.pi / 2
     perimeter = 9 * 3**0.5 / 2
     for across in (False, True, False):
         assert perimeter < np.sum(made.measures(map)) < 1.25 * perimeter

@@ -4,6 +4,7 @@ import cmath
 from dataclasses import replace
 from fractions import Fraction
 from math import cos, pi
+from types import SimpleNamespace
 
 import mpmath
 import numpy as np
@@ -18,9 +19,10 @@ from symbolic.tables import egg
 from verification.arithmetic.balls import FLOAT64, balls, exact_balls, multiprecision, working
 from verification.cycles.chords import chord_angles
 from verification.cycles.newton import refined
-from verification.cycles.recurrence import AFTER, BEFORE, HERE, MIRROR, Explicit, delayed
+from verification.cycles.recurrence import AFTER, BEFORE, HERE, IDENTITY, MIRROR, Explicit, delayed
 from verification.maps.exact import ExactMap
 from verification.named.curves import invariant_circle
+from verification.proofs.periodic import torus as torus_of
 from verification.proofs.periodic.bifurcation import birkhoff_normal_form
 from verification.proofs.periodic.interval_newton import Status
 from verification.proofs.periodic.torus import TRACE, Rotating, Rotation, torus
@@ -197,3 +199,32 @@ def test_its_coefficient_is_that_of_the_derivatives_of_the_map_itself():
     assert abs(form.trace - 0.5) < 1e-9
     assert form.drift < 0
     assert abs(abs(ratio) - 1) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("changed", "missing"),
+    [
+        ({}, set()),
+        ({"closes": False}, {"admissible"}),
+        ({"uniform": False}, {"admissible"}),
+        ({"closure": MIRROR}, {"admissible"}),
+        ({"convex": None}, {"admissible"}),
+        ({"inside": None}, {"admissible"}),
+        ({"minimal": None}, {"minimal_period"}),
+        ({"lam": arb(1, 0.1)}, {"contraction"}),
+        ({"lam": arb(0, 0.1)}, {"contraction"}),
+        ({"lam": arb(-0.5)}, {"contraction"}),
+    ],
+    ids=str,
+)
+def test_each_hypothesis_on_the_table_fails_alone(monkeypatch, changed, missing):
+    """A smooth closed convex curve under the paper's law, a cycle that closes by no symmetry, and `0 < lam < 1`."""
+    monkeypatch.setattr(torus_of, "closes_smoothly", lambda _: changed.get("closes", True))
+    for name in ("convex", "inside", "minimal"):
+        monkeypatch.setattr(torus_of, name, lambda *_, name=name: changed.get(name, True))
+    law, closure = SimpleNamespace(uniform=changed.get("uniform", True)), changed.get("closure", IDENTITY)
+    ring = SimpleNamespace(shapes=(), table=None, law=law, closure=closure, components=(0, 0))
+    found = torus_of.on_the_table(ring, SimpleNamespace(at={"lam": changed.get("lam", arb(0.5))}, x=[]))
+
+    assert {name for name, held in found.items() if held is not True} == missing
+    assert found.keys() == {"admissible", "minimal_period", "contraction"}

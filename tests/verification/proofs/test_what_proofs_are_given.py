@@ -14,6 +14,7 @@ from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.proofs.global_dynamics.boxes import BallArray
+from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.periodic import bifurcation, returning, triangles
 from verification.proofs.periodic.interval_newton import Cover, Enclosure, Status, stays_below
@@ -127,3 +128,20 @@ def test_a_stretch_is_folded_into_the_sixth_of_the_turn_with_its_ends_and_signs(
         for low, high, _ in found:
             assert 0 <= low <= high <= np.pi / 3 + 2e-9
             assert high - low <= 2 * reach + 4e-9
+
+
+def test_the_largest_gap_of_a_triangle_is_its_first_and_none_is_below_the_least():
+    """Whatever its angles are: nothing is asked of boxes in which that is not so."""
+    for gaps, asked in (((2.5, 2.0), True), ((2.0, 2.5), False), ((2.0, 1.5), False), ((5.0, 1.2), False)):
+        box = ((0.5, 2.0**-20), *((gap, 2.0**-20) for gap in gaps))
+        angles = lambda *_: [arb("nan")] * 6  # noqa: E731
+        assert triangles._impossible(angles, None, arb(1), arb(1), 0.25, box) is not asked
+
+
+def test_a_derivative_under_a_law_of_the_place_adds_its_drift_at_the_landing():
+    """`d phi1 = drift*d theta1 - law*(bend_there*d theta1 - bend_here*d theta0 + d phi0)`, in numbers."""
+    one = lambda x: BallArray(np.array([float(x)]))  # noqa: E731
+    by_theta, by_phi, here, there, law, drift = 2, 3, 5, 7, 11, 13
+    found = matrix(Slopes(*map(one, (by_theta, by_phi, here, there, law, drift))))
+    wanted = [[2, 3], [drift * 2 - law * (there * 2 - here), drift * 3 - law * (there * 3 + 1)]]
+    assert [[float(x.m[0]) for x in row] for row in found] == wanted

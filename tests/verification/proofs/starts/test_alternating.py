@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -71,3 +72,15 @@ def test_the_strips_seen_in_float64_shrink_by_the_multiplier() -> None:
     each = [fates(np.pi / 3 + distance / factor**k, 0.0) for k in range(6)]
     assert 0.2 < np.mean(each[0]) < 0.8
     assert all(np.mean(one == each[0]) >= 0.95 for one in each[1:])
+
+
+def test_a_bounce_is_in_the_core_when_it_is_in_it_or_in_one_of_its_gates() -> None:
+    """Of a core and one gate that is longer and thinner; on the core's component alone."""
+    core = replace(FOUND.core, outer=0.4, width=0.01, gates=((0.5, 0.001),))
+    some = replace(FOUND, core=core)
+    for theta, aside, held in ((0.1, 0.0, True), (0.3, 0.005, True), (0.45, 0.0, True), (0.45, 0.005, False),
+                               (0.1, 0.02, False), (0.55, 0.0, False), (-0.45, 0.0005, True)):  # fmt: skip
+        phi = (core.slope + core.cubic * theta**2) * theta + aside
+        for component, inside in ((core.chart, held), (1 - core.chart, False)):
+            here = SimpleNamespace(component=component, theta=arb(theta), phi=arb(phi))
+            assert some.in_core(here, here) is inside

@@ -242,3 +242,50 @@ def test_each_item_of_a_division_is_what_its_own_step_proves(monkeypatch, step, 
     if len(missing) < 4:
         kept = [np.flatnonzero(some).tolist() for some in asked]
         assert kept == [[0], [2, 3], [3]]
+
+
+def test_a_box_is_settled_when_it_is_in_the_core_or_each_of_its_images_is(monkeypatch):
+    """Some have one image or two in the core, some one of two outside, some none; the last is there itself."""
+    images = {0: [], 1: [True], 2: [True, True], 3: [True, False], 4: [False], 5: [False, True]}
+    rows = [(k, held) for k, some in images.items() for held in some]
+    recurrent = np.array(
+        [True] * 6 + [False, True, False]
+    )  # the last is the vertex outside; 6 returns not, 7 is no leaf
+    graph = SimpleNamespace(
+        recurrent=recurrent, leaf=np.array([True] * 7 + [False]), count=8, cells=None,
+        grid=SimpleNamespace(boxes=lambda _: SimpleNamespace(chosen=lambda some: some)),
+    )  # fmt: skip
+    inside = np.array([held for _, held in rows])
+    monkeypatch.setattr(division_of.Parallelograms, "about", lambda some: np.isin(some, [5]))
+    monkeypatch.setattr(division_of, "carried", lambda map, sets: (np.array([k for k, _ in rows]), inside))
+    some = SimpleNamespace(
+        graph=SimpleNamespace(transitions=graph), map=None, core=SimpleNamespace(enters=lambda sets: sets)
+    )
+    assert np.flatnonzero(Division.settled.func(some)).tolist() == [1, 2, 5]
+
+
+@pytest.mark.parametrize(
+    ("sets", "outside", "at_cycle", "region"),
+    [
+        ([[0], [2]], False, None, [2, 3]),
+        ([[0], [2], [4]], False, None, [2, 3, 4, 5]),
+        ([[0, 2]], False, None, [0, 1, 2, 3]),  # it is not settled as a whole
+        ([[0]], False, None, None),  # all of it is
+        ([[2]], True, None, None),
+        ([[2]], False, 3, None),  # a box about the cycle
+    ],
+)
+def test_a_region_is_what_attracting_sets_beside_the_core_lead_to_and_holds_no_box_about_the_cycle(
+    sets, outside, at_cycle, region
+):
+    """From each box walks lead to the next one; boxes 0 and 1 are settled."""
+    trapping = lambda i: np.array([any(k in (s, s + 1) for s in sets[i]) for k in range(7)] + [outside])  # noqa: E731
+    middle = np.array([0.0 if k == at_cycle else 1.0 for k in range(7)])
+    whole = Boxes(np.zeros(7, dtype=int), (middle - 0.1, middle + 0.1), (np.full(7, -0.1), np.full(7, 0.1)))
+    graph = SimpleNamespace(
+        grid=SimpleNamespace(boxes=lambda some: whole.chosen(np.flatnonzero(some[:-1]))), chosen=lambda found: found
+    )
+    morse = SimpleNamespace(transitions=graph, attracting=range(len(sets)), sets=sets, trapping=trapping)
+    some = SimpleNamespace(graph=morse, settled=np.array([True, True] + [False] * 6))
+    found = Division.region.func(some)
+    assert (None if found is None else np.flatnonzero(found).tolist()) == region

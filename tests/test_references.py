@@ -27,7 +27,7 @@ NAME = r"[A-ZÀ-Ý][A-Za-zÀ-ÿ'-]+"
 WORDS = re.compile(  # Author and Author (1998), over the end of a line too
     rf"({NAME}(?:(?:,| and|, and)?\s(?:# )?{NAME})*(?:,? et al\.?)?),?\s(?:# )?\(?({YEAR})\b"
 )
-BRACKETED = re.compile(rf"\(({YEAR})[a-z]?\)")
+BRACKETED = re.compile(rf"(?<!\w)\(({YEAR})[a-z]?\)")  # and no call of a function
 JOURNALS = re.compile(r"Phys\. Rev|Rev\. Mod|Math\. Phys|J\. Stat|Physica D|SIAM J|Trans\. A|\bdoi:|arXiv:")
 NEEDED = {
     "article": {"author", "title", "journal", "volume", "pages", "year", "checked"},

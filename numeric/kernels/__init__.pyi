@@ -4,6 +4,7 @@ from . import machine
 from .engine import ALONE, PART, Course, Engine
 from .machine import MATRIX, START, TANGENT, TOLD, KernelSpec, starting
 from .text import kernel_text, operations
+from .traced import Traced
 
 __all__ = [
     "ALONE",
@@ -15,6 +16,7 @@ __all__ = [
     "Course",
     "Engine",
     "KernelSpec",
+    "Traced",
     "kernel_text",
     "machine",
     "operations",

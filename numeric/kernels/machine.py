@@ -309,19 +309,46 @@ def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSp
                 )
                 _loaded[key] = None
                 return None
-            made = object_code(text)
-            code = image(made) or made
-            found = _entered(code)
-            if found is None:  # a system that lets nobody but LLVM make memory executable
-                code, found = made, _entered(made)
+            code, found = _made(text)
             cache.write("kernel", *stamp, code)
         assert found is not None
-        address, owner = found
-        pointer, number = ctypes.c_void_p, ctypes.c_int64
-        prototype = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, pointer, number, number, number, number)
-        _kept.append(owner)
-        _loaded[key] = prototype(address)
+        _loaded[key] = _function(*found)
     return _loaded[key]  # type: ignore[no-any-return]
+
+
+def from_text(text: str) -> Run | None:
+    """A function `run` of the same arguments from its text in LLVM's language; None when there is no compiler."""
+    version, processor = _version(), _processor()
+    if version is None or processor is None:
+        return None
+    stamp = cache.key_of(text), version, *processor
+    if stamp not in _loaded:
+        code = cache.read("text", *stamp)
+        found = _entered(code) if code is not None else None
+        if found is None:
+            if _llvm() is None:
+                return None
+            code, found = _made(text)
+            cache.write("text", *stamp, code)
+        assert found is not None
+        _loaded[stamp] = _function(*found)
+    return _loaded[stamp]  # type: ignore[no-any-return]
+
+
+def _made(text: str) -> tuple[bytes, tuple[int, Untyped] | None]:
+    """The code of a text as it is kept, and where it begins."""
+    made = object_code(text)
+    code = image(made) or made
+    found = _entered(code)
+    return (code, found) if found is not None else (made, _entered(made))  # where only LLVM may make memory executable
+
+
+def _function(address: int, owner: Untyped) -> Run:
+    """The function at an address, which its owner keeps."""
+    pointer, number = ctypes.c_void_p, ctypes.c_int64
+    prototype = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, pointer, number, number, number, number)
+    _kept.append(owner)
+    return prototype(address)
 
 
 def _entered(code: bytes) -> tuple[int, Untyped] | None:

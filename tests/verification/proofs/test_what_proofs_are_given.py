@@ -9,11 +9,11 @@ from flint import arb
 from symbolic.tables import circle, egg
 from symbolic.tables.law import PAPERS_LAW
 from symbolic.tables.scene import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.arithmetic.balls import exact_balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
-from verification.proofs.global_dynamics.boxes import BallArray
 from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.periodic import bifurcation, returning, triangles

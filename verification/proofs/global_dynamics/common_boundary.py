@@ -28,10 +28,11 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.arithmetic.balls import working
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.branch import unstable_branch
 from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.images import PinballImages

@@ -37,7 +37,8 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
+from verification.arithmetic.arrays import BallArray, hull
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Transitions, refined
 from verification.proofs.global_dynamics.images import PinballImages

@@ -4,7 +4,7 @@ The arc of a box comes from two signs of a cross product, as in `images`; within
 landing and incidence.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,17 +14,8 @@ from sympy import Rational, simplify
 
 from symbolic.tables.geometry import velocity
 from symbolic.tables.table import Table, theta
-from verification.proofs.global_dynamics.boxes import (
-    ROUNDING,
-    ArrayOps,
-    BallArray,
-    Boxes,
-    centred,
-    common_part,
-    direction,
-    hull,
-    turned,
-)
+from verification.arithmetic.arrays import ROUNDING, ArrayOps, BallArray, Compiled, common_part, direction, hull, turned
+from verification.proofs.global_dynamics.boxes import Boxes, centred
 
 if TYPE_CHECKING:
     from verification.proofs.global_dynamics.images import PinballImages
@@ -35,6 +26,7 @@ TRIES = 7  # widenings of a guessed arc
 SIDES = "x", "y", "v", "w", "cos", "speed", "bend"  # on which the side of a flight depends
 CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
 PLACES, CLOSE = (Rational(1, 7), Rational(1, 5)), 1e-9  # where a bend that varies is seen to do so
+OPS = ArrayOps()
 CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # of a boundary point
 
 
@@ -83,20 +75,18 @@ class Flights:
 
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
         """Start, velocity and acceleration of the boundary, its speed and bend, and the direction of flight."""
-        x, y, dx, dy, ddx, ddy = self.map.place(self.chart, theta)
-        square, (c, s) = dx * dx + dy * dy, turned(phi)
-        v, w = (s * dx - c * dy) / (speed := self.map.ops.sqrt(square)), (s * dy + c * dx) / speed
-        found = {"x": x, "y": y, "dx": dx, "dy": dy, "ddx": ddx, "ddy": ddy, "v": v, "w": w, "cos": c, "speed": speed}
-        return found | {"bend": (dx * ddy - dy * ddx) / square}
+        place = self.map.place(self.chart, theta)
+        return dict(zip((*CURVE, "v", "w", "cos", "speed", "bend"), (*place, *departing(*place, phi)), strict=True))
+
+    def among(self, places: Places, names: tuple[str, ...], on: Indices) -> list[BallArray]:
+        """Some of what is known of some of the boxes, as they stand."""
+        return [places[name] for name in names] if on.size == self.chart.size else [places[name][on] for name in names]
 
     def sides(self, end: End, on: Indices) -> BallArray:
         """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""
         x, y, *_ = self.map.place(end[0], BallArray(end[1]))
-        at, all_of = ({name: some[name][on] for name in SIDES} for some in (self.centre, self.whole))
-        value = at["v"] * (y - at["y"]) - at["w"] * (x - at["x"])
-        along = all_of["v"] * (x - all_of["x"]) + all_of["w"] * (y - all_of["y"])
-        by_theta = all_of["cos"] * all_of["speed"] - all_of["bend"] * along
-        return value + by_theta * self.reach[0][on] + along * self.reach[1][on]
+        at, all_of = self.among(self.centre, SIDES[:4], on), self.among(self.whole, SIDES, on)
+        return aside(x, y, *at, *all_of, self.reach[0][on], self.reach[1][on])[0]
 
     def arcs(self) -> tuple[End, End]:
         """An arc for each box that holds its landings; parameters are nan where none is proved."""
@@ -209,10 +199,8 @@ class Flights:
         by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
         middle = self.midpoint(on, chart, arc)
-        theta = middle + by_theta * reach[0] + by_phi * reach[1]
         turn = turn_between(self.tangent(on, self.centre), self.map.place(chart, middle)[2:4])
-        by = there * by_theta - here, there * by_phi + 1
-        fine = self.phi[on] + turn + by[0] * reach[0] + by[1] * reach[1]
+        theta, fine, *by = moved(middle, self.phi[on], turn, by_theta, by_phi, here, there, *reach)
         phi = None
         if self.map.placed:  # place and incidence move together
             phi = self.map.exit(incidence(self.phi[on] + turn), middle)
@@ -244,19 +232,13 @@ class Flights:
 
         The length, which hardly varies, the speeds and the incidence are enclosed by the mean-value theorem.
         """
-        ops, aside, (there, rough_eta) = self.map.ops, self.reach[0][on], self.over(on, chart, arc)
+        beyond, (there, rough_eta) = self.reach[0][on], self.over(on, chart, arc)
         at, last = self.near(on, chart, arc)
-        beside = arc - at
-        start, first = ({name: places[name][on] for name in CURVE} for places in (self.whole, self.centre))
-        gap = [there[0] - start["x"], there[1] - start["y"]]
-        rough, length = norm(ops, gap), norm(ops, [last[0] - first["x"], last[1] - first["y"]])
-        shorter = (gap[0] * start["dx"] + gap[1] * start["dy"]) / rough
-        longer = (gap[0] * there[2] + gap[1] * there[3]) / rough
-        length = common_part(length - shorter * aside + longer * beside, rough)
         here, bend = self.bend[on], closer(lambda: turn_rate(there), self.map, chart)
-        fast = speed(norm(ops, last[2:4]), norm(ops, there[2:4]), there, beside)
-        eta = self.phi[on] + turn_between([first["dx"], first["dy"]], last[2:4]) + self.reach[1][on]
-        eta = common_part(incidence(eta + bend * beside - here * aside), rough_eta)
+        start, first = self.among(self.whole, CURVE[:4], on), self.among(self.centre, CURVE[:4], on)
+        turn = turn_between(first[2:], last[2:4])
+        rates = beyond, self.reach[1][on], here, bend, self.phi[on], turn, rough_eta
+        length, fast, eta = flown(*there, *start, *first, *last[:4], arc, at, *rates)
         across = fast * turned(eta)[0]
         across = BallArray(across.m, np.where(across.positive(), across.r, np.inf))
         by_theta = (here * length - self.whole["cos"][on] * self.speed[on]) / across
@@ -274,24 +256,77 @@ class Flights:
 
     def midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
         """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
-        at = {name: value[on] for name, value in self.centre.items()}
-        guess = BallArray(np.asarray(arc.m))
+        at = self.among(self.centre, SIDES[:4], on)
+        (x, y, v, w), guess = (each.m for each in at), BallArray(np.asarray(arc.m))
         place, (slopes, _) = self.map.place(chart, guess), self.over(on, chart, arc)
         for _ in range(2):  # of Newton's method, in float64
-            value = at["v"].m * (place[1].m - at["y"].m) - at["w"].m * (place[0].m - at["x"].m)
-            guess = BallArray(guess.m - value / (at["v"].m * place[3].m - at["w"].m * place[2].m))
+            value = v * (place[1].m - y) - w * (place[0].m - x)
+            guess = BallArray(guess.m - value / (v * place[3].m - w * place[2].m))
             place = self.map.place(chart, guess)
-        value = at["v"] * (place[1] - at["y"]) - at["w"] * (place[0] - at["x"])
-        slope = at["v"] * slopes[3] - at["w"] * slopes[2]
-        inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
-        found = guess - value / slope
-        return BallArray(found.m, np.where(inside, found.r, np.inf))
+        return newton(guess, arc, *at, *place[:2], *slopes[2:4])[0]
 
 
 def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
     """The angle from one tangent to another, less half a turn, up to whole turns."""
-    c, s = first[0] * last[0] + first[1] * last[1], first[0] * last[1] - first[1] * last[0]
-    return direction(-c, -s)
+    return between(*first, *last)[0]
+
+
+@Compiled
+def between(a: BallArray, b: BallArray, c: BallArray, d: BallArray) -> list[BallArray]:
+    """The angle from `-(a, b)` to `(c, d)`."""
+    along, across = a * c + b * d, a * d - b * c
+    return [direction(-along, -across)]
+
+
+@Compiled
+def departing(
+    x: BallArray, y: BallArray, dx: BallArray, dy: BallArray, ddx: BallArray, ddy: BallArray, phi: BallArray
+) -> list[BallArray]:
+    """Direction of flight, cosine of the exit angle, speed and bend, from the boundary and the exit angle."""
+    square, (c, s) = dx * dx + dy * dy, turned(phi)
+    v, w = (s * dx - c * dy) / (speed := OPS.sqrt(square)), (s * dy + c * dx) / speed
+    return [v, w, c, speed, (dx * ddy - dy * ddx) / square]
+
+
+@Compiled
+def aside(x: BallArray, y: BallArray, *known: BallArray) -> list[BallArray]:
+    """`v x (z - z0)` by the mean-value theorem; see `Flights.sides`."""
+    (x0, y0, v0, w0), (x1, y1, v, w, cos, speed, bend), (by_theta, by_phi) = known[:4], known[4:11], known[11:]
+    value = v0 * (y - y0) - w0 * (x - x0)
+    along = v * (x - x1) + w * (y - y1)
+    return [value + (cos * speed - bend * along) * by_theta + along * by_phi]
+
+
+@Compiled
+def moved(middle: BallArray, phi: BallArray, turn: BallArray, *slopes: BallArray) -> list[BallArray]:
+    """Landing and incidence by the mean-value theorem, and the incidence's slopes."""
+    by_theta, by_phi, here, there, wide, high = slopes
+    by = there * by_theta - here, there * by_phi + 1
+    return [middle + by_theta * wide + by_phi * high, phi + turn + by[0] * wide + by[1] * high, *by]
+
+
+@Compiled
+def flown(*known: BallArray) -> list[BallArray]:
+    """Length, speed at the landing and incidence by the mean-value theorem; see `Flights.slopes`."""
+    there, start, first, last = known[:6], known[6:10], known[10:14], known[14:18]
+    arc, at, wide, high, here, bend, phi, turn, rough_eta = known[18:]
+    beside, gap = arc - at, [there[0] - start[0], there[1] - start[1]]
+    rough, length = norm(OPS, gap), norm(OPS, [last[0] - first[0], last[1] - first[1]])
+    shorter = (gap[0] * start[2] + gap[1] * start[3]) / rough
+    longer = (gap[0] * there[2] + gap[1] * there[3]) / rough
+    length = common_part(length - shorter * wide + longer * beside, rough)
+    fast = speed(norm(OPS, last[2:4]), norm(OPS, there[2:4]), there, beside)
+    eta = phi + turn + high
+    return [length, fast, common_part(incidence(eta + bend * beside - here * wide), rough_eta)]
+
+
+@Compiled
+def newton(guess: BallArray, arc: BallArray, *known: BallArray) -> list[BallArray]:
+    """One step of interval Newton about a landing that is guessed; nothing is known outside the arc."""
+    (x0, y0, v, w), (x, y), (dx, dy) = known[:4], known[4:6], known[6:]
+    inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
+    found = guess - (v * (y - y0) - w * (x - x0)) / (v * dy - w * dx)
+    return [BallArray(found.m, np.where(inside, found.r, np.inf))]
 
 
 def incidence(eta: BallArray) -> BallArray:
@@ -320,12 +355,12 @@ def turn_rate(place: list[BallArray]) -> BallArray:
     return (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
 
 
-def norm(ops: ArrayOps, vector: list[BallArray]) -> BallArray:
+def norm(ops: ArrayOps, vector: Sequence[BallArray]) -> BallArray:
     """The length of vectors."""
     return ops.sqrt(vector[0] * vector[0] + vector[1] * vector[1])
 
 
-def speed(at: BallArray, rough: BallArray, place: list[BallArray], beside: BallArray) -> BallArray:
+def speed(at: BallArray, rough: BallArray, place: Sequence[BallArray], beside: BallArray) -> BallArray:
     """The speed of the parameter, by the mean-value theorem, from that at a point and a rough one over a range."""
     return common_part(rough, at + (place[2] * place[4] + place[3] * place[5]) / rough * beside)
 

@@ -15,7 +15,7 @@ Where the arc holds a join, the image is given for both sides of it. Paper: sect
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -23,28 +23,24 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.lowering.lower import lower_law
+from numeric.lowering.program import Program
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.scene import Scene
+from verification.arithmetic.arrays import ArrayOps, BallArray, Compiled, common_part, exactly, hull, spread
 from verification.maps.first_hit import closes_smoothly, convex
-from verification.proofs.global_dynamics.boxes import (
-    ArrayOps,
-    BallArray,
-    Boxes,
-    Chart,
-    Images,
-    Row,
-    collected,
-    common_part,
-    exactly,
-    hull,
-    spread,
-)
+from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, Row, collected
 from verification.proofs.global_dynamics.flights import Flights, Piece, Slopes
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 STEPS, PLACES = 1 << 12, 1 << 6  # pieces of the incidence angles, and of each component under a law of the place
 QUARTER = 1.5707963267948966  # below pi/2
+
+
+@lru_cache(maxsize=16)
+def compiled_curve(program: Program) -> Compiled:
+    """A boundary curve on balls, compiled once for all maps of a table."""
+    return Compiled(lambda *values: program(ArrayOps(), *values))
 
 
 class PinballImages:
@@ -145,14 +141,19 @@ class PinballImages:
     def place(self, chart: Indices, theta: BallArray) -> list[BallArray]:
         """Point, velocity and acceleration at parameters of components."""
         if self.closed:
-            return [spread(value, theta.m) for value in self.map.ir.parts[0].curve(self.ops, theta, *self.shape)]
+            return self.curves[0](theta, *self.shape)
         m, r = np.broadcast_arrays(theta.m, theta.r)
         made = [BallArray(np.empty(m.shape), np.empty(m.shape)) for _ in range(6)]
-        for index, part in enumerate(self.map.ir.parts):
+        for index, curve in enumerate(self.curves):
             on = np.flatnonzero(chart == index)
-            for whole, value in zip(made, part.curve(self.ops, BallArray(m[on], r[on]), *self.shape), strict=True):
+            for whole, value in zip(made, curve(BallArray(m[on], r[on]), *self.shape), strict=True):
                 whole.m[on], whole.r[on] = value.m, value.r
         return made
+
+    @cached_property
+    def curves(self) -> list[Compiled]:
+        """Point, velocity and acceleration on each component, from the parameter and the numbers of the shape."""
+        return [compiled_curve(part.curve) for part in self.map.ir.parts]
 
     def flights(self, boxes: Boxes) -> Flights:
         """The flights that leave a block of boxes."""

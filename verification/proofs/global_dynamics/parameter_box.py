@@ -19,19 +19,10 @@ from numeric.lowering.program import Builder, Program
 from symbolic.tables.law import parameters_of_law
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table, theta
+from verification.arithmetic.arrays import BallArray, common_part, exactly, hull, spread
 from verification.cycles.systems import rotations
 from verification.maps.first_hit import closes_smoothly, convex
-from verification.proofs.global_dynamics.boxes import (
-    BallArray,
-    Boxes,
-    Chart,
-    Images,
-    collected,
-    common_part,
-    exactly,
-    hull,
-    spread,
-)
+from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, collected
 from verification.proofs.global_dynamics.flights import (
     Array,
     Flights,

@@ -30,7 +30,8 @@ from scipy.sparse import csr_matrix
 
 from numeric.backends import elementary
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Images, hull
+from verification.arithmetic.arrays import BallArray, hull
+from verification.proofs.global_dynamics.boxes import Boxes, Images
 from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.global_dynamics.graph import (
     BLOCK,

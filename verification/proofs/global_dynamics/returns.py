@@ -19,7 +19,7 @@ from symbolic.cycles.defocusing import half
 from symbolic.cycles.returns import HIGHEST, LOWEST, leaves, margins, returns
 from symbolic.expressions.signs import Finding, Outcome, conjunction
 from symbolic.tables.table import lam
-from verification.proofs.global_dynamics.boxes import ArrayOps, exactly, hull
+from verification.arithmetic.arrays import ArrayOps, exactly, hull
 
 LETTERS = half, leaves, lam
 FIRST, DEPTH, MOST = (16, 16, 32), 10, 1 << 19  # boxes along each side, how often they are halved, how many at once

@@ -35,9 +35,10 @@ from flint import acb, arb, fmpq
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from verification.arithmetic.arrays import BallArray
 from verification.arithmetic.balls import balls, working
 from verification.proofs.global_dynamics.barrier import Barrier
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.common_boundary import Disc, attracts, disc
 from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.graph import BLOCK, Indices, Mask, ranges, sparse, walked

@@ -6,7 +6,7 @@ A kernel's landing in float64 is a double in the arc of landings; about it deriv
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.proofs.global_dynamics.boxes import BallArray, hull
+from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.flights import End, Flights, Piece, incidence, turn_between
 
 Array = NDArray[np.float64]

@@ -19,8 +19,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from verification.arithmetic.arrays import BallArray
 from verification.cycles.systems import reflected
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Matrix, matrix, times
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.parallelograms import Parallelograms, carried

@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
+from verification.arithmetic.arrays import BallArray, hull
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.fates import NEAR, clusters, invertible
 from verification.proofs.global_dynamics.graph import Grid, Mask, MorseGraph, morse_graph, refined, walked
 from verification.proofs.global_dynamics.images import PinballImages

@@ -18,8 +18,8 @@ from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
 from symbolic.expressions.signs import Finding, conjunction, positive
 from symbolic.tables.geometry import velocity
 from symbolic.tables.table import Table, lam, theta
+from verification.arithmetic.arrays import hull
 from verification.arithmetic.balls import enclose, working
-from verification.proofs.global_dynamics.boxes import hull
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.core import Core, attracts
 from verification.proofs.starts.strips import bounded, speeds, strips, unsettled

@@ -21,7 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull
+from verification.arithmetic.arrays import BallArray, hull
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import Chords

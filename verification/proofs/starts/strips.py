@@ -24,8 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from verification.arithmetic.arrays import BallArray, hull, turned
 from verification.cycles.systems import reflected
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, hull, turned
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Matrix, matrix, norm, times
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import Chords

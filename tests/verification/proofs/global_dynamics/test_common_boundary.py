@@ -11,9 +11,10 @@ from flint import arb
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.paper.egg.basins import MIDDLE, beyond_the_crisis
 from verification.proofs.global_dynamics import common_boundary
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.common_boundary import CHECKS, Disc, attracts, disc, entered_around
 from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.manifolds.saddle import Orbit

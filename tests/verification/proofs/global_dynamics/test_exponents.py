@@ -9,8 +9,9 @@ from scipy.sparse import csr_matrix
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics import regions as statements
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Chart
+from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.global_dynamics.graph import Grid, Transitions, morse_graph, refined
 from verification.proofs.global_dynamics.images import PinballImages

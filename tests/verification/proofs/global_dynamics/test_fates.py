@@ -9,7 +9,8 @@ from scipy.sparse import csr_matrix
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes, Chart
+from verification.arithmetic.arrays import BallArray
+from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _reach, _staying, clusters, holding
 from verification.proofs.global_dynamics.flights import Piece, Slopes
 from verification.proofs.global_dynamics.graph import Grid, Transitions

@@ -11,8 +11,9 @@ import pytest
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.app.cli import main
+from verification.arithmetic.arrays import ArrayOps, BallArray
 from verification.proofs.global_dynamics import graph as graphs
-from verification.proofs.global_dynamics.boxes import ArrayOps, BallArray, Boxes, Chart, Images, PlaneImages
+from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, PlaneImages
 from verification.proofs.global_dynamics.graph import (
     Cells,
     Grid,

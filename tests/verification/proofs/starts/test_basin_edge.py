@@ -9,9 +9,10 @@ import pytest
 
 from numeric import PinballMap
 from symbolic import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.paper.egg.nearly_round import edge
 from verification.proofs.global_dynamics.barrier import Barrier
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.common_boundary import Disc
 from verification.proofs.global_dynamics.flights import Slopes
 from verification.proofs.manifolds.known import TRIANGLE

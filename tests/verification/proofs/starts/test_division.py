@@ -10,8 +10,9 @@ import pytest
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
 from symbolic import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.paper.egg.basins import division
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.graph import Cells, Grid, Transitions, sparse
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts import division as division_of

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from symbolic import Scene, tables
+from verification.arithmetic.arrays import hull
 from verification.arithmetic.balls import enclose, working
-from verification.proofs.global_dynamics.boxes import Boxes, hull
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import constant_bends, matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import Chords

@@ -7,7 +7,8 @@ import pytest
 
 from numeric import PinballMap
 from symbolic import Scene
-from verification.proofs.global_dynamics.boxes import BallArray, Boxes
+from verification.arithmetic.arrays import BallArray
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts import core as core_of
 from verification.proofs.starts import strips as strips_of

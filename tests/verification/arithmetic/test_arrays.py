@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from numeric.lowering.program import Program
-from verification.arithmetic.balls import working
-from verification.proofs.global_dynamics.boxes import (
+from verification.arithmetic.arrays import (
     HALF_PI,
     LARGEST,
     UNIT_ERROR,
@@ -20,6 +19,7 @@ from verification.proofs.global_dynamics.boxes import (
     hull,
     turned,
 )
+from verification.arithmetic.balls import working
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=True)
 RADII = st.floats(0, 10)

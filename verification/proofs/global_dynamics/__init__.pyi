@@ -2,7 +2,7 @@
 
 from .apart import kept_apart
 from .barrier import Barrier, lost
-from .boxes import BallArray, Boxes, hull, turned
+from .boxes import Boxes
 from .branch import Branch, exact, unstable_branch
 from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed
@@ -19,7 +19,6 @@ __all__ = [
     "KIND",
     "KNOWN",
     "NEAR",
-    "BallArray",
     "Barrier",
     "BoundaryCrisis",
     "Boxes",
@@ -50,7 +49,6 @@ __all__ = [
     "every_return",
     "exact",
     "expansion",
-    "hull",
     "incidence",
     "invertible",
     "kept_apart",
@@ -66,7 +64,6 @@ __all__ = [
     "sparse",
     "times",
     "turn_between",
-    "turned",
     "unstable_branch",
     "walked",
 ]

@@ -119,7 +119,9 @@ def collected(rows: list[Row], asked: Indices) -> Images:
     """Images from rows of `source, chart, x low, x high, y low, y high`; a box with an end not finite is lost."""
     source, chart, *ends = (np.concatenate(column) for column in zip(*rows, strict=True))
     good = np.logical_and.reduce([np.isfinite(end) for end in ends])
-    bad = np.union1d(source[~good], np.setdiff1d(asked, source))
-    keep = ~np.isin(source, bad)
+    known = np.zeros(max(asked.max(initial=-1), source.max(initial=-1)) + 1, dtype=bool)
+    known[source] = True
+    known[source[~good]] = False
+    keep, bad = known[source], asked[~known[asked]]
     a, b, c, d = (end[keep] for end in ends)
-    return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), bad.astype(np.int64))
+    return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), bad)

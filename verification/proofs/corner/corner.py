@@ -23,7 +23,7 @@ from sympy import pi, sqrt
 from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel
 from symbolic.tables import cuspless
-from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
+from verification.arithmetic.balls import FLOAT64, Arithmetic, balls, bits_of, exact_balls, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.critical import corner
 from verification.cycles.newton import refined
@@ -196,6 +196,11 @@ def _angles() -> dict[tuple[int, int], Angle]:
 
 
 @cache
+def _guesses() -> dict[tuple[int, int], Callable[[float, float], tuple[float, float, float]]]:
+    return {pair: load(chord_kernel(cuspless, *pair, 1), FLOAT64) for pair in _angles()}
+
+
+@cache
 def corner_parameters() -> tuple[arb, arb]:
     """The parameters of the upper corner, on the arc and on the wall; those of the lower have the other sign."""
     with working(BITS):
@@ -219,7 +224,7 @@ def following(previous: Bounce, here: Bounce, component: int, near: float, lam: 
     """
     back, forth = _angles()[here.component, previous.component], _angles()[here.component, component]
     eta = back(here.at.centre, previous.at.centre)[0]
-    middle = _polished(lambda x: forth(here.at.centre, x), -lam.centre * eta, near)
+    middle = _polished(here, component, float((-lam.centre * eta).mid()), near)
     centre = _root(lambda x: forth(here.at.centre, x), -lam.centre * eta, middle, 1e-14)
     into = back(here.at.whole, previous.at.whole)
     room = here.at.whole.rad() + previous.at.whole.rad() + lam.whole.rad()
@@ -280,10 +285,13 @@ def after_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spr
     raise ArithmeticError("a landing near a corner is not enclosed")
 
 
-def _polished(rule: Callable[[arb], tuple[arb, arb, arb]], value: arb, near: float) -> float:
+def _polished(here: Bounce, component: int, value: float, near: float) -> float:
+    """A guess, in float64."""
+    angle, start = _guesses()[here.component, component], float(here.at.centre.mid())
+
     def correction(x: Vector) -> list[float]:
-        found = rule(arb(x[0]))
-        return [float(((found[0] - value) / found[2]).mid())]
+        found = angle(start, x[0])
+        return [(found[0] - value) / found[2]]
 
     return float(iterated(correction, [near], Stop(enough=1e-13, steps=8)).x[0])
 

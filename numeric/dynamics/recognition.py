@@ -280,8 +280,8 @@ def at_clouds(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attr
         return np.full(particles.size, UNSETTLED)
     owner = np.repeat(chaotic, [attractors[i].points.size for i in chaotic])
     tree = cKDTree(embedded(map, together(*(attractors[i].points for i in chaotic))))
-    distance, nearest = tree.query(embedded(map, particles))
-    return np.where(distance < NEAR, owner[nearest], UNSETTLED)
+    distance, nearest = tree.query(embedded(map, particles), distance_upper_bound=NEAR)  # none: one past the last
+    return np.where(distance < NEAR, np.append(owner, UNSETTLED)[nearest], UNSETTLED)
 
 
 def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_]) -> list[Attractor]:

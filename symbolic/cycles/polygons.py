@@ -116,7 +116,7 @@ def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
 def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: Expr) -> tuple[Expr, Expr]:
     """Trace and determinant of one bounce of a polygon, in the frame that turns with it."""
     matrix = derivative_matrix(K0, K0, t, cos(exit_angle), cos(incidence))
-    return simplify(matrix.trace()), simplify(matrix.det())
+    return factor(matrix.trace()), factor(matrix.det())
 
 
 def polygon_identities() -> dict[str, Expr]:

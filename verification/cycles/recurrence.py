@@ -158,6 +158,19 @@ class Terms(Generic[X]):
         """Along a ring, the derivatives at each bounce."""
         return list(zip(*self.slope, strict=True))  # type: ignore[call-overload]  # rows of numbers
 
+    def listed(self) -> "Terms[list[Any]]":
+        """Arrays along a ring as lists of numbers."""
+        rows: Any = self
+        shape = np.shape(rows.value)
+
+        def slope(own: tuple[Any, Any, Any]) -> tuple[list[Any], list[Any], list[Any]]:
+            before, here, after = ([*np.broadcast_to(row, shape).tolist()] for row in own)
+            return before, here, after
+
+        by, bend = ({key: row.tolist() for key, row in each.items()} for each in (rows.by, rows.bend))
+        turned = {name: slope(each) for name, each in self.slope_by.items()}
+        return Terms(rows.value.tolist(), slope(self.slope), by, bend, turned)
+
     @staticmethod
     def along(bounces: "Sequence[Terms[Any]]") -> "Terms[list[Any]]":
         """The terms of single bounces as those of their ring."""

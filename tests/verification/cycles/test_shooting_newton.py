@@ -1,8 +1,10 @@
 """Shooting in mpmath: quadratic, of the digits asked for, and without a trace in the ambient context."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import mpmath
+import numpy as np
 import pytest
 from flint import arb
 from sympy import Rational, pi, sqrt
@@ -10,12 +12,12 @@ from sympy import Rational, pi, sqrt
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables import egg, ellipse
 from symbolic.tables.table import lam
-from verification.arithmetic.balls import working
+from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.cascade import attractor, characteristic, next_critical
 from verification.cycles.chain import Chain, by_cramer
 from verification.cycles.critical import corner
 from verification.cycles.newton import floats, levels, refined
-from verification.cycles.problem import Problem
+from verification.cycles.problem import LONG, Linearised, Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.named.locate import certify
 
@@ -105,3 +107,14 @@ def test_two_rows_with_a_small_pivot_are_solved_from_both_sides():
 
         assert by_cramer(chain, chain.times(x)) == x
         assert by_cramer(chain, [sum(a * b for a, b in zip(row, x, strict=True)) for row in rows], True) == x
+
+
+def test_a_long_ring_in_arrays_has_the_equations_of_its_bounces_one_by_one():
+    n = LONG
+    problem = Problem(EGG, (0,) * n, BifurcationKind.FLIP, "lam")
+    z = [*np.sort(np.random.default_rng(1).uniform(-3, 3, n)).tolist(), 0.4]
+    long, short = Linearised(problem, FLOAT64, z), Linearised(problem, replace(FLOAT64), z)  # no longer the same object
+    one, other = ([long.value, long.row, long.column], [short.value, short.row, short.column])
+    for found, expected in zip(one, other, strict=True):
+        assert np.allclose(found, expected, rtol=1e-9, atol=0)
+        assert all(isinstance(x, float) for x in found)

@@ -164,3 +164,27 @@ def test_an_orbit_that_does_not_enter_is_no_crisis(check, crisis, monkeypatch):
     monkeypatch.setattr(crisis, "SAMPLES", 2)
     with pytest.raises(check.Unproved, match="leaves"):
         check.checked(copy.deepcopy(GIVEN))
+
+
+@pytest.mark.parametrize(
+    ("slope", "zero", "seen"),
+    [
+        (2, "1/8", True), (-2, "1/8", True), (2, "-1/4", False), (-2, "5/4", False), (2, "5/4", False),
+        (-2, "-1/4", False), (0, "1/8", False), (2, "1", False), (-2, "0", False),
+    ],
+)  # fmt: skip
+def test_one_cycle_is_seen_where_the_law_changes_its_sign_once_in_a_box(check, crisis, monkeypatch, slope, zero, seen):
+    """A law that is `slope*(theta - zero)`, rising or falling, over `0 <= theta <= 1`."""
+    box = check.I.of(0, 64).hull(check.I.of(1, 64))
+
+    def law(table, turn, theta, lam):
+        theta = theta if isinstance(theta, check.Jet) else check.Jet.of(theta, 0)
+        return (theta - Fraction(zero)) * check.I.of(slope, 64), None
+
+    monkeypatch.setattr(crisis, "law", law)
+    table = type("Table", (), {"p": 64})
+    if seen:
+        crisis.one(table, TURN, box, None)
+    else:
+        with pytest.raises(check.Unproved, match="one cycle"):
+            crisis.one(table, TURN, box, None)

@@ -15,7 +15,7 @@ from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.recurrence import Closure
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.proofs.global_dynamics import crisis
-from verification.proofs.global_dynamics.apart import kept_apart
+from verification.proofs.global_dynamics.apart import _held, kept_apart
 from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images
 from verification.proofs.global_dynamics.crisis import (
     CHECKS,
@@ -362,3 +362,10 @@ def test_a_region_apart_from_its_turned_copies_is_told_by_its_angles():
     open_ = Thirds(0.0)
     open_.closed = False
     assert kept_apart(open_, (30, 8, 1), here) is None
+
+
+def test_numbers_are_held_by_a_list_in_order_up_to_its_first_and_its_last():
+    chance = np.random.default_rng(4)
+    for size in (0, 1, 2, 9):
+        ordered = np.unique(chance.integers(0, 20, size))
+        assert np.array_equal(_held(np.arange(-2, 23), ordered), np.isin(np.arange(-2, 23), ordered))

@@ -93,7 +93,8 @@ comparison of two numbers that are known to differ, and letters that need not be
 
 Of the 28 that survived seed 11, of all modules and on a machine with twelve times as much other work, `_lands_within`
 could let something false through, an end of a landing that nobody asks about, and has a test now; so have
-`_exactly_nonnegative`, a condition on coefficients, `Horseshoe._covering`, and `_around`, by which a mutant leaves out a
+`_exactly_nonnegative`, a condition on coefficients, `Horseshoe._covering`, and `_around`, by which a mutant
+leaves out a
 ball's radius. The others prove the same, less, or nothing: guesses and searches that a proof checks
 (`EnclosedMap._landed`, `bracket`, `share`, `reach`, `Chain._side`, `I.atan`, `_attractor`), balls that never end at a
 border (`stays_below`, `after_corner`), a sign divided by or multiplied with (`extent`), what is cut first or told of
@@ -121,9 +122,11 @@ cores, parallelograms), make each step of a checklist fail alone, and prove each
 
 Of the survivors of seed 13, of all modules, `settled`, `region`, `on_the_table` twice, `in_core`, `matrix`, `_held`,
 `_impossible` and `one` have tests since. Not settled are two of the second reader: `touching`, which asks whether a
-chord is free, and `continued`, whether an entry is not 0. The others: a first landing asked about twice (`first_hits`), a digit more
+chord is free, and `continued`, whether an entry is not 0. The others: a first landing asked about twice
+(`first_hits`), a digit more
 (`number`), another whole turn (`_turned_back`), a bound with room for it (`root`), a proof not found
-(`BelowStar.checks`), a guess (`strips`, `courses`), a longer tube (`pair`), a whole number more of what is asked to be whole
+(`BelowStar.checks`), a guess (`strips`, `courses`), a longer tube (`pair`), a whole number more of what is
+asked to be whole
 (`slope`), a term more (`series`), entries that are no mapping and end in an error (`_rightly_said`), a border
 (`ergodic`).
 

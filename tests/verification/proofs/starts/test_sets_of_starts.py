@@ -99,9 +99,9 @@ def test_the_parts_of_a_core_cover_its_half_and_hardly_more() -> None:
     for aside in (np.zeros(1), np.array([-2e-3, 1e-3])):
         parts = core.parts(aside)
         assert parts.chart.size == core.cells * aside.size
-        x = core.outer * rng.random(2000)
+        x = core.outer * rng.random(3000)
         for k, shift in enumerate(aside):
-            y = (core.slope + core.cubic * x**2) * x + shift + core.width * rng.choice([-1, 1, 0.3], 2000)
+            y = (core.slope + core.cubic * x**2) * x + shift + core.width * rng.choice([-1, 1, 0.3], 3000)
             cell = k * core.cells + np.minimum((x / core.outer * core.cells).astype(int), core.cells - 1)
             sides, middle, rest = parts.sides[:, :, cell], parts.middle[:, cell], parts.rest[:, cell]
             u = (x - middle[0]) / sides[0, 0]

@@ -130,6 +130,11 @@ asked to be whole
 (`slope`), a term more (`series`), entries that are no mapping and end in an error (`_rightly_said`), a border
 (`ergodic`).
 
+Seed 14, drawn after that, is not better: 112 of 141. Its 29 survivors are listed and
+not yet settled. Of the functions `Cover.settled`, `_passes`, `_nonzero`, `Core.holds`, `Ring.stretches`, `_image`,
+`_strip`, `_judged`, `Step.saddle`, `bound`, `Table.flight`, `function`, `Branch.proved` and `square` the mutants
+look as if they could let something false through; the goal of 92 per cent is not reached.
+
 The samples 21b to 21d are of the second reader and of the rooms `global_dynamics`, `corner` and `manifolds` alone, with
 what only searches there, and with tests as far as twelve seconds go. Of the last 30 survivors 19 change nothing that is
 proved (a ball about 0 added or taken off, a guess, a budget, a wider enclosure), each with its reason. Of the 139

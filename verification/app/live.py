@@ -82,21 +82,23 @@ class LiveTable:
     # ---- the page
 
     def _widgets(self) -> None:
-        self.table = pn.widgets.Select(name="Table", options=list(TABLES), value=self.choice.table)
-        self.formula = pn.widgets.TextInput(name="Radius, a formula in theta", value=self.choice.formula, visible=False)
-        self.shape = pn.widgets.TextInput(name="alpha, shape of the egg", value=self.choice.shape)
-        self.law = pn.widgets.TextInput(name="Exit angle, a formula in eta and lam", value=self.choice.law)
-        self.lam = pn.widgets.FloatSlider(name="Contraction lambda", start=0, end=1, step=0.001, value=0.45)
-        self.bounces = pn.widgets.IntSlider(name="Bounces drawn", start=1, end=MOST, value=self.choice.bounces)
+        self.table = pn.widgets.Select(label="Table", options=list(TABLES), value=self.choice.table)
+        self.formula = pn.widgets.TextInput(
+            label="Radius, a formula in theta", value=self.choice.formula, visible=False
+        )
+        self.shape = pn.widgets.TextInput(label="alpha, shape of the egg", value=self.choice.shape)
+        self.law = pn.widgets.TextInput(label="Exit angle, a formula in eta and lam", value=self.choice.law)
+        self.lam = pn.widgets.FloatSlider(label="Contraction lambda", start=0, end=1, step=0.001, value=0.45)
+        self.bounces = pn.widgets.IntSlider(label="Bounces drawn", start=1, end=MOST, value=self.choice.bounces)
         for slider in (self.lam, self.bounces):
             slider.stylesheets = [HANDLE]
-        self.find = pn.widgets.Button(name="Find the cycle", button_type="primary")
-        self.basins = pn.widgets.Button(name="Show the basins")
+        self.find = pn.widgets.Button(label="Find the cycle", color="primary")
+        self.basins = pn.widgets.Button(label="Show the basins")
         self.said = pn.pane.Markdown("", min_height=90)
-        self.command = pn.widgets.TextAreaInput(name="As a command", height=80, auto_grow=True)
-        self.python = pn.widgets.TextAreaInput(name="As Python", height=110, auto_grow=True)
+        self.command = pn.widgets.TextAreaInput(label="As a command", height=80, auto_grow=True)
+        self.python = pn.widgets.TextAreaInput(label="As Python", height=110, auto_grow=True)
         copy = "navigator.clipboard.writeText(source.value)"
-        self.copies = [pn.widgets.Button(name=f"Copy as {name}") for name in ("command", "Python")]
+        self.copies = [pn.widgets.Button(label=f"Copy as {name}") for name in ("command", "Python")]
         for button, text in zip(self.copies, (self.command, self.python), strict=True):
             button.js_on_click(args={"source": text}, code=copy)
         for widget in (self.table, self.formula, self.law, self.shape, self.lam):
@@ -226,7 +228,7 @@ class LiveTable:
         self.formula.value, self.shape.value, self.law.value = choice.formula, choice.shape, choice.law
         self.lam.value, self.bounces.value = float(choice.lam), choice.bounces
         self.shape.visible = choice.parameter is not None
-        self.shape.name = f"{choice.parameter}, shape of the {choice.table}"
+        self.shape.label = f"{choice.parameter}, shape of the {choice.table}"
         self.rebuild()
 
     def _other_table(self) -> None:
@@ -235,7 +237,7 @@ class LiveTable:
         self.formula.visible = self.table.value == OWN
         self.shape.visible = parameter is not None
         if parameter is not None and self.shape.value != DEFAULTS[parameter]:
-            self.shape.name = f"{parameter}, shape of the {self.table.value}"
+            self.shape.label = f"{parameter}, shape of the {self.table.value}"
             self.shape.value = DEFAULTS[parameter]  # which rebuilds
         else:
             self.rebuild()

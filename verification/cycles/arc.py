@@ -148,8 +148,9 @@ def follow(
     limits: Mapping[int, tuple[float, float]],
     steps: Steps | None = None,
     tick: Callable[[Point], None] | None = None,
+    other: Callable[[Array], bool] | None = None,
 ) -> Path:
-    """The path from `first` in the direction of its tangent, as far as it goes."""
+    """The path from `first` in the direction of its tangent, as far as it goes, and never onto what `other` knows."""
     steps = steps or Steps()
     points, step = [first], steps.first
     while len(points) < steps.most:
@@ -159,6 +160,8 @@ def follow(
             tangent = tangent_at(system, z, here.tangent)
             if tangent @ (system.weights * here.tangent) < TURNED:
                 raise LostError(f"{system.label}: the curve turns faster than the step")
+            if other is not None and other(z):
+                raise LostError(f"{system.label}: the step came down on another branch")
             if sides := _beyond(here.z, z, limits):
                 last = _landed(system, here, z, sides, limits)
                 return Path(system, (*points, last), End.INTERVAL, "the end of the interval was reached")
@@ -211,6 +214,22 @@ def zero(system: System, start: Point, end: Point, name: str) -> Point:
     except ValueError:
         tangent = start.tangent  # branches cross there and have no common tangent
     return Point(z, tangent, start.s + length, system.tests(z))
+
+
+def zero_near(system: System, first: Array, last: Array, name: str) -> Point | None:
+    """The point where a test function vanishes between two guesses, solved for at their parameters; None without."""
+    row = np.append(np.zeros(len(first) - 1), 1.0 if last[-1] > first[-1] else -1.0)
+    try:
+        start, end = (started(system, z, row) for z in (first, last))
+        return zero(system, start, end, name) if start.tests[name] * end.tests[name] < 0 else None
+    except ValueError:
+        return None
+
+
+def leaves(point: Point, interval: tuple[float, float]) -> bool:
+    """Is the last unknown on a side of the interval, with a tangent that points outwards?"""
+    value, slope = point.z[-1], point.tangent[-1]
+    return bool((value <= interval[0] and slope < 0) or (value >= interval[1] and slope > 0))
 
 
 def _beyond(here: Array, z: Array, limits: Mapping[int, tuple[float, float]]) -> list[tuple[int, float]]:

@@ -23,8 +23,8 @@ from verification.cycles.arc import End, LostError, Path, Point, Steps
 from verification.cycles.cells import Spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.problem import NormalForm
-from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
-from verification.cycles.systems import Cycles, coefficients, parts, whole
+from verification.cycles.recurrence import IDENTITY, Array, BifurcationKind, Parameters, Recurrence
+from verification.cycles.systems import Cycles, coefficients, crossed, parts, repeats, whole
 
 if TYPE_CHECKING:
     import xarray
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 NOISE = 1e-9  # a test function that small has no sign
 APPROACHES = 3  # to a join, whose parameter may depend on that of the branch
 DIFFERENCE = 2.0**-20  # of the parameter, to see how a join moves
+WIDTHS = (1e-4, 1e-3, 1e-2)  # of the parameter, on either side of a birth
 NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
 Interval = tuple[float, float]
 
@@ -42,7 +43,7 @@ class Event:
     """What happens, where, and the coefficients of its normal form where there is one.
 
     `ring` and `x` are the cycle, or the part of it that flips where a symmetry breaks. When it is not `located` its
-    place is interpolated between two points.
+    place is interpolated between two points. At its `birth` a branch turns: `ring` is then the cycle it is born of.
     """
 
     kind: BifurcationKind
@@ -51,6 +52,7 @@ class Event:
     x: Array = field(repr=False)
     form: NormalForm | None = None
     located: bool = True
+    birth: bool = False
 
     @property
     def value(self) -> float:
@@ -60,12 +62,21 @@ class Event:
 
 @dataclass(frozen=True)
 class Branch:
-    """The points in order of arc length, the events among them, and how either end came about."""
+    """The points in order of arc length, the events among them, and how either end came about.
+
+    At `births` the branch turns: events of the cycles that it is born of, and not its own.
+    """
 
     system: Cycles
     points: tuple[Point, ...] = field(repr=False)
     events: tuple[Event, ...]
     ends: tuple[tuple[End, str], tuple[End, str]]
+    births: tuple[Event, ...] = ()
+
+    @property
+    def along(self) -> list[Event]:
+        """Events and births, in order."""
+        return sorted((*self.events, *self.births), key=lambda event: event.point.s)
 
     def spectra(self) -> list[Spectrum]:
         """The multipliers at each point."""
@@ -139,13 +150,15 @@ def through(
     """The branch through `z`, followed along `direction` and against it; events included."""
     limits = {len(z) - 1: interval}
     tangent = arc.tangent_at(system, z, direction)
+    ring = system.recurrence
+    other = None if repeats(ring, z[:-1]) else lambda at: repeats(ring, at[:-1])
     paths: dict[int, Path] = {}
     for way in ways:
         first = Point(z, way * tangent, 0.0, system.tests(z))
-        if leaves(first, interval):
+        if arc.leaves(first, interval):
             paths[way] = Path(system, (first,), End.INTERVAL, "the end of the interval was reached")
             continue
-        paths[way] = arc.follow(system, first, limits, steps, tick)
+        paths[way] = arc.follow(system, first, limits, steps, tick, other)
         if paths[way].end is End.CLOSED:
             paths = {1: paths[way]}
             break
@@ -157,24 +170,20 @@ def through(
     for path, end in ((back, points[0]), (forth, points[-1])):
         collision = border(system, end) if path.end is End.OBSTACLE else None
         events += [collision] if collision else []
-    return Branch(system, tuple(points), tuple(events), ((back.end, back.why), (forth.end, forth.why)))
-
-
-def leaves(point: Point, interval: Interval) -> bool:
-    """Is the point on a side of the interval, with a tangent that points outwards?"""
-    value, slope = point.z[-1], point.tangent[-1]
-    return bool((value <= interval[0] and slope < 0) or (value >= interval[1] and slope > 0))
+    own, births = (tuple(event for event in events if event.birth == born) for born in (False, True))
+    return Branch(system, tuple(points), own, ((back.end, back.why), (forth.end, forth.why)), births)
 
 
 def between(system: Cycles, a: Point, b: Point) -> list[Event]:
     """The events between two neighbours, in order."""
-    found = []
+    found, turns = [], a.tangent[-1] * b.tangent[-1] < 0
     for name in ("one", "minus_one", "volume"):
         before, after = a.tests[name], b.tests[name]
         if before * after < 0 and min(abs(before), abs(after)) > NOISE:
-            turns = a.tangent[-1] * b.tangent[-1] < 0
             broken = _broken(system, a, b) if name == "one" and not turns else None
             found.append(broken or _located(system, a, b, name, turns))
+    if turns and a.tests["one"] * b.tests["one"] > 0:
+        found += _birth(system, a, b)
     return sorted(found, key=lambda event: event.point.s)
 
 
@@ -190,31 +199,36 @@ def _located(system: Cycles, a: Point, b: Point, name: str, turns: bool) -> Even
 
 
 def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
-    """The pitchfork between two neighbours, on the part of the cycle that flips there.
-
-    The whole ring is singular at a pitchfork, the part is not, so it is the part that is solved for.
-    """
+    """The pitchfork between two neighbours, on the part of the cycle that flips there."""
     ring = system.recurrence
     for part, _ in parts(ring, a.z[:-1]) if isinstance(ring, Chords) else []:
-        reduced = Cycles(part, system.parameter, system.fixed)
-        m = part.period
-        row = np.append(np.zeros(m), 1.0)
-        try:
-            first, last = (
-                arc.started(reduced, np.append(p.z[:m], p.z[-1]), row if b.z[-1] > a.z[-1] else -row) for p in (a, b)
-            )
-            if first.tests["minus_one"] * last.tests["minus_one"] > 0:
-                continue
-            there = arc.zero(reduced, first, last, "minus_one")
-        except ValueError:
-            continue
-        _, x = whole(part, there.z[:-1], ring.period)
-        form = _form(part, there.z[:-1], reduced.at(there.z), BifurcationKind.FLIP, system.parameter)
-        z = np.append(x, there.z[-1])
-        share = (z[-1] - a.z[-1]) / (b.z[-1] - a.z[-1])
-        point = Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z))
-        return Event(BifurcationKind.PITCHFORK, point, part, there.z[:-1], form)
+        first, last = (np.append(p.z[: part.period], p.z[-1]) for p in (a, b))
+        there = arc.zero_near(Cycles(part, system.parameter, system.fixed), first, last, "minus_one")
+        if there is not None:
+            return _parted(system, part, there, a, b, (there.z[-1] - a.z[-1]) / (b.z[-1] - a.z[-1]))
     return None
+
+
+def _birth(system: Cycles, a: Point, b: Point) -> list[Event]:
+    """Where the branch turns and no multiplier passes 1: there it is born of a cycle that repeats itself, and flips."""
+    for part, x, share in crossed(system.recurrence, a.z[:-1], b.z[:-1]):
+        for wide in WIDTHS:
+            first, last = (np.append(x, a.z[-1] + side * wide) for side in (-1, 1))
+            there = arc.zero_near(Cycles(part, system.parameter, system.fixed), first, last, "minus_one")
+            if there is not None:
+                return [replace(_parted(system, part, there, a, b, share), birth=True)]
+    return []
+
+
+def _parted(system: Cycles, part: Chords, there: Point, a: Point, b: Point, share: float) -> Event:
+    """The event of a part that flips, at a share of the way from one neighbour to the other."""
+    kind = BifurcationKind.FLIP if part.closure == IDENTITY else BifurcationKind.PITCHFORK
+    x = there.z[:-1]
+    form = _form(
+        part, x, {**system.fixed, system.parameter: float(there.z[-1])}, BifurcationKind.FLIP, system.parameter
+    )
+    z = np.append(whole(part, x, system.recurrence.period)[1], there.z[-1])
+    return Event(kind, Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z)), part, x, form)
 
 
 def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
@@ -319,7 +333,7 @@ def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
 def rows(branch: Branch) -> list[tuple[Point, Event | None]]:
     """Points and events in order."""
     both: list[tuple[Point, Event | None]] = [(point, None) for point in branch.points]
-    both += [(event.point, event) for event in branch.events]
+    both += [(event.point, event) for event in branch.along]
     return sorted(both, key=lambda row: (row[0].s, row[1] is not None))
 
 

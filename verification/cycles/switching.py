@@ -47,6 +47,8 @@ def switched(
 ) -> list[Branch]:
     """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
 
+    At its own birth another branch does not leave but passes: that of the cycle it is born of.
+
     >>> from verification.cycles.branch import branch
     >>> from verification.cycles.recurrence import logistic
     >>> one = branch(logistic(1), np.array([0.6]), "r", 2.5, (2.0, 3.4))
@@ -54,6 +56,9 @@ def switched(
     >>> [(event.kind.value, round(event.value, 9)) for event in two.events]
     [('period doubling', 3.449489743)]
     """
+    if event.birth:
+        system, z = Cycles(event.ring, branch.system.parameter, branch.system.fixed), np.append(event.x, event.value)
+        return [through(system, z, np.append(0.0 * event.x, 1.0), interval, steps, tick)]
     if event.kind in (BifurcationKind.FLIP, BifurcationKind.PITCHFORK):
         return _along_the_null_vector(branch, event, interval, steps, tick)
     if event.kind is BifurcationKind.BRANCH_POINT:
@@ -108,8 +113,11 @@ def _leaving(
             size /= 3
             continue
         points = (crossing, *(replace(p, s=p.s + size) for p in found.points))
-        events = tuple(replace(event, point=replace(event.point, s=event.point.s + size)) for event in found.events)
-        return replace(found, points=points, events=events)
+        events, births = (
+            tuple(replace(event, point=replace(event.point, s=event.point.s + size)) for event in some)
+            for some in (found.events, found.births)
+        )
+        return replace(found, points=points, events=events, births=births)
     raise LostError(f"{system.label}: no branch was found that leaves at {system.parameter} = {z[-1]:.9g}")
 
 

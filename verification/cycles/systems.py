@@ -64,6 +64,7 @@ def inverse(terms: Terms[Array], closure: Closure) -> Callable[[Any], Any]:
 
 
 SAME = 1e-7  # radians
+OPPOSITE = 0.1  # of two gaps: what is left where they should cancel
 ROUND = 12  # turns of a circle about the origin that are counted, of infinitely many
 
 
@@ -123,10 +124,42 @@ def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
 
 
 def _maps(ring: Chords, g: Closure, x: Array, i: int, m: int) -> bool:
-    j = (i + m) % ring.period
-    image = g.carried(x[i], g.radians, 1)
-    gap = remainder(x[j] - image, 2 * pi) if len(ring.table.components) == 1 else x[j] - image
-    return ring.components[j] == ring.components[i] and abs(gap) < SAME
+    return ring.components[(i + m) % ring.period] == ring.components[i] and abs(_gap(ring, g, x, i, m)) < SAME
+
+
+def _gap(ring: Chords, g: Closure, x: Array, i: int, m: int) -> float:
+    """How far the bounce `m` later is from a bounce's image."""
+    gap = float(x[(i + m) % ring.period] - g.carried(x[i], g.radians, 1))
+    return remainder(gap, 2 * pi) if len(ring.table.components) == 1 else gap
+
+
+def repeats(ring: Recurrence, x: Array) -> bool:
+    """Is the cycle a shorter one run through again, or its own image under a symmetry some bounces later?"""
+    if not isinstance(ring, Chords) or ring.closure != IDENTITY:
+        return False
+    n = ring.period
+    again = any(all(_maps(ring, IDENTITY, x, i, m) for i in range(n)) for m in range(1, n) if n % m == 0)
+    return again or bool(parts(ring, x))
+
+
+def crossed(ring: Recurrence, a: Array, b: Array) -> list[tuple[Chords, Array, float]]:
+    """The parts that repeat themselves somewhere between two cycles that do not, and which share of the way there.
+
+    The bounces of one cycle are as far on one side of their images as those of the other are on the other side.
+    """
+    found: list[tuple[Chords, Array, float]] = []
+    if not isinstance(ring, Chords) or ring.closure != IDENTITY:
+        return found
+    n = ring.period
+    for m in (m for m in range(1, n) if n % m == 0 and ring.components == ring.components[:m] * (n // m)):
+        for g in (IDENTITY, *symmetries(ring.table, ring.law)):
+            first, last = (np.array([_gap(ring, g, x, i, m) for i in range(n)]) for x in (a, b))
+            sizes = float(np.linalg.norm(first)), float(np.linalg.norm(last))
+            share = sizes[0] / (sum(sizes) or 1.0)
+            if np.linalg.norm(first + share * (last - first)) < OPPOSITE * min(sizes):
+                part = replace(ring, components=ring.components[:m], closure=g)
+                found.append((part, (a + share * (b - a))[:m], share))
+    return found
 
 
 def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:

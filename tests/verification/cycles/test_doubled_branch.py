@@ -1,14 +1,25 @@
-"""Laws on the blown-up doubling of the cuspless cardioid: it proves the branch, and fails where there is none."""
+"""Laws on the birth of a branch of cycles: where it turns, and of what it is born.
 
+The blown-up doubling of the cuspless cardioid: it proves the branch, and fails where there is none.
+"""
+
+from math import pi
+
+import numpy as np
 import pytest
 from flint import arb
 from sympy import Rational
 
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.tables import cuspless
+from symbolic.tables import cuspless, polar
 from verification.arithmetic.balls import real_ball, working
+from verification.cycles.branch import branch
+from verification.cycles.chords import Chords
 from verification.cycles.newton import floats
 from verification.cycles.problem import Problem
+from verification.cycles.recurrence import BifurcationKind
+from verification.cycles.switching import switched
+from verification.cycles.systems import repeats
 from verification.named.locate import locate
 from verification.proofs.corner import corner_orbit as blown
 
@@ -76,3 +87,33 @@ def test_nothing_is_proved_with_a_box_off_the_branch_or_too_wide_a_range(monkeyp
     monkeypatch.undo()
     monkeypatch.setattr(blown, "lambda_c", lambda: Rational(1, 5))
     assert blown.doubled_branch() is None
+
+
+FLOWER = polar("1 + cos(5*theta)/40")
+DOUBLED = np.array([-0.03616626, 2.99116645, 0.03616626, -2.99116645])  # attracts at lam = 0.3
+APART = np.array([-0.01148174, 2.90844845, -0.00118988, -2.93650100])  # attracts at lam = 0.9, and is not its mirror
+
+
+def test_a_doubled_branch_turns_where_the_shorter_cycle_flips_and_says_so():
+    one = branch(Chords(FLOWER, (0,) * 4), DOUBLED, "lam", 0.3, (0.1, 0.5))
+    shorter = branch(Chords(FLOWER, (0, 0)), np.array([0.0, pi]), "lam", 0.3, (0.1, 0.5))
+    (birth,) = one.births
+    (flip,) = shorter.events
+    (mother,) = switched(one, birth, (0.1, 0.5))
+
+    assert one.events == shorter.births == ()
+    assert birth.kind is BifurcationKind.FLIP
+    assert birth.value == pytest.approx(flip.value, abs=1e-12)
+    assert birth.value <= min(one.values)
+    assert mother.at(0.4)[0][:2] == pytest.approx(shorter.at(0.4)[0][:2], abs=1e-9)
+
+
+def test_a_branch_of_broken_symmetry_turns_at_the_pitchfork_and_never_comes_down_on_the_symmetric_cycle():
+    one = branch(Chords(FLOWER, (0,) * 4), APART, "lam", 0.9, (0.5, 1.0))
+    (birth,) = one.births
+
+    assert one.events == ()
+    assert birth.kind is BifurcationKind.PITCHFORK
+    assert birth.value <= min(one.values)
+    assert one.values[0] == one.values[-1] == 1.0
+    assert not any(repeats(one.system.recurrence, point.z[:-1]) for point in one.points)

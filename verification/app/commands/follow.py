@@ -100,7 +100,7 @@ def command(
         found += turned_off(found[0], (low, high), steps, switch)
     certificates = {}
     if digits:
-        events = [event for one in found for event in one.events]
+        events = [event for one in found for event in one.along]
         with output.progress("Certifying", len(events)) as tick:
             for event in events:
                 certificates[id(event)] = certificate(event, digits, parameter, lam)
@@ -108,7 +108,7 @@ def command(
     documents = []
     for one in found:
         document = record(one)
-        document["events"] = [noted(event, parameter, certificates.get(id(event))) for event in one.events]
+        document["events"] = [noted(event, parameter, certificates.get(id(event))) for event in one.along]
         documents.append(document)
     drawn_on = curves_of(found, plane, scene, lam, output) if plane else []
     output.write({"table": scene.name, "branches": documents, "curves": drawn_on}, found)
@@ -192,7 +192,7 @@ def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth
     for _ in range(depth):
         following = []
         for one in newest:
-            for event in one.events:
+            for event in one.along:
                 try:
                     following += switched(one, event, interval, steps)
                 except LostError:
@@ -224,6 +224,7 @@ def noted(event: Any, parameter: str, proof: dict[str, Any] | None) -> dict[str,
         "event": event.kind.value,
         parameter: event.value,
         "located": event.located,
+        "birth": event.birth,
         "theta": [float(x) for x in event.point.z[:-1]],
         "branch_coefficient": form.branch if form else None,
         "supercritical": form.supercritical if form else None,
@@ -302,7 +303,8 @@ def show(console: "Console", document: dict[str, Any]) -> None:
             else (f"{event[parameter]:.12g}")
         )
         side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
-        console.print(f"  {event['event']} at {parameter} = {said}{side}")
+        turns = ": here the branch turns, born of a cycle that repeats itself" if event["birth"] else ""
+        console.print(f"  {event['event']} at {parameter} = {said}{side}{turns}")
     console.print(f"  {parameter:<14}  multipliers                            stable  event")
     for i, point in enumerate(points):
         if i % stride and not point["event"] and i != len(points) - 1:

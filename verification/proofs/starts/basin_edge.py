@@ -139,9 +139,9 @@ class BasinEdge:
         entries = matrix(slopes)
         middle = np.array([[float(np.mean(x.m)) for x in row] for row in entries])
         values, vectors = np.linalg.eig(middle)
-        if np.iscomplexobj(values):
+        if np.any(np.iscomplex(values)):  # their type is complex in any case since NumPy 2.5
             return False
-        (a, b), (c, d) = vectors[:, np.argsort(-np.abs(values))]
+        (a, b), (c, d) = vectors.real[:, np.argsort(-np.abs(values))]
         det = BallArray(a) * d - BallArray(b) * c
         back = (BallArray(d) / det, BallArray(-b) / det), (BallArray(-c) / det, BallArray(a) / det)
         along = [[row[0] * u + row[1] * v for u, v in ((a, c), (b, d))] for row in entries]

@@ -3,7 +3,9 @@
 A function that is made of sums, products, quotients, roots, comparisons and selections of NumPy is called with `Lanes`
 in place of arrays: each operation writes the instruction of LLVM that IEEE 754 rounds in the same way, and none is
 joined with another. So what comes back has the bits that NumPy gives, without its temporary arrays: an array of a few
-thousand doubles is read once. Where there is no compiler the function itself is called.
+thousand doubles is read once. Where there is no compiler the function itself is called, and where it asks for an array
+by `np.asarray` or `np.broadcast_arrays`, as an exponential by powers of two does. Any other operation is refused: the
+bits of NumPy's sine, say, are not those of every machine.
 """
 
 import ctypes
@@ -40,6 +42,10 @@ COMPARISONS = {
 }
 LOGIC = {np.bitwise_and: "and", np.bitwise_or: "or", np.logical_and: "and", np.logical_or: "or"}
 CALLS = {np.absolute: "fabs", np.sqrt: "sqrt", np.rint: "rint", np.floor: "floor", np.copysign: "copysign"}
+
+
+class NoInstructionError(TypeError):
+    """An operation of NumPy's that is none of those whose bits are proved."""
 
 
 class Lanes(NDArrayOperatorsMixin):
@@ -101,7 +107,7 @@ class Trace:
             larger = self.compared("oge" if ufunc in (np.maximum, np.fmax) else "ole", one, rest[0])
             unknown = one if ufunc in (np.maximum, np.minimum) else rest[0]
             return self.chosen(larger | self.compared("uno", unknown, unknown), *inputs)
-        raise TypeError(f"{ufunc.__name__} is no operation of a traced function")
+        raise NoInstructionError(f"{ufunc.__name__} is no operation of a traced function")
 
     def compared(self, word: str, one: str, other: str) -> Lanes:
         """A comparison, as truth values."""
@@ -137,6 +143,17 @@ def text(function: Callable[..., Sequence[Any]], count: int) -> tuple[str, int]:
     return "\n".join([HEAD, *trace.lines, END, *sorted(trace.declared), TAIL, ""]), len(found)
 
 
+def compiled(function: Callable[..., Sequence[Any]], count: int) -> tuple[machine.Run | None, int]:
+    """A function of so many arrays in machine code, and how many it gives; None where it cannot be written down."""
+    try:
+        written, outputs = text(function, count)
+    except NoInstructionError:
+        raise
+    except TypeError:  # NumPy's, of lanes in the place of an array
+        return None, 0
+    return machine.from_text(written), outputs
+
+
 class Traced:
     """A function of arrays of one length, and numbers; it gives arrays of that length.
 
@@ -156,8 +173,8 @@ class Traced:
             return list(self.function(*values))
         (size,) = shape
         if not self.written:
-            written, self.outputs = text(self.function, len(values))
-            self.run, self.written = machine.from_text(written), True
+            self.run, self.outputs = compiled(self.function, len(values))
+            self.written = True
         if self.run is None:
             return [np.broadcast_to(np.asarray(x, dtype=float), shape) for x in self.function(*values)]
         width = -(-size // WIDTH) * WIDTH

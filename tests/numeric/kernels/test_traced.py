@@ -5,6 +5,7 @@ import pytest
 
 from numeric.kernels import machine
 from numeric.kernels.traced import WIDTH, Traced, text
+from verification.arithmetic.arrays import ArrayOps, BallArray, Compiled
 
 SPECIAL = [0.0, -0.0, 1.0, -1.5, np.inf, -np.inf, np.nan, 5e-324, 1e308, 3.0]
 
@@ -50,3 +51,18 @@ def test_an_operation_without_proved_bits_is_refused():
 def test_without_a_compiler_the_function_itself_is_called(monkeypatch):
     monkeypatch.setattr(machine, "from_text", lambda text: None)
     assert Traced(lambda x: [x * x, 1.0])(np.arange(3.0))[1].tolist() == [1, 1, 1]
+
+
+def test_a_function_that_asks_for_an_array_is_called_as_it_is():
+    """Such are the exponential and the logarithm of balls, so tables and laws with these words."""
+    x = np.linspace(0.5, 2.0, 2 * WIDTH + 3)
+    for function in (lambda x: [np.asarray(x, dtype=float) * 2], lambda x: [np.broadcast_arrays(x, 1.0)[0] * 2]):
+        traced = Traced(function)
+        for _ in range(2):
+            assert np.array_equal(traced(x)[0], function(x)[0])
+        assert traced.run is None
+    for word in ("exp", "log", "sinh", "tanh", "sqrt"):
+        (found,) = Compiled(lambda ball, word=word: [getattr(ArrayOps(), word)(ball)])(BallArray(x, 0.0))
+        truth = getattr(np, word)(x)
+        assert np.all((found.lower() <= truth * (1 + 1e-15)) & (truth * (1 - 1e-15) <= found.upper()))
+        assert np.all(found.r < 1e-13)

@@ -57,6 +57,29 @@ def test_a_reader_with_one_wrong_word_proves_nothing(check, monkeypatch, word):
     assert said(check, given).startswith("not proved: exists")
 
 
+def test_only_whole_powers_of_fractions_are_taken_for_fractions(check):
+    """A root is enclosed; of what is no power at all nothing is a fraction."""
+    boundaries = check.beside("boundaries")
+    assert boundaries.fraction(check.parse("(2/3)**(-2)"), {}) == Fraction(9, 4)
+    for text in ("2**(1/2)", "4**(1/2)", "0**(-1)", "7//2"):
+        assert boundaries.fraction(check.parse(text), {}) is None
+    root = boundaries.number(check.parse("2**(1/2)"), {}, 100)
+    assert (root * root - 2).size().hi < 2**10
+
+
+@pytest.mark.parametrize(("middle", "known"), [(1, True), (-1, True), (0, False), (Fraction(1, 20), False)])
+def test_a_modulus_has_a_slope_where_it_is_not_0_and_none_elsewhere(check, middle, known):
+    """Of a number with its derivatives, as a law is differentiated."""
+    at = check.I.of(Fraction(middle), 100).wide(check.I.of(Fraction(1, 10), 100))
+    jet = check.Jet.of(at, 1, 0)
+    if known:
+        slope = check.evaluate(check.parse("abs(u)"), {"u": jet}, 100)[0].gradient(100)[0]
+        assert (slope - (1 if middle > 0 else -1)).size().hi == 0
+    else:
+        with pytest.raises(check.Unproved, match="a modulus has no slope"):
+            check.evaluate(check.parse("abs(u)"), {"u": jet}, 100)
+
+
 @pytest.mark.parametrize(
     ("name", "scene", "answer"),
     [

@@ -175,7 +175,6 @@ def single_expands(claim: Claim) -> Judgement:
         f"there: {grown()}. It need not be single: at {WINDOW} it holds {COUNT} attracting cycles of period {PERIOD}. "
         "That it is single outside of windows, and chaotic, is not part of this",
         expands(),
-        f"What attracts beside the cycles of period 3 is not single all along: for alpha = {SHAPE} there are {COUNT} "
-        f"attracting cycles of period {PERIOD} at lambda = {WINDOW}. Proved to expand is the set that holds all such "
-        "attractors.",
+        f"Not single all along: for alpha = {SHAPE} there are {COUNT} attracting cycles of period {PERIOD} at "
+        f"lambda = {WINDOW}. Proved to expand is the set that holds all such attractors.",
     )

@@ -120,10 +120,9 @@ def two_types(claim: Claim) -> Judgement:
         "manifolds, and these have none: each is the closure of an unstable manifold that folds in a disc in which "
         "areas shrink. Of the chaotic attractors seen in the egg this decides nothing",
         by("the circle, the ellipses, both cardioids", settles(), two_cycles(), splits()),
-        "There is a third type: in every neighbourhood of a homoclinic tangency of the egg, as at "
-        f"alpha = {SHAPE}, {tangency}, there is a set of lambda of positive measure for which it has strange "
-        "attractors without dominated splitting. In the ellipse every attractor is of type (i), and in both cardioids "
-        "all invariant sets off the cusp and the joins have dominated splitting.",
+        "There is a third type: in every neighbourhood of a homoclinic tangency, as at "
+        f"alpha = {SHAPE}, {tangency}, the egg has strange attractors without dominated splitting, for a set of lambda "
+        "of positive measure.",
     )
 
 

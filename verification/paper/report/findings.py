@@ -188,7 +188,8 @@ LETTER = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[T1]{fontenc}
 \IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
 \usepackage{amsmath}
-\usepackage[margin=13mm,footskip=7mm]{geometry}
+\usepackage[margin=12mm,footskip=6mm]{geometry}
+\linespread{0.95}
 \usepackage{enumitem}
 \setlist{nosep,leftmargin=*}
 \setlength{\parindent}{0pt}

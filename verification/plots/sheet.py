@@ -131,7 +131,7 @@ FORMATS: dict[str, dict[str, Any]] = {  # of files, and what keeps the time and 
     ".webp": {"pil_kwargs": {"quality": 85, "method": 6}},
 }
 VECTORS = (".svg", ".pdf")  # of 72 units an inch
-SMALL: dict[str, Any] = {"pil_kwargs": {"quality": 55, "method": 2}}  # of a WebP for a page
+SMALL: dict[str, Any] = {"pil_kwargs": {"quality": 55, "alpha_quality": 70, "method": 2}}  # of a WebP for a page
 OUTLINE: dict[str, Any] = {"color": "0.35", "lw": 1.1, "solid_joinstyle": "miter"}
 FAINT: dict[str, Any] = {"color": "0.6", "lw": 0.5, "ls": ":"}
 CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew": 1.4, "zorder": 5}

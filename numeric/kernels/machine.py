@@ -292,28 +292,23 @@ def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSp
         version, processor = _version(), _processor()
         if version is None or processor is None:
             return None
-        stamp = (*key, cache.sources(*SOURCES), version, *processor)
-        code = cache.read("kernel", *stamp)
-        found = _entered(code) if code is not None else None
-        if found is None:
-            if _llvm() is None:
-                return None
+
+        def written() -> str | None:
             from numeric.kernels.text import kernel_text
 
             text = kernel_text(family, shape, spec, width)
-            if len(text) > LONGEST:
-                warnings.warn(
-                    f"the kernel of this table has {len(text) >> 20} MB of text, more than {LONGEST >> 20} that are "
-                    "compiled in some twenty seconds; it runs on NumPy arrays",
-                    stacklevel=2,
-                )
-                _loaded[key] = None
-                return None
-            code, found = _made(text)
-            cache.write("kernel", *stamp, code)
-        assert found is not None
-        _loaded[key] = _function(*found)
-    return _loaded[key]  # type: ignore[no-any-return]
+            if len(text) <= LONGEST:
+                return text
+            warnings.warn(
+                f"the kernel of this table has {len(text) >> 20} MB of text, more than {LONGEST >> 20} that are "
+                "compiled in some twenty seconds; it runs on NumPy arrays",
+                stacklevel=4,
+            )
+            _loaded[key] = None
+            return None
+
+        _load(key, "kernel", (*key, cache.sources(*SOURCES), version, *processor), written)
+    return _loaded.get(key)
 
 
 def from_text(text: str) -> Run | None:
@@ -323,16 +318,22 @@ def from_text(text: str) -> Run | None:
         return None
     stamp = cache.key_of(text), version, *processor
     if stamp not in _loaded:
-        code = cache.read("text", *stamp)
-        found = _entered(code) if code is not None else None
-        if found is None:
-            if _llvm() is None:
-                return None
-            code, found = _made(text)
-            cache.write("text", *stamp, code)
-        assert found is not None
-        _loaded[stamp] = _function(*found)
-    return _loaded[stamp]  # type: ignore[no-any-return]
+        _load(stamp, "text", stamp, lambda: text)
+    return _loaded.get(stamp)
+
+
+def _load(key: tuple[str, ...], kind: str, stamp: tuple[str, ...], written: Callable[[], str | None]) -> None:
+    """Keeps a function under a key, from disk, or newly made of the text that is written; or does nothing."""
+    code = cache.read(kind, *stamp)
+    found = _entered(code) if code is not None else None
+    if found is None:
+        text = written() if _llvm() is not None else None
+        if text is None:
+            return
+        code, found = _made(text)
+        cache.write(kind, *stamp, code)
+    assert found is not None
+    _loaded[key] = _function(*found)
 
 
 def _made(text: str) -> tuple[bytes, tuple[int, Untyped] | None]:

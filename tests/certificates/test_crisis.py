@@ -45,6 +45,8 @@ def branch(crisis, tables):
         ({"sink": [0.0, float("nan")]}, "out of range"),
         ({"sink": [0.0, "0"]}, "out of range"),
         ({"start": 100.0}, "out of range"),
+        ({"start": 10.0}, "out of range"),
+        ({"sink": [-10.0, 0.0]}, "out of range"),
         ({"columns": True}, "out of range"),
         ({"rows": "512"}, "out of range"),
         ({"parts": 0}, "out of range"),

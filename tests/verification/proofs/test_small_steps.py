@@ -1,5 +1,6 @@
 """Small steps of proofs, each by itself: cells, cones, strips and bounds that a fresh sample of mutants left unseen."""
 
+from dataclasses import replace
 from fractions import Fraction
 from math import cos, sin
 from types import SimpleNamespace
@@ -8,16 +9,29 @@ import numpy as np
 import pytest
 from flint import arb
 
+from symbolic.tables import circle, egg
+from symbolic.tables.law import Law
 from verification.arithmetic.arrays import BallArray
+from verification.cycles.problem import Problem
+from verification.cycles.recurrence import Closure
+from verification.maps import first_hit
 from verification.proofs.corner import half_return
 from verification.proofs.corner.border_collision import Expansion, _strip
 from verification.proofs.corner.half_return import Step
 from verification.proofs.global_dynamics.boxes import Chart
 from verification.proofs.global_dynamics.graph import Grid
 from verification.proofs.manifolds import enclosed
+from verification.proofs.manifolds.known import TRIANGLE
+from verification.proofs.manifolds.plane_map import pinball
+from verification.proofs.periodic import returning
 from verification.proofs.periodic.bifurcation import _nonzero
+from verification.proofs.periodic.interval_newton import Cover
+from verification.proofs.slap_map import transfer
 from verification.proofs.starts import division
+from verification.proofs.starts.basin_edge import BasinEdge
+from verification.proofs.starts.core import Core
 from verification.proofs.starts.division import Ring
+from verification.proofs.starts.parallelograms import Parallelograms
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
@@ -90,3 +104,93 @@ def test_errors_shrink_by_a_power_of_the_factor_with_each_round_outwards(unstabl
     (found,) = enclosed.bounds(made, [(0, arb(1), arb(8), arb(32))], [arb(1)])
     assert found.contains(1 + 8 / 4 + 32 / 16)
     assert found.upper() < 5 + 1e-6
+
+
+def test_a_piece_of_the_boundary_on_one_side_of_a_chord_is_settled_at_once():
+    """One look at the piece is enough; one on the line is looked at again, at its middle."""
+    looks = []
+
+    def wall(height):
+        return lambda at: (looks.append(at), (at, arb(height), arb(1), arb(0)))[1]
+
+    chord = [arb(0), arb(0)], [arb(3), arb(0)]
+    assert first_hit._passes(wall(1), arb(1, 0.5), [], *chord)
+    assert len(looks) == 1
+    assert not first_hit._passes(wall(0), arb(1, 0.5), [], *chord)
+    assert len(looks) == 3
+
+
+def test_a_last_gap_that_may_be_that_of_a_cycle_is_asked_about():
+    """Of 5/8, a little above the least gap of 1/2, and the second gap is the largest."""
+
+    def asked(*_):
+        raise AssertionError
+
+    cover = Cover(Problem(circle, (0, 0, 0), lam=arb(1) / 2), asked, asked, 0.5, [])
+    rest = round((2 * np.pi - 3) * 2**20) / 2**20  # whose sums are exact
+    with pytest.raises(AssertionError):
+        cover.settled([(0.0, 1.0), (3.0, 0.01), (rest - 0.625, 0.01)], 1)
+    assert cover.settled([(0.0, 1.0), (3.0, 0.01), (rest - 0.375, 0.01)], 1)
+
+
+@pytest.mark.parametrize("turned", [1, -1])
+def test_a_core_holds_a_set_only_where_all_of_it_is_near_its_curve(turned):
+    """Thin sets about a cubic, at its middle and beside it: how far their ends are off is worked out in rationals."""
+    slope, cubic = Fraction(-1, 3) * turned, Fraction(5, 2) * turned
+    curve = lambda x: slope * x + cubic * x**3  # noqa: E731
+    for at in (Fraction(0), Fraction(1, 8), Fraction(-1, 4)):
+        for reach in (Fraction(1, 16), Fraction(1, 4)):
+            tangent = slope + 3 * cubic * at**2
+            off = max(abs(curve(at + s * reach) - curve(at) - tangent * s * reach) for s in (1, -1))
+            sides = np.array([[[float(reach)], [0.0]], [[float(tangent * reach)], [0.0]]])
+            sets = Parallelograms(
+                np.zeros(1, int), np.array([[float(at)], [float(curve(at))]]), sides, np.zeros((2, 1))
+            )
+            core = lambda width: Core(0, float(slope), float(cubic), width, 0.0, 2.0, 4)  # noqa: E731
+            assert not core(float(off) * 0.99).holds(sets)[0]
+            assert core(float(off) * 4 + 1e-9).holds(sets)[0]
+
+
+def test_pieces_that_are_not_all_of_one_round_are_not_judged():
+    """The third leads into a round of the other two, which would contract."""
+    shrinks = returning.Image((), (0.0, 0.0), ((0.5, 0.5), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
+    leads = {2: {5: (0.0, 0.0)}, 5: {2: (0.0, 0.0)}, 8: {2: (0.0, 0.0)}}
+    images = dict.fromkeys(leads, shrinks)
+    assert returning._judged([2, 5], leads, images, 0.1) is not None
+    assert returning._judged([2, 5, 8], leads, images, 0.1) is None
+
+
+def test_a_round_of_the_basin_is_one_bounce_and_a_part_of_a_turn():
+    """Of two equal parts at least; what each entry is of another saddle is refused."""
+    saddle = replace(TRIANGLE, closure=Closure(1, (1, 2)))
+    made = BasinEdge(SimpleNamespace(turns=2), (0.0, 0.0), saddle, 0.01)
+    assert made.turn == np.pi
+    for turns, closure, start in (
+        (1, Closure(1, (1, 1)), saddle.start), (2, Closure(-1, (1, 2)), saddle.start),
+        (3, Closure(1, (1, 2)), saddle.start), (2, saddle.closure, saddle.start * 2),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match="not one bounce"):
+            BasinEdge(SimpleNamespace(turns=turns), (0.0, 0.0), replace(saddle, closure=closure, start=start), 0.01)
+
+
+def test_launching_points_are_those_of_an_even_number_of_cells_up_to_4096(monkeypatch):
+    class Asked(Exception):
+        pass
+
+    def branches(bits):
+        raise Asked
+
+    monkeypatch.setattr(transfer, "Branches", branches)
+    for cells in (2, 4096):
+        with pytest.raises(Asked):
+            transfer.launching_points(cells)
+    for cells in (0, -2, 3, 4098):
+        with pytest.raises(ValueError, match="even number"):
+            transfer.launching_points(cells)
+
+
+def test_a_law_of_the_place_leaves_the_map_no_turn_of_the_table():
+    """Under the paper's law the egg's turns by a third change nothing."""
+    table = egg(3).at(alpha=Fraction(2, 25))
+    assert pinball(table).turn == 3
+    assert pinball(table, Law("-lam*eta + cos(theta)/20")).turn == 1

@@ -148,6 +148,8 @@ def test_a_damaged_document_is_refused(found, change):
         {"saddle": replace(TRIANGLE, closure=Closure(-1, TRIANGLE.closure.shift))},
         {"saddle": replace(TRIANGLE, closure=Closure(1, (1, 5)))},
         {"sink": (float("nan"), 0.0)},
+        {"sink": (10.0, 0.0)},
+        {"saddle": replace(TRIANGLE, start=(-10.0,))},
     ],
 )
 def test_each_hypothesis_of_the_statement_is_asked_when_it_is_made(changed):

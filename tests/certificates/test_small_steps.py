@@ -2,6 +2,7 @@
 
 import json
 from fractions import Fraction
+from itertools import pairwise
 from math import atan2, cos, pi, sin
 from pathlib import Path
 from types import SimpleNamespace
@@ -105,7 +106,7 @@ def test_each_chord_of_both_ways_to_a_contact_is_asked_whether_it_is_free(check,
     orbit, meets = [number(pair) for pair in given["orbit"]], given["meets"]
     ways = [orbit[: meets + 1], orbit[: meets - 1 : -1]]
     ways += [[number(pair) for pair in given[key]["bounces"]] for key in ("unstable", "stable")]
-    wanted = [pair for way in ways for pair in zip(way, way[1:], strict=False)]
+    wanted = [pair for way in ways for pair in pairwise(way)]
     for start, end in wanted:
         assert any(abs(start - a) < 1e-3 and abs(end - b) < 1e-3 for a, b in asked), (start, end)
     assert all(a != b for a, b in asked)

@@ -110,3 +110,29 @@ def test_each_chord_of_both_ways_to_a_contact_is_asked_whether_it_is_free(check,
     for start, end in wanted:
         assert any(abs(start - a) < 1e-3 and abs(end - b) < 1e-3 for a, b in asked), (start, end)
     assert all(a != b for a, b in asked)
+
+
+def test_the_tip_of_a_piece_is_its_point_at_that_end(check):
+    """By a radius and by a pair of formulas."""
+    boundaries, p = check.beside("boundaries"), 100
+    for formulas, wanted in (
+        (["1 + theta"], (3 * cos(2), 3 * sin(2))),
+        (["theta**2", "1 - theta"], (4, -1)),
+    ):
+        part = [check.parse(text) for text in (*formulas, "1/2", "2")]
+        found = boundaries.tip(part, part[-1], {}, p)
+        assert [check.I.of(x, p).real() for x in found] == pytest.approx(wanted, abs=1e-12)
+
+
+def test_a_modulus_of_a_constant_that_may_be_0_has_no_slope_by_the_place(check):
+    near = check.I.of(0, 64).wide(check.I.of(Fraction(1, 8), 64))
+    value, slope = check.beside("formulas").called("abs", near, 0, 64)
+    assert (value.lo, value.hi, slope) == (0, near.hi, 0)
+
+
+@pytest.mark.parametrize("empty", [{}, None])
+def test_of_a_product_with_what_is_not_known_nothing_is_known(check, empty):
+    times = check.beside("boundaries").times
+    assert not times({"": 2}, empty)
+    assert not times(empty, {"": 2})
+    assert times({"x": 3, "": 1}, {"": 2}) == {"x": 6, "": 2}

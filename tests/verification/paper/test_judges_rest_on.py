@@ -4,6 +4,7 @@ An inequality that is too weak is proved as well as the right one, and the verdi
 here, with their ranges, as they were read beside the paper.
 """
 
+from dataclasses import replace
 from functools import cache
 from itertools import starmap
 
@@ -16,8 +17,10 @@ from symbolic.tables.formula import parse
 from symbolic.tables.table import a, alpha, lam
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.judges import greater
-from verification.paper.judges import ellipse, map
+from verification.paper.judges import ellipse, hyperbolicity, map
 from verification.paper.report.report import catalogue, judge, verify
+from verification.proofs.corner.border_collision import Kind
+from verification.proofs.corner.evidence import border
 
 MODULES = (ellipse, map)
 CLAIMS = {c.id: c for c in catalogue() if c.home in {m.__name__ for m in MODULES} and c.kind != "numerical"}
@@ -141,3 +144,19 @@ def test_no_number_is_greater_than_itself():
 def test_the_areas_that_grow_are_said_to_grow_at_the_contraction_that_they_were_computed_with():
     undisturbed()
     assert judge(CLAIMS["map.dissipative"]).witness == {"lam": "9/10"}
+
+
+@pytest.mark.parametrize("wrong", [{"kind": Kind.PERSISTENCE}, {"kind": Kind.UNKNOWN}, {"robust": None}])
+def test_what_is_thin_at_birth_is_born_in_a_fold_with_robust_chaos(monkeypatch, wrong):
+    """All else is taken as proved; each of both is asked for."""
+    limit = border()
+    proved = Finding(Outcome.PROVED, "proved")
+    monkeypatch.setattr(hyperbolicity, "chaos", lambda: proved)
+    monkeypatch.setattr(hyperbolicity, "sizes", list)
+    monkeypatch.setattr(hyperbolicity, "strips_of_the_map", lambda most: ((0.1, 0.01),))
+    monkeypatch.setattr(hyperbolicity, "saddles", lambda: True)
+    claim = next(c for c in catalogue() if c.id == "cuspless.thin_at_birth")
+    monkeypatch.setattr(hyperbolicity, "border", lambda: limit)
+    assert hyperbolicity.thin_at_birth(claim).verdict is Verdict.CONFIRMED
+    monkeypatch.setattr(hyperbolicity, "border", lambda: replace(limit, **wrong))
+    assert hyperbolicity.thin_at_birth(claim).verdict is Verdict.OPEN

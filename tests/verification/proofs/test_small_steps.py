@@ -8,24 +8,29 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from flint import arb
+from sympy import Rational
 
+from symbolic import tables
 from symbolic.tables import circle, egg
-from symbolic.tables.law import Law
+from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.arrays import BallArray
+from verification.arithmetic.balls import FLOAT64
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import Closure
 from verification.maps import first_hit
+from verification.maps.enclosed import _text
 from verification.proofs.corner import half_return
 from verification.proofs.corner.border_collision import Expansion, _strip
 from verification.proofs.corner.half_return import Step
 from verification.proofs.global_dynamics.boxes import Chart
 from verification.proofs.global_dynamics.graph import Grid
 from verification.proofs.manifolds import enclosed
+from verification.proofs.manifolds.horseshoe import _expands
 from verification.proofs.manifolds.known import TRIANGLE
-from verification.proofs.manifolds.plane_map import pinball
+from verification.proofs.manifolds.plane_map import Henon, pinball
 from verification.proofs.periodic import returning
 from verification.proofs.periodic.bifurcation import _nonzero
-from verification.proofs.periodic.interval_newton import Cover
+from verification.proofs.periodic.interval_newton import Cover, no_others
 from verification.proofs.slap_map import transfer
 from verification.proofs.starts import division
 from verification.proofs.starts.basin_edge import BasinEdge
@@ -131,6 +136,7 @@ def test_a_last_gap_that_may_be_that_of_a_cycle_is_asked_about():
     with pytest.raises(AssertionError):
         cover.settled([(0.0, 1.0), (3.0, 0.01), (rest - 0.625, 0.01)], 1)
     assert cover.settled([(0.0, 1.0), (3.0, 0.01), (rest - 0.375, 0.01)], 1)
+    assert cover.settled([(0.0, 1.0), (6.25, 0.375)], 2)  # nor one of nearly a whole turn, or more
 
 
 @pytest.mark.parametrize("turned", [1, -1])
@@ -191,3 +197,72 @@ def test_a_law_of_the_place_leaves_the_map_no_turn_of_the_table():
     table = egg(3).at(alpha=Fraction(2, 25))
     assert pinball(table).turn == 3
     assert pinball(table, Law("-lam*eta + cos(theta)/20")).turn == 1
+
+
+def test_a_cell_leads_to_all_to_which_a_stretch_may_reach_by_a_rounding():
+    """At its upper end as at its lower one."""
+    width = 0.1
+    for cells in (1, 3, 7):
+        edge, near = cells * width, returning.SLACK * width / 4
+        below = returning.Image(((edge - 0.05, edge - near, 1),), (0.0, 0.1), ((0.0, 0.0),) * 4)
+        above = returning.Image(((edge + near, edge + 0.05, 1),), (0.0, 0.1), ((0.0, 0.0),) * 4)
+        for image in (below, above):
+            images = dict.fromkeys(range(10), image)
+            assert set(returning._leads(images, (0.5, 0.5), width)[0]) == {cells - 1, cells}
+
+
+@pytest.mark.parametrize(("first", "last"), [((0, -1), (0, 1)), ((0, 1), (0, -1))])
+def test_a_chord_along_the_outside_is_refused_before_the_boundary_is_looked_at(first, last):
+    """Of two walls, along `y = 0` and `y = 1`, one with its inside on the wrong side."""
+    looks = []
+
+    def wall(height, way):
+        return lambda at: (looks.append(at), (at * way, arb(height), arb(way), arb(0)))[1]
+
+    ends = [(arb(-1), arb(1))] * 2
+    boundary = first_hit.Boundary([wall(0, first[1]), wall(1, last[1] * -1)], ends)
+    assert not first_hit.free(boundary, (0, arb(0)), (1, arb(0)))
+    assert len(looks) == 2
+
+
+def test_where_a_question_on_all_cycles_is_not_asked_no_box_is_counted():
+    """Of a table with a corner, and one that is not convex."""
+    for table in (tables.cuspless, tables.cardioid):
+        found = no_others(SimpleNamespace(table=table, law=PAPERS_LAW, count=lambda n: 5), Rational(1, 2), 2)
+        assert (found.complete, found.boxes, found.known, found.period) == (None, 0, 5, 2)
+
+
+def test_the_plane_of_the_henon_map_is_that_in_which_it_is_written():
+    """`(x, y)` to `(1 - a*x**2 + y, b*x)`, and back."""
+    map = Henon(Rational(3, 10)).over(FLOAT64)
+    before, here, a = 0.25, -0.5, 1.4
+    x, y = map.plane(before, here)
+    following = map.following(before, here, a)
+    assert (x, y) == (here, pytest.approx(0.3 * before))
+    assert map.plane(here, following) == (pytest.approx(1 - a * x * x + y), pytest.approx(0.3 * x))
+    assert map.previous(here, following, a) == pytest.approx(before)
+
+
+@pytest.mark.parametrize(
+    ("matrix", "grows"),
+    [
+        ((2, 0, 0, 0), True),
+        ((1, 0, 0, 0), False),
+        ((2, 0, 0, 1), False),
+        ((2, 1, 0, 0), True),
+        ((2, 0, 1, 0), True),
+        ((2, 0, 3, 0), False),
+    ],
+)
+def test_a_cone_of_an_h_set_grows_where_a_matrix_is_positive_definite(matrix, grows):
+    """By its eigenvalues, of `D'QD - Q` for `Q = diag(1, -1)`."""
+    a, b, c, d = matrix
+    D, Q = np.array([[a, b], [c, d]]), np.diag([1.0, -1.0])
+    least = np.linalg.eigvalsh(D.T @ Q @ D - Q)[0]
+    assert bool(least > 1e-9) is grows
+    assert _expands(tuple(map(arb, matrix))) is grows
+
+
+@pytest.mark.parametrize(("number", "told"), [("5e-11", "0"), ("9.9e-11", "0"), ("-5e-11", "0"), ("2e-10", "2e-10")])
+def test_what_is_below_all_digits_asked_for_is_told_as_0(number, told):
+    assert float(_text(arb(number).mid(), 10)) == pytest.approx(float(told), abs=0, rel=1e-3)

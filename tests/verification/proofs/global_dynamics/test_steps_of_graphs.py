@@ -1,0 +1,106 @@
+"""Small steps of the proofs on all orbits, each by itself: walks, flights, discs, and landings next to a border."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix
+
+from verification.arithmetic.arrays import BallArray
+from verification.proofs.global_dynamics.boxes import Boxes, Chart
+from verification.proofs.global_dynamics.common_boundary import Disc, attracts
+from verification.proofs.global_dynamics.flights import flown
+from verification.proofs.global_dynamics.graph import Cells, Grid, MorseGraph, Transitions
+
+ROUND = Disc((0.1, 0.2), ((1.0, 0.0), (0.0, 1.0)), 0.01)
+
+
+def random_graph(seed: int, cut: bool) -> Transitions:
+    """Twelve blocks and the outside, which leads everywhere or is led to by none."""
+    rng, count = np.random.default_rng(seed), 12
+    edges = rng.random((count + 1, count + 1)) < 0.09
+    edges[-1] = False
+    leaf = np.ones(count, dtype=bool)
+    leaf[:2] = not cut
+    cells = Cells(np.zeros(count, int), np.arange(count), np.zeros(count, int), np.ones(count, int))
+    grid = Grid((Chart("one", (0.0, 1.0), (0.0, 1.0)),), count, 1)
+    return Transitions(grid, cells, leaf, csr_matrix(edges))
+
+
+def closure(graph: Transitions) -> np.ndarray:
+    """Whether a walk of one step or more leads from one vertex to another: by multiplying matrices."""
+    once = graph.edges.toarray() > 0
+    walks = once
+    for _ in range(graph.count + 1):
+        walks = walks | (walks.astype(int) @ once.astype(int) > 0)
+    return walks
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_basin_is_that_from_which_no_walk_leads_to_another_closed_walk(seed):
+    graph = random_graph(seed, cut=False)
+    walks = closure(graph)
+    block = np.zeros(graph.count + 1, dtype=bool)
+    block[np.random.default_rng(seed).integers(0, graph.count, 4)] = True
+    other = np.diag(walks) & ~block
+    wanted = ~(other | np.any(walks[:, other], axis=1))
+    assert np.array_equal(graph.recurrent, np.diag(walks))
+    assert np.array_equal(MorseGraph(graph, (), np.zeros((0, 0), bool)).basin(block), wanted)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_edges_are_complete_where_no_closed_walk_through_a_member_meets_a_block_that_was_cut(seed):
+    graph = random_graph(seed, cut=True)
+    walks = closure(graph)
+    for at in range(2, graph.count):
+        members = np.zeros(graph.count + 1, dtype=bool)
+        members[at] = True
+        met = any(walks[at, k] and walks[k, at] for k in (0, 1))
+        assert graph.complete(members) is not met
+    outside = np.zeros(graph.count + 1, dtype=bool)
+    outside[-1] = True
+    assert graph.complete(outside)  # no leaf
+
+
+def test_a_flight_is_as_long_as_the_distance_of_its_ends_and_turns_as_it_lands():
+    """Between points, without width: 3, 4, 5; and the speed and the incidence there."""
+    one = lambda x: BallArray(np.array([float(x)]))  # noqa: E731
+    row = lambda *xs: [one(x) for x in xs]  # noqa: E731
+    start, there = (1, 7, 0.6, 0.8), (4, 11, -0.8, 0.6, 0.3, -0.1)
+    arc, at, wide, high, here, bend, phi, turn = 2, 2, 0, 0, 0.5, 0.7, 0.25, 0.5
+    unknown = BallArray(np.array([0.0]), np.array([np.inf]))
+    length, fast, eta = flown(
+        *row(*there), *row(*start), *row(*start), *row(*there[:4]),
+        *row(arc, at, wide, high, here, bend, phi, turn), unknown,
+    )  # fmt: skip
+    for found, truth in ((length, 5), (fast, 1), (eta, 0.75)):
+        assert abs(float(found.m[0]) - truth) <= float(found.r[0]) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("factor", "landed", "told", "lost", "held"),
+    [
+        (0.5, 0.0, True, False, True),
+        (0.5, 0.0, False, False, False),  # of a part of the disc no derivative is known
+        (0.5, 0.0, True, True, False),  # or its middle is lost
+        (0.999, 0.0, True, False, True),
+        (1.0, 0.0, True, False, False),
+        (0.5, 0.004, True, False, True),
+        (0.5, 0.006, True, False, False),  # the image is half as large, and lies too far off
+    ],
+)
+def test_a_disc_attracts_where_it_is_taken_into_itself_by_a_contraction(monkeypatch, factor, landed, told, lost, held):
+    def derivatives(parts):
+        size = parts.chart.size
+        ball = lambda x: BallArray(np.full(size, float(x)), np.zeros(size))  # noqa: E731
+        on = np.arange(size) if told else np.arange(size)[1:]
+        return [(SimpleNamespace(on=on), tuple(map(ball, (factor, 0, 0, 0, -factor, 0))))]
+
+    def images(points):
+        at = [(x[0] + shift - 1e-12, x[1] + shift + 1e-12) for x, shift in ((points.x, 0.5 + landed), (points.y, 0.0))]
+        return SimpleNamespace(lost=np.arange(int(lost)), boxes=Boxes(points.chart, *at))
+
+    made = SimpleNamespace(derivatives=derivatives, images=images)
+    assert attracts(made, ROUND, 0.5) is held
+    assert attracts(made, ROUND, 0.5 + 2 * np.pi) is held
+    assert not attracts(made, ROUND, 0.4)

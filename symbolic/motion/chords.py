@@ -69,26 +69,50 @@ def chord_angle(table: Table, here: int = 0, there: int = 0, order: int = 1) -> 
     >>> list(chord_angle(circle, order=2).values)
     ['angle', 'angle_0', 'angle_1', 'angle_00', 'angle_01', 'angle_11']
     """
+    shapes = tuple(p.symbol for p in table.shapes)
+    ends = ((table.components[here].point, theta0), (table.components[there].point, theta1))
+    placed = [e.subs(theta, by) for point, by in ends for e in point]
+    x0, y0, x1, y1, dx, dy = _coordinates(shapes)
+    meaning = {**dict(zip((x0, y0, x1, y1), placed, strict=True)), dx: x1 - x0, dy: y1 - y0}
+    return _Stage(shapes, meaning).finished((theta0, theta1, *shapes), _derived(shapes, order))
+
+
+@cache
+def _coordinates(shapes: tuple[Symbol, ...]) -> tuple[Expr, ...]:
+    """Those of the two ends, then of the chord, as functions that could be any."""
+    ends = [Function(axis + end, real=True)(by, *shapes) for end, by in (("0", theta0), ("1", theta1)) for axis in "xy"]
+    return (*ends, *(Function("d" + axis, real=True)(theta0, theta1, *shapes) for axis in "xy"))
+
+
+@cache
+def _derived(shapes: tuple[Symbol, ...], order: int) -> dict[str, Expr]:
+    """The values of `chord_angle` for any two components."""
+    x0, y0, _, _, dx, dy = _coordinates(shapes)
+    vx, vy = diff(x0, theta0), diff(y0, theta0)
+    turned = {p: _bend(vx, vy, p) - _bend(dx, dy, p) for p in (theta0, theta1, *shapes)}
+    found: dict[str, Expr] = {}
+    for name, by in partials(shapes, order).items():
+        if by:
+            found[name] = diff(turned[by[0]], *by[1:]) if by[1:] else turned[by[0]]
+        else:
+            found[name] = atan((dx * vx + dy * vy) / (dy * vx - dx * vy))
+    return found
+
+
+def partials(shapes: tuple[Symbol, ...], order: int) -> dict[str, tuple[Symbol, ...]]:
+    """The names of the values of `chord_angle`, in order, and what each is differentiated by.
+
+    >>> list(partials((Symbol("alpha"),), 1))
+    ['angle', 'angle_0', 'angle_1', 'angle_alpha']
+    """
     if order not in (0, 1, 2):
         raise ValueError(f"chord_angle: order = {order} is not available; it must be 0, 1 or 2")
-    shapes = tuple(p.symbol for p in table.shapes)
-    stage = _Stage(table, shapes)
-    x0, y0 = stage.point("0", here, theta0)
-    x1, y1 = stage.point("1", there, theta1)
-    dx, dy = stage.chord((x0, y0), (x1, y1))
-    vx, vy = diff(x0, theta0), diff(y0, theta0)
     parameters = (theta0, theta1, *shapes)
-
-    def first(p: Symbol) -> Expr:
-        return _bend(vx, vy, p) - _bend(dx, dy, p)
-
-    found = {"angle": atan((dx * vx + dy * vy) / (dy * vx - dx * vy))}
-    if order >= 1:
-        found |= {_named(p): first(p) for p in parameters}
-    if order >= 2:
+    by = [(), *((p,) for p in parameters)][: None if order else 1]
+    if order == 2:
         pairs = combinations_with_replacement(parameters, 2)
-        found |= {_named(p, q): diff(first(p), q) for p, q in pairs if not (p in shapes and q in shapes and p != q)}
-    return stage.finished(parameters, found)
+        by += [(p, q) for p, q in pairs if p == q or p not in shapes or q not in shapes]
+    return {_named(*each): each for each in by}
 
 
 def collision_rule(
@@ -259,27 +283,8 @@ def collision_kernel(table: Table, components: tuple[int, int, int] = (0, 0, 0),
 class _Stage:
     """The coordinates of a chord as functions, until their derivatives become named values."""
 
-    def __init__(self, table: Table, shapes: tuple[Symbol, ...]) -> None:
-        self.table, self.shapes = table, shapes
-        self.meaning: dict[Expr, Expr] = {}  # an undefined function, by what it stands for
-
-    def point(self, end: str, index: int, parameter: Symbol) -> list[Expr]:
-        """The coordinates of one end."""
-        made = []
-        for axis, expression in zip("xy", self.table.components[index].point, strict=True):
-            f = Function(axis + end, real=True)(parameter, *self.shapes)
-            self.meaning[f] = expression.subs(theta, parameter)
-            made.append(f)
-        return made
-
-    def chord(self, start: Sequence[Expr], end: Sequence[Expr]) -> list[Expr]:
-        """The coordinates of the chord from `start` to `end`."""
-        made = []
-        for axis, p, q in zip("xy", start, end, strict=True):
-            f = Function("d" + axis, real=True)(theta0, theta1, *self.shapes)
-            self.meaning[f] = q - p
-            made.append(f)
-        return made
+    def __init__(self, shapes: tuple[Symbol, ...], meaning: dict[Expr, Expr]) -> None:
+        self.shapes, self.meaning = shapes, meaning
 
     def finished(self, arguments: tuple[Symbol, ...], found: dict[str, Expr]) -> Staged:
         """The values with each derivative of a coordinate replaced by a name, and the names' definitions."""
@@ -318,7 +323,7 @@ def _bend(x: Expr, y: Expr, p: Symbol) -> Expr:
 
 def _named(*parameters: Symbol) -> str:
     tail = "".join({theta0: "0", theta1: "1"}.get(p, f"_{p}") for p in parameters)
-    return f"angle_{tail.removeprefix('_')}"
+    return f"angle_{tail.removeprefix('_')}" if parameters else "angle"
 
 
 def _ending(name: str, mark: str) -> str:

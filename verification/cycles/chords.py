@@ -11,7 +11,7 @@ from flint import arb, ctx
 from sympy import pi
 
 from symbolic.expressions.text import kernel, load
-from symbolic.motion.chords import chord_angle, chord_kernel, ends_kernel, law_kernel
+from symbolic.motion.chords import chord_kernel, ends_kernel, law_kernel, partials
 from symbolic.tables.definition import table_boundary
 from symbolic.tables.geometry import speed
 from symbolic.tables.law import PAPERS_LAW, Law
@@ -51,7 +51,7 @@ class ChordAngles:
 
 @cache
 def _places(table: Table, order: int) -> dict[str, int]:
-    return {name: i for i, name in enumerate(chord_angle(table, 0, 0, order).values)}
+    return {name: i for i, name in enumerate(partials(tuple(p.symbol for p in table.shapes), order))}
 
 
 def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:

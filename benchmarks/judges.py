@@ -4,8 +4,7 @@
     python benchmarks/judges.py --jobs 4 # reads it: how long so many processes need, by the record
 
 The claims are judged one after the other in one process, and every function of the package that keeps its results
-notes which claim computed one and which took it from there. Claims that saved each other more than `SHARED` seconds
-stand together.
+notes which claim computed one and which took it from there: what the first spared the other.
 """
 
 import functools
@@ -20,9 +19,7 @@ from typing import Any
 
 RECORD = Path(__file__).resolve().parents[1] / "verification" / "paper" / "claims" / "focusing" / "seconds.json"
 OURS = ("symbolic", "numeric", "verification")
-SHARED = 0.5  # seconds that are worth staying together for
-PROCESSES = 16  # among which the claims should divide evenly
-SHARE = 0.3  # of a group's seconds: claims that share more stay together however large it is
+WORTH = 0.04  # seconds that are worth a line
 DIGITS = 2  # of the seconds
 
 judged = ""  # the claim that is being judged
@@ -68,20 +65,13 @@ def note_all() -> None:
     functools.cache, functools.lru_cache = noted, sized  # type: ignore[assignment]
 
 
-def joined(seconds: dict[str, float]) -> list[list[str]]:
-    """The claims in groups that share more than `SHARED` seconds, the most shared first; no group of one.
-
-    A group does not grow beyond the share of one of `PROCESSES`: what the rest of it would save is a process's own.
-    """
-    ids, most = list(seconds), sum(seconds.values()) / PROCESSES
-    group = {name: {name} for name in ids}
-    for (first, other), saved in sorted(taken.items(), key=lambda pair: -pair[1]):
-        if saved > SHARED and first in group and group[first] is not group[other]:
-            both = group[first] | group[other]
-            if sum(seconds[name] for name in both) < max(most, saved / SHARE):
-                group |= dict.fromkeys(both, both)
-    whole = {id(names): names for names in group.values() if len(names) > 1}
-    return [sorted(names, key=ids.index) for names in whole.values()]
+def spared() -> dict[str, dict[str, float]]:
+    """By claim, the seconds that it saved each other one, where that was more than `WORTH`."""
+    found: dict[str, dict[str, float]] = {}
+    for (first, other), seconds in sorted(taken.items()):
+        if round(seconds, DIGITS) > WORTH:
+            found.setdefault(first, {})[other] = round(seconds, DIGITS)
+    return found
 
 
 def measure() -> None:
@@ -99,15 +89,15 @@ def measure() -> None:
         seconds[judged] = round(time.process_time() - start, DIGITS)
         sys.stdout.write(f"{seconds[judged]:8.2f}  {judged}\n")
     lines = ",\n".join(f'    "{name}": {value}' for name, value in seconds.items())
-    groups = ",\n".join(f"    {json.dumps(names)}" for names in joined(seconds))
-    text = f'{{\n  "seconds": {{\n{lines}\n  }},\n  "together": [\n{groups}\n  ]\n}}\n'
+    spares = ",\n".join(f"    {json.dumps(name)}: {json.dumps(others)}" for name, others in spared().items())
+    text = f'{{\n  "seconds": {{\n{lines}\n  }},\n  "spares": {{\n{spares}\n  }}\n}}\n'
     RECORD.write_text(text, encoding="utf-8")
 
 
 def shown(jobs: int) -> None:
     """How long `jobs` processes need, dearest group first, beside an even share of the work."""
     report = import_module("verification.paper.report.report")
-    groups = report.shared_out(report.catalogue())
+    groups = report.shared_out(report.catalogue(), jobs)
     ends = [0.0] * jobs
     for group in groups:
         heappush(ends, heappop(ends) + report.seconds(group))

@@ -19,7 +19,8 @@ from numeric.kernels.machine import KernelSpec, starting
 from numeric.sweeps.fields import basins
 from numeric.sweeps.run import on_threads
 from numeric.sweeps.space import egg, parameter_space
-from numeric.sweeps.sweep import cores, map_of, spread, text_of
+from numeric.sweeps.sweep import map_of, spread, text_of
+from numeric.sweeps.workers import cores
 from symbolic import Scene
 from verification.measure.work.scaling import waiting_rows
 

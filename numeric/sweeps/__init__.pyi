@@ -6,8 +6,8 @@ from .orbits import written
 from .run import Results, UnfinishedError, connected, on_cluster, on_processes, on_threads
 from .space import egg, parameter_space, periods
 from .store import Memory
-from .sweep import Array, Axis, Field, Measured, Part, Sweep, Task, cores, floor_of, map_of, measured, text_of, versions
-from .workers import Lost, in_processes
+from .sweep import Array, Axis, Field, Measured, Part, Sweep, Task, floor_of, map_of, measured, text_of, versions
+from .workers import Lost, cores, in_processes
 
 __all__ = [
     "Array",

@@ -15,7 +15,8 @@ import numpy as np
 
 from numeric.pinball.map import PinballMap
 from numeric.sweeps.run import AHEAD
-from numeric.sweeps.sweep import Part, Sweep, cores
+from numeric.sweeps.sweep import Part, Sweep
+from numeric.sweeps.workers import cores
 
 LEAST, CLOSE = 6, 0.03  # parts that are looked at, and the relative standard error of their mean at which it is enough
 ENOUGH = 1_500_000  # bounces of the first thinned part, which says how long they take: some hundredths of a second

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from numeric.sweeps.store import Memory, Stored, opened
-from numeric.sweeps.sweep import Array, Sweep, cores
-from numeric.sweeps.workers import Lost, in_processes
+from numeric.sweeps.sweep import Array, Sweep
+from numeric.sweeps.workers import Lost, cores, in_processes
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,7 +12,6 @@ transient: then late blocks fall, and the scatter says so, unless the whole run 
 
 import itertools
 import json
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -180,11 +179,6 @@ def versions() -> dict[str, str]:
 def missing_value(dtype: str) -> float:
     """What stands where nothing was measured: nan, or -1 for whole numbers."""
     return np.nan if np.dtype(dtype).kind == "f" else -1
-
-
-def cores() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 KEPT = 16  # maps

@@ -5,6 +5,7 @@ processes, started afresh. Answers come as they are found, whatever became of th
 dies is replaced, and what it was at is tried once more.
 """
 
+import os
 import signal
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
@@ -22,6 +23,11 @@ Item = TypeVar("Item")
 Answer = TypeVar("Answer")
 TRIES = 2  # processes that one item may cost
 GRACE = 5.0  # seconds for a process to end
+
+
+def cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(frozen=True)
@@ -66,12 +72,8 @@ def in_processes(
     workers: list[_Worker[Item]] = []
     tried: dict[int, int] = {}  # by identity: an item need not be hashable
     try:
-        if jobs is None:
-            from numeric.sweeps.sweep import cores  # which brings the map; a single judge does without
-
-            jobs = cores()
         with _undisturbed():
-            workers.extend(_started(context, work) for _ in range(min(jobs, len(queue))))
+            workers.extend(_started(context, work) for _ in range(min(jobs or cores(), len(queue))))
         while workers:
             for pipe in wait([each.pipe for each in workers]):
                 worker = next(each for each in workers if each.pipe is pipe)

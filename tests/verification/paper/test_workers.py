@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from verification.app.cli import main
 from verification.app.commands.verify import Last, write_report
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import paper, recorded
+from verification.paper.claims.sharing import shared_out, sharing
 from verification.paper.report import report
 
 ROOT = Path(__file__).parents[3]
@@ -112,16 +114,44 @@ def test_claims_are_told_in_the_catalogues_order_whatever_order_they_are_judged_
     assert len(wanted) > 3
 
 
-def test_claims_that_share_results_are_judged_by_one_process_and_the_dearest_begin():
-    groups = report.shared_out(report.catalogue())
+@pytest.mark.parametrize("jobs", [1, 2, 16])
+def test_claims_that_share_results_are_judged_by_one_process_and_the_dearest_begin(jobs):
+    claims = report.catalogue()
+    groups = shared_out(claims, jobs)
     costs = [report.seconds(group) for group in groups]
 
-    assert sorted(claim.id for group in groups for claim in group) == sorted(c.id for c in report.catalogue())
+    assert sorted(claim.id for group in groups for claim in group) == sorted(c.id for c in claims)
     assert costs == sorted(costs, reverse=True)
-    known, together = recorded(paper())
-    assert set(known) <= {claim.id for claim in report.catalogue()}
-    assert set(together) <= set(known)
+    known, spares = recorded(paper())
+    assert set(known) <= {claim.id for claim in claims}
+    assert {*spares, *chain.from_iterable(spares.values())} <= set(known)
     assert any(len(group) > 1 for group in groups)
+
+
+def test_the_fewer_processes_the_more_stays_together():
+    def claim(name, seconds, **spares):
+        return replace(report.catalogue()[0], id=name, seconds=seconds, home=name, spares=tuple(spares.items()))
+
+    claims = [claim("a", 4.0, b=0.5), claim("b", 4.0, c=2.0), claim("c", 2.0), claim("d", 10.0)]
+
+    def together(jobs):
+        return [[each.id for each in group] for group in sharing(claims, jobs)]
+
+    assert together(1) == [["a"], ["b", "c"], ["d"]]  # with a they would be half of all, and spare a twentieth of it
+    assert together(4) == [["a"], ["b", "c"], ["d"]]  # more than a process's share, but a third of it is spared
+    assert together(1 / 2) == [["a", "b", "c"], ["d"]]
+    assert [[c.id for c in group] for group in shared_out(claims, 1 / 2)] == [["a", "b", "c"], ["d"]]
+
+
+def test_small_claims_of_one_module_go_in_handfuls():
+    first = report.catalogue()[0]
+    claims = [replace(first, id=f"{home}{n}", seconds=1.0, home=home) for n in range(100) for home in "xy"]
+
+    groups = shared_out(claims, 2)
+
+    assert all(len({claim.home for claim in group}) == 1 for group in groups)
+    assert {len(group) for group in groups[:-2]} == {12}  # of a process's hundred seconds
+    assert shared_out(claims, 400) == [[claim] for claim in claims]
 
 
 def running(folder):

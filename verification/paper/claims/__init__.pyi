@@ -17,6 +17,7 @@ from .judges import (
     shown,
     zero,
 )
+from .sharing import shared_out
 
 __all__ = [
     "LETTERS",
@@ -41,6 +42,7 @@ __all__ = [
     "paper",
     "rounded",
     "sampled",
+    "shared_out",
     "shown",
     "zero",
 ]

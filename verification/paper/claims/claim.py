@@ -42,8 +42,8 @@ class Claim:
     """One sentence of a paper, transcribed with its misprints.
 
     `letters` are those of the paper's formulas beside the letters of tables and laws; `home` is the module that judges
-    it, by its dotted name or, outside this package, by its path. What judging takes and the number of the group that
-    it shares results with say who does what first. `unsettled` says why it is not settled, as long as it is not.
+    it, by its dotted name or, outside this package, by its path. What judging takes, and the seconds that it spares
+    others by its results, say who does what first. `unsettled` says why it is not settled, as long as it is not.
     """
 
     id: str
@@ -56,7 +56,7 @@ class Claim:
     letters: tuple[str, ...] = ()
     home: str = field(default="", repr=False)
     seconds: float = field(default=1.0, repr=False, compare=False)
-    group: int | None = field(default=None, repr=False, compare=False)
+    spares: tuple[tuple[str, float], ...] = field(default=(), repr=False, compare=False)
     unsettled: str = field(default="", repr=False, compare=False)
 
     @cached_property

@@ -218,7 +218,7 @@ def _with_judges(found: Paper) -> Paper:
     for name, where in homes.items():
         if name not in ids:
             raise ValueError(f"{where} judges {name!r}, which is no claim of {found.folder}")
-    seconds, groups = recorded(found)
+    seconds, spares = recorded(found)
     why = _toml(Path(found.unsettled)).get("reasons", {}) if found.unsettled else {}
     for name in why:
         if name not in ids:
@@ -228,7 +228,7 @@ def _with_judges(found: Paper) -> Paper:
             claim,
             home=homes[claim.id],
             seconds=seconds.get(claim.id, claim.seconds),
-            group=groups.get(claim.id),
+            spares=tuple(spares.get(claim.id, {}).items()),
             unsettled=why.get(claim.id, ""),
         )
         for claim in found.claims
@@ -236,15 +236,15 @@ def _with_judges(found: Paper) -> Paper:
     return replace(found, claims=tuple(new))
 
 
-def recorded(found: Paper) -> tuple[dict[str, float], dict[str, int]]:
-    """The seconds that judging each claim takes, and which claims share results: those of one number.
+def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """The seconds that judging each claim takes, and those that it spares each other claim whose results it has found.
 
     They say who does what first, and change no result; nothing is recorded of most papers.
     """
     if not found.seconds:
         return {}, {}
     record = json.loads(Path(found.seconds).read_text(encoding="utf-8"))
-    return record["seconds"], {name: number for number, names in enumerate(record["together"]) for name in names}
+    return record["seconds"], record["spares"]
 
 
 def begin(folder: Path) -> list[Path]:

@@ -16,7 +16,8 @@ from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_star
 from numeric.sweeps.run import on_threads
 from numeric.sweeps.space import periods
 from numeric.sweeps.store import Memory
-from numeric.sweeps.sweep import Array, Sweep, cores, measured
+from numeric.sweeps.sweep import Array, Sweep, measured
+from numeric.sweeps.workers import cores
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter

@@ -18,6 +18,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from verification.paper.claims.folder import paper
+from verification.paper.claims.sharing import sharing
 from verification.paper.figures.catalogue import plain
 from verification.paper.report.findings import GRADES, compared, findings, graded
 from verification.paper.report.mathml import prose, remark
@@ -156,13 +157,12 @@ def _certificates(results: "Sequence[Result]", about: "Paper") -> list[Certifica
 
 def _together(results: "Sequence[Result]", about: "Paper") -> dict[str, tuple[int, float]]:
     """For claims that share results: how many judged here do, and the seconds of all of them."""
-    group = {claim.id: claim.group for claim in about.claims if claim.group is not None}
-    found: dict[int, list[Result]] = {}
-    for result in results:
-        if result.id in group:
-            found.setdefault(group[result.id], []).append(result)
-    totals = {number: (len(each), sum(one.seconds for one in each)) for number, each in found.items()}
-    return {result.id: totals[group[result.id]] for result in results if result.id in group}
+    seconds = {result.id: result.seconds for result in results}
+    found: dict[str, tuple[int, float]] = {}
+    for group in sharing(about.claims):
+        judged = [claim.id for claim in group if claim.id in seconds and len(group) > 1]
+        found |= dict.fromkeys(judged, (len(judged), sum(seconds[name] for name in judged)))
+    return found
 
 
 def sentence(text: str) -> Markup:

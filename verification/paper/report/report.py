@@ -27,11 +27,12 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from numeric.sweeps.workers import Lost, in_processes
+from numeric.sweeps.workers import Lost, cores, in_processes
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict
 from verification.paper.claims.folder import OWN, Paper, home, judge_of, module, paper
+from verification.paper.claims.sharing import shared_out
 from verification.paper.figures.catalogue import Drawing, Picture
 
 SMALL = 4.0  # seconds of work that other processes would not save
@@ -127,14 +128,13 @@ def answered(
     for claim in claims:
         if claim.home.endswith(".py"):
             judge_of(claim)  # a module that cannot be run is refused before any work
-    tasks: list[list[Claim | Drawing]] = [[*group] for group in shared_out(claims)]
-    for each in drawings:
-        tasks.append([each])
-    tasks.sort(key=seconds, reverse=True)
-    if jobs == 1 or len(tasks) < 2 or seconds([*claims, *drawings]) < SMALL:
+    if jobs == 1 or seconds([*claims, *drawings]) < SMALL:
         yield from (judge(claim, digits) for claim in claims)
         yield from (Drawn(each.name, each.drawn()) for each in drawings)
         return
+    tasks: list[list[Claim | Drawing]] = [[*group] for group in shared_out(claims, jobs or cores())]
+    tasks.extend([each] for each in drawings)
+    tasks.sort(key=seconds, reverse=True)
     homes = {claim.home for claim in claims if not claim.home.endswith(".py")}
     modules = sorted(homes | {each.module for each in drawings})
     with closing(in_processes(partial(answer, digits=digits), tasks, jobs, modules)) as answers:
@@ -155,18 +155,6 @@ def answer(item: Claim | Drawing, digits: int) -> Result | Drawn:
 def seconds(items: Iterable[Claim | Drawing]) -> float:
     """What judging claims and drawing pictures is said to take."""
     return sum(each.seconds for each in items)
-
-
-def shared_out(claims: Iterable[Claim]) -> list[list[Claim]]:
-    """The claims in groups, those that share results together, the dearest group first.
-
-    >>> [len(group) for group in shared_out(catalogue()[:3])]
-    [1, 1, 1]
-    """
-    found: dict[object, list[Claim]] = {}
-    for claim in claims:
-        found.setdefault(claim.id if claim.group is None else claim.group, []).append(claim)
-    return sorted(found.values(), key=seconds, reverse=True)
 
 
 def judge(claim: Claim, digits: int = 15) -> Result:

@@ -291,6 +291,7 @@ class ArcLength:
     def __init__(self, states: States) -> None:
         self.states = states
         self.lengths = [self._length(index) for index in range(len(states.ends))]
+        self.ruled: dict[int, tuple[Array, Array]] = {}  # of a component: lengths at many parameters, and these
         index, program = states.boundary.ir.origin
         offsets = {}
         zero, (first, last) = float(program(states.ops, *states.boundary.numbers)[0]), states.ends[index]
@@ -358,7 +359,11 @@ class ArcLength:
 
     def _inverse(self, index: int, s: Array, low: float, high: float) -> Array:
         length = self.lengths[index]
-        bottom, top = float(length(np.array(low))), float(length(np.array(high)))
+        if index not in self.ruled:
+            grid = np.linspace(low, high, 1025)
+            self.ruled[index] = length(grid), grid
+        told, grid = self.ruled[index]
+        bottom, top = float(told[0]), float(told[-1])
         slack = 1e-14 * (top - bottom)
         if np.any((s < bottom - slack) | (s > top + slack)):
             bad = s[(s < bottom - slack) | (s > top + slack)].flat[0] + self.offsets[index]
@@ -368,8 +373,7 @@ class ArcLength:
         inverse = self.states.family.parameter(index, s)
         if inverse is not None:
             return inverse
-        grid = np.linspace(low, high, 1025)
-        theta = np.interp(s, length(grid), grid)
+        theta = np.interp(s, told, grid)
         where = np.full(theta.shape, index)
         for _ in range(6):
             step = (length(theta) - s) / self.states.speed(where, theta)

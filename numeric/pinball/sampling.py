@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 BATCH = 1 << 14  # chords drawn at a time
+FEWEST = 256  # of them that are placed at a time
 INSIDE = 1 - 1e-12  # of a component or of the angles: never at an end
 RULER = 512  # boundary points between which the diameter is measured
 
@@ -79,16 +80,20 @@ def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
     missing, diameter = counted("count", count), longest(map)
     batches: list[Starts] = []
     while missing > 0:
-        leaving = _uniform(map, BATCH, rng)
-        landing = elastic.step(leaving.theta, leaving.phi, leaving.component)
-        t = np.hypot(landing.x - leaving.x, landing.y - leaving.y)
-        kept = (rng.uniform(0, diameter, BATCH) < t) & (landing.code == 0)
-        part = rng.uniform(0, 1, BATCH)
-        x, y = leaving.x + part * (landing.x - leaving.x), leaving.y + part * (landing.y - leaving.y)
-        batch = Starts(landing.component, landing.theta, landing.phi, x, y)
-        batches.append(Starts(*(field[kept][:missing] for field in batch)))
-        missing -= batches[-1].theta.size
-        if not np.any(kept):
+        index, s, phi = _drawn(map, BATCH, rng)
+        drop, along = rng.uniform(0, diameter, BATCH), rng.uniform(0, 1, BATCH)
+        first, before = 0, missing
+        while missing > 0 and first < BATCH:  # of a whole batch only as many as are still missing become chords
+            some = slice(first, first + max(FEWEST, 2 * missing))
+            leaving, part = _placed(map, index[some], s[some], phi[some]), along[some]
+            landing = elastic.step(leaving.theta, leaving.phi, leaving.component)
+            t = np.hypot(landing.x - leaving.x, landing.y - leaving.y)
+            kept = (drop[some] < t) & (landing.code == 0)
+            x, y = leaving.x + part * (landing.x - leaving.x), leaving.y + part * (landing.y - leaving.y)
+            batch = Starts(landing.component, landing.theta, landing.phi, x, y)
+            batches.append(Starts(*(field[kept][:missing] for field in batch)))
+            missing, first = missing - batches[-1].theta.size, some.stop
+        if missing == before:
             raise ValueError(f"{map.ir.table}: no chord lands on its boundary; the table must be closed")
     return Starts(*(np.concatenate(fields) for fields in zip(*batches, strict=True)))
 
@@ -139,10 +144,18 @@ def longest(map: "PinballMap") -> float:
 
 
 def _uniform(map: "PinballMap", count: int, rng: "np.random.Generator") -> Starts:
+    return _placed(map, *_drawn(map, count, rng))
+
+
+def _drawn(map: "PinballMap", count: int, rng: "np.random.Generator") -> tuple[NDArray[np.int64], Array, Array]:
+    """Components, arc lengths and angles."""
     low, high = _spans(map)
     component = rng.choice(np.arange(low.size), size=count, p=(high - low) / np.sum(high - low))
     s = low[component] + (high - low)[component] * rng.uniform(1 - INSIDE, INSIDE, count)
-    phi = elementary.arcsin(rng.uniform(-1, 1, count) * INSIDE)
+    return component, s, elementary.arcsin(rng.uniform(-1, 1, count) * INSIDE)
+
+
+def _placed(map: "PinballMap", component: NDArray[np.int64], s: Array, phi: Array) -> Starts:
     theta = map.arclength.theta(s, component)
     return Starts(component, theta, phi, *map.states.point(component, theta))
 

@@ -25,6 +25,7 @@ from numeric.dynamics.recognition import (
     Share,
     at_clouds,
     at_cycles,
+    clouds,
     recognised,
     same,
     wilson,
@@ -85,10 +86,12 @@ def united(map: PinballMap, attractors: Sequence[Attractor], group: "Sequence[Sy
     set and its image is not.
     """
     spread = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
-    leader = {i: i for i in spread}
+    leader, near = {i: i for i in spread}, clouds(map, attractors)
     for i in spread:
         for symmetry in group:
-            label = at_clouds(map, moved(symmetry, attractors[i].points), attractors)
+            if symmetry.name == "identity":  # each point is nearest to itself
+                continue
+            label = near(moved(symmetry, attractors[i].points))
             counts = np.bincount(label[label >= 0], minlength=len(attractors))
             shared = [j for j in spread if counts[j] > PART * label.size]
             least = min((leader[j] for j in shared), default=i)

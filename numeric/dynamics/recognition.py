@@ -9,7 +9,7 @@ chord system (`verification.cycles`, `verification.proofs`).
 Recognising attractors: the cycle that a particle is at, the cloud it lies in, the new cycle it is on.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import copysign, sqrt
@@ -275,13 +275,22 @@ def at_cycles(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attr
 
 def at_clouds(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor]) -> Labels:
     """The chaotic attractor nearest to each particle; -1 when it is not near any."""
+    return clouds(map, attractors)(particles)
+
+
+def clouds(map: PinballMap, attractors: Sequence[Attractor]) -> Callable[[PhasePoints], Labels]:
+    """`at_clouds` of whatever particles, with the points of the attractors sorted once."""
     chaotic = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
     if not chaotic:
-        return np.full(particles.size, UNSETTLED)
+        return lambda particles: np.full(particles.size, UNSETTLED)
     owner = np.repeat(chaotic, [attractors[i].points.size for i in chaotic])
     tree = cKDTree(embedded(map, together(*(attractors[i].points for i in chaotic))))
-    distance, nearest = tree.query(embedded(map, particles), distance_upper_bound=NEAR)  # none: one past the last
-    return np.where(distance < NEAR, np.append(owner, UNSETTLED)[nearest], UNSETTLED)
+
+    def nearest_to(particles: PhasePoints) -> Labels:
+        distance, nearest = tree.query(embedded(map, particles), distance_upper_bound=NEAR)  # none: one past the last
+        return np.where(distance < NEAR, np.append(owner, UNSETTLED)[nearest], UNSETTLED)
+
+    return nearest_to
 
 
 def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_]) -> list[Attractor]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import Region
 
+WINDOW = 12  # columns beside a join in which the density at a cut is measured
 SHOWN = 24  # Morse sets in the table for people
 WIDTH = 100  # letters of the picture of a database
 
@@ -39,6 +40,12 @@ WIDTH = 100  # letters of the picture of a database
 @click.option("--coarsest", type=click.IntRange(1, 64), default=4, show_default=True, help="Cells a box begins with.")
 @click.option("--parts", type=click.IntRange(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
 @click.option("--exponents", type=click.IntRange(1, 16), metavar="PARTS", help="Bound nu_plus; cuts of a box for it.")
+@click.option(
+    "--almost-every",
+    type=click.IntRange(64, 1 << 15),
+    metavar="N",
+    help="nu_plus of almost every orbit there; N columns.",
+)
 @click.option("--certificates", metavar="DIR", help="Write each trapping region, for `pinball check`.")
 @plot_option("graphs.morse_sets", "the Morse sets over phase space")
 @json_option
@@ -50,6 +57,7 @@ def command(
     coarsest: int,
     parts: int,
     exponents: int | None,
+    almost_every: int | None,
     certificates: str | None,
     output: Output,
 ) -> int:
@@ -74,6 +82,7 @@ def command(
         step("ordered")
     leaves = int(graph.transitions.leaf.sum())
     regions = [region(map, graph, index, parts) for index in graph.attracting]
+    typical = dict.fromkeys(graph.attracting) if almost_every is None else almost(map, graph, almost_every)
     nu = dict.fromkeys(graph.attracting) if exponents is None else growths(map, graph, exponents)
     document: dict[str, Any] = {
         "scene": map.scene.document,
@@ -84,6 +93,7 @@ def command(
         "regions": [
             {"set": index, "name": found.name, "boxes": int(found.cells.chart.size), "basin": shares(graph, index)}
             | {"basin_sampled": sampled_share(map, graph, index), "nu_plus": nu[index]}
+            | {"almost_every": typical[index]}
             for index, found in zip(graph.attracting, regions, strict=True)
             if found is not None
         ],
@@ -140,6 +150,23 @@ def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, 
     return found
 
 
+def almost(map: "PinballImages", graph: "MorseGraph", columns: int) -> "dict[int, dict[str, Any] | None]":
+    """Bounds for `nu_plus` of almost every orbit in each trapping region, or what is not proved."""
+    from verification.proofs.starts.curves import PinballCurves
+    from verification.proofs.starts.typical import typical
+
+    found: dict[int, dict[str, Any] | None] = dict.fromkeys(graph.attracting)
+    curves = PinballCurves(map)
+    for index in graph.attracting:
+        block = graph.trapping(index)
+        if not block[-1]:
+            cells = graph.transitions.chosen(block)
+            bounds = typical(curves, graph.transitions.grid, cells, columns, 2 * columns, WINDOW)
+            ends = [bounds.low, bounds.high] if bounds.proved else None
+            found[index] = {"nu_plus": ends, "labels": bounds.labels, "why": bounds.why}
+    return found
+
+
 def show(console: "Console", label: str, document: dict[str, Any]) -> None:
     """The Morse graph, for people."""
     console.print(f"{label}: {document['boxes']} boxes, {document['edges']} edges, {document['seconds']:.1f} s")
@@ -163,6 +190,13 @@ def show(console: "Console", label: str, document: dict[str, Any]) -> None:
         if found["nu_plus"] is not None:
             low, high = found["nu_plus"]
             console.print(f"        {low:.6f} <= nu_plus <= {high:.6f} for every orbit there that lands on no join")
+        if (some := found["almost_every"]) is not None and some["nu_plus"] is None:
+            console.print(f"        nothing is proved of almost every orbit there: {some['why']}")
+        elif some is not None:
+            low, high = some["nu_plus"]
+            console.print(
+                f"        {low:.6f} <= nu_plus <= {high:.6f} for almost every orbit there: within {high - low:.3f}"
+            )
 
 
 def written(region: "Region", path: Path, console: "Console") -> None:

@@ -2,13 +2,13 @@
 
 from .apart import kept_apart
 from .barrier import Barrier, lost
-from .boxes import Boxes
+from .boxes import Boxes, Chart, Images
 from .branch import Branch, exact, unstable_branch
 from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed
 from .database import KNOWN, Numbers, continued
 from .fates import NEAR, Cluster, Fate, clusters, invertible
-from .flights import End, Flights, Matrix, Piece, incidence, matrix, norm, times, turn_between
+from .flights import OPS, End, Flights, Matrix, Piece, constant_bends, incidence, matrix, norm, times, turn_between
 from .graph import BLOCK, Cells, Grid, Indices, Mask, MorseGraph, morse_graph, ranges, refined, sparse, walked
 from .images import PinballImages
 from .regions import KIND, Region, checked, expansion, region, sampled_share, shares
@@ -19,11 +19,13 @@ __all__ = [
     "KIND",
     "KNOWN",
     "NEAR",
+    "OPS",
     "Barrier",
     "BoundaryCrisis",
     "Boxes",
     "Branch",
     "Cells",
+    "Chart",
     "Cluster",
     "CommonBoundary",
     "Disc",
@@ -31,6 +33,7 @@ __all__ = [
     "Fate",
     "Flights",
     "Grid",
+    "Images",
     "Indices",
     "Mask",
     "Matrix",
@@ -43,6 +46,7 @@ __all__ = [
     "boxed",
     "checked",
     "clusters",
+    "constant_bends",
     "continued",
     "disc",
     "entered_around",

@@ -4,6 +4,7 @@ from .alternating import Alternating
 from .basin_edge import BasinEdge
 from .below_star import ANGLE, NEXT, BelowStar
 from .core import Core
+from .curves import PinballCurves
 from .division import Division, Ring
 from .mean import HIGH, LOW, MULTIPLIER, RATE, average
 
@@ -19,6 +20,7 @@ __all__ = [
     "BelowStar",
     "Core",
     "Division",
+    "PinballCurves",
     "Ring",
     "average",
 ]

@@ -1,0 +1,216 @@
+"""Bounds for the exponent of almost every orbit: maps with known exponents, what is refused, and left-out pieces."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+import pytest
+
+from symbolic import Scene
+from verification.arithmetic.arrays import BallArray, hull, turned
+from verification.proofs.global_dynamics.boxes import Boxes, Chart
+from verification.proofs.global_dynamics.graph import Cells, Grid, morse_graph, refined
+from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts.curves import Landed, PinballCurves
+from verification.proofs.starts.standard_pairs import Pairs, pairs
+from verification.proofs.starts.typical import Balance, typical
+
+TURN = 2 * np.pi
+
+
+def zero(x: BallArray) -> BallArray:
+    return BallArray(0 * x.m, 0 * x.m)
+
+
+@dataclass(frozen=True)
+class Circle:
+    """`x -> B(x)` of degree two on the circle, with the fibre `y -> y/4 + cos(2*pi*x)/2`; `B` of Blaschke, or doubling.
+
+    `B(z) = z*(z - a)/(1 - a*z)` keeps Lebesgue measure. Its exponent is `log(1 + sqrt(1 - a^2))`, by Jensen's formula.
+    """
+
+    a: float
+    label = "circle"
+    closed = True
+    charts = (Chart("torus", (0.0, 1.0), (-1.0, 1.0), True),)
+
+    def rate(self, x: BallArray) -> tuple[BallArray, BallArray]:
+        cos, sin = turned(x * TURN)
+        below = 1 + self.a**2 - 2 * self.a * cos
+        return 1 + (1 - self.a**2) / below, -(2 * self.a * TURN * (1 - self.a**2)) * sin / (below * below)
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        x, y = hull(*boxes.x), hull(*boxes.y)
+        at = np.exp(1j * TURN * x.m)
+        image = np.mod(np.angle(at * (at - self.a) / (1 - self.a * at)) / TURN, 1.0)
+        rate, more = self.rate(x)
+        spread = BallArray(0 * x.m, x.r)
+        theta = BallArray(image, 1e-13 + 0 * image) + rate * spread
+        cos, sin = turned(x * TURN)
+        k = more / rate
+        slope = (slopes / 4 - TURN / 2 * sin) / rate
+        bend = (-(TURN**2 / 2) * cos - slope * more) / (rate * rate)
+        by_bend = 1 / (4 * rate * rate)
+        values = (theta, y / 4 + cos / 2, rate, slope, k, zero(k), bend, by_bend)
+        on = np.arange(boxes.chart.size)
+        return Landed(on, boxes.chart, on >= 0, *values)
+
+
+class Turned(Circle):
+    """A turn of the circle, by a third, over the same fibre."""
+
+    def __init__(self) -> None:
+        super().__init__(0.0)
+
+    def rate(self, x: BallArray) -> tuple[BallArray, BallArray]:
+        return zero(x) + 1, zero(x)
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        found = super().landed(boxes, slopes)
+        x = hull(*boxes.x)
+        return found._replace(theta=BallArray(np.mod(x.m + 1 / 3, 1.0), x.r + 1e-13))
+
+
+@dataclass(frozen=True)
+class Tents:
+    """`x -> x/c` up to `c`, from there on `x -> high*(1 - x)/(1 - c)`, with `y -> y/4 + 1/4` and `y -> y/4 - 1/4`.
+
+    With `high = 1` both branches are onto, Lebesgue measure is kept, and the exponent is the entropy of `(c, 1 - c)`.
+    """
+
+    c: float
+    label = "tents"
+    closed = False
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        sides = ("left", 0.0, self.c), ("right", self.c, 1.0)
+        return tuple(Chart(name, (low, high), (-1.0, 1.0), kept=True) for name, low, high in sides)
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        right = boxes.chart == 1
+        rate = np.where(right, -1 / (1 - self.c), 1 / self.c)
+        ends = np.sort([np.where(right, (x - 1) * rate, x * rate) for x in boxes.x], axis=0)
+        y = hull(*boxes.y) / 4 + np.where(right, -0.25, 0.25)
+        rows = []
+        for chart, (first, last) in enumerate(((0.0, self.c), (self.c, 1.0))):
+            other = (ends[0] < self.c - 1e-12) & (ends[1] > self.c + 1e-12)
+            on = np.flatnonzero((ends[1] > first + 1e-12) & (ends[0] < last - 1e-12))
+            theta = hull(np.clip(ends[0][on], first, last), np.clip(ends[1][on], first, last))
+            r = BallArray(rate[on], 1e-15 + 0 * rate[on])
+            values = theta, y[on], r, slopes[on] / 4 / r, zero(r), zero(r), zero(r), 1 / (4 * r * r)
+            rows.append((on, np.full(on.size, chart), ~other[on], *(half for x in values for half in (x.m, x.r))))
+        source, charts, smooth, *halves = (np.concatenate(column) for column in zip(*rows, strict=True))
+        balls = (BallArray(halves[i], halves[i + 1]) for i in range(0, len(halves), 2))
+        return Landed(source, charts, smooth, *balls)
+
+
+def whole(map: Circle | Tents) -> tuple[Grid, Cells]:
+    grid = Grid(map.charts, 64, 16)
+    return grid, grid.whole()
+
+
+@cache
+def tents() -> Pairs:
+    map = Tents(0.4)
+    return pairs(map, *whole(map), 400, 80)
+
+
+def test_the_doubling_map_with_a_fibre_has_the_exponent_log_2():
+    found = typical(Circle(0.0), *whole(Circle(0.0)), 100, 400)
+    assert found.proved
+    assert found.low <= np.log(2) <= found.high < found.low + 3e-6
+
+
+@pytest.mark.parametrize(("columns", "width"), [(50, 0.05), (100, 0.025)])
+def test_a_blaschke_product_has_the_exponent_of_jensens_formula(columns, width):
+    found, exact = typical(Circle(0.4), *whole(Circle(0.4)), columns, 4 * columns), np.log(1 + np.sqrt(1 - 0.4**2))
+    assert found.proved
+    assert found.low <= exact <= found.high < found.low + width
+
+
+def test_the_exponent_of_a_skew_tent_map_is_its_entropy():
+    balance = Balance(tents(), 8)
+    high, low = balance.proved(0), balance.proved(1)
+    exact = -0.4 * np.log(0.4) - 0.6 * np.log(0.6)
+    assert -low <= exact <= high
+    assert high + low < 0.01 < np.log(0.6 / 0.4) / 10  # cycles leave a range of log(3/2)
+
+
+def test_numbers_that_leave_something_out_prove_nothing():
+    balance = Balance(tents(), 8)
+    y, high = balance.potential(0)
+    high += 1e-4
+    w, v = balance.weights(0, y, high)
+    assert balance.holds(0, y, w, v, high)
+    assert not balance.holds(0, y, w, v, high - 0.1)
+    assert not balance.holds(0, y, 0 * w, v, high)  # no bound for the mass next to ends
+    assert not balance.holds(0, y, w, 0 * v, high)  # nor for that next to new ends
+    for lower in (0, balance.count // 2):
+        assert not balance.holds(0, y - 0.5 * (np.arange(y.size) == lower), w, v, high)
+
+
+def test_a_potential_of_a_graph_without_one_edge_is_refused():
+    found = tents()
+    source, to = found.edges
+    short = Balance(found._replace(edges=(source[source != to], to[source != to])), 8)  # without fixed points
+    y, high = short.potential(0)
+    w, v = short.weights(0, y, high + 1e-4)
+    assert short.holds(0, y, w, v, high + 1e-4)
+    whole = Balance(found, 8)
+    assert not whole.holds(0, y, w, v, min(high + 1e-4, whole.potential(0)[1] - 1e-3))
+
+
+def test_density_along_curves_is_what_the_map_makes_of_it():
+    map = PinballImages(Scene("cuspless", lam="0.12"))
+    start, m, w, step = 0.1, 0.15, 0.3, 1e-4
+    theta = start + step * np.arange(-2, 3)
+    phi = 0.05 + m * (theta - start) + w * (theta - start) ** 2 / 2
+    end = map.map.step(theta, phi, np.full(5, 1))
+    rate = np.gradient(end.theta, step)[1:4]
+    slopes = np.gradient(end.phi, step)[1:4] / rate
+    point = Boxes(np.array([1]), (np.array([start]),) * 2, (np.array([0.05]),) * 2)
+    found = PinballCurves(map).landed(point, BallArray(np.array([m]), np.array([0.0])))
+    assert found.stretch.m[0] == pytest.approx(rate[1], rel=1e-6)
+    assert found.slope.m[0] == pytest.approx(slopes[1], rel=1e-6)
+    change = np.log(rate[2] / rate[0]) / (2 * step)
+    assert found.k0.m[0] + found.k1.m[0] * w == pytest.approx(change, rel=1e-6)
+    bend = (slopes[2] - slopes[0]) / (2 * step) / rate[1]
+    assert found.bend.m[0] + found.by_bend.m[0] * w == pytest.approx(bend, rel=1e-6)
+
+
+@cache
+def cuspless(lam: str) -> tuple[PinballCurves, Grid, Cells]:
+    map = PinballImages(Scene("cuspless"), (Fraction(lam),) * 2)
+    graph = morse_graph(refined(map, Grid(map.charts, 2048, 1024), 4))
+    return PinballCurves(map), graph.transitions.grid, graph.transitions.chosen(graph.trapping(graph.attracting[0]))
+
+
+def test_almost_every_orbit_of_the_cuspless_table_is_bounded_from_both_sides():
+    found = typical(*cuspless("0.12"), 8192, 8192, 16)
+    assert found.proved
+    assert 0.17 < found.low < 0.277 < found.high < 0.36
+
+
+@pytest.mark.parametrize(
+    ("lam", "columns", "why"), [("0.05", 2048, "stretched often enough"), ("0.12", 1024, "gather")]
+)
+def test_a_cycles_basin_and_columns_that_are_too_wide_are_refused(lam, columns, why):
+    found = typical(*cuspless(lam), columns, columns)
+    assert not found.proved
+    assert why in found.why
+    assert (found.low, found.high) == (-np.inf, np.inf)
+
+
+def test_a_rotation_is_refused():
+    found = typical(Turned(), *whole(Turned()), 64, 64)
+    assert not found.proved
+    assert found.high == np.inf
+
+
+def test_tables_and_laws_whose_curves_are_not_known_are_refused():
+    with pytest.raises(ValueError, match="unevenly"):
+        PinballCurves(PinballImages(Scene("egg", alpha="0.08", lam="1/2")))
+    with pytest.raises(ValueError, match="law"):
+        PinballCurves(PinballImages(Scene("circle", lam="1/2", law="-lam*eta/2")))

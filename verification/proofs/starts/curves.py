@@ -1,0 +1,115 @@
+"""What the map does to unstable curves: how it stretches them, and where slope, bend and density go.
+
+A curve is a graph `phi = g(theta)` on one component, with slope `m = g'`, bend `w = g''` and a density `rho` for each
+unit of `theta`, of which `d = (log rho)'` is known. With `p = bend0 - m` and `N = l*p - cos(phi0)*speed0`, the landing
+moves by `r = N/(speed1*cos(eta1))` for each unit of `theta`. Along the curve the length of the flight changes by
+`l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`, so that the stretching `r` has the logarithmic derivative
+
+    k = (l'*p - l*w + sin(phi0)*m*speed0 - cos(phi0)*speed0')/N - r*speed1'/speed1 + tan(eta1)*(bend1*r - p)
+
+on components whose bend is constant; others are refused. The image has the slope `-lam*(bend1 - p/r)`, the bend
+`-lam*p*k0/r^2 + lam*cos(phi0)*speed0*w/(r^2*N)`, where `k = k0 + k1*w`, and `d` becomes `(d - k)/r`.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.arithmetic.arrays import BallArray, common_part, hull, turned
+from verification.proofs.global_dynamics.boxes import Boxes, Chart
+from verification.proofs.global_dynamics.flights import OPS, constant_bends, norm
+from verification.proofs.global_dynamics.images import PinballImages
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+
+class Landed(NamedTuple):
+    """Rows, one for each box and each component on which it may land; `smooth` if that is all of the box.
+
+    Landing and exit, by how much curves are stretched, the slope of their images; the rest is `k0`, `k1`, and the
+    image's bend at a bend 0 and for each unit of it.
+    """
+
+    source: Indices
+    chart: Indices
+    smooth: Mask
+    theta: BallArray
+    phi: BallArray
+    stretch: BallArray
+    slope: BallArray
+    k0: BallArray
+    k1: BallArray
+    bend: BallArray
+    by_bend: BallArray
+
+
+class CurveMap(Protocol):
+    """A map of charts that stand side by side, which breaks where curves land on their ends, the joins."""
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts."""
+
+    @property
+    def closed(self) -> bool:
+        """Is it one chart that closes, without a join?"""
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        """What becomes of curves in boxes, by the ranges of their slopes; infinite radii where it is not known."""
+
+
+@dataclass(frozen=True)
+class PinballCurves:
+    """Unstable curves of a scene with the paper's law, on components whose tangents turn evenly."""
+
+    map: PinballImages
+
+    def __post_init__(self) -> None:
+        if self.map.law is not None:
+            raise ValueError(f"law = {self.map.scene.law}: unstable curves are followed under the law -lam*eta alone")
+        if None in constant_bends(self.map.map.table):
+            raise ValueError(f"{self.map.scene.name}: a tangent turns unevenly; accepted: cardioids, the circle")
+
+    @property
+    def closed(self) -> bool:
+        return self.map.closed
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        return self.map.charts
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        with np.errstate(all="ignore"):
+            flights = self.map.flights(boxes)
+            rows = []
+            for piece in flights.pieces(*flights.arcs()):
+                if not piece.on.size:
+                    continue
+                on, chart, low, high, smooth = piece
+                arc = hull(low, high)
+                _, theta, eta, phi = flights.landing(piece)
+                phi = self.map.exit(eta, theta) if phi is None else common_part(phi, self.map.exit(eta, theta))
+                found = flights.slopes(on, chart, arc)
+                there, here = flights.over(on, chart, arc)[0], {name: x[on] for name, x in flights.whole.items()}
+                (cos, sin), (cos0, sin0) = turned(eta), turned(flights.phis[on])
+                cos = BallArray(cos.m, np.where(cos.positive(), cos.r, np.inf))
+                fast, fast0, m = norm(OPS, there[2:4]), flights.speed[on], slopes[on]
+                faster = (there[2] * there[4] + there[3] * there[5]) / (there[2] * there[2] + there[3] * there[3])
+                faster0 = (here["dx"] * here["ddx"] + here["dy"] * here["ddy"]) / fast0
+                p, length = found.bend_here - m, -(found.by_phi * (fast * cos))
+                width, r = length * p - cos0 * fast0, found.by_theta + found.by_phi * m
+                longer = -(sin * fast * r) - sin0 * fast0
+                k0 = (longer * p + sin0 * m * fast0 - cos0 * faster0) / width - faster * r
+                k0 = k0 + sin / cos * (found.bend_there * r - p)
+                slope = -(found.law * (found.bend_there - p / r))
+                bent = -(found.law * (p * k0 / (r * r))), found.law * (cos0 * fast0 / (r * r * width))
+                values = theta, phi, r, slope, k0, -(length / width), *bent
+                spread = [np.broadcast_arrays(x.m, x.r, low)[:2] for x in values]
+                rows.append((on, chart, np.full(on.size, smooth), *(half for pair in spread for half in pair)))
+        source, charts, whole, *halves = (np.concatenate(column) for column in zip(*rows, strict=True))
+        balls = (BallArray(halves[i], halves[i + 1]) for i in range(0, len(halves), 2))
+        return Landed(source, charts, whole, *balls)

@@ -1,0 +1,255 @@
+"""`nu_plus` of almost every orbit of a trapping region, from both sides: standard pairs and a potential.
+
+The lemma and its proof are in docs/global.md. A family of pieces of unstable curves is described by the mass `r[i]`
+of pieces of label `i` that reach from side to side of their column, the mass `e[i]` of the others, the density `E[i]`
+at ends of curves, summed, and `C[i]`, that at ends on a join, which are ends of a column. After one bounce
+
+- the mass `r[i]` of an unbroken label goes to the columns met in known shares; the others go where edges lead;
+- ends go along edges, their density divided by the stretching; `e[i] <= length*E[i]/(1 - D)`;
+- a curve cut by a join has two ends more, of type `C`. Its density at the cut is at most that of the mass in a
+  window of `window` columns on the left and on the right, half of each; or of an end there, if it ends before.
+
+Numbers `y`, `w`, `v` for each label with
+
+    E:  w >= length*s/(1 - D) + tiny + (max w over edges)/least + cuts,   s >= greatest + max y over edges - y - high
+    C:  v >= tiny + (max w over edges)/least + cuts
+    r:  mean + (shares of max y over rows) + cuts <= y + high
+
+make `sum(y*(r + e) + w*E + v*C)` a potential: the mean of the logarithm of the stretching over any family is at most
+`high`, up to a bounded sum. Any numbers do; `potential` looks for good ones, and `holds` checks them by
+multiplication and addition alone. The same with minus the logarithm is the bound from below.
+"""
+
+from dataclasses import dataclass
+from math import ceil, floor
+
+import numpy as np
+
+from numeric.backends import elementary
+from verification.proofs.global_dynamics.graph import Cells, Grid
+from verification.proofs.starts.curves import CurveMap
+from verification.proofs.starts.labels import Array, Indices
+from verification.proofs.starts.standard_pairs import Pairs, pairs
+
+UP, DOWN = 1 + 1e-12, 1 - 1e-12
+SLACK = 1e-9  # fewer than a thousand sums and products of numbers below LARGEST err by less
+LARGEST = 1e4
+TINY = 1e-9
+STEPS, PRECISE = 3000, 1e-5
+WEIGHTS = 4000  # bounces in which the ends' numbers are looked for
+
+
+class Cut:
+    """Curves that a join cuts: the broken labels, windows beside them, and labels of the new ends."""
+
+    def __init__(self, found: Pairs, broken: Indices, window: int) -> None:
+        labels, count = found.labels, found.labels.count
+        hulls, ends = labels.hulls(), np.zeros(count, dtype=bool)
+        ends[broken] = True
+        self.window = np.zeros(count, dtype=bool)
+        for side in (-1, 1):
+            near = broken
+            for _ in range(window):
+                chart, column = labels.chart[near], labels.column[near] + side
+                if np.any((column < 0) | (column >= labels.columns[chart])):
+                    raise ValueError("a join is met next to a join; give a smaller window or more columns")
+                foot, way = labels.bottom[chart] + labels.row[near] * labels.high[chart], side * labels.wide[chart]
+                phi, slopes = (foot, foot + labels.high[chart]), (labels.low[near], labels.top[near])
+                met = labels.named(labels.crossed(near, chart, column, phi, (way, way), slopes, hulls))[1]
+                near = np.unique(met[met >= 0])
+                self.window[near] = True
+        self.near = self.window | ends
+        whole = (labels.columns * labels.wide).min()  # on the way to the same join again a curve passes a component
+        if (2 * window + 3) * labels.wide.max() * found.cast.most[self.near].max() > whole:
+            raise ValueError("a window may meet a join twice; give a smaller one or more columns")
+        least = float(found.cast.least[broken].min())
+        growth = (window + 1) * float((found.density * labels.wide[labels.chart])[self.near].max())
+        if growth > 0.5:
+            raise ValueError("densities vary too much next to a join; give finer columns")
+        self.size = UP / (least * (1 - growth))
+        self.mass = self.size / (window * labels.wide[labels.chart])
+        corner = (labels.column == 0) | (labels.column == labels.columns[labels.chart] - 1)
+        to = np.unique(found.edges[1][np.isin(found.edges[0], broken)])
+        self.new = to[corner[to]]
+        if not self.new.size:
+            raise ValueError("no label is known of the ends that a join makes")
+
+
+class Balance:
+    """What standard pairs do to masses and ends, ready for potentials."""
+
+    def __init__(self, found: Pairs, window: int) -> None:
+        labels, cast, spread = found.labels, found.cast, found.spread
+        self.found, self.count = found, labels.count
+        self.edges = found.edges
+        self.starts = np.searchsorted(self.edges[0], np.arange(self.count))
+        if np.any(np.bincount(self.edges[0], minlength=self.count) == 0):
+            raise ValueError("a label has no image")
+        width = labels.wide[labels.chart]
+        turn = found.density * width  # by which the logarithm of a density varies over a column, at most
+        if turn.max() > 0.5:
+            raise ValueError("densities vary too much within a column; give finer columns")
+        self.length, self.least = width / (1 - turn) * UP, cast.least * DOWN
+        if len(labels.map.charts) > 1 and window < 1:
+            raise ValueError(f"window = {window}; accepted: at least one column")
+        self.cuts = self._cuts(window)
+        low, high = spread.leaves
+        source = spread.targets.source
+        self.first = np.clip(low - turn[source] / 4, 0, 1), np.clip(high + turn[source] / 4, 0, 1)
+        self.entry, self.to = labels.named(spread.targets)
+        self.rows = np.searchsorted(self.entry, np.arange(source.size))
+        with np.errstate(divide="ignore"):
+            size, part = np.abs(cast.landed.stretch.m), (cast.label, cast.part)
+            ends = []
+            for how, value in ((np.maximum, size + cast.landed.stretch.r), (np.minimum, size - cast.landed.stretch.r)):
+                whole = np.full((self.count, labels.parts), np.inf if how is np.minimum else -np.inf)
+                how.at(whole, part, elementary.log(value))
+                ends.append(whole)
+        most, least = ends[0] + SLACK / 10, SLACK / 10 - ends[1]
+        self.gains = tuple((self._mean(x, turn), x.max(1)) for x in (most, least))
+
+    def _cuts(self, window: int) -> list[Cut]:
+        labels, cast = self.found.labels, self.found.cast
+        count, landed = len(labels.map.charts), cast.landed
+        broken = np.flatnonzero(cast.broken)
+        if not broken.size:
+            return []
+        made, seen = [], np.zeros(labels.count, dtype=bool)
+        ends = labels.left, labels.left + labels.columns * labels.wide
+        for join in range(count):  # at the upper end of this chart, and the lower one of the next
+            after = (join + 1) % count
+            at = (landed.chart == join) & (landed.theta.upper() >= ends[1][join] - 1e-6 * labels.wide[join])
+            at |= (landed.chart == after) & (landed.theta.lower() <= ends[0][after] + 1e-6 * labels.wide[after])
+            at = at & cast.broken[cast.label]
+            if (which := np.unique(cast.label[at])).size:
+                seen[which] = True
+                made.append(Cut(self.found, which, window))
+        if not np.all(seen[broken]):
+            raise ValueError("a curve is broken where no join is")
+        return made
+
+    @staticmethod
+    def _mean(values: Array, turn: Array) -> Array:
+        """The greatest mean over a column of what is at most so much on each of its parts."""
+        steps, total = values[:, :-1] - values[:, 1:], values[:, -1].copy()
+        for k in range(steps.shape[1]):
+            share = (k + 1) / values.shape[1]
+            step = steps[:, k]
+            total += step * np.where(step > 0, np.minimum(share + turn / 4, 1), np.maximum(share - turn / 4, 0))
+        return total
+
+    def best(self, values: Array) -> Array:
+        """The greatest value over the edges of each label."""
+        found: Array = np.maximum.reduceat(values[self.edges[1]], self.starts)
+        return found
+
+    def shared(self, y: Array) -> Array:
+        """The greatest mean of `y` over the image of pieces that reach from side to side."""
+        found = self.best(y)
+        spread = self.found.spread
+        if spread.last.size:
+            there = np.maximum.reduceat(y[self.to], self.rows)
+            step = np.append(there[:-1] - there[1:], 0.0)
+            value = np.where(spread.last, there, step * np.where(step > 0, self.first[1], self.first[0]))
+            total = np.bincount(spread.targets.source, value, minlength=self.count)
+            found = np.where(self.found.cast.broken, found, total)
+        return found
+
+    def charged(self, v: Array) -> tuple[Array, Array]:
+        """What cuts cost for each unit of mass, and for each end."""
+        mass, end = np.zeros(self.count), np.zeros(self.count)
+        for cut in self.cuts:
+            top = float(v[cut.new].max())
+            mass += cut.window * cut.mass * top
+            end += cut.near * cut.size * top
+        return mass, end
+
+    def excess(self, gain: int, y: Array, high: float) -> Array:
+        """By how much mass of pieces that do not reach from side to side may do better."""
+        found: Array = np.maximum(self.gains[gain][1] + self.best(y) - y - high, 0.0)
+        return found
+
+    def ends(self, s: Array, w: Array, v: Array) -> tuple[Array, Array]:
+        """One bounce of the numbers of the ends."""
+        on, (_, cut) = self.best(w) / self.least + TINY, self.charged(v)
+        return (self.length * s + on + cut) * UP, (on + cut) * UP
+
+    def step(self, gain: int, y: Array, v: Array) -> Array:
+        """The left side of the inequality of the masses."""
+        return self.gains[gain][0] + self.shared(y) + self.charged(v)[0]
+
+    def potential(self, gain: int) -> tuple[Array, float]:
+        """A potential, and about the bound that it gives, by iteration in float64."""
+        y, w, v, high = np.zeros(self.count), np.zeros(self.count), np.zeros(self.count), 0.0
+        best = np.inf, y
+        for _ in range(STEPS):
+            s = self.excess(gain, y, high)
+            for _ in range(2):
+                w, v = self.ends(s, w, v)
+            change = self.step(gain, y, v) - y
+            most, least = float(change.max()), float(change.min())
+            if not most < LARGEST:
+                break
+            high = (most + least) / 2
+            best = min(best, (most, y), key=lambda pair: pair[0])
+            if most - least < PRECISE:
+                break
+            y = y + 0.7 * (change - high)
+        return best[1], best[0]
+
+    def weights(self, gain: int, y: Array, high: float) -> tuple[Array, Array]:
+        """Numbers of the ends for a potential of the masses; they may not be good ones."""
+        s, w, v = self.excess(gain, y, high) + SLACK, np.zeros(self.count), np.zeros(self.count)
+        for _ in range(WEIGHTS):
+            more = self.ends(s, w, v)
+            if (np.all(more[0] <= w) and np.all(more[1] <= v)) or not w.max() < LARGEST:
+                break
+            w, v = (np.maximum(old, new * (1 + 1e-7)) for old, new in zip((w, v), more, strict=True))
+        return w, v
+
+    def holds(self, gain: int, y: Array, w: Array, v: Array, high: float) -> bool:
+        """Do the numbers prove the bound? All inequalities are asked, with a slack for the roundings."""
+        least = self.ends(self.excess(gain, y, high) + SLACK, w, v)
+        left = self.step(gain, y, v)
+        sizes = [float(np.abs(x).max()) for x in (y, w, v, left)]
+        small = all(size < LARGEST for size in sizes)
+        masses = bool(np.all(left + SLACK <= y + high))
+        return small and masses and bool(np.all(least[0] <= w)) and bool(np.all(least[1] <= v))
+
+    def proved(self, gain: int) -> float | None:
+        """A bound that is proved, from above: for the exponent, or for its negative; None if none is."""
+        y, high = self.potential(gain)
+        for _ in range(6):
+            if not high < LARGEST:
+                return None
+            w, v = self.weights(gain, y, high)
+            if self.holds(gain, y, w, v, high):
+                return high
+            high = max(high, float((self.step(gain, y, v) - y).max())) + 4 * SLACK
+        return None
+
+
+@dataclass(frozen=True)
+class Typical:
+    """`low <= nu_plus <= high` for almost every orbit that enters the region; `why` says what is not proved, if so."""
+
+    low: float
+    high: float
+    labels: int
+    why: str = ""
+
+    @property
+    def proved(self) -> bool:
+        return not self.why
+
+
+def typical(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, window: int = 8) -> Typical:
+    """Bounds for `nu_plus` of almost every orbit in a trapping region given by boxes."""
+    try:
+        balance = Balance(pairs(map, grid, cells, columns, rows), window)
+    except ValueError as error:
+        return Typical(-np.inf, np.inf, 0, str(error))
+    high, low = balance.proved(0), balance.proved(1)
+    if high is None or low is None:
+        return Typical(-np.inf, np.inf, balance.count, "ends of curves gather at joins; give more columns or rows")
+    return Typical(floor(-low * 1e6) / 1e6, ceil(high * 1e6) / 1e6, balance.count)

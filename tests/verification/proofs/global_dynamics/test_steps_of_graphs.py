@@ -104,3 +104,17 @@ def test_a_disc_attracts_where_it_is_taken_into_itself_by_a_contraction(monkeypa
     assert attracts(made, ROUND, 0.5) is held
     assert attracts(made, ROUND, 0.5 + 2 * np.pi) is held
     assert not attracts(made, ROUND, 0.4)
+
+
+def test_a_flight_from_somewhere_near_is_as_long_as_both_enclosures_say():
+    """From within 3/10 of the start: 5 at the middle, and at most as much more or less as the start may move."""
+    ball = lambda x, r=0.0: BallArray(np.array([float(x)]), np.array([float(r)]))  # noqa: E731
+    row = lambda *xs: [ball(x) for x in xs]  # noqa: E731
+    wide = [ball(1, 0.3), ball(0.1), *row(1, 0)]
+    there = row(4, 4.1, -0.8, 0.6, 0, 0)
+    unknown = BallArray(np.array([0.0]), np.array([np.inf]))
+    length, *_ = flown(
+        *there, *wide, *row(1, 0.1, 1, 0), *there[:4], *row(2, 2), ball(0, 0.3), *row(0, 0, 0, 0, 0), unknown
+    )
+    for moved in (-0.3, 0.0, 0.3):
+        assert float(length.lower()[0]) <= np.hypot(3 - moved, 4) <= float(length.upper()[0])

@@ -161,6 +161,17 @@ def _turned(table: Table) -> bool:
     return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in _joins(table))
 
 
+@cache
+def tangent_at_joins(table: Table) -> bool:
+    """Has the boundary one tangent at each join, so that the map is continuous there?
+
+    >>> from symbolic.tables import cuspless, gallery
+    >>> tangent_at_joins(cuspless), tangent_at_joins(gallery.square())
+    (True, False)
+    """
+    return all(across.is_zero and along.is_positive for across, along in _joins(table))
+
+
 def _joins(table: Table) -> Iterator[tuple[Expr, Expr]]:
     """Vector and scalar product of the tangents at each join; a curve that a whole turn does not change has none."""
     if len(table.components) == 1 and _whole(table.components[0]):

@@ -133,6 +133,12 @@ class PinballImages:
         return tuple(Chart(part.name, (*x,), (-self.top, self.top), self.closed, True) for part, x in parts)
 
     @property
+    def joins(self) -> tuple[tuple[int, int], ...]:
+        """Pairs of components: the end of the first is the start of the second; none on one closed curve."""
+        count = len(self.ends)
+        return () if self.closed else tuple((i, (i + 1) % count) for i in range(count))
+
+    @property
     def label(self) -> str:
         shape, (low, high) = "".join(f", {name} = {value}" for name, value in self.scene.shape.items()), self.range
         law = "" if self.law is None else f", phi = {self.scene.law}"

@@ -1,0 +1,105 @@
+"""Growth of folded curves, and exactly one attractor: known answers, refusals, and the cuspless table."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symbolic import Scene
+from verification.proofs.global_dynamics import Boxes, PinballImages
+from verification.proofs.unstable_curves.affine import BrokenLine, lozi
+from verification.proofs.unstable_curves.cover import cover
+from verification.proofs.unstable_curves.growth import growth
+from verification.proofs.unstable_curves.one_attractor import REFUSED, OneAttractor
+
+
+def at(chart, x, y):
+    """Points as boxes."""
+    return Boxes(np.array(chart), (np.array(x),) * 2, (np.array(y),) * 2)
+
+
+def about_the_fixed_point(a, b, columns=512):
+    """What is to be proved of a Lozi map, from its fixed point on the right."""
+    x = 1 / (1 + a - b)
+    return OneAttractor(lozi(a, b), columns, 512, at([1], [x], [b * x]), (1, x, b * x), 1, 0.1, 4)
+
+
+LOZI = about_the_fixed_point(1.6, 0.05)
+TWO = BrokenLine(((-2.0, -1.1), (-1.5, -1.9), (-1.0, -1.1), (1.0, 1.1), (1.5, 1.9), (2.0, 1.1)), 0.02, 0.04)
+FIXED = (1.9 + 1.6 * 1.5) / (2.6 - 0.02)
+
+
+def two(starts):
+    """Of a map with an attractor on either side: what is to be proved of the region that grows from `starts`."""
+    return OneAttractor(TWO, 256, 256, starts, (4, FIXED, 0.02 * FIXED), 1, 0.06, 2)
+
+
+TRANSITIVE = ("continuous", "cones", "growth", "saddle", "crossing")
+
+
+def test_the_closure_of_an_unstable_manifold_of_a_lozi_map_is_transitive_as_misiurewicz_proved():
+    assert all(LOZI.checks[name] for name in TRANSITIVE)
+
+
+def test_the_sum_of_inverse_stretches_of_a_lozi_map_is_that_of_one_fold_in_two_bounces():
+    """The least stretch is `(a + sqrt(a**2 - 4*b))/2`; a curve folded once in two bounces has two parts."""
+    least = (1.6 + np.sqrt(1.6**2 - 0.2)) / 2
+    assert LOZI.growth.bounces == 2
+    assert LOZI.growth.sums[1] == pytest.approx(2 / least**2, rel=0.02)
+    assert LOZI.growth.sums[1] >= 2 / least**2
+
+
+def test_a_lozi_map_that_stretches_too_little_is_refused():
+    """Below the square root of 2 two bounces do not undo one fold, and bands are swapped."""
+    weak = about_the_fixed_point(1.2, 0.01)
+    assert weak.growth.bounces is None or weak.growth.bounces > 2
+
+
+def test_two_attractors_are_refused_together_and_each_is_one_by_itself():
+    both = two(at([4, 0], [FIXED, -FIXED], [0.02 * FIXED, -0.02 * FIXED]))
+    assert both.growth.bounces is not None
+    assert both.checks["crossing"] is None
+    assert both.astray == both.region.cells.chart.size // 2
+    assert REFUSED["crossing"] in both.reason
+    assert two(at([4], [FIXED], [0.02 * FIXED])).astray == 0
+
+
+def test_a_rotation_says_nothing():
+    turn = BrokenLine(((-2.0, -1.0), (0.0, 0.0), (2.0, 1.0)), -1.0, 2.0)
+    found = OneAttractor(turn, 64, 64, at([1], [0.5], [0.0]), (1, 0.5, 0.0), 1, 0.1)
+    assert not found.proved
+    assert found.checks["cones"] is None
+    assert "cones" in found.reason or "region" in found.reason
+
+
+def test_a_map_that_is_not_one_to_one_is_refused():
+    assert replace(LOZI, map=replace(LOZI.map, b=0.0)).checks["continuous"] is None
+
+
+def test_a_rectangle_about_no_cycle_is_refused():
+    assert replace(LOZI, saddle=(1, 0.6, 0.03)).checks["saddle"] is None
+    assert replace(LOZI, half=0.001).checks["saddle"] is None
+
+
+def test_a_fold_that_is_left_out_changes_the_sum():
+    """The canary: without its join the Lozi map would seem to stretch without a fold."""
+
+    class Unfolded(BrokenLine):
+        joins = ()
+
+    part = LOZI.map
+    unfolded = Unfolded(part.knots, part.b, part.height)
+    assert growth(cover(unfolded, 512, 512, LOZI.start)).sums[0] < 1 < LOZI.growth.sums[0]
+
+
+def test_the_cuspless_table_has_one_attractor_at_three_twentyfifths():
+    """In a region about the corner orbit; on coarser cells it is not proved, and nothing is said."""
+    map = PinballImages(Scene("cuspless"), (Fraction(3, 25),) * 2)
+    theta, phi = 2.04718624, -0.0430328  # of an unstable cycle of period 4, and its mirror image
+    starts = at([0, 0], [theta, -theta], [phi, -phi])
+    found = OneAttractor(map, 1024, 8192, starts, (0, theta, phi), 4, 0.006, 24)
+    assert found.proved, found.reason
+    coarse = replace(found, columns=512, rows=512)
+    assert not coarse.proved
+    assert coarse.reason

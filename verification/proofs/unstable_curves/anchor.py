@@ -1,0 +1,155 @@
+"""A saddle cycle in a region, and a rectangle about one of its points whose every crossing curve meets `W^s`.
+
+Let `Q` be the rectangle over an interval of `theta` that holds all of the region there, and `F` the map of as many
+bounces as the cycle has. In `(u, v) = (dtheta, dphi)` the derivative of `F` over `Q` and over boxes that hold its
+images has entries `a, b, c, d`, in balls; so `F(x) - F(y)` is such a matrix times `x - y` for `x`, `y` in `Q`. With
+a slope `s` above that of all unstable curves, let
+
+    |a| - s*|b| > 1,    |c| + s*|d| < s*(|a| - s*|b|),    |c|/s + |d| < 1,    |a|*r - |b|*h > w,
+
+where `h` is the height of `Q`, and every point of the cycle in `Q` is at least `r` and at most `w` away from either
+end. Then:
+
+- an interval Newton step gives exactly one fixed point `p` of `F` in `Q`;
+- an unstable curve that crosses `Q` has an image under `F` that crosses `Q` (the last inequality: the ends leave
+  `Q` on either side), so it holds a point `x` all of whose images under `F` are in `Q`;
+- for it `|u| <= |v|/s`, for all images of `x - p`, since else `|u|` would grow for ever (the first two); so
+  `|v|` shrinks
+  (the third), and `x` lies on the stable set of the cycle;
+- images of the curve that cross `Q` come as near to the piece of `W^u(p)` that crosses `Q` as one likes: of two points
+  above one another, one on either, the preimages under `F` in `Q` differ by `|u| <= |v|/s`, and so differences shrink.
+
+The last is what the inclination lemma says; here nothing smooth is asked of the map beyond the boxes of the cycle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.arithmetic.arrays import BallArray, hull
+from verification.proofs.global_dynamics import Boxes, Matrix, matrix, times
+from verification.proofs.unstable_curves.cover import Cover
+from verification.proofs.unstable_curves.spans import Course
+
+Array = NDArray[np.float64]
+CUTS = 6  # of a box, each way, before it is mapped
+HAIR = 1e-9  # half the side of the box about a point that is followed
+STEEPER = 1.5, 2.0, 3.0, 5.0, 8.0  # how much steeper `s` may be than the curves
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """A rectangle of a region: all of it that lies over an interval of `theta`."""
+
+    chart: int
+    low: float
+    high: float
+    bottom: float
+    top: float
+
+
+def anchor(cover: Cover, point: tuple[int, float, float], period: int, half: float) -> Anchor | None:
+    """The rectangle within `half` of a point of a cycle, given roughly; None where an inequality is not proved."""
+    chart, theta, phi = point
+    bottom, top = _span(cover, chart, theta - half, theta + half)
+    if not bottom < top:
+        return None
+    box = (theta - half, theta + half), (bottom, top)
+    whole = _followed(cover, chart, box, period)
+    near = _followed(cover, chart, ((theta - HAIR, theta + HAIR), (phi - HAIR, phi + HAIR)), period)
+    if whole is None or near is None or whole[0] != chart or near[0] != chart:
+        return None
+    fixed = _fixed(whole[2], near, (theta, phi), cover, chart, period)
+    if fixed is None or not _inside(fixed, box) or not _held(cover, chart, fixed):
+        return None
+    low, high = float(fixed[0].lower()), float(fixed[0].upper())
+    least, most = min(low - box[0][0], box[0][1] - high), max(high - box[0][0], box[0][1] - low)
+    slopes = cover.steepest
+    steep = max(abs(float(slopes[0][chart])), abs(float(slopes[1][chart])))
+    for factor in STEEPER:
+        if _hyperbolic(whole[2], factor * steep, least, most, top - bottom):
+            return Anchor(chart, *box[0], bottom, top)
+    return None
+
+
+def _span(cover: Cover, chart: int, low: float, high: float) -> tuple[float, float]:
+    """Between which heights the region lies over an interval, and the cells beside it."""
+    wide = cover.sides[0][chart]
+    start = cover.grid.charts[chart].x[0]
+    first, last = (int(np.floor((x - start) / wide)) for x in (low, high))
+    rows = Course(cover).rows
+    if first < 1 or last + 2 > cover.grid.columns:
+        return 0.0, 0.0
+    return float(rows[0][chart, first - 1 : last + 2].min()), float(rows[1][chart, first - 1 : last + 2].max())
+
+
+Box = tuple[tuple[float, float], tuple[float, float]]
+
+
+def _followed(cover: Cover, chart: int, box: Box, period: int) -> tuple[int, Box, Matrix] | None:
+    """The chart and the box where a box is after so many bounces, and the product of derivatives over the boxes."""
+    product: Matrix = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
+    for _ in range(period):
+        parts = Boxes(np.array([chart]), *((np.array([a]), np.array([b])) for a, b in box)).parts(CUTS, CUTS)[0]
+        images, found = cover.map.images(parts), cover.map.derivatives(parts)
+        charts = np.unique(images.boxes.chart)
+        if images.lost.size or charts.size != 1 or len(found) != 1 or found[0][0].on.size != parts.chart.size:
+            return None
+        entries = [[_hulled(x, parts.chart.size) for x in row] for row in matrix(found[0][1])]
+        if not all(np.isfinite(x.r) for row in entries for x in row):
+            return None
+        product = times(entries, product)
+        chart = int(charts[0])
+        ends = [(float(low.min()), float(high.max())) for low, high in (images.boxes.x, images.boxes.y)]
+        box = ends[0], ends[1]
+    return chart, box, product
+
+
+def _hulled(some: BallArray, count: int) -> BallArray:
+    """One ball that holds all."""
+    low, high = (np.broadcast_to(end, count) for end in (some.lower(), some.upper()))
+    return hull(float(low.min()), float(high.max()))
+
+
+def _fixed(
+    whole: Matrix, near: tuple[int, Box, Matrix], guess: tuple[float, float], cover: Cover, chart: int, period: int
+) -> tuple[BallArray, BallArray] | None:
+    """An interval Newton step for `F(x) = x` over the rectangle: all fixed points there, and one if it is inside."""
+    at = _followed(cover, chart, ((guess[0], guess[0]), (guess[1], guess[1])), period)
+    if at is None or at[0] != chart:
+        return None
+    gap = [hull(*ends) - BallArray(x) for ends, x in zip(at[1], guess, strict=True)]
+    (a, b), (c, d) = [[x - (1.0 if i == j else 0.0) for j, x in enumerate(row)] for i, row in enumerate(whole)]
+    size = a * d - b * c
+    if not (size.positive() or size.negative()):
+        return None
+    return BallArray(guess[0]) - (d * gap[0] - b * gap[1]) / size, BallArray(guess[1]) - (
+        a * gap[1] - c * gap[0]
+    ) / size
+
+
+def _inside(fixed: tuple[BallArray, BallArray], box: Box) -> bool:
+    """Does a box lie inside another?"""
+    return all(a < x.lower() and x.upper() < b for x, (a, b) in zip(fixed, box, strict=True))
+
+
+def _held(cover: Cover, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
+    """Do the cells of the region hold a box?"""
+    member = cover.painted(np.ones(cover.cells.chart.size), 0.0)[chart]
+    spans = []
+    for x, ends, count in zip(fixed, ("x", "y"), (cover.grid.columns, cover.grid.rows), strict=True):
+        low, high = getattr(cover.grid.charts[chart], ends)
+        cells = [(float(end) - low) / (high - low) * count for end in (x.lower(), x.upper())]
+        spans.append(slice(max(0, int(np.floor(cells[0] - 1e-6))), int(np.floor(cells[1] + 1e-6)) + 1))
+    return bool(np.all(member[spans[0], spans[1]] > 0))
+
+
+def _hyperbolic(entries: Matrix, s: float, least: float, most: float, height: float) -> bool:
+    """The four inequalities."""
+    b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
+    first = entries[0][0]
+    low = (abs(float(first.m)) - float(first.r)) * (1 - 1e-12)
+    grown = low - s * b * (1 + 1e-12)
+    steady = (c + s * d) * (1 + 1e-12) < s * grown
+    return bool(grown > 1 and steady and (c / s + d) * (1 + 1e-12) < 1 and low * least - b * height > most * (1 + 1e-9))

@@ -1,0 +1,98 @@
+"""Short unstable curves grow, although they are folded: the sum of inverse stretches over the parts of a curve.
+
+A smooth unstable curve `p` in one chart is mapped to a curve that may pass from one chart to the next; there it is
+cut in smooth *parts*. After `n` bounces `p` is the union of arcs `p_i` that are mapped to smooth parts, each stretched
+by `L_i` at least in the chart's parameter. As the lengths of the arcs add up to that of `p`,
+
+    max length of a part  >=  length of p / sum(1/L_i),
+
+so where that sum is below 1 for all curves, every curve grows. (Collet and Levy for the Lozi map; in the theory of
+billiards the sum is that of the one-step expansion of an iterate.)
+
+A curve *crosses* a column of cells if it lies over all of it. A curve over a chart that crosses no column lies over
+two columns at most, next to each other, and changes its height by no more than twice the greatest slope times the
+width of a column. So if it is in a cell, it is within one column and `reach` rows of that cell; over these cells the
+least stretch is taken. Its image, if no part of it crosses a column, passes at most one join, and then has two parts,
+both in the columns at that join, within `reach` rows of each other. With `V_0 = 1` for every cell, and
+
+    V_n(b) = 1/stretch(b) * max over the edges b -> c of ( V_{n-1}(c), plus, where c is at a join,
+             the greatest V_{n-1} of a cell across that join within `reach` rows ),
+
+`V_n(b)` bounds the sum over `n` bounces for all curves that are in `b`, as long as no part crosses a column. *If `V_n`
+is below 1 for every cell of a trapping region, each unstable curve in it has, after finitely many bounces, an image
+with a smooth part that crosses a column.* The longest part would otherwise grow for ever, and two columns hold it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.proofs.unstable_curves.cover import Cover
+
+Array = NDArray[np.float64]
+LONGEST = 60  # bounces over which the sum is taken, at most
+UP = 1 + 1e-13  # more than what a step in float64 errs by
+
+
+@dataclass(frozen=True)
+class Growth:
+    """`sums[n - 1]` bounds the sum of inverse stretches over `n` bounces of every curve that crosses no column."""
+
+    sums: tuple[float, ...]
+    reach: int
+
+    @property
+    def bounces(self) -> int | None:
+        """After how many the sum is below 1 for every curve; None if it never is."""
+        return len(self.sums) if self.sums[-1] < 1 else None
+
+
+def growth(cover: Cover, longest: int = LONGEST) -> Growth:
+    """The sums of inverse stretches, up to the first number of bounces at which they are below 1."""
+    reach = _reach(cover)
+    weight = _about(cover, np.exp(-cover.least) * UP, reach)
+    value, sums, starts = np.ones(weight.size), list[float](), cover.inner.indptr[:-1]
+    while len(sums) < longest:
+        landing = folded(cover, value, reach) * UP
+        value = weight * np.maximum.reduceat(landing[cover.inner.indices], starts) * UP
+        sums.append(float(value.max()))
+        if sums[-1] < 1:
+            break
+    return Growth(tuple(sums), reach)
+
+
+def folded(cover: Cover, value: Array, reach: int) -> Array:
+    """Values of cells, and next to a join the greatest across it added, within `reach` rows."""
+    picture, found, cells = cover.painted(value, 0.0), value.copy(), cover.cells
+    last = cover.grid.columns - 1
+    for before, after in cover.map.joins:
+        for here, column, there, across in ((before, last, after, 0), (after, 0, before, last)):
+            on = np.flatnonzero((cells.chart == here) & (cells.column == column))
+            found[on] += _greatest(picture[there, across], reach, axis=0)[cells.row[on]]
+    return found
+
+
+def _reach(cover: Cover) -> int:
+    """How many rows a curve may rise or fall over two columns."""
+    low, high = cover.steepest
+    steep = np.maximum(np.abs(low), np.abs(high))
+    steep[~np.isfinite(steep)] = 0.0  # charts without cells
+    wide, tall = cover.sides
+    return int(np.ceil(np.max(2 * steep * wide / tall) * (1 + 1e-9)))
+
+
+def _about(cover: Cover, values: Array, reach: int) -> Array:
+    """The greatest value within one column and `reach` rows."""
+    picture = _greatest(_greatest(cover.painted(values, 0.0), 1, axis=1), reach, axis=2)
+    return picture[cover.cells.chart, cover.cells.column, cover.cells.row]
+
+
+def _greatest(values: Array, reach: int, axis: int) -> Array:
+    """The greatest of the entries up to `reach` before and after each."""
+    turned = np.moveaxis(values, axis, 0)
+    found = turned.copy()
+    for step in range(1, min(reach, len(turned) - 1) + 1):
+        found[step:] = np.maximum(found[step:], turned[:-step])
+        found[:-step] = np.maximum(found[:-step], turned[step:])
+    return np.moveaxis(found, 0, axis)

@@ -161,14 +161,8 @@ def _turned(table: Table) -> bool:
     return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in _joins(table))
 
 
-@cache
 def tangent_at_joins(table: Table) -> bool:
-    """Has the boundary one tangent at each join, so that the map is continuous there?
-
-    >>> from symbolic.tables import cuspless, gallery
-    >>> tangent_at_joins(cuspless), tangent_at_joins(gallery.square())
-    (True, False)
-    """
+    """Has the boundary one tangent at each join, so that the map is continuous there?"""
     return all(across.is_zero and along.is_positive for across, along in _joins(table))
 
 

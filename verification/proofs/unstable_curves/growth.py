@@ -28,6 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
 from verification.proofs.unstable_curves.cover import Cover
 
 Array = NDArray[np.float64]
@@ -51,7 +52,7 @@ class Growth:
 def growth(cover: Cover, longest: int = LONGEST) -> Growth:
     """The sums of inverse stretches, up to the first number of bounces at which they are below 1."""
     reach = _reach(cover)
-    weight = _about(cover, np.exp(-cover.least) * UP, reach)
+    weight = _about(cover, elementary.exp(-cover.least) * UP, reach)
     value, sums, starts = np.ones(weight.size), list[float](), cover.inner.indptr[:-1]
     while len(sums) < longest:
         landing = folded(cover, value, reach) * UP

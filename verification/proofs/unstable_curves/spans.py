@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from numeric.backends import elementary
 from verification.proofs.global_dynamics import Boxes
 from verification.proofs.unstable_curves.cover import Cover
 
@@ -155,7 +156,9 @@ class Course:
             left[0], left[1] = left[0] - on, left[1] - on
             on = np.round(((right[0] + right[1]) / 2 - (left[0] + left[1]) / 2) / turn) * turn
             right[0], right[1] = right[0] - on, right[1] - on
-            short = (spans.high - spans.low) * np.exp(self.cover.most.max()) * (1 + 1e-9) < turn / 2
+            short = (spans.high - spans.low) * float(elementary.exp(np.array([self.cover.most.max()]))[0]) * (
+                1 + 1e-9
+            ) < turn / 2
             short &= (left[1] - left[0] < turn / 16) & (right[1] - right[0] < turn / 16)
         else:
             short = np.ones(turned.shape, dtype=bool)

@@ -2,7 +2,7 @@
 
 from .apart import cells, kept_apart, reached
 from .barrier import Barrier, lost
-from .boxes import BoxMap, Boxes, Chart, Images, centred, collected
+from .boxes import Boxes, Chart, Images, centred, collected
 from .branch import Branch, exact, unstable_branch
 from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed
@@ -34,7 +34,6 @@ __all__ = [
     "NEAR",
     "Barrier",
     "BoundaryCrisis",
-    "BoxMap",
     "Boxes",
     "Branch",
     "Cells",

@@ -18,7 +18,7 @@ from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics import BLOCK, Boxes, Cells, Grid, Piece
 from verification.proofs.global_dynamics.apart import cells as cells_of
 from verification.proofs.global_dynamics.apart import reached
-from verification.proofs.global_dynamics.boxes import BoxMap
+from verification.proofs.global_dynamics.boxes import Chart, Images
 from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.graph import transitions
 from verification.proofs.global_dynamics.regions import carried
@@ -29,8 +29,19 @@ MOST, ROUNDS, WIDENED, LEAST = 1 << 20, 60, 0.05, 1e-9  # of cones: how much wid
 CLOSER = 6  # bounces after which vectors are looked at
 
 
-class JoinedMap(BoxMap, Protocol):
+class JoinedMap(Protocol):
     """A map of charts that are joined end to end, with its derivatives over boxes."""
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts."""
+
+    @property
+    def label(self) -> str:
+        """The map and its parameters, in words."""
+
+    def images(self, boxes: Boxes) -> Images:
+        """Rectangles that hold the image of each box."""
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:

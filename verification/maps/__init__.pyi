@@ -3,7 +3,7 @@
 from . import laws, strategies
 from .enclosed import EnclosedMap, Refusal, in_balls, in_multiprecision, perimeter
 from .exact import Bounce, ExactMap, errors, exact_bounce
-from .first_hit import closes_smoothly, convex, first_hits, inside, minimal, tangents_at_joins, turns_once, unobstructed
+from .first_hit import closes_smoothly, convex, first_hits, inside, minimal, tangents, turns_once, unobstructed
 
 __all__ = [
     "Bounce",
@@ -22,7 +22,7 @@ __all__ = [
     "minimal",
     "perimeter",
     "strategies",
-    "tangents_at_joins",
+    "tangents",
     "turns_once",
     "unobstructed",
 ]

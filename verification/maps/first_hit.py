@@ -152,18 +152,16 @@ def _over(range: Interval) -> arb:
 @cache
 def _joined(table: Table) -> bool:
     """Do the joins bend in, by less than a right angle?"""
-    return all(across.is_nonnegative and along.is_positive for across, along in tangents_at_joins(table))
+    return all(across.is_nonnegative and along.is_positive for across, along in tangents(table))
 
 
 @cache
 def _turned(table: Table) -> bool:
     """Do the joins bend in, by less than half a turn?"""
-    return all(
-        across.is_positive or (across.is_zero and along.is_positive) for across, along in tangents_at_joins(table)
-    )
+    return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in tangents(table))
 
 
-def tangents_at_joins(table: Table) -> Iterator[tuple[Expr, Expr]]:
+def tangents(table: Table) -> Iterator[tuple[Expr, Expr]]:
     """Vector and scalar product of the tangents at each join; a curve that a whole turn does not change has none."""
     if len(table.components) == 1 and _whole(table.components[0]):
         return

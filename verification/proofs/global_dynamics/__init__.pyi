@@ -8,7 +8,20 @@ from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_aroun
 from .crisis import BoundaryCrisis, boxed
 from .database import KNOWN, Numbers, continued
 from .fates import NEAR, Cluster, Fate, clusters, invertible
-from .flights import End, Flights, Matrix, Piece, Slopes, incidence, matrix, norm, times, turn_between
+from .flights import (
+    OPS,
+    End,
+    Flights,
+    Matrix,
+    Piece,
+    Slopes,
+    constant_bends,
+    incidence,
+    matrix,
+    norm,
+    times,
+    turn_between,
+)
 from .graph import (
     BLOCK,
     Cells,
@@ -32,6 +45,7 @@ __all__ = [
     "KIND",
     "KNOWN",
     "NEAR",
+    "OPS",
     "Barrier",
     "BoundaryCrisis",
     "Boxes",
@@ -63,6 +77,7 @@ __all__ = [
     "checked",
     "clusters",
     "collected",
+    "constant_bends",
     "continued",
     "disc",
     "entered_around",

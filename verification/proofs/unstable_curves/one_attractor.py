@@ -41,7 +41,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.maps.first_hit import tangents_at_joins
+from verification.maps.first_hit import tangents
 from verification.proofs.global_dynamics import Boxes, PinballImages, invertible
 from verification.proofs.unstable_curves.anchor import Anchor, anchor
 from verification.proofs.unstable_curves.attraction import attraction
@@ -137,7 +137,7 @@ class OneAttractor:
 def continuous(map: JoinedMap) -> bool:
     """Is the map continuous and one-to-one, with a determinant that is not 0 where it is smooth?"""
     if isinstance(map, PinballImages):
-        turns = tangents_at_joins(map.map.table)  # one tangent at each join
+        turns = tangents(map.map.table)  # one tangent at each join
         return map.range[0] > 0 and invertible(map) and all(a.is_zero and b.is_positive for a, b in turns)
     return bool(getattr(map, "one_to_one", False))
 

@@ -159,7 +159,7 @@ def _together(results: "Sequence[Result]", about: "Paper") -> dict[str, tuple[in
     """For claims that share results: how many judged here do, and the seconds of all of them."""
     seconds = {result.id: result.seconds for result in results}
     found: dict[str, tuple[int, float]] = {}
-    for group in sharing(about.claims):
+    for group in sharing(about.claims) if len(results) > 1 else []:
         judged = [claim.id for claim in group if claim.id in seconds and len(group) > 1]
         found |= dict.fromkeys(judged, (len(judged), sum(seconds[name] for name in judged)))
     return found

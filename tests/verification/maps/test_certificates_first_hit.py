@@ -276,8 +276,8 @@ def test_a_number_and_what_has_other_letters_are_no_sums_of_cosines():
 def test_a_table_has_as_many_joins_as_components_unless_it_is_one_whole_curve():
     whole = Component("hole", (2 + cos(theta), sin(theta)), 0, 2 * pi)
     for table in (cuspless, sinai(), drawn((0, 0), (1, 0), (0, 1)), Table("two", (whole, whole))):
-        assert len(list(first_hit._joins(table))) == len(table.components)
-    assert not list(first_hit._joins(Table("one", (whole,))))
+        assert len(list(first_hit.tangents(table))) == len(table.components)
+    assert not list(first_hit.tangents(Table("one", (whole,))))
 
 
 def test_a_sum_of_cosines_with_a_parameter_is_nonnegative_over_the_range_alone():

@@ -3,7 +3,7 @@
 A curve is a graph `phi = g(theta)` on one component, with slope `m = g'`, bend `w = g''` and a density `rho` for each
 unit of `theta`, of which `d = (log rho)'` is known. With `p = bend0 - m` and `N = l*p - cos(phi0)*speed0`, the landing
 moves by `r = N/(speed1*cos(eta1))` for each unit of `theta`. Along the curve the length of the flight changes by
-`l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`, so that the stretching `r` has the logarithmic derivative
+`l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`, so that the stretching `r` has the logarithmic derivative ::
 
     k = (l'*p - l*w + sin(phi0)*m*speed0 - cos(phi0)*speed0')/N - r*speed1'/speed1 + tan(eta1)*(bend1*r - p)
 

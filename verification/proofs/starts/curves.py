@@ -71,6 +71,8 @@ class PinballCurves:
     def __post_init__(self) -> None:
         if self.map.law is not None:
             raise ValueError(f"law = {self.map.scene.law}: unstable curves are followed under the law -lam*eta alone")
+        if self.map.range[0] <= 0:
+            raise ValueError("lam = 0: almost every orbit is not known by area; accepted: 0 < lam")
         if None in constant_bends(self.map.map.table):
             raise ValueError(f"{self.map.scene.name}: a tangent turns unevenly; accepted: cardioids, the circle")
 

@@ -32,7 +32,7 @@ from verification.proofs.starts.labels import Array, Indices
 from verification.proofs.starts.standard_pairs import Pairs, pairs
 
 UP, DOWN = 1 + 1e-12, 1 - 1e-12
-SLACK = 1e-9  # fewer than a thousand sums and products of numbers below LARGEST err by less
+SLACK = 1e-9  # for roundings; `holds` bounds them by the number of terms and their size, and refuses if that is more
 LARGEST = 1e4
 TINY = 1e-9
 STEPS, PRECISE = 3000, 1e-5
@@ -207,12 +207,24 @@ class Balance:
             w, v = (np.maximum(old, new * (1 + 1e-7)) for old, new in zip((w, v), more, strict=True))
         return w, v
 
+    def roundings(self, gain: int, y: Array, left: Array, high: float) -> float:
+        """A bound for what float64 errs by in the inequality of the masses, and in `excess`.
+
+        A sum of `n` terms, each rounded a few times, errs by `(n + 8)*2^-53` times the sum of their moduli. Terms are
+        differences of numbers of `y` or of gains; costs of cuts are positive, so that `left` bounds them with these.
+        Numbers of the ends are sums of positive ones, which `UP` covers.
+        """
+        spread, gains = self.found.spread, self.gains[gain]
+        terms = int(np.bincount(spread.targets.source, minlength=1).max()) + self.found.labels.parts + len(self.cuts)
+        size = sum(float(np.abs(x).max()) for x in (y, left, *gains)) + abs(high)
+        return (terms + 8.0) ** 2 * size * 2.0**-50
+
     def holds(self, gain: int, y: Array, w: Array, v: Array, high: float) -> bool:
         """Do the numbers prove the bound? All inequalities are asked, with a slack for the roundings."""
         least = self.ends(self.excess(gain, y, high) + SLACK, w, v)
         left = self.step(gain, y, v)
         sizes = [float(np.abs(x).max()) for x in (y, w, v, left)]
-        small = all(size < LARGEST for size in sizes)
+        small = all(size < LARGEST for size in sizes) and self.roundings(gain, y, left, high) < SLACK / 2
         masses = bool(np.all(left + SLACK <= y + high))
         return small and masses and bool(np.all(least[0] <= w)) and bool(np.all(least[1] <= v))
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from symbolic import Scene
+from verification.app.cli import main
 from verification.arithmetic.arrays import BallArray, hull, turned
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.graph import Cells, Grid, morse_graph, refined
@@ -106,7 +107,30 @@ class Tents:
         return Landed(source, charts, smooth, *balls)
 
 
-def whole(map: Circle | Tents) -> tuple[Grid, Cells]:
+class Onto:
+    """`x -> 2*x` mod 1 on one chart and `3*x` mod 1 on another, each kept, with a fibre that a quarter of is left."""
+
+    label = "two attractors"
+    closed = False
+    charts = tuple(Chart(name, (x, x + 1.0), (-1.0, 1.0), kept=True) for name, x in (("double", 0.0), ("triple", 1.0)))
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        rows = []
+        for chart, branch in ((0, 0), (0, 1), (1, 0), (1, 1), (1, 2)):
+            low, high = ((x - chart) * (chart + 2.0) - branch for x in boxes.x)
+            on = np.flatnonzero((boxes.chart == chart) & (high > 1e-12) & (low < 1 - 1e-12))
+            theta = hull(np.clip(low[on], 0, 1) + chart, np.clip(high[on], 0, 1) + chart)
+            y = hull(*boxes.y)[on] / 4 + (branch - (chart + 1) / 2) / 4
+            r = BallArray(np.full(on.size, chart + 2.0), np.full(on.size, 1e-15))
+            values = theta, y, r, slopes[on] / 4 / r, zero(r), zero(r), zero(r), 1 / (4 * r * r)
+            smooth = (low >= -1e-12) & (high <= 1 + 1e-12)
+            rows.append((on, boxes.chart[on], smooth[on], *(half for x in values for half in (x.m, x.r))))
+        source, charts, smooth, *halves = (np.concatenate(column) for column in zip(*rows, strict=True))
+        balls = (BallArray(halves[i], halves[i + 1]) for i in range(0, len(halves), 2))
+        return Landed(source, charts, smooth, *balls)
+
+
+def whole(map: Circle | Tents | Onto) -> tuple[Grid, Cells]:
     grid = Grid(map.charts, 64, 16)
     return grid, grid.whole()
 
@@ -136,6 +160,34 @@ def test_the_exponent_of_a_skew_tent_map_is_its_entropy():
     exact = -0.4 * np.log(0.4) - 0.6 * np.log(0.6)
     assert -low <= exact <= high
     assert high + low < 0.01 < np.log(0.6 / 0.4) / 10  # cycles leave a range of log(3/2)
+
+
+def test_bounds_hold_for_both_of_two_attractors_in_one_region():
+    both = typical(Onto(), *whole(Onto()), 60, 16, 4)
+    assert both.proved
+    assert both.low <= np.log(2) < np.log(3) <= both.high
+
+
+@pytest.mark.parametrize("chart", [0, 1])
+def test_bounds_over_one_attractor_are_those_of_its_own_exponent(chart):
+    grid, cells = whole(Onto())
+    alone = typical(Onto(), grid, Cells(*(field[cells.chart == chart] for field in cells)), 400, 100)
+    assert alone.low <= np.log(2 + chart) <= alone.high < alone.low + 1e-5
+
+
+def test_boxes_that_do_not_trap_are_refused():
+    grid, cells = whole(Tents(0.4))
+    found = typical(Tents(0.4), grid, Cells(*(field[cells.chart == 0] for field in cells)), 400, 80)
+    assert found.why == "the boxes are no trapping region"
+
+
+def test_numbers_whose_roundings_are_not_covered_prove_nothing():
+    balance = Balance(tents(), 8)
+    y, high = balance.potential(0)
+    high += 1e-4
+    w, v = balance.weights(0, y, high)
+    assert balance.holds(0, y, w, v, high)
+    assert not balance.holds(0, y + 5000.0, w, v, high)  # the same inequalities, but for roundings
 
 
 def test_numbers_that_leave_something_out_prove_nothing():
@@ -214,3 +266,18 @@ def test_tables_and_laws_whose_curves_are_not_known_are_refused():
         PinballCurves(PinballImages(Scene("egg", alpha="0.08", lam="1/2")))
     with pytest.raises(ValueError, match="law"):
         PinballCurves(PinballImages(Scene("circle", lam="1/2", law="-lam*eta/2")))
+
+
+def test_without_contraction_nothing_is_said_by_area():
+    with pytest.raises(ValueError, match="0 < lam"):
+        PinballCurves(PinballImages(Scene("cuspless"), (Fraction(0), Fraction("0.1"))))
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [("512", "nothing is proved of almost every orbit there"), ("8192", "<= nu_plus <= 0.33")],
+)
+def test_the_command_says_what_is_proved_of_almost_every_orbit(capsys, columns, said):
+    size = "--columns", "1024", "--rows", "512"
+    assert main(["morse", "cuspless", "--lam", "0.12", *size, "--almost-every", columns]) == 0
+    assert said in capsys.readouterr().out

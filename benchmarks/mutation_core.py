@@ -33,7 +33,7 @@ from typing import NamedTuple
 import coverage
 import pytest
 from mutation_mutants import ROOT, STATE, Mutant, changed, function_at, statements
-from mutation_server import QUIET, append, ask, file_of, in_fork, warm
+from mutation_server import QUIET, append, ask, file_of, forget_traced, in_fork, warm
 
 CORE = ROOT / "benchmarks" / "records" / "mutation_core.toml"
 RESULTS = STATE / "core.jsonl"
@@ -289,6 +289,7 @@ class Guards:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
+        forget_traced()
         self.coverage.switch_context(item.nodeid)
         start = time.process_time()
         try:

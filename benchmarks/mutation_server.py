@@ -61,6 +61,14 @@ def forget_kernels() -> None:
             kept.unlink()
 
 
+def forget_traced() -> None:
+    """Traced functions, whose lines run only when they are written down: the next test that calls one does it anew."""
+    traced = sys.modules.get("numeric.kernels.traced")
+    for one in gc.get_objects() if traced else ():
+        if type(one) is traced.Traced:
+            one.run, one.outputs, one.written = None, 0, False
+
+
 class Cover:
     """A pytest plugin: the lines of the project that each test executes, and its seconds; memos are emptied before."""
 
@@ -76,6 +84,7 @@ class Cover:
                     with suppress(Exception):
                         value.cache_clear()
         forget_kernels()
+        forget_traced()
         self.coverage.switch_context(item.nodeid)
         start = time.perf_counter()
         try:

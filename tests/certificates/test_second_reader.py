@@ -221,6 +221,7 @@ def test_a_local_manifold_is_enclosed_only_where_it_is(check, entry, place, fact
     [
         ({"meets": 0}, "refused: meets is out of range"),
         ({"meets": True}, "refused: meets is out of range"),
+        ({"meets": len(document(LONG)["orbit"]) - 1}, "refused: meets is out of range"),  # no flight to the saddle
         ({"scene": {"table": "cuspless"}}, "refused: the statement must be"),
         ({"free": "alpha"}, "refused: bits, digits, free"),
         ({"centre": [["1", "0"], *document(LONG)["centre"][1:]]}, "not proved: exists: a start beyond the manifold"),

@@ -136,3 +136,29 @@ def test_of_a_product_with_what_is_not_known_nothing_is_known(check, empty):
     assert not times({"": 2}, empty)
     assert not times(empty, {"": 2})
     assert times({"x": 3, "": 1}, {"": 2}) == {"x": 6, "": 2}
+
+
+@pytest.mark.parametrize("at", ["-3", "-23/10", "-8/5", "-1/2", "1/3", "2", "14/5"])
+def test_a_radius_that_vanishes_anywhere_on_its_round_is_refused(check, at):
+    """On a short piece about one place, wherever that is."""
+    boundaries = check.beside("boundaries")
+    for depth, positive in (("6/5", False), ("21/20", False), ("9/10", True)):
+        table = SimpleNamespace(letters={}, parts=[[check.parse(f"1 - {depth}*cos(theta - ({at}))")]])
+        if positive:
+            boundaries.positive(table)
+        else:
+            with pytest.raises(check.Wrong, match="radius may not be positive"):
+                boundaries.positive(table)
+
+
+@pytest.mark.parametrize(("low", "high"), [("1/10", "9/10"), ("9/10", "6/5"), ("-1", "-9/10"), ("-1/10", "1")])
+def test_cells_that_a_rectangle_meets_are_cells_of_the_strip(check, low, high):
+    """Of eight columns and four rows, the angle from -1 to 1; no particle leaves the strip."""
+    p = 64
+    made = SimpleNamespace(columns=8, rows=4, p=p, top=check.I.of(1, p))
+    theta, phi = (
+        check.I.of(Fraction(a), p).hull(check.I.of(Fraction(b), p)) for a, b in (("1/5", "3/10"), (low, high))
+    )
+    found = check.beside("region").Inside.met(made, theta, phi)
+    wanted = [r for r in range(4) if Fraction(r, 2) - 1 <= Fraction(high) and Fraction(r + 1, 2) - 1 >= Fraction(low)]
+    assert found == [(4, r) for r in wanted]

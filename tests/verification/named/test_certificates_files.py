@@ -249,6 +249,22 @@ def test_a_malformed_certificate_is_one_sentence(fold, entry, value, message):
         claim_of(given)
 
 
+@pytest.mark.parametrize(("bits", "lam", "read"), [
+    (16, "1/3", True), (15, "1/3", False), (64, "0", True), (64, "1", True), (64, "5/4", False), (64, "-1/4", False),
+])  # fmt: skip
+def test_a_claim_is_read_from_16_bits_on_and_for_contractions_from_0_to_1(bits, lam, read):
+    """Both ends of the contractions are laws: all particles leave along the normal, or are reflected."""
+    table = tables.egg(3).at(alpha=Rational(1, 10))
+    given = document(certify(Problem(table, (0, 0), lam=Rational(1, 3)), [0.0, 3.14], 20)) | {"bits": bits}
+    given["scene"] = given["scene"] | {"lam": lam}
+    if read:
+        claim = claim_of(given)
+        assert (claim.bits, claim.problem.lam) == (bits, Rational(lam))
+    else:
+        with pytest.raises(ValueError, match="out of range" if bits < 16 else "no contraction"):
+            claim_of(given)
+
+
 def test_a_file_that_is_no_certificate_is_refused(tmp_path):
     (tmp_path / "list.json").write_text("[1, 2]")
     (tmp_path / "text.json").write_text("no")

@@ -157,6 +157,8 @@ def test_what_is_thin_at_birth_is_born_in_a_fold_with_robust_chaos(monkeypatch, 
     monkeypatch.setattr(hyperbolicity, "saddles", lambda: True)
     claim = next(c for c in catalogue() if c.id == "cuspless.thin_at_birth")
     monkeypatch.setattr(hyperbolicity, "border", lambda: limit)
-    assert hyperbolicity.thin_at_birth(claim).verdict is Verdict.CONFIRMED
+    found = hyperbolicity.thin_at_birth(claim)
+    assert found.verdict is Verdict.CONFIRMED
+    assert "in two strips, 0.10 by 0.01000 in units" in found.printed.reason
     monkeypatch.setattr(hyperbolicity, "border", lambda: replace(limit, **wrong))
     assert hyperbolicity.thin_at_birth(claim).verdict is Verdict.OPEN

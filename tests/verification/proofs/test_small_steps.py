@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flint import arb
+from flint import acb, arb
 from sympy import Rational
 
 from symbolic import tables
@@ -27,10 +27,11 @@ from verification.proofs.global_dynamics.graph import Grid
 from verification.proofs.manifolds import enclosed
 from verification.proofs.manifolds.horseshoe import _expands
 from verification.proofs.manifolds.known import TRIANGLE
-from verification.proofs.manifolds.plane_map import Henon, pinball
-from verification.proofs.periodic import returning
+from verification.proofs.manifolds.plane_map import Henon, Pinball, pinball
+from verification.proofs.manifolds.tangency import Precision
+from verification.proofs.periodic import returning, torus, triangles
 from verification.proofs.periodic.bifurcation import _nonzero
-from verification.proofs.periodic.interval_newton import Cover, no_others
+from verification.proofs.periodic.interval_newton import Cover, Status, no_others
 from verification.proofs.slap_map import transfer
 from verification.proofs.starts import division
 from verification.proofs.starts.basin_edge import BasinEdge
@@ -266,3 +267,59 @@ def test_a_cone_of_an_h_set_grows_where_a_matrix_is_positive_definite(matrix, gr
 @pytest.mark.parametrize(("number", "told"), [("5e-11", "0"), ("9.9e-11", "0"), ("-5e-11", "0"), ("2e-10", "2e-10")])
 def test_what_is_below_all_digits_asked_for_is_told_as_0(number, told):
     assert float(_text(arb(number).mid(), 10)) == pytest.approx(float(told), abs=0, rel=1e-3)
+
+
+@pytest.mark.parametrize("doubtful", [(), (2,), (0, 5)])
+@pytest.mark.parametrize("unknown", [(), (3,), (0, 1)])
+def test_angles_told_by_gaps_are_taken_where_they_hold_and_are_finite(doubtful, unknown):
+    """Where the sine by which they are told may not be positive, they may be those of another chord."""
+    told = [arb("inf") if k in unknown else arb(k) for k in range(6)]
+    ahead = [arb(-1) if k in doubtful else arb(1) for k in range(6)]
+    found = triangles._from_gaps(lambda *_: [arb(10 + k) for k in range(6)], lambda *_: [*told, *ahead], [], [])
+    assert found == [10 + k if k in doubtful + unknown else k for k in range(6)]
+
+
+@pytest.mark.parametrize("at", range(3))
+@pytest.mark.parametrize(("exit", "none"), [(arb(2), True), (arb(-1), True), (arb(0, 5), False), (arb(1, 0.5), False)])
+def test_no_triangle_has_an_exit_angle_below_0_or_above_the_largest(at, exit, none):
+    """Of one bounce of the three; nothing is known of the others."""
+    phi = [exit if k == at else arb(0, 5) for k in range(3)]
+    angles, slopes = lambda *_: [*phi, *[arb(0, 100)] * 3], lambda *_: [arb(0, 100)] * 18
+    box = [(0.0, 0.1), (2.2, 0.1), (2.0, 0.1)]
+    assert triangles._impossible(angles, slopes, arb(1), arb(1), 0.1, box) is none
+
+
+def test_a_region_is_asked_up_to_the_upper_end_of_the_distance_from_lambda_star(monkeypatch):
+    """Which is enclosed, here in a wide ball: whichever number of it is `lambda*`, all contractions are held."""
+    monkeypatch.setattr(half_return, "limit", lambda: None)
+    monkeypatch.setattr(half_return, "enclosed", lambda: (None, arb("0.07", "0.001")))
+    monkeypatch.setattr(half_return, "step", lambda near, e: (near, e))
+    found = half_return.trapping_region(0.0725)
+    assert found.proved
+    assert found.steps[0][0] == 0
+    assert all(one[1] == other[0] for one, other in zip(found.steps, found.steps[1:], strict=False))
+    assert found.steps[-1][1] >= 0.0035
+
+
+@pytest.mark.parametrize(
+    ("trace", "told"),
+    [(x, True) for x in (0.5, -1.5, 1.75)] + [(x, None) for x in (2.5, -2.5, 2.0, -2.0, 0, -1)],
+)
+def test_multipliers_turn_where_the_trace_is_below_2_and_are_resonant_at_0_and_minus_1(monkeypatch, trace, told):
+    """Beyond 2 the cycle is a neutral saddle, with real multipliers whose product is 1."""
+    here = SimpleNamespace(drift=lambda _: acb(1), cubic=lambda: acb(-1), mu=acb(arb(trace) / 2))
+    monkeypatch.setattr(torus, "refined", lambda *_: SimpleNamespace(z=None))
+    monkeypatch.setattr(torus, "exact_balls", lambda _: None)
+    monkeypatch.setattr(torus, "interval_newton", lambda *_: SimpleNamespace(status=Status.UNIQUE, zero=None))
+    monkeypatch.setattr(torus, "Rotation", lambda *_: here)
+    found = torus.torus(SimpleNamespace(ring=None), [], "r")
+    assert found.checks == {"exists": True, "nonresonant": told, "transversal": True, "nondegenerate": True}
+
+
+@pytest.mark.parametrize("digits", [1, 8, 30])
+def test_parameters_of_a_box_reach_as_far_as_its_digits_say(digits):
+    assert abs(Precision(digits).step * arb(10) ** digits - 1) < 1e-12
+
+
+def test_places_of_a_table_of_which_no_symmetry_is_told_are_known_up_to_whole_turns():
+    assert Pinball(circle).turn == 1

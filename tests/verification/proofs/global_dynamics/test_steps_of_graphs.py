@@ -9,8 +9,10 @@ from scipy.sparse import csr_matrix
 from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.common_boundary import Disc, attracts
-from verification.proofs.global_dynamics.flights import flown
+from verification.proofs.global_dynamics.fates import Cluster, holding
+from verification.proofs.global_dynamics.flights import flown, newton
 from verification.proofs.global_dynamics.graph import Cells, Grid, MorseGraph, Transitions
+from verification.proofs.global_dynamics.regions import shares
 
 ROUND = Disc((0.1, 0.2), ((1.0, 0.0), (0.0, 1.0)), 0.01)
 
@@ -118,3 +120,52 @@ def test_a_flight_from_somewhere_near_is_as_long_as_both_enclosures_say():
     )
     for moved in (-0.3, 0.0, 0.3):
         assert float(length.lower()[0]) <= np.hypot(3 - moved, 4) <= float(length.upper()[0])
+
+
+def cluster(sink: bool, *rectangles: tuple[float, float, float, float]) -> Cluster:
+    left, right, low, high = np.array(rectangles, dtype=float).T
+    return Cluster(Boxes(np.zeros(left.size, int), (left, right), (low, high)), sink, None)
+
+
+def test_a_cycle_is_held_by_a_sink_where_no_other_part_holds_one_of_its_points():
+    """Not even on its border; however many others there are that hold none."""
+    points = [(0, 0.5, 0.5), (0, 2.5, 0.5)]
+    sink, far = cluster(True, (0, 1, 0, 1), (2, 3, 0, 1)), cluster(False, (5, 6, 0, 1), (7, 8, 0, 1))
+    for met in (cluster(False, (0.25, 0.75, 0, 1)), cluster(False, (2.5, 4, 0, 1)), cluster(True, (-1, 0.5, 0, 0.5))):
+        for parts in ([sink, met], [met, sink], [sink, met, far], [far, sink, met]):
+            assert holding(parts, points) is None
+    for parts in ([sink], [sink, far], [far, sink, far], [cluster(True, (5, 6, 0, 1)), sink]):
+        assert holding(parts, points) is sink
+    assert holding([sink], points[:1]) is None  # a cluster without a point
+    assert holding([cluster(True, (0, 3, 0, 1), (2, 3, 0, 1))], points) is None  # or a point in both
+
+
+@pytest.mark.parametrize("root", [0.35, 0.5, 0.6, 0.78])
+@pytest.mark.parametrize("length", [0.25, 1.0, 4.0])
+def test_a_step_of_newton_encloses_where_a_line_meets_the_circle(root, length):
+    """From the centre, by a direction of any length: at the direction's angle, more closely than the arc tells."""
+    at, (low, high) = 0.5, (0.3, 0.8)
+    exact = lambda x: BallArray(np.array([float(x)]))  # noqa: E731
+    over = lambda a, b: BallArray(np.array([(a + b) / 2]), np.array([abs(b - a) / 2 + 1e-12]))  # noqa: E731
+    line = 0, 0, length * np.cos(root), length * np.sin(root)
+    slopes = over(-np.sin(low), -np.sin(high)), over(np.cos(low), np.cos(high))
+    known = *map(exact, (*line, np.cos(at), np.sin(at))), *slopes
+    (found,) = newton(exact(at), over(low, high), *known)
+    assert found.lower()[0] - 1e-12 <= root <= found.upper()[0] + 1e-12
+    assert found.r[0] < 0.2
+    (unknown,) = newton(exact(at), over(0.6, 0.8), *known)  # nothing is known of the slopes at the guess
+    assert np.isinf(unknown.r[0])
+
+
+@pytest.mark.parametrize("count", [0, 3, 7, 12])
+def test_shares_of_phase_space_are_bounds_with_room_for_roundings(count):
+    """Of twelve equal boxes: those from which every walk ends in a region, and those from which some does."""
+    graph, block = random_graph(1, cut=False), np.zeros(13, dtype=bool)
+    sure = np.arange(13) < count
+    made = SimpleNamespace(transitions=graph, trapping=lambda _: block, basin=lambda _: sure)
+    low, high = shares(made, 0)
+    assert (low, high) == (pytest.approx(count / 12, abs=1e-8), pytest.approx(0, abs=1e-8))
+    assert low < count / 12 or low == count == 0
+    assert high > 0
+    block[:] = True
+    assert shares(made, 0)[1] == 1

@@ -12,15 +12,19 @@ from numeric import PinballMap
 from symbolic import Scene
 from verification.arithmetic.arrays import BallArray, hull
 from verification.arithmetic.balls import working
+from verification.cycles.recurrence import Closure
+from verification.proofs.corner.corner import ARC, WALL, corner_parameters
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.slap_map import exponent
 from verification.proofs.starts import alternating, below_star, core, division, strips
 from verification.proofs.starts.alternating import Alternating
+from verification.proofs.starts.basin_edge import BasinEdge
 from verification.proofs.starts.below_star import BelowStar
 from verification.proofs.starts.chords import Chords
 from verification.proofs.starts.core import Core
-from verification.proofs.starts.division import Ring
+from verification.proofs.starts.division import Division, Ring
 from verification.proofs.starts.strips import Strips
 
 CURVED = Core(0, -0.4, 0.9, 0.0025, 0.2, 0.3, 12)
@@ -180,3 +184,113 @@ def test_what_is_not_proved_below_lambda_star_is_open_and_not_false(monkeypatch,
     found = BelowStar(((SimpleNamespace(lam=(Fraction(0), below_star.NEXT)), None),), CURVED)
     assert found.checks == {step: True if says(step) else None for step in found.checks}
     assert set(found.checks) == set(STEPS)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_two_bounces_are_those_of_a_point_of_the_polygon_or_of_its_mirror_image(sign):
+    """Of a square, in units of `lam - lambda*`; the first bounce on the arc, the second on the arc or the wall."""
+    made = Alternating(Fraction(3, 40), CURVED)
+    made.__dict__["polygon"] = SimpleNamespace(region=[(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    with working(alternating.BITS):
+        theta1, star = alternating.enclosed()
+        e = arb(3) / 40 - star
+
+        def held(u, v, components=(ARC, ARC)):
+            ends = -theta1 + u * e, corner_parameters()[components[1]] + v * e
+            pair = (SimpleNamespace(component=c, theta=sign * x) for c, x in zip(components, ends, strict=True))
+            return made.in_polygon(*pair)
+
+        for second in (ARC, WALL):
+            assert held(0.5, -0.75, (ARC, second))
+            assert not held(1.5, 0.0, (ARC, second))
+            assert not held(0.5, -0.75, (WALL, second))
+            assert not held(0.5, 1.5, (ARC, second))
+
+
+@pytest.mark.parametrize(("low", "high", "rows"), [
+    (0.5, 0.5, [1]), (0.8, 0.95, [2]), (0.1, 0.9, [0, 1, 2]), (0.9, 1.2, [2]), (-0.2, 0.1, [0]), (0.5, 1.6, [1, 2]),
+])  # fmt: skip
+def test_edges_lead_to_the_cells_that_an_image_meets_and_to_no_others(low, high, rows):
+    """Of four columns and three rows, where an image may end beyond the last row and go over the end of the turn."""
+
+    def images(boxes):
+        full = lambda x: np.full(boxes.chart.size, float(x))  # noqa: E731
+        x, y = (full(np.pi * 3 / 8), full(np.pi * 5 / 8)), (full(low), full(high))
+        return SimpleNamespace(lost=np.zeros(0, int), boxes=Boxes(boxes.chart, x, y), source=np.arange(full(0).size))
+
+    barrier = SimpleNamespace(turns=2, map=SimpleNamespace(top=1.0, images=images))
+    made = BasinEdge(barrier, (0.0, 0.0), replace(TRIANGLE, closure=Closure(1, (1, 2))), 0.01)
+    column, row = (index.ravel() for index in np.indices((4, 3)))
+    found = made._edges(column, row, made._boxes(column, row, 4, 3), 4, 3)
+    wanted = {(k, c * 3 + r) for k in range(12) for c in (3, 0) for r in rows}
+    assert set(zip(*(ends.tolist() for ends in found), strict=True)) == wanted
+
+
+def test_strips_are_cut_into_as_many_columns_and_rows_as_are_asked_for():
+    """Which cover all angles between the normal and the tangent."""
+    found = strips.strips(PinballImages(Scene("egg", alpha="0.08", lam="1/2")), (5,), 3)
+    assert found.chart.size == 15
+    middles = np.unique(found.middle)
+    assert middles.size == 3
+    assert np.min(found.middle - found.half) <= 0
+    assert np.max(found.middle + found.half) >= np.pi / 2 - 1e-15
+    assert np.all(np.diff(middles) <= 2 * found.half[0])
+
+
+@pytest.mark.parametrize(("first", "last"), [(-0.0203, 0.0101), (-0.05, -0.0158), (0.0101, 0.05)])
+def test_orbits_from_the_join_are_carried_that_leave_beside_the_first_ones(monkeypatch, first, last):
+    """All of those, and none that leave among the first ones, at angles between `first` and `last`."""
+    asked, ends = [], iter((arb(first), arb(last)))
+    monkeypatch.setattr(below_star, "_leaving", lambda _: next(ends))
+    for name in ("unreturning", "inner", "begins"):
+        monkeypatch.setattr(below_star, name, lambda *_: True)
+    for name in ("attracts", "hulls", "first_hull"):
+        monkeypatch.setattr(below_star, name, lambda *_: {})
+    monkeypatch.setattr(BelowStar, "_exits", lambda _: True)
+    monkeypatch.setattr(BelowStar, "_carried", lambda _, map, low, high: asked.append((low, high)))
+    assert BelowStar((), CURVED).checks["carried"] is None
+    ((low, high),) = asked
+    assert np.all((low < first) | (high > last))
+    for angle in np.linspace(-below_star.ANGLE, below_star.ANGLE, 101):
+        assert np.any((low <= angle) & (angle <= high)) or first < angle < last
+
+
+def test_states_next_to_the_join_lie_in_the_boxes_that_are_to_be_in_the_core(monkeypatch):
+    """With the roundings of all four ends."""
+    asked = []
+    monkeypatch.setattr(below_star, "Parallelograms", SimpleNamespace(about=asked.append))
+    monkeypatch.setattr(below_star, "cuts", lambda low, high, size: [arb((low + high) / 2, abs(high - low) / 7)])
+    core = SimpleNamespace(enters=lambda _: np.array([True]))
+    with working(below_star.BITS):
+        assert BelowStar((), core)._exits()
+        theta1, _ = below_star.enclosed()
+        v = below_star.cuts(below_star.V_HIGH, below_star.FAR, 0)[0]
+        u = below_star.cuts(-below_star.THICK, below_star.LEAN * float(v.upper()) + below_star.THICK, 0)[0]
+        at = corner_parameters()[WALL] + v
+        ends = (below_star.Bounce(c, below_star.constant(x, ())) for c, x in ((WALL, at), (ARC, u - theta1)))
+        eta = below_star.angle(*ends)[0]
+        lam = arb(below_star.NEXT.numerator) / below_star.NEXT.denominator
+        lam = lam.union(arb(below_star.TOP.numerator) / below_star.TOP.denominator)
+        (boxes,) = asked
+        for ball, (low, high) in ((at, boxes.x), (-lam * eta, boxes.y)):
+            assert arb(low[0]) < ball.lower()
+            assert arb(high[0]) > ball.upper()
+
+
+@pytest.mark.parametrize(("x", "y", "outside", "held"), [
+    ((1.0, 2.0), (-1.0, 1.0), False, True),
+    ((0.0, 2.0), (-1.0, 1.0), False, False),  # the horizontal orbit is at its border
+    ((-2.0, 0.0), (-1.0, 0.0), False, False),
+    ((-2.0, 2.0), (0.0, 1.0), False, False),
+    ((-2.0, 2.0), (0.5, 1.0), False, True),
+    ((1.0, 2.0), (-1.0, 1.0), True, False),
+])  # fmt: skip
+def test_a_region_beside_the_core_holds_no_point_of_the_horizontal_orbit_and_lets_nothing_out(x, y, outside, held):
+    boxes = Boxes(np.zeros(1, int), *((np.array([low]), np.array([high])) for low, high in (x, y)))
+    grid = SimpleNamespace(boxes=lambda _: boxes)
+    graph = SimpleNamespace(
+        transitions=SimpleNamespace(grid=grid, chosen=lambda found: found),
+        attracting=(0,), sets=(np.array([0]),), trapping=lambda _: np.array([True, outside]),
+    )  # fmt: skip
+    found = Division.region.func(SimpleNamespace(graph=graph, settled=np.array([False, False])))
+    assert (found is not None) is held

@@ -1,4 +1,4 @@
-"""Unstable curves: do they grow although they are folded, and do they all come to one saddle, so to one attractor?"""
+"""Unstable curves: do they grow although they are folded, and do all come to one saddle, so that attractors are one?"""
 
 import lazy_loader
 

@@ -34,7 +34,6 @@ from verification.proofs.unstable_curves.spans import Course
 
 Array = NDArray[np.float64]
 CUTS = 6  # of a box, each way, before it is mapped
-HAIR = 1e-9  # half the side of the box about a point that is followed
 STEEPER = 1.5, 2.0, 3.0, 5.0, 8.0  # how much steeper `s` may be than the curves
 
 
@@ -57,10 +56,9 @@ def anchor(cover: Cover, point: tuple[int, float, float], period: int, half: flo
         return None
     box = (theta - half, theta + half), (bottom, top)
     whole = _followed(cover, chart, box, period)
-    near = _followed(cover, chart, ((theta - HAIR, theta + HAIR), (phi - HAIR, phi + HAIR)), period)
-    if whole is None or near is None or whole[0] != chart or near[0] != chart:
+    if whole is None or whole[0] != chart:
         return None
-    fixed = _fixed(whole[2], near, (theta, phi), cover, chart, period)
+    fixed = _fixed(whole[2], (theta, phi), cover, chart, period)
     if fixed is None or not _inside(fixed, box) or not _held(cover, chart, fixed):
         return None
     low, high = float(fixed[0].lower()), float(fixed[0].upper())
@@ -113,7 +111,7 @@ def _hulled(some: BallArray, count: int) -> BallArray:
 
 
 def _fixed(
-    whole: Matrix, near: tuple[int, Box, Matrix], guess: tuple[float, float], cover: Cover, chart: int, period: int
+    whole: Matrix, guess: tuple[float, float], cover: Cover, chart: int, period: int
 ) -> tuple[BallArray, BallArray] | None:
     """An interval Newton step for `F(x) = x` over the rectangle: all fixed points there, and one if it is inside."""
     at = _followed(cover, chart, ((guess[0], guess[0]), (guess[1], guess[1])), period)

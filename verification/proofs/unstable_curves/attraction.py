@@ -1,4 +1,4 @@
-"""Does every orbit of a region come near an unstable manifold? By curves along which all bounces contract.
+"""Does every orbit come to where stable curves meet an unstable manifold, unless they turn back before?
 
 *Stable slopes.* Each cell of a wide region has a range of inverse slopes `q = dtheta/dphi`, with 0 in it, such that the
 inverse of the derivative over a cell takes the ranges of the cells to which edges lead into its own; and none of
@@ -7,14 +7,19 @@ angle bounded from below: so it shrinks as long as the walk's determinants, over
 
 *Stable curves.* Let the map be one-to-one on the region, a compact set taken into its interior, and `x` a point of it.
 The vertical line through the image of `x` under `m` bounces, within the image of the region, ends at images of border
-points; taken back it is a curve through `x`, up and down, from border to border, with stable slopes. In the limit of
-large `m` it is a curve along which all bounces contract: all its points have the same limit set.
+points; taken back it is a curve through `x`, from border to border, with stable slopes. In the limit of large `m` it
+is a curve along which all bounces contract: all its points have the same limit set.
+
+*Where it turns back.* Taken back across a join where one chart keeps the order of points and the next turns it, the
+curve has a corner there, up on one side and down on the other, and turns back wherever that corner is taken to: both
+ends may lie on one border. So it is known to run on through a rectangle only up to the first preimage of such a join.
 
 *Blocks.* Let a rectangle in the wide region hold all of the narrow one that lies over an interval, and let a curve
 `G` in the unstable manifold of the saddle, or in its closure, cross it within the narrow region. A point of the narrow
 region in the block, farther from both sides than the greatest `|q|` times the height, has a stable curve that meets
-`G` before it leaves the block. So its limit set lies in the closure of the unstable manifold. If no closed walk of
-cells avoids such inner parts of blocks, that is so for every point of the narrow region.
+`G` before it leaves the block, unless it turns back before. If it meets `G`, the limit set of the point lies in the
+closure of the unstable manifold. If no closed walk of cells avoids such inner parts of blocks, each orbit has
+infinitely many such chances. That one of them is taken by every orbit is not proved.
 """
 
 from dataclasses import dataclass
@@ -39,14 +44,14 @@ STEPS, KEPT = 60, 256  # bounces of the unstable manifold, and its parts that ar
 
 @dataclass(frozen=True)
 class Attraction:
-    """`covered` are the cells of the narrow region in inner parts of blocks; `proved` that no walk avoids them."""
+    """`covered` are the cells of the narrow region in inner parts of blocks; `proved`: no closed walk avoids them."""
 
     covered: Mask
     proved: bool
 
 
 def attraction(narrow: Cover, wide: Cover, at: Anchor) -> Attraction:
-    """Do all orbits of the narrow region come near the unstable manifold of the saddle in the rectangle `at`?"""
+    """Do all orbits of the narrow region come again and again to blocks that the saddle's unstable manifold crosses?"""
     count = narrow.cells.chart.size
     none = Attraction(np.zeros(count, dtype=bool), False)
     slopes = stable_slopes(wide)

@@ -153,7 +153,7 @@ def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, par
     """Cones that are taken into the inside of those of all cells to which edges lead, grown from horizontal vectors."""
     source, chart, slopes = over_cells(map, grid, cells, parts)
     count = cells.chart.size
-    low, high = np.zeros(count), np.zeros(count)
+    low, high = np.full(count, -LEAST), np.full(count, LEAST)
     for _ in range(ROUNDS):
         new = _arriving(source, chart, slopes, inner, cells, (low, high), len(map.charts))
         entered = new[0] <= new[1]
@@ -166,7 +166,7 @@ def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, par
         high = np.where(entered, np.maximum(high, new[1] + wide), high)
     else:
         return "no cones: they grow without end"
-    outer = np.where(entered, low, low - LEAST), np.where(entered, high, high + LEAST)
+    outer = low, high
     for _ in range(CLOSER):  # images of invariant cones are invariant
         cones = np.where(entered, new[0], outer[0]), np.where(entered, new[1], outer[1])
         new = _arriving(source, chart, slopes, inner, cells, cones, len(map.charts))
@@ -178,6 +178,7 @@ def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, par
             np.any(cones[0] >= cones[1])
             or not np.all(stretch.positive() | stretch.negative())
             or not np.all(np.isfinite(size))
+            or np.unique(source).size < count
         ):
             return "no cones: over some cell a vector of its cone may become vertical"
         least, most, area = np.full(count, np.inf), np.full(count, -np.inf), np.full(count, -np.inf)

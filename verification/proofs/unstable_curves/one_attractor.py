@@ -1,4 +1,4 @@
-"""Exactly one attractor in a region, and it is transitive: growth, crossing, and contraction along stable curves.
+"""No two attractors in a region, and a transitive set in any: growth, crossing, and contraction along stable curves.
 
 *Lemma.* Let a map `T` be continuous and one-to-one on a compact set `R` that it takes into its interior; `R` lies
 in charts joined end to end, inside each of which `T` is smooth with a determinant that is not 0 up to the lines
@@ -13,26 +13,28 @@ that are mapped to joins. Suppose that
    manifold in `Q` (`saddle`).
 
 Let `A` be the closure of `W^u(p)`, the manifold of all points of the cycle. Then `T(A) = A`, and `T` on `A` is
-topologically transitive; the starts in `R` that converge to the cycle are dense in `R`; and every closed set with
-`T(B)` in `B` that holds an inner point of `R`, or to which every start of an open part of `R` converges, contains
-`A`. If, besides,
+topologically transitive; the starts in `R` that converge to the cycle are dense in `R`; and every closed set `B` that
+holds an open part of `R` with `T(B)` in `B`, or to which every start of an open part of `R` converges, contains `A`.
+So `R` holds at most one *attractor*: a closed set, transitive, to which all starts near it converge. If, besides,
 
-5. each orbit in `R` comes to a stable curve that meets `A` (`attraction`),
+5. each orbit in `R` comes, again and again, to places where a stable curve that does not turn back meets `A`
+   (`visits`),
 
-then every start in `R`, on a join or not, converges to `A`, which is what all images of `R` have in common: `A` is
-the only attractor in `R`, the smallest closed set to which an open set of starts converges.
+then a start whose stable curve at one of these places meets `A` before it turns back converges to `A`. That every
+start does, so that `A` attracts all of `R`, does not follow: a stable curve turns back at preimages of joins.
 
 *Proof.* An open part of `R` holds an unstable curve, as cones have an inside. By 2 to 4 its images cross `Q` from
 some bounce on, hold points of the stable set of `p`, and come near all of `W^u(p)` in `Q`; as `T` is continuous,
 near all of `W^u(p)`, which is the union of images of that. Whatever is closed, and holds these images or their
 limits (by Baire, some start of the open part has an orbit that comes near each point of `W^u(p)`), contains `A`. If
 the open set meets `A`, it holds a piece of `W^u(p)`, an unstable curve but for corners, whose images stay in `A`:
-so they come near any other open part of `A`, which is transitivity. By 5 a start has the limit set of a point of
-`A` (`attraction`), and a point all of whose preimages are in `R` is the limit of points of `W^u(p)`.
+so they come near any other open part of `A`, which is transitivity. Of two attractors either contains `A`, so some
+dense orbit of the one comes near the other, and converges to it: the one lies in the other. What meets a stable curve
+of a start has its limit set (`attraction`).
 
 At the joins `T` has no derivative and nothing is asked of it there but that it is continuous: curves are cut there
-for the sake of counting only. With a mirror image in `R`, `A` is its own mirror image, as it is the only attractor.
-`T` may permute pieces of `A`.
+for the sake of counting only. If `R` is its own mirror image, so is `A`: its mirror image is the closure of another
+cycle's unstable manifold, an unstable curve of which comes near all of `A`. `T` may permute pieces of `A`.
 """
 
 from dataclasses import dataclass
@@ -51,12 +53,12 @@ from verification.proofs.unstable_curves.spans import Course, longest
 
 LONGEST, BRANCHES = 80, 8  # bounces until a curve crosses the rectangle, and its parts that are followed
 REFUSED = {
-    "continuous": "the map is not known to be continuous and one-to-one",
+    "continuous": "the map is not known to be continuous and one-to-one, on charts joined end to end",
     "cones": "no region with cones was found",
     "growth": "the sum of inverse stretches does not come below 1: folds may undo what stretching does",
     "saddle": "the rectangle about the cycle is not proved to be crossed again by what crosses it",
     "crossing": "some curve that crosses a column is not seen to come to the rectangle",
-    "attraction": "some orbit is not seen to come to a stable curve that meets the unstable manifold",
+    "visits": "some orbit is not seen to come again and again to where stable curves may meet the unstable manifold",
 }
 
 
@@ -105,7 +107,7 @@ class OneAttractor:
 
     @cached_property
     def checks(self) -> dict[str, bool | None]:
-        """What is proved, item by item; None where nothing is. The last item adds that the attractor attracts."""
+        """What is proved, item by item; None where nothing is. The last adds chances to converge to it."""
         region, wide, at = self.region, self.wide, self.anchor
         known = not isinstance(region, str)
         grown = self.growth is not None and self.growth.bounces is not None
@@ -116,12 +118,12 @@ class OneAttractor:
             "growth": grown or None,
             "saddle": at is not None or None,
             "crossing": self.astray == 0 or None,
-            "attraction": (settled and attraction(region, wide, at).proved) or None,  # type: ignore[arg-type]
+            "visits": (settled and attraction(region, wide, at).proved) or None,  # type: ignore[arg-type]
         }
 
     @property
     def proved(self) -> bool:
-        """Is there exactly one attractor in the region, and transitive?"""
+        """Do all hypotheses hold? Then the region holds at most one attractor."""
         return all(self.checks.values())
 
     @property
@@ -131,14 +133,21 @@ class OneAttractor:
             if not held:
                 why = self.region if name == "cones" and isinstance(self.region, str) else REFUSED[name]
                 return f"{self.map.label}: {why}"
-        return f"{self.map.label}: exactly one attractor in the region, transitive, the closure of an unstable manifold"
+        return f"{self.map.label}: at most one attractor in the region; the closure of an unstable manifold is in it"
 
 
 def continuous(map: JoinedMap) -> bool:
-    """Is the map continuous and one-to-one, with a determinant that is not 0 where it is smooth?"""
+    """Is the map continuous and one-to-one, with a determinant that is not 0 where it is smooth?
+
+    Each chart has to be joined to the next one, at the same heights.
+    """
+    count, joins = len(map.charts), set(map.joins)
+    if joins - {(count - 1, 0)} != {(i, i + 1) for i in range(count - 1)} or len({c.y for c in map.charts}) > 1:
+        return False
     if isinstance(map, PinballImages):
         turns = tangents(map.map.table)  # one tangent at each join
-        return map.range[0] > 0 and invertible(map) and all(a.is_zero and b.is_positive for a, b in turns)
+        same = not map.placed and invertible(map)  # one law, whatever the place
+        return map.range[0] > 0 and same and all(a.is_zero and b.is_positive for a, b in turns)
     return bool(getattr(map, "one_to_one", False))
 
 

@@ -98,10 +98,11 @@ class Course:
         """For each cell the curves that cross its column and begin, on the left, in that cell."""
         boxes, chart = self.cover.grid.boxes(self.cover.cells), self.cover.cells.chart
         low, high = boxes.x[0] + PAD, boxes.x[1] - PAD
-        first = boxes.y
-        run = boxes.x[1] - boxes.x[0] + PAD
-        last = self._within(chart, high, first[0] + self._fall(run), first[1] + self._rise(run))
-        return Spans(np.arange(chart.size), chart, low, high, first, last)
+        ends = []
+        for at in (low, high):
+            run = at - boxes.x[0] + PAD
+            ends.append(self._within(chart, at, boxes.y[0] + self._fall(run), boxes.y[1] + self._rise(run)))
+        return Spans(np.arange(chart.size), chart, low, high, *ends)
 
     def _fall(self, run: Array) -> Array:
         return np.minimum(self.slopes[0] * run, 0.0) - PAD

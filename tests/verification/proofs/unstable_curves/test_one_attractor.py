@@ -1,4 +1,4 @@
-"""Growth of folded curves, and exactly one attractor: known answers, refusals, and the cuspless table."""
+"""Growth of folded curves, and no two attractors: known answers, refusals, and the cuspless table."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -11,7 +11,8 @@ from verification.proofs.global_dynamics import Boxes, PinballImages
 from verification.proofs.unstable_curves.affine import BrokenLine, lozi
 from verification.proofs.unstable_curves.cover import cover
 from verification.proofs.unstable_curves.growth import growth
-from verification.proofs.unstable_curves.one_attractor import REFUSED, OneAttractor
+from verification.proofs.unstable_curves.one_attractor import REFUSED, OneAttractor, continuous
+from verification.proofs.unstable_curves.spans import Course
 
 
 def at(chart, x, y):
@@ -77,6 +78,51 @@ def test_a_map_that_is_not_one_to_one_is_refused():
     assert replace(LOZI, map=replace(LOZI.map, b=0.0)).checks["continuous"] is None
 
 
+def test_charts_that_are_not_all_joined_end_to_end_are_refused():
+    class Apart(BrokenLine):
+        joins = ((0, 1),)
+
+    assert continuous(TWO)
+    assert not continuous(Apart(TWO.knots, TWO.b, TWO.height))
+
+
+def test_an_attracting_cycle_in_the_region_is_refused():
+    """Here the fixed point on the right has multipliers near -0.3 and 0.03."""
+    bent = BrokenLine(((-2.0, -3.4), (0.0, 1.0), (2.0, 0.4)), 0.01, 0.02)
+    found = OneAttractor(bent, 256, 64, at([1], [0.7], [0.007]), (1, 1 / 1.29, 0.01 / 1.29), 1, 0.1, 2)
+    assert found.growth.bounces is None
+    assert found.checks["saddle"] is None
+    assert not found.proved
+
+
+def test_a_stable_curve_turns_back_away_from_the_joins():
+    """So it may end twice on one border, and need not meet a curve that crosses the region: nothing more is claimed.
+
+    A vertical line taken back twice by a Lozi map: its height rises up to a preimage of the join, and falls again.
+    """
+    height = np.linspace(-2.5e-4, 2.5e-4, 2001)
+    points = [(np.full(height.shape, 1.03), height)]
+    for _ in range(2):
+        x, y = points[-1]
+        points.append((y / LOZI.map.b, x - 1 + 1.6 * np.abs(y / LOZI.map.b)))
+    x, y = points[-1]
+    there = LOZI.map.images(Boxes(np.ones(x.size, dtype=int), (x, x), (y, y)))
+    assert np.allclose(there.boxes.x[0], points[1][0][there.source], atol=1e-9)
+    turn = int(np.argmin(y))
+    assert 0 < turn < y.size - 1
+    assert x.min() > 0.5
+    assert points[1][0][turn] == pytest.approx(0, abs=1e-9)
+
+
+def test_heights_where_a_curve_is_cut_off_allow_for_its_slope():
+    """A span begins a little beside its column; up to there a curve may have left its cell."""
+    course = Course(LOZI.region)
+    spans, boxes = course.columns(), LOZI.region.grid.boxes(LOZI.region.cells)
+    bottom, top = course.heights(spans.chart, spans.low)
+    assert np.all((spans.first[0] < boxes.y[0]) | (spans.first[0] == bottom))
+    assert np.all((spans.first[1] > boxes.y[1]) | (spans.first[1] == top))
+
+
 def test_a_rectangle_about_no_cycle_is_refused():
     assert replace(LOZI, saddle=(1, 0.6, 0.03)).checks["saddle"] is None
     assert replace(LOZI, half=0.001).checks["saddle"] is None
@@ -93,7 +139,7 @@ def test_a_fold_that_is_left_out_changes_the_sum():
     assert growth(cover(unfolded, 512, 512, LOZI.start)).sums[0] < 1 < LOZI.growth.sums[0]
 
 
-def test_the_cuspless_table_has_one_attractor_at_three_twentyfifths():
+def test_the_cuspless_table_has_no_two_attractors_in_a_region_at_three_twentyfifths():
     """In a region about the corner orbit; on coarser cells it is not proved, and nothing is said."""
     map = PinballImages(Scene("cuspless"), (Fraction(3, 25),) * 2)
     theta, phi = 2.04718624, -0.0430328  # of an unstable cycle of period 4, and its mirror image

@@ -239,6 +239,39 @@ def cuspless(lam: str) -> tuple[PinballCurves, Grid, Cells]:
     return PinballCurves(map), graph.transitions.grid, graph.transitions.chosen(graph.trapping(graph.attracting[0]))
 
 
+def test_sampled_curves_have_the_labels_cones_densities_and_edges_that_are_found():
+    """Points of segments with slope, bend and density, followed without error bounds; apart from borders of rows."""
+    curves, grid, cells = cuspless("0.12")
+    found = pairs(curves, grid, cells, 2048, 2048)
+    labels, boxes, random = found.labels, grid.boxes(cells), np.random.default_rng(1)
+    at = random.integers(cells.chart.size, size=2000)
+    chart, (x, y) = boxes.chart[at], (random.uniform(*side)[at] for side in (boxes.x, boxes.y))
+    slope, bend, dense = np.zeros((3, at.size))
+    own, edges = np.full(at.size, -1), found.edges[0] * labels.count + found.edges[1]
+    for bounce in range(30):
+        landed = curves.landed(Boxes(chart, (x, x), (y, y)), BallArray(slope, 0 * slope))
+        kept = (np.bincount(landed.source, minlength=x.size) == 1)[landed.source]
+        source, chart = landed.source[kept], landed.chart[kept]
+        x, y, rate, slope, k0, k1, bent, more = (value.m[kept] for value in landed[3:])
+        dense, bend, own = (dense[source] - k0 - k1 * bend[source]) / rate, bent + more * bend[source], own[source]
+        if bounce < 7:
+            continue
+        column = ((x - labels.left[chart]) / labels.wide[chart]).astype(int)
+        far = labels.middles(chart, column) - x
+        row = (y + slope * far + bend * far**2 / 2 - labels.bottom[chart]) / labels.high[chart]
+        cell = np.ravel_multi_index((chart, column, row.astype(int)), labels.shape)
+        place = np.minimum(np.searchsorted(labels.known, cell), labels.count - 1)
+        sure = np.abs(row - np.round(row)) > 0.01
+        assert np.all(labels.known[place[sure]] == cell[sure])
+        now = np.where(sure, labels.number[place], -1)
+        on = now[sure]
+        assert np.all((labels.low[on] <= slope[sure]) & (slope[sure] <= labels.top[on]))
+        assert np.all(np.abs(dense[sure]) <= found.density[on])
+        both = sure & (own >= 0)
+        assert np.all(np.isin(own[both] * labels.count + now[both], edges))
+        own = now
+
+
 def test_almost_every_orbit_of_the_cuspless_table_is_bounded_from_both_sides():
     found = typical(*cuspless("0.12"), 8192, 8192, 16)
     assert found.proved

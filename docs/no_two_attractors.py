@@ -1,7 +1,7 @@
-"""Draws docs/figures/one_attractor.png: the trapping region of the cuspless table at 3/25, and the attractor in it.
+"""Draws docs/figures/no_two_attractors.png: the trapping region of the cuspless table at 3/25, and an attractor in it.
 
-`python docs/one_attractor.py`. Grey are the cells that the map takes into themselves, blue is a sampled orbit, orange
-the rectangle about a saddle that images of every unstable curve come to cross, and black its cycle of period 4.
+`python docs/no_two_attractors.py`. Grey are the cells that the map takes into themselves, blue is a sampled orbit,
+orange the rectangle about a saddle that images of every unstable curve come to cross, and black its cycle of period 4.
 """
 
 from fractions import Fraction
@@ -16,19 +16,19 @@ from numeric import PinballMap
 from symbolic import Scene
 from verification.plots.sheet import AXES, BLACK, DARK, MIDDLE, figure, styled
 from verification.proofs.global_dynamics import Boxes, PinballImages
-from verification.proofs.unstable_curves.one_attractor import OneAttractor
+from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractors
 
-PICTURE = Path(__file__).with_name("figures") / "one_attractor.png"
+PICTURE = Path(__file__).with_name("figures") / "no_two_attractors.png"
 LAM, GRID, HALF = Fraction(3, 25), (1024, 8192), 0.006
 SADDLE = 2.04718624, -0.0430328
 ORBITS, BOUNCES, TRANSIENT = 40, 2500, 500
 
 
-def proof() -> OneAttractor:
+def proof() -> NoTwoAttractors:
     """What docs/global.md proves."""
     theta, phi = (np.array([x, -x]) for x in SADDLE)
     start = Boxes(np.array([0, 0]), (theta, theta), (phi, phi))
-    return OneAttractor(PinballImages(Scene("cuspless"), (LAM,) * 2), *GRID, start, (0, *SADDLE), 4, HALF, 24)
+    return NoTwoAttractors(PinballImages(Scene("cuspless"), (LAM,) * 2), *GRID, start, (0, *SADDLE), 4, HALF, 24)
 
 
 def drawn() -> Figure:

@@ -11,7 +11,7 @@ from verification.proofs.global_dynamics import Boxes, PinballImages
 from verification.proofs.unstable_curves.affine import BrokenLine, lozi
 from verification.proofs.unstable_curves.cover import cover
 from verification.proofs.unstable_curves.growth import growth
-from verification.proofs.unstable_curves.one_attractor import REFUSED, OneAttractor, continuous
+from verification.proofs.unstable_curves.no_two_attractors import REFUSED, NoTwoAttractors, continuous
 from verification.proofs.unstable_curves.spans import Course
 
 
@@ -23,7 +23,7 @@ def at(chart, x, y):
 def about_the_fixed_point(a, b, columns=512):
     """What is to be proved of a Lozi map, from its fixed point on the right."""
     x = 1 / (1 + a - b)
-    return OneAttractor(lozi(a, b), columns, 512, at([1], [x], [b * x]), (1, x, b * x), 1, 0.1, 4)
+    return NoTwoAttractors(lozi(a, b), columns, 512, at([1], [x], [b * x]), (1, x, b * x), 1, 0.1, 4)
 
 
 LOZI = about_the_fixed_point(1.6, 0.05)
@@ -33,7 +33,7 @@ FIXED = (1.9 + 1.6 * 1.5) / (2.6 - 0.02)
 
 def two(starts):
     """Of a map with an attractor on either side: what is to be proved of the region that grows from `starts`."""
-    return OneAttractor(TWO, 256, 256, starts, (4, FIXED, 0.02 * FIXED), 1, 0.06, 2)
+    return NoTwoAttractors(TWO, 256, 256, starts, (4, FIXED, 0.02 * FIXED), 1, 0.06, 2)
 
 
 TRANSITIVE = ("continuous", "cones", "growth", "saddle", "crossing")
@@ -68,7 +68,7 @@ def test_two_attractors_are_refused_together_and_each_is_one_by_itself():
 
 def test_a_rotation_says_nothing():
     turn = BrokenLine(((-2.0, -1.0), (0.0, 0.0), (2.0, 1.0)), -1.0, 2.0)
-    found = OneAttractor(turn, 64, 64, at([1], [0.5], [0.0]), (1, 0.5, 0.0), 1, 0.1)
+    found = NoTwoAttractors(turn, 64, 64, at([1], [0.5], [0.0]), (1, 0.5, 0.0), 1, 0.1)
     assert not found.proved
     assert found.checks["cones"] is None
     assert "cones" in found.reason or "region" in found.reason
@@ -89,7 +89,7 @@ def test_charts_that_are_not_all_joined_end_to_end_are_refused():
 def test_an_attracting_cycle_in_the_region_is_refused():
     """Here the fixed point on the right has multipliers near -0.3 and 0.03."""
     bent = BrokenLine(((-2.0, -3.4), (0.0, 1.0), (2.0, 0.4)), 0.01, 0.02)
-    found = OneAttractor(bent, 256, 64, at([1], [0.7], [0.007]), (1, 1 / 1.29, 0.01 / 1.29), 1, 0.1, 2)
+    found = NoTwoAttractors(bent, 256, 64, at([1], [0.7], [0.007]), (1, 1 / 1.29, 0.01 / 1.29), 1, 0.1, 2)
     assert found.growth.bounces is None
     assert found.checks["saddle"] is None
     assert not found.proved
@@ -144,7 +144,7 @@ def test_the_cuspless_table_has_no_two_attractors_in_a_region_at_three_twentyfif
     map = PinballImages(Scene("cuspless"), (Fraction(3, 25),) * 2)
     theta, phi = 2.04718624, -0.0430328  # of an unstable cycle of period 4, and its mirror image
     starts = at([0, 0], [theta, -theta], [phi, -phi])
-    found = OneAttractor(map, 1024, 8192, starts, (0, theta, phi), 4, 0.006, 24)
+    found = NoTwoAttractors(map, 1024, 8192, starts, (0, theta, phi), 4, 0.006, 24)
     assert found.proved, found.reason
     coarse = replace(found, columns=512, rows=512)
     assert not coarse.proved

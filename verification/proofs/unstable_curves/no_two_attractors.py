@@ -63,7 +63,7 @@ REFUSED = {
 
 
 @dataclass(frozen=True)
-class OneAttractor:
+class NoTwoAttractors:
     """The region that grows from `start` on a grid, and a saddle `(chart, theta, phi)` of a period in it.
 
     `half` is half the width of its rectangle, `around` how many cells the wide region reaches beyond the narrow one.

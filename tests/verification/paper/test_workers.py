@@ -16,7 +16,7 @@ import pytest
 from numeric.sweeps.workers import TRIES, Lost, in_processes
 from verification.app.cli import main
 from verification.app.commands.verify import Last, write_report
-from verification.paper.claims.claim import Verdict
+from verification.paper.claims.claim import Verdict, seconds
 from verification.paper.claims.folder import paper, recorded
 from verification.paper.claims.sharing import shared_out, sharing
 from verification.paper.report import report
@@ -118,7 +118,7 @@ def test_claims_are_told_in_the_catalogues_order_whatever_order_they_are_judged_
 def test_claims_that_share_results_are_judged_by_one_process_and_the_dearest_begin(jobs):
     claims = report.catalogue()
     groups = shared_out(claims, jobs)
-    costs = [report.seconds(group) for group in groups]
+    costs = [seconds(group) for group in groups]
 
     assert sorted(claim.id for group in groups for claim in group) == sorted(c.id for c in claims)
     assert costs == sorted(costs, reverse=True)

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
+from verification.paper.claims.claim import seconds
 from verification.paper.report import report
 from verification.paper.report.report import codes
 
@@ -211,9 +212,9 @@ def command(
     images, sections = dict(last.images), {claim.section for claim in claims}
     wanted: list[Figure | Diagram] = [*(each for each in pictured if figures and each.section in sections), *measured]
     drawings = [each for each in wanted if each.name not in images] if drawable(output, wanted) else []
-    costs = {claim.id: report.seconds([claim]) for claim in claims} | {each.name: each.seconds for each in drawings}
+    costs = {claim.id: claim.seconds for claim in claims} | {each.name: each.seconds for each in drawings}
     with (
-        output.progress("Judging", report.seconds([*missing, *drawings])) as step,
+        output.progress("Judging", seconds([*missing, *drawings])) as step,
         closing(report.answered(missing, drawings, digits, jobs)) as answers,
     ):
         for answer in answers:

@@ -12,7 +12,7 @@ from enum import Enum
 from functools import cached_property
 from hashlib import sha256
 from itertools import zip_longest
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from flint import arb
 from sympy import Expr, Interval, Matrix, Symbol, oo
@@ -35,6 +35,19 @@ class Verdict(Enum):
     REFUTED = "refuted"
     SUPPORTED = "supported"
     OPEN = "open"
+
+
+class Costing(Protocol):
+    """A claim to be judged or a picture to be drawn."""
+
+    @property
+    def seconds(self) -> float:
+        """What that is said to take."""
+
+
+def seconds(items: Iterable[Costing]) -> float:
+    """What judging claims and drawing pictures is said to take."""
+    return sum(each.seconds for each in items)
 
 
 @dataclass(frozen=True)

@@ -3,19 +3,14 @@
 The fewer processes there are, the less sharing costs: the bounds are shares of what one process has to do.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-from verification.paper.claims.claim import Claim
+from verification.paper.claims.claim import Claim, seconds
 
 MANY = 16  # processes among which claims should divide evenly, where their number is not known
 GROUP = 0.4  # of a process's share: the largest group, unless ...
 KEPT = 0.3  # ... so much of a group's seconds is saved by staying together
 SMALL, HANDFUL = 0.01, 0.12  # groups of so little go in handfuls, those of one module of judges together
-
-
-def seconds(claims: Iterable[Claim]) -> float:
-    """What judging claims is said to take."""
-    return sum(claim.seconds for claim in claims)
 
 
 def sharing(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:

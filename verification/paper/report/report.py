@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 from numeric.sweeps.workers import Lost, cores, in_processes
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
-from verification.paper.claims.claim import Claim, Judgement, Verdict
+from verification.paper.claims.claim import Claim, Judgement, Verdict, seconds
 from verification.paper.claims.folder import OWN, Paper, home, judge_of, module, paper
 from verification.paper.claims.sharing import shared_out
 from verification.paper.figures.catalogue import Drawing, Picture
@@ -150,11 +150,6 @@ def answered(
 def answer(item: Claim | Drawing, digits: int) -> Result | Drawn:
     """What one claim or picture comes to."""
     return judge(item, digits) if isinstance(item, Claim) else Drawn(item.name, item.drawn())
-
-
-def seconds(items: Iterable[Claim | Drawing]) -> float:
-    """What judging claims and drawing pictures is said to take."""
-    return sum(each.seconds for each in items)
 
 
 def judge(claim: Claim, digits: int = 15) -> Result:

@@ -291,6 +291,10 @@ class ArcLength:
     def __init__(self, states: States) -> None:
         self.states = states
         self.lengths = [self._length(index) for index in range(len(states.ends))]
+        self.spans = [
+            (float(length(np.array(low))), float(length(np.array(high))))
+            for length, (low, high) in zip(self.lengths, states.ends, strict=True)
+        ]
         self.ruled: dict[int, tuple[Array, Array]] = {}  # of a component: lengths at many parameters, and these
         index, program = states.boundary.ir.origin
         offsets = {}
@@ -298,11 +302,10 @@ class ArcLength:
         reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 where nothing else is said
         for turn in range(len(states.ends)):
             at = (index + turn) % len(states.ends)
-            low, high = states.ends[at]
             if turn:
-                reached -= float(self.lengths[at](np.array(low)))
+                reached -= self.spans[at][0]
             offsets[at] = reached
-            reached += float(self.lengths[at](np.array(high)))
+            reached += self.spans[at][1]
         self.offsets = [offsets[i] for i in range(len(states.ends))]
 
     def s(self, theta: Array, component: NDArray[np.int64] | int = 0) -> Array:
@@ -352,18 +355,11 @@ class ArcLength:
     @cached_property
     def perimeter(self) -> float:
         """The length of the whole boundary."""
-        return sum(
-            float(length(np.array(high)) - length(np.array(low)))
-            for length, (low, high) in zip(self.lengths, self.states.ends, strict=True)
-        )
+        return sum(top - bottom for bottom, top in self.spans)
 
     def _inverse(self, index: int, s: Array, low: float, high: float) -> Array:
         length = self.lengths[index]
-        if index not in self.ruled:
-            grid = np.linspace(low, high, 1025)
-            self.ruled[index] = length(grid), grid
-        told, grid = self.ruled[index]
-        bottom, top = float(told[0]), float(told[-1])
+        bottom, top = self.spans[index]
         slack = 1e-14 * (top - bottom)
         if np.any((s < bottom - slack) | (s > top + slack)):
             bad = s[(s < bottom - slack) | (s > top + slack)].flat[0] + self.offsets[index]
@@ -373,7 +369,10 @@ class ArcLength:
         inverse = self.states.family.parameter(index, s)
         if inverse is not None:
             return inverse
-        theta = np.interp(s, told, grid)
+        if index not in self.ruled:
+            grid = np.linspace(low, high, 1025)
+            self.ruled[index] = length(grid), grid
+        theta = np.interp(s, *self.ruled[index])
         where = np.full(theta.shape, index)
         for _ in range(6):
             step = (length(theta) - s) / self.states.speed(where, theta)

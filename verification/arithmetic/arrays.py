@@ -9,7 +9,7 @@ reduction, Taylor remainder and rounding together (docs/global.md has the count)
 that nothing is known; every question here asks for what is certain, so that nan answers no.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -174,10 +174,15 @@ class Compiled:
     """
 
     def __init__(self, function: Callable[..., Sequence[BallArray]]) -> None:
-        self.traced = Traced(lambda *rows: [x for each in function(*paired(rows)) for x in (each.m, each.r)])
+        self.traced = Traced(lambda *rows: unpaired(function(*paired(rows))))
 
     def __call__(self, *balls: BallArray) -> list[BallArray]:
-        return paired(self.traced(*(x for each in balls for x in (each.m, each.r))))
+        return paired(self.traced(*unpaired(balls)))
+
+
+def unpaired(balls: Iterable[BallArray]) -> list[Any]:
+    """Of each ball its midpoints and its radii, in turn."""
+    return [half for each in balls for half in (each.m, each.r)]
 
 
 def paired(rows: Sequence[Any]) -> list[BallArray]:

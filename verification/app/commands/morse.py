@@ -19,11 +19,13 @@ from verification.app.scene import along, table_options, varied_options
 from verification.app.scene import span as numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import xarray as xr
     from rich.console import Console
 
     from verification.proofs.global_dynamics.database import Numbers
-    from verification.proofs.global_dynamics.graph import MorseGraph
+    from verification.proofs.global_dynamics.graph import Mask, MorseGraph
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import Region
 
@@ -134,6 +136,14 @@ def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
     return found | {"attracting": index in graph.attracting, "leads_to": below}
 
 
+def blocks(graph: "MorseGraph") -> "Iterator[tuple[int, Mask]]":
+    """The trapping region of each attracting set that has one."""
+    for index in graph.attracting:
+        block = graph.trapping(index)
+        if not block[-1]:
+            yield index, block
+
+
 def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, list[float] | None]:
     """Bounds for `nu_plus` in each trapping region, rounded outwards; None where no cones were found."""
     from math import ceil, floor, isfinite
@@ -141,12 +151,10 @@ def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, 
     from verification.proofs.global_dynamics.regions import expansion
 
     found: dict[int, list[float] | None] = dict.fromkeys(graph.attracting)
-    for index in graph.attracting:
-        block = graph.trapping(index)
-        if not block[-1]:
-            bounds = expansion(map, graph.transitions, block, parts=parts)
-            if isfinite(bounds.low) and isfinite(bounds.high):
-                found[index] = [floor(bounds.low * 1e6) / 1e6, ceil(bounds.high * 1e6) / 1e6]
+    for index, block in blocks(graph):
+        bounds = expansion(map, graph.transitions, block, parts=parts)
+        if isfinite(bounds.low) and isfinite(bounds.high):
+            found[index] = [floor(bounds.low * 1e6) / 1e6, ceil(bounds.high * 1e6) / 1e6]
     return found
 
 
@@ -157,13 +165,11 @@ def almost(map: "PinballImages", graph: "MorseGraph", columns: int) -> "dict[int
 
     found: dict[int, dict[str, Any] | None] = dict.fromkeys(graph.attracting)
     curves = PinballCurves(map)
-    for index in graph.attracting:
-        block = graph.trapping(index)
-        if not block[-1]:
-            cells = graph.transitions.chosen(block)
-            bounds = typical(curves, graph.transitions.grid, cells, columns, 2 * columns, WINDOW)
-            ends = [bounds.low, bounds.high] if bounds.proved else None
-            found[index] = {"nu_plus": ends, "labels": bounds.labels, "why": bounds.why}
+    for index, block in blocks(graph):
+        cells = graph.transitions.chosen(block)
+        bounds = typical(curves, graph.transitions.grid, cells, columns, 2 * columns, WINDOW)
+        ends = [bounds.low, bounds.high] if bounds.proved else None
+        found[index] = {"nu_plus": ends, "labels": bounds.labels, "why": bounds.why}
     return found
 
 

@@ -37,7 +37,21 @@ from .graph import (
     walked,
 )
 from .images import PinballImages
-from .regions import KIND, Region, carried, checked, expansion, region, sampled_share, shares
+from .regions import (
+    KIND,
+    Region,
+    SmoothMap,
+    arriving,
+    carried,
+    checked,
+    derivatives,
+    expansion,
+    factors,
+    least_mean,
+    region,
+    sampled_share,
+    shares,
+)
 from .returns import every_return
 
 __all__ = [
@@ -69,6 +83,8 @@ __all__ = [
     "PinballImages",
     "Region",
     "Slopes",
+    "SmoothMap",
+    "arriving",
     "attracts",
     "boxed",
     "carried",
@@ -79,14 +95,17 @@ __all__ = [
     "collected",
     "constant_bends",
     "continued",
+    "derivatives",
     "disc",
     "entered_around",
     "every_return",
     "exact",
     "expansion",
+    "factors",
     "incidence",
     "invertible",
     "kept_apart",
+    "least_mean",
     "lost",
     "matrix",
     "morse_graph",

@@ -30,9 +30,9 @@ from scipy.sparse import csr_matrix
 
 from numeric.backends import elementary
 from symbolic.tables.scene import Scene
-from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics.boxes import Boxes, Images
-from verification.proofs.global_dynamics.flights import Slopes
+from verification.arithmetic.arrays import BallArray, hull, paired, spread, unpaired
+from verification.proofs.global_dynamics.boxes import Boxes, BoxMap, Images
+from verification.proofs.global_dynamics.flights import Piece, Slopes
 from verification.proofs.global_dynamics.graph import (
     BLOCK,
     LARGEST,
@@ -251,18 +251,24 @@ class Expansion:
     cones: tuple[Array, Array]
 
 
-def derivatives(map: PinballImages, grid: Grid, cells: Cells, parts: int) -> Derivatives:
+class SmoothMap(BoxMap, Protocol):
+    """A map of charts with its derivatives."""
+
+    def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
+        """The derivative over whole boxes, for each chart in which they land."""
+
+
+def derivatives(map: SmoothMap, grid: Grid, cells: Cells, parts: int) -> Derivatives:
     """The derivative over each block, cut into `parts` by `parts`."""
     rows: list[list[NDArray[Any]]] = []
     step = max(1, BLOCK // parts**2)
     for start in range(0, cells.chart.size, step):
         boxes, source = grid.boxes(Cells(*(field[start : start + step] for field in cells))).parts(parts, parts)
         for piece, slopes in map.derivatives(boxes):
-            spread = [np.broadcast_arrays(value.m, value.r, piece.low)[:2] for value in slopes]
-            rows.append([start + source[piece.on], piece.chart, *(half for pair in spread for half in pair)])
-    source, chart, *halves = (np.concatenate(column) for column in zip(*rows, strict=True))
-    balls = [BallArray(halves[i], halves[i + 1]) for i in range(0, len(halves), 2)]
-    return Derivatives(source, chart, Slopes(*balls))
+            values = unpaired(spread(value, piece.low) for value in slopes)
+            rows.append([start + source[piece.on], piece.chart, *values])
+    source, chart, *found = (np.concatenate(column) for column in zip(*rows, strict=True))
+    return Derivatives(source, chart, Slopes(*paired(found)))
 
 
 def carried(found: Slopes, slope: BallArray) -> tuple[BallArray, BallArray]:
@@ -287,7 +293,7 @@ def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int 
     found = derivatives(map, graph.grid, cells, parts)
     count = cells.chart.size
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
-    first = _arriving(map, found, inner, cells, (np.zeros(count), np.zeros(count)))
+    first = arriving(map, found, inner, cells, (np.zeros(count), np.zeros(count)))
     for _ in range(ROUNDS):
         low, high = np.minimum(low, first[0]), np.maximum(high, first[1])
         entered = low <= high  # no edge leads to the others
@@ -296,17 +302,17 @@ def expansion(map: PinballImages, graph: Transitions, members: Mask, steps: int 
         bottom, top = np.where(entered, low, 0.0), np.where(entered, high, 0.0)
         more = (top - bottom) * (WIDENED - 1)
         cones = bottom - more, top + more
-        first = _arriving(map, found, inner, cells, cones)
+        first = arriving(map, found, inner, cells, cones)
         if np.all((cones[0] <= first[0]) & (first[1] <= cones[1])):
-            least, most = _factors(found, cones, count)
+            least, most = factors(found, cones, count)
             wide = np.all((cones[0] < cones[1])[entered])
-            ends = _least_mean(least, inner, steps) - SLACK, -_least_mean(-most, inner, steps) + SLACK
+            ends = least_mean(least, inner, steps) - SLACK, -least_mean(-most, inner, steps) + SLACK
             return Expansion(ends[0], ends[1] if wide else np.inf, steps, cones)
     return Expansion(-np.inf, np.inf, steps, (low, high))
 
 
-def _arriving(
-    map: PinballImages, found: Derivatives, inner: csr_matrix, cells: Cells, cones: tuple[Array, Array]
+def arriving(
+    map: BoxMap, found: Derivatives, inner: csr_matrix, cells: Cells, cones: tuple[Array, Array]
 ) -> tuple[Array, Array]:
     """The range of slopes that reach each box from all boxes with an edge to it; infinite where it is not known."""
     count, charts = cells.chart.size, len(map.charts)
@@ -326,7 +332,7 @@ def _arriving(
     return reached
 
 
-def _factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> tuple[Array, Array]:
+def factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> tuple[Array, Array]:
     """The logarithms of the least and the greatest factor by which vectors of its cone grow, for each box."""
     with np.errstate(all="ignore"):
         stretch, _ = carried(found.slopes, hull(*cones)[found.source])
@@ -339,7 +345,7 @@ def _factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> tupl
     return least, most
 
 
-def _least_mean(weights: Array, inner: csr_matrix, steps: int) -> float:
+def least_mean(weights: Array, inner: csr_matrix, steps: int) -> float:
     """The least mean weight of a walk of `steps` steps."""
     low, starts = np.zeros(weights.size), inner.indptr[:-1]
     for _ in range(steps):  # of walks one step longer, over all that begin at each box

@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, common_part, hull, turned
+from verification.arithmetic.arrays import BallArray, common_part, hull, paired, spread, turned, unpaired
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.flights import OPS, constant_bends, norm
 from verification.proofs.global_dynamics.images import PinballImages
@@ -110,8 +110,6 @@ class PinballCurves:
                 slope = -(found.law * (found.bend_there - p / r))
                 bent = -(found.law * (p * k0 / (r * r))), found.law * (cos0 * fast0 / (r * r * width))
                 values = theta, phi, r, slope, k0, -(length / width), *bent
-                spread = [np.broadcast_arrays(x.m, x.r, low)[:2] for x in values]
-                rows.append((on, chart, np.full(on.size, smooth), *(half for pair in spread for half in pair)))
-        source, charts, whole, *halves = (np.concatenate(column) for column in zip(*rows, strict=True))
-        balls = (BallArray(halves[i], halves[i + 1]) for i in range(0, len(halves), 2))
-        return Landed(source, charts, whole, *balls)
+                rows.append((on, chart, np.full(on.size, smooth), *unpaired(spread(x, low) for x in values)))
+        source, charts, whole, *told = (np.concatenate(column) for column in zip(*rows, strict=True))
+        return Landed(source, charts, whole, *paired(told))

@@ -31,8 +31,9 @@ from scipy.sparse.csgraph import connected_components
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics import walked
 from verification.proofs.global_dynamics.flights import matrix
+from verification.proofs.global_dynamics.regions import derivatives
 from verification.proofs.unstable_curves.anchor import Anchor
-from verification.proofs.unstable_curves.cover import Cover, over_cells
+from verification.proofs.unstable_curves.cover import Cover
 from verification.proofs.unstable_curves.spans import Course, Spans, longest
 
 Array = NDArray[np.float64]
@@ -102,7 +103,7 @@ def _blocks(narrow: Cover, course: Course, lean: Array) -> list[tuple[int, float
 
 def stable_slopes(cover: Cover) -> tuple[Array, Array] | None:
     """For each cell a range of `dtheta/dphi` that the inverse derivative keeps, away from unstable cones; or None."""
-    source, chart, slopes = over_cells(cover.map, cover.grid, cover.cells, 1)
+    source, chart, slopes = derivatives(cover.map, cover.grid, cover.cells, 1)
     (a, b), (c, d) = matrix(slopes)
     inner, cells = cover.inner, cover.cells
     count, charts = cells.chart.size, len(cover.map.charts)

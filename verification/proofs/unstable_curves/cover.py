@@ -14,14 +14,20 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from numeric.backends import elementary
-from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics import BLOCK, Boxes, Cells, Grid, Piece
+from verification.arithmetic.arrays import hull
+from verification.proofs.global_dynamics import Boxes, Cells, Grid
 from verification.proofs.global_dynamics.apart import cells as cells_of
 from verification.proofs.global_dynamics.apart import reached
-from verification.proofs.global_dynamics.boxes import Chart, Images
-from verification.proofs.global_dynamics.flights import Slopes, matrix
+from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.graph import transitions
-from verification.proofs.global_dynamics.regions import carried
+from verification.proofs.global_dynamics.regions import (
+    SmoothMap,
+    arriving,
+    carried,
+    derivatives,
+    factors,
+    least_mean,
+)
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -29,26 +35,12 @@ MOST, ROUNDS, WIDENED, LEAST = 1 << 20, 60, 0.05, 1e-9  # of cones: how much wid
 CLOSER = 6  # bounces after which vectors are looked at
 
 
-class JoinedMap(Protocol):
-    """A map of charts that are joined end to end, with its derivatives over boxes."""
-
-    @property
-    def charts(self) -> tuple[Chart, ...]:
-        """The charts."""
-
-    @property
-    def label(self) -> str:
-        """The map and its parameters, in words."""
-
-    def images(self, boxes: Boxes) -> Images:
-        """Rectangles that hold the image of each box."""
+class JoinedMap(SmoothMap, Protocol):
+    """A map of charts that are joined end to end."""
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:
         """Pairs of charts: the end of the first is the start of the second."""
-
-    def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
-        """The derivative over whole boxes, for each chart in which they land."""
 
 
 @dataclass(frozen=True)
@@ -96,13 +88,6 @@ class Cover:
         np.maximum.at(high, self.cells.chart, self.cones[1])
         return low, high
 
-    def least_mean(self, weights: Array, steps: int) -> float:
-        """The least mean weight of a walk of so many steps, less what sums may err by."""
-        low, starts = np.zeros(weights.size), self.inner.indptr[:-1]
-        for _ in range(steps):
-            low = weights + np.minimum.reduceat(low[self.inner.indices], starts)
-        return float(low.min()) / steps - 1e-12
-
     @cached_property
     def contracts(self) -> bool:
         """Do vectors that stay outside of the outer cones shrink to nothing?
@@ -110,7 +95,7 @@ class Cover:
         With a vector of an inner cone they span what the determinant shrinks, at an angle bounded from below; so over
         `n` bounces they shrink by a constant times the product of determinants over that of the cones' growth.
         """
-        return self.least_mean(self.least - self.area, 50) > 0
+        return least_mean(self.least - self.area, self.inner, 50) - 1e-12 > 0
 
 
 def cover(map: JoinedMap, columns: int, rows: int, start: Boxes, parts: int = 1, around: int = 0) -> Cover | str:
@@ -151,11 +136,11 @@ def _widened(grid: Grid, numbers: Indices, around: int) -> Indices:
 
 def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, parts: int) -> Cover | str:
     """Cones that are taken into the inside of those of all cells to which edges lead, grown from horizontal vectors."""
-    source, chart, slopes = over_cells(map, grid, cells, parts)
+    found = derivatives(map, grid, cells, parts)
     count = cells.chart.size
     low, high = np.full(count, -LEAST), np.full(count, LEAST)
     for _ in range(ROUNDS):
-        new = _arriving(source, chart, slopes, inner, cells, (low, high), len(map.charts))
+        new = arriving(map, found, inner, cells, (low, high))
         entered = new[0] <= new[1]
         if not np.all(np.isfinite(new[0][entered]) & np.isfinite(new[1][entered])):
             return "no cones: over some cell a vector of its cone may become vertical"
@@ -169,63 +154,24 @@ def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, par
     outer = low, high
     for _ in range(CLOSER):  # images of invariant cones are invariant
         cones = np.where(entered, new[0], outer[0]), np.where(entered, new[1], outer[1])
-        new = _arriving(source, chart, slopes, inner, cells, cones, len(map.charts))
+        new = arriving(map, found, inner, cells, cones)
     with np.errstate(all="ignore"):
-        stretch = carried(slopes, hull(*cones)[source])[0]
-        (a, b), (c, d) = matrix(slopes)
+        stretch = carried(found.slopes, hull(*cones)[found.source])[0]
+        (a, b), (c, d) = matrix(found.slopes)
         size = (a * d - b * c).magnitude()
         if (
             np.any(cones[0] >= cones[1])
             or not np.all(stretch.positive() | stretch.negative())
             or not np.all(np.isfinite(size))
-            or np.unique(source).size < count
+            or np.unique(found.source).size < count
         ):
             return "no cones: over some cell a vector of its cone may become vertical"
-        least, most, area = np.full(count, np.inf), np.full(count, -np.inf), np.full(count, -np.inf)
-        np.minimum.at(least, source, elementary.log((np.abs(stretch.m) - stretch.r) * (1 - 1e-14)))
-        np.maximum.at(most, source, elementary.log((np.abs(stretch.m) + stretch.r) * (1 + 1e-14)))
-        np.maximum.at(area, source, elementary.log(np.maximum(size, 1e-300)))
-    on = cells.chart[source]
+        area = np.full(count, -np.inf)
+        np.maximum.at(area, found.source, elementary.log(np.maximum(size, 1e-300)))
+    least, most = factors(found, cones, count)
+    on = cells.chart[found.source]
     ways = [np.unique(np.sign(stretch.m[on == i])) for i in range(len(map.charts))]
     if any(way.size > 1 for way in ways):
         return "the map keeps the order of points in one part of a chart and turns it in another"
     sign = tuple(int(way[0]) if way.size else 0 for way in ways)
     return Cover(map, grid, cells, inner, cones, outer, least, most, area, sign)
-
-
-def over_cells(map: JoinedMap, grid: Grid, cells: Cells, parts: int) -> tuple[Indices, Indices, Slopes]:
-    """Rows, several for a cell: the cell, the chart where it lands, and the derivative."""
-    rows = []
-    step = max(1, BLOCK // parts**2)
-    for start in range(0, cells.chart.size, step):
-        boxes, source = grid.boxes(Cells(*(field[start : start + step] for field in cells))).parts(parts, parts)
-        for piece, slopes in map.derivatives(boxes):
-            halves = [np.broadcast_arrays(value.m, value.r, piece.low)[:2] for value in slopes]
-            rows.append([start + source[piece.on], piece.chart, *(half for pair in halves for half in pair)])
-    source, chart, *found = (np.concatenate(column) for column in zip(*rows, strict=True))
-    return source, chart, Slopes(*(BallArray(m, r) for m, r in zip(found[::2], found[1::2], strict=True)))
-
-
-def _arriving(
-    source: Indices,
-    chart: Indices,
-    slopes: Slopes,
-    inner: csr_matrix,
-    cells: Cells,
-    cones: tuple[Array, Array],
-    charts: int,
-) -> tuple[Array, Array]:
-    """The range of slopes that reach each cell from all with an edge to it; infinite where it is not known."""
-    count = cells.chart.size
-    with np.errstate(all="ignore"):
-        _, new = carried(slopes, hull(*cones)[source])
-        known = np.isfinite(new.r)
-        ends = np.where(known, new.lower(), -np.inf), np.where(known, new.upper(), np.inf)
-    low, high = np.full(count * charts, np.inf), np.full(count * charts, -np.inf)
-    np.minimum.at(low, source * charts + chart, ends[0])
-    np.maximum.at(high, source * charts + chart, ends[1])
-    leaving = np.repeat(np.arange(count), np.diff(inner.indptr)) * charts + cells.chart[inner.indices]
-    reach = np.full(count, np.inf), np.full(count, -np.inf)
-    np.minimum.at(reach[0], inner.indices, low[leaving])
-    np.maximum.at(reach[1], inner.indices, high[leaving])
-    return reach

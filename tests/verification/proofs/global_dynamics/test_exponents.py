@@ -17,11 +17,11 @@ from verification.proofs.global_dynamics.graph import Grid, Transitions, morse_g
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import (
     Derivatives,
-    _arriving,
-    _factors,
-    _least_mean,
+    arriving,
     carried,
     expansion,
+    factors,
+    least_mean,
 )
 
 
@@ -137,7 +137,7 @@ def test_a_box_that_may_shrink_vectors_to_nothing_bounds_no_exponent():
     none = BallArray(np.zeros(4), np.zeros(4))
     found = Derivatives(np.arange(4), np.zeros(4, dtype=np.int64), Slopes(stretch, none, none, none, none))
 
-    least, most = _factors(found, (np.zeros(4), np.zeros(4)), 4)
+    least, most = factors(found, (np.zeros(4), np.zeros(4)), 4)
 
     assert np.allclose(np.exp(least), [1.5, 0, 0, 3])
     assert least[0] < np.log(1.5)
@@ -172,7 +172,7 @@ def test_the_least_mean_weight_is_that_of_the_lightest_walk():
         for _ in range(5):
             walks = [[*walk, b] for walk in walks for a, b in edges if a == walk[-1]]
         least = min(sum(weights[k] for k in walk) for walk in walks) / 6
-        assert abs(_least_mean(weights, graph, 6) - least) < 1e-12
+        assert abs(least_mean(weights, graph, 6) - least) < 1e-12
 
 
 class Two:
@@ -190,7 +190,7 @@ def test_the_slopes_that_reach_a_box_are_those_from_all_boxes_that_lead_to_it_on
     edges = [(0, 0), (0, 1), (1, 0), (2, 1)]
     inner = csr_matrix((np.ones(4), tuple(zip(*edges, strict=True))), shape=(3, 3))
     cells = statements.Cells(np.array([0, 1, 0]), *(np.zeros(3, dtype=int) for _ in range(3)))
-    low, high = _arriving(Two(), Derivatives(source, chart, s), inner, cells, (np.zeros(3), np.zeros(3)))
+    low, high = arriving(Two(), Derivatives(source, chart, s), inner, cells, (np.zeros(3), np.zeros(3)))
 
     assert np.allclose([low[0], high[0]], [0.5, 5.0], atol=1e-12)
     assert (low[1], high[1]) == (-np.inf, np.inf)

@@ -181,21 +181,23 @@ def test_boxes_that_do_not_trap_are_refused():
     assert found.why == "the boxes are no trapping region"
 
 
-def test_numbers_whose_roundings_are_not_covered_prove_nothing():
+def proving():
+    """Numbers that prove a bound."""
     balance = Balance(tents(), 8)
     y, high = balance.potential(0)
     high += 1e-4
     w, v = balance.weights(0, y, high)
     assert balance.holds(0, y, w, v, high)
+    return balance, y, w, v, high
+
+
+def test_numbers_whose_roundings_are_not_covered_prove_nothing():
+    balance, y, w, v, high = proving()
     assert not balance.holds(0, y + 5000.0, w, v, high)  # the same inequalities, but for roundings
 
 
 def test_numbers_that_leave_something_out_prove_nothing():
-    balance = Balance(tents(), 8)
-    y, high = balance.potential(0)
-    high += 1e-4
-    w, v = balance.weights(0, y, high)
-    assert balance.holds(0, y, w, v, high)
+    balance, y, w, v, high = proving()
     assert not balance.holds(0, y, w, v, high - 0.1)
     assert not balance.holds(0, y, 0 * w, v, high)  # no bound for the mass next to ends
     assert not balance.holds(0, y, w, 0 * v, high)  # nor for that next to new ends

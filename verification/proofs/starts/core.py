@@ -51,6 +51,11 @@ class Core:
     cells: int
     gates: tuple[tuple[float, float], ...] = ()
 
+    def __post_init__(self) -> None:
+        sizes = self.inner, *(size for pair in (self.bounds, *self.gates) for size in pair)
+        if not (self.cells >= 1 and all(0 < size < np.inf for size in sizes)):
+            raise ValueError(f"{self}: accepted: at least one cell, and bounds above 0")
+
     def holds(self, sets: Parallelograms, *gates: tuple[float, float]) -> Mask:
         """Which sets lie within the core, or within a set of its kind with one of other pairs of bounds."""
         theta, phi = sets.middle

@@ -16,8 +16,8 @@ Numbers `y`, `w`, `v` for each label with
     r:  mean + (shares of max y over rows) + cuts <= y + high
 
 make `sum(y*(r + e) + w*E + v*C)` a potential: the mean of the logarithm of the stretching over any family is at most
-`high`, up to a bounded sum. Any numbers do; `potential` looks for good ones, and `holds` checks them by
-multiplication and addition alone. The same with minus the logarithm is the bound from below.
+`high`, up to a bounded sum. Any numbers do, with `w` and `v` above 0; `potential` looks for good ones, and `holds`
+checks them by multiplication and addition alone. The same with minus the logarithm is the bound from below.
 """
 
 from dataclasses import dataclass
@@ -224,7 +224,8 @@ class Balance:
         least = self.ends(self.excess(gain, y, high) + SLACK, w, v)
         left = self.step(gain, y, v)
         sizes = [float(np.abs(x).max()) for x in (y, w, v, left)]
-        small = all(size < LARGEST for size in sizes) and self.roundings(gain, y, left, high) < SLACK / 2
+        bounded = bool(np.all(w > 0) and np.all(v > 0))  # from below is the potential, as `y` is
+        small = bounded and all(size < LARGEST for size in sizes) and self.roundings(gain, y, left, high) < SLACK / 2
         masses = bool(np.all(left + SLACK <= y + high))
         return small and masses and bool(np.all(least[0] <= w)) and bool(np.all(least[1] <= v))
 

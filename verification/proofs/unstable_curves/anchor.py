@@ -52,7 +52,7 @@ def anchor(cover: Cover, point: tuple[int, float, float], period: int, half: flo
     """The rectangle within `half` of a point of a cycle, given roughly; None where an inequality is not proved."""
     chart, theta, phi = point
     bottom, top = _span(cover, chart, theta - half, theta + half)
-    if not bottom < top:
+    if not bottom < phi < top:  # an interval Newton step is one about a point of the rectangle
         return None
     box = (theta - half, theta + half), (bottom, top)
     whole = _followed(cover, chart, box, period)

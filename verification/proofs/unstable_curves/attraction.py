@@ -140,5 +140,6 @@ def stable_slopes(cover: Cover) -> tuple[Array, Array] | None:
     if not np.all(apart.positive()):
         return None
     for _ in range(CLOSER):
-        low, high = taken_back(low, high)
+        new = taken_back(low, high)
+        low, high = np.maximum(low, new[0]), np.minimum(high, new[1])
     return low, high

@@ -151,9 +151,10 @@ def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, par
         high = np.where(entered, np.maximum(high, new[1] + wide), high)
     else:
         return "no cones: they grow without end"
-    outer = low, high
-    for _ in range(CLOSER):  # images of invariant cones are invariant
-        cones = np.where(entered, new[0], outer[0]), np.where(entered, new[1], outer[1])
+    outer = cones = low, high
+    for _ in range(CLOSER):  # images of invariant cones are invariant; what rounding adds to them is left out
+        ends = np.maximum(new[0], cones[0]), np.minimum(new[1], cones[1])
+        cones = np.where(entered, ends[0], outer[0]), np.where(entered, ends[1], outer[1])
         new = arriving(map, found, inner, cells, cones)
     with np.errstate(all="ignore"):
         stretch = carried(found.slopes, hull(*cones)[found.source])[0]

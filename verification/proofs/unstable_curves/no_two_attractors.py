@@ -23,8 +23,8 @@ So `R` holds at most one *attractor*: a closed set, transitive, to which all sta
 then a start whose stable curve at one of these places meets `A` before it turns back converges to `A`. That every
 start does, so that `A` attracts all of `R`, does not follow: a stable curve turns back at preimages of joins.
 
-*Proof.* An open part of `R` holds an unstable curve, as cones have an inside. By 2 to 4 its images cross `Q` from
-some bounce on, hold points of the stable set of `p`, and come near all of `W^u(p)` in `Q`; as `T` is continuous,
+*Proof.* An open part of `R` holds an unstable curve, as cones have an inside. By 2 to 4 its images cross `Q` again
+and again, hold points of the stable set of `p`, and come near all of `W^u(p)` in `Q`; as `T` is continuous,
 near all of `W^u(p)`, which is the union of images of that. Whatever is closed, and holds these images or their
 limits (by Baire, some start of the open part has an orbit that comes near each point of `W^u(p)`), contains `A`. If
 the open set meets `A`, it holds a piece of `W^u(p)`, an unstable curve but for corners, whose images stay in `A`:
@@ -33,8 +33,9 @@ dense orbit of the one comes near the other, and converges to it: the one lies i
 of a start has its limit set (`attraction`).
 
 At the joins `T` has no derivative and nothing is asked of it there but that it is continuous: curves are cut there
-for the sake of counting only. If `R` is its own mirror image, so is `A`: its mirror image is the closure of another
-cycle's unstable manifold, an unstable curve of which comes near all of `A`. `T` may permute pieces of `A`.
+for the sake of counting only. If `R` holds the mirror image of `p` on a table that has one, `A` is its own: of the
+two cycles either's unstable manifold is an unstable curve that comes near all of the other's. `T` may permute pieces
+of `A`.
 """
 
 from dataclasses import dataclass

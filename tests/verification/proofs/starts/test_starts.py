@@ -42,6 +42,13 @@ def test_a_core_that_is_none_is_refused(map: PinballImages, core: Core, item: st
     assert not attracts(map, core)[item]
 
 
+@pytest.mark.parametrize("wrong", [{"cells": 0}, {"inner": -0.05}, {"width": 0.0}, {"gates": ((0.4, -0.003),)}])
+def test_a_core_without_a_cell_or_a_size_is_none(wrong) -> None:
+    """Of no cell everything is true: that all of a set up to the joins converges would be proved of it."""
+    with pytest.raises(ValueError, match="at least one cell, and bounds above 0"):
+        replace(CORE, outer=0.86, **wrong)
+
+
 def test_a_repelling_cycle_has_no_core() -> None:
     """Beyond lambda_c = 0.0934 the orbit of period 2 attracts nothing."""
     assert not any(attracts(PinballImages(Scene("cuspless", lam="1/10")), replace(SHORT, gates=SHORT.gates)).values())

@@ -15,7 +15,7 @@ from verification.proofs.global_dynamics.graph import Cells, Grid, morse_graph, 
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.curves import Landed, PinballCurves
 from verification.proofs.starts.standard_pairs import Pairs, pairs
-from verification.proofs.starts.typical import Balance, typical
+from verification.proofs.starts.typical import SLACK, Balance, typical
 
 TURN = 2 * np.pi
 
@@ -203,6 +203,17 @@ def test_numbers_that_leave_something_out_prove_nothing():
     assert not balance.holds(0, y, w, 0 * v, high)  # nor for that next to new ends
     for lower in (0, balance.count // 2):
         assert not balance.holds(0, y - 0.5 * (np.arange(y.size) == lower), w, v, high)
+
+
+def test_numbers_below_0_of_ends_prove_nothing_whatever_they_satisfy():
+    """A potential that is not bounded from below may fall for ever; here where all curves shrink by more than half."""
+    balance, y, _, _, high = proving()
+    balance.least = np.full(balance.count, 0.4)
+    w = v = np.full(balance.count, -1.0)
+    least = balance.ends(balance.excess(0, y, high) + SLACK, w, v)
+    assert np.all(least[0] <= w)
+    assert np.all(least[1] <= v)
+    assert not balance.holds(0, y, w, v, high)
 
 
 def test_a_potential_of_a_graph_without_one_edge_is_refused():

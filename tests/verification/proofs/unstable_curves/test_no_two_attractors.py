@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from symbolic import Scene
 from verification.proofs.global_dynamics import Boxes, PinballImages
 from verification.proofs.unstable_curves.affine import BrokenLine, lozi
+from verification.proofs.unstable_curves.anchor import anchor
 from verification.proofs.unstable_curves.cover import cover
 from verification.proofs.unstable_curves.growth import growth
 from verification.proofs.unstable_curves.no_two_attractors import REFUSED, NoTwoAttractors, continuous
@@ -128,6 +130,28 @@ def test_a_rectangle_about_no_cycle_is_refused():
     assert replace(LOZI, half=0.001).checks["saddle"] is None
 
 
+def test_an_interval_newton_step_from_outside_of_the_rectangle_is_none():
+    """The derivative is known over the rectangle alone, and orbits from elsewhere may take another way."""
+    chart, x, y = LOZI.saddle
+    top = LOZI.anchor.top
+    assert anchor(LOZI.region, (chart, x, (y + top) / 2), 1, 0.1) is not None
+    assert anchor(LOZI.region, (chart, x, top + 1e-3), 1, 0.1) is None
+
+
+def test_inner_cones_lie_within_outer_ones_whatever_rounding_adds(monkeypatch):
+    """Images of cones are kept by the map as long as each range is taken from within the one before it."""
+    ranges = iter([1e-3, 1e-3] + 20 * [1.0])  # outer cones are found in the second round
+
+    def arriving(map, found, inner, cells, cones):
+        end = np.full(cells.chart.size, next(ranges))
+        return -end, end
+
+    monkeypatch.setattr(import_module("verification.proofs.unstable_curves.cover"), "arriving", arriving)
+    found = cover(LOZI.map, 512, 512, LOZI.start)
+    assert np.all(found.outer[1] < 1e-2)
+    assert np.all((found.outer[0] <= found.cones[0]) & (found.cones[1] <= found.outer[1]))
+
+
 def test_a_fold_that_is_left_out_changes_the_sum():
     """The canary: without its join the Lozi map would seem to stretch without a fold."""
 
@@ -146,6 +170,8 @@ def test_the_cuspless_table_has_no_two_attractors_in_a_region_at_three_twentyfif
     starts = at([0, 0], [theta, -theta], [phi, -phi])
     found = NoTwoAttractors(map, 1024, 8192, starts, (0, theta, phi), 4, 0.006, 24)
     assert found.proved, found.reason
+    other = anchor(found.region, (0, -theta, -phi), 4, 0.006)  # so the region holds the cycle's mirror image
+    assert (other.low, other.high) == (-found.anchor.high, -found.anchor.low)
     coarse = replace(found, columns=512, rows=512)
     assert not coarse.proved
     assert coarse.reason

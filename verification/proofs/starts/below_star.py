@@ -143,7 +143,7 @@ class BelowStar:
             except ArithmeticError:
                 return found
         slices = np.linspace(-ANGLE, ANGLE, SLICES + 1)
-        beside = (slices[:-1] < float(angles[0].upper())) | (slices[1:] > float(angles[1].lower()))
+        beside = ~((slices[:-1] >= float(angles[0].upper())) & (slices[1:] <= float(angles[1].lower())))
         found["carried"] = self._carried(images, slices[:-1][beside], slices[1:][beside]) or None
         return found
 

@@ -111,7 +111,12 @@ def joined(parts: list[Strips]) -> Strips:
 
 
 def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
-    """Strips that cover all `theta` and `0 <= eta <= pi/2`; how they lean is a guess from float64 orbits."""
+    """Strips that cover all `theta` and `0 <= eta <= pi/2`; how they lean is a guess from float64 orbits.
+
+    `columns` are as many numbers as the table has components; `ValueError` if not, since a start would be in no strip.
+    """
+    if len(columns) != len(map.charts) or min(rows, *columns) < 1:
+        raise ValueError(f"strips: columns = {columns}, rows = {rows}; accepted: 1 or more, for each component")
     pieces: list[Strips] = []
     edges = np.linspace(0.0, QUARTER, rows + 1)
     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2 * (1 + 1e-9)

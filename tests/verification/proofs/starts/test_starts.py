@@ -134,6 +134,12 @@ def test_every_start_is_in_a_strip_and_half_of_the_measure_is_the_perimeter(map:
         made = made.cut(np.full(made.left.size, across))
 
 
+@pytest.mark.parametrize(("columns", "rows"), [((96,), 24), ((96, 0), 24), ((96, 16), 0)])
+def test_strips_that_leave_out_a_component_or_all_angles_are_refused(map: PinballImages, columns, rows) -> None:
+    with pytest.raises(ValueError, match="for each component"):
+        strips(map, columns, rows)
+
+
 def test_a_strip_is_in_the_parallelogram_after_its_bounce_and_hardly_smaller(map: PinballImages) -> None:
     """Random points of strips that lean: `phi = -lam*eta`, and what the sides leave of them is within the rest."""
     rng, count = np.random.default_rng(9), 200

@@ -68,6 +68,39 @@ def test_two_attractors_are_refused_together_and_each_is_one_by_itself():
     assert two(at([4], [FIXED], [0.02 * FIXED])).astray == 0
 
 
+class Stacked:
+    """A Lozi map on each of two strips above one another, about heights of 1/2 and -1/2."""
+
+    label, joins, one_to_one = "two Lozi maps", ((0, 1),), True
+    charts = tuple(chart._replace(y=(-1.0, 1.0)) for chart in LOZI.map.charts)
+
+    def level(self, boxes):
+        low, high = boxes.y
+        shift = np.where(low > 0, 0.5, np.where(high < 0, -0.5, np.nan))
+        return shift, boxes._replace(y=(low - shift, high - shift))
+
+    def images(self, boxes):
+        shift, there = self.level(boxes)
+        found = LOZI.map.images(there)
+        low, high = found.boxes.y
+        y = low + shift[found.source] - 1e-15, high + shift[found.source] + 1e-15
+        return found._replace(boxes=found.boxes._replace(y=y))
+
+    def derivatives(self, boxes):
+        return LOZI.map.derivatives(self.level(boxes)[1])
+
+
+def test_two_attractors_above_one_another_are_refused_together_though_all_curves_cross_the_same_columns():
+    """The rectangle about the cycle has to hold all of the region over its interval, so both of them."""
+    _, x, y = LOZI.saddle
+    above, below = at([1], [x], [y + 0.5]), at([1, 1], [x, x], [y + 0.5, y - 0.5])
+    alone, both = (NoTwoAttractors(Stacked(), 512, 2048, some, (1, x, y + 0.5), 1, 0.1) for some in (above, below))
+    assert alone.checks["saddle"]
+    assert alone.checks["crossing"]
+    assert both.growth.bounces == alone.growth.bounces
+    assert both.checks["saddle"] is None
+
+
 def test_a_rotation_says_nothing():
     turn = BrokenLine(((-2.0, -1.0), (0.0, 0.0), (2.0, 1.0)), -1.0, 2.0)
     found = NoTwoAttractors(turn, 64, 64, at([1], [0.5], [0.0]), (1, 0.5, 0.0), 1, 0.1)

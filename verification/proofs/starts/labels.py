@@ -6,9 +6,9 @@ tangent. Each label has a range of slopes, its cone, which holds all slopes of i
 cell. The map takes the middle of the cell to a known place, stretches by known factors and gives slopes in a known
 range, so that it is known which columns the image meets, and where it crosses their middles: an image is continued
 into the middle by slopes of its own cone or of those of the column. A cell from which curves may land on a join is
-`broken`: of its images the landings are known, on all components.
+`broken`: of its images the landings are known, on all components. So is one whose middle is lost.
 
-`Labels.closed_under` finds cones and labels together, from what segments of a trapping region become: the images of
+`standard_pairs.pairs` finds cones and labels together, from what segments of a trapping region become: the images of
 all slopes of a label lie in the cones of all labels that they may have. The ranges of bends and densities come next.
 """
 
@@ -151,7 +151,8 @@ class Labels:
         line = Boxes(self.chart, (x - 1e-15, x + 1e-15), (foot - SLOP, foot + self.high[self.chart] + SLOP))
         middle = mapped(self.map, line, BallArray(np.zeros(count)))
         broken = np.bincount(middle.source, minlength=count) != 1
-        broken[middle.source[~middle.smooth]] = True
+        lost = ~(np.isfinite(middle.theta.r) & np.isfinite(middle.phi.r))  # what processors make of nan differs
+        broken[middle.source[~middle.smooth | lost]] = True
         broken[own[~landed.smooth]] = True
         broken[label[np.bincount(landed.source, minlength=label.size) != 1]] = True
         charts = [reduced(how, count, own, landed.chart.astype(float)) for how in (np.minimum, np.maximum)]

@@ -1,7 +1,7 @@
 """Standard pairs of a trapping region: labels, cones, bends and densities that the map keeps.
 
 Short segments, of two slopes about 0, are followed for some bounces through the boxes of the region; what they are
-then has labels. `closed` finds all labels that follow, with cones that hold the images of all slopes, and then ranges
+then has labels. `pairs` finds all labels that follow, with cones that hold the images of all slopes, and then ranges
 for bends and for `d = (log rho)'`; see `labels` and `curves`.
 """
 

@@ -58,6 +58,15 @@ class Circle:
         return Landed(on, boxes.chart, on >= 0, *values)
 
 
+class Blind(Circle):
+    """Of places the landing is known, and of the thin line through the middle of a column it is not."""
+
+    def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
+        found = super().landed(boxes, slopes)
+        thin = boxes.x[1] - boxes.x[0] < 1e-12
+        return found._replace(theta=BallArray(found.theta.m, np.where(thin, np.nan, found.theta.r)))
+
+
 class Turned(Circle):
     """A turn of the circle, by a third, over the same fibre."""
 
@@ -299,6 +308,12 @@ def test_a_cycles_basin_and_columns_that_are_too_wide_are_refused(lam, columns, 
     assert not found.proved
     assert why in found.why
     assert (found.low, found.high) == (-np.inf, np.inf)
+
+
+def test_labels_of_whose_middle_no_landing_is_known_are_broken():
+    found = pairs(Blind(0.0), *whole(Blind(0.0)), 100, 400)
+    assert np.all(found.cast.broken)
+    assert not typical(Blind(0.0), *whole(Blind(0.0)), 100, 400).proved
 
 
 def test_a_rotation_is_refused():

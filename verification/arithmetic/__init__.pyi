@@ -34,13 +34,14 @@ from .balls import (
     working,
 )
 from .iteration import Iteration, Stop, Tick, Vector, heard, in_rows, iterated, largest, silent, telling
-from .series import Function, Jet, expanded, jets
+from .series import SERIES, Function, Jet, along, expanded, in_series, jets
 
 __all__ = [
     "ARRAYS",
     "FLOAT64",
     "FUNCTIONS",
     "ROUNDING",
+    "SERIES",
     "Arithmetic",
     "ArrayOps",
     "BallArray",
@@ -52,6 +53,7 @@ __all__ = [
     "Tick",
     "Vector",
     "Words",
+    "along",
     "as_ball",
     "between",
     "bits_of",
@@ -67,6 +69,7 @@ __all__ = [
     "heard",
     "hull",
     "in_rows",
+    "in_series",
     "iterated",
     "jets",
     "joined",

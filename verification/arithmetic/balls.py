@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from typing import Any, Generic, TypeVar
 
@@ -105,13 +106,10 @@ def balls(bits: int) -> Words[arb]:
     True False
     """
 
-    constants: dict[tuple[int, int], arb] = {}
-
-    def rational(p: int, n: int) -> arb:
-        if (p, n) not in constants:  # a kernel has few, and asks for them at every call
-            with ctx.workprec(bits):
-                constants[p, n] = arb(fmpq(p, n))
-        return constants[p, n]
+    @cache
+    def rational(p: int, n: int) -> arb:  # a kernel has few, and asks for them at every call
+        with ctx.workprec(bits):
+            return arb(fmpq(p, n))
 
     with ctx.workprec(bits):
         pi = arb.pi()

@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb, arb_series, ctx
 from sympy import pi
 
 from symbolic.expressions.text import kernel, load
@@ -314,12 +314,14 @@ class Lengths:
 
     def placed(self, arithmetic: Arithmetic, here: Any) -> list[Any]:
         """The parameter between -pi and pi, by its middle, and the arc length there."""
-        middle = here.c[0] if isinstance(here, Jet) else here
+        middle = here.c[0] if isinstance(here, Jet) else here[0] if isinstance(here, arb_series) else here
         turns = np.round(np.asarray(middle, dtype=float) / (2 * np.pi))
         here = here - 2 * arithmetic.pi * (turns if turns.ndim else int(turns)) if np.any(turns) else here
-        if not isinstance(here, Jet):
+        if not isinstance(here, (Jet, arb_series)):
             return [here, self.of(here)]
         (rate,) = load(self.rate, arithmetic)(here)
+        if isinstance(here, arb_series):
+            return [here, (rate * here.derivative()).integral() + self.of(here[0])]
         steps = rate * Jet(*(k * c for k, c in enumerate(here.c[1:], 1)), 0)
         return [here, Jet(self.of(here.c[0]), *(c / k for k, c in enumerate(steps.c[:-1], 1)))]
 

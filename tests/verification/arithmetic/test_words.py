@@ -5,7 +5,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from flint import acb, arb, arb_series, fmpq
+from flint import acb, acb_series, arb, arb_series, fmpq
 from sympy import (
     Abs,
     CRootOf,
@@ -44,7 +44,8 @@ from verification.arithmetic.balls import (
     real_ball,
     working,
 )
-from verification.arithmetic.series import Expansion, Jet, expanded, jets, series, taylor
+from verification.arithmetic.series import Expansion, Jet, along, expanded, in_series, jets, series, taylor
+from verification.proofs.manifolds.enclosed import complex_balls
 
 x = Symbol("x", positive=True)
 WORDS = [exp(x), log(x), sqrt(x), sin(x), cos(x), tan(x), atan(x), sinh(x), cosh(x), tanh(x)]
@@ -107,10 +108,32 @@ def test_a_jet_has_the_taylor_coefficients_that_differentiation_gives(expression
         made = load(kernel("f", [x], {"value": expression}), jets(ball))
         found = made(Jet(*(ball.q(int(c.p), int(c.q)) for c in inner)))[0]
 
-        assert len(found.c) == 5
-        for k, c in enumerate(found.c):
-            assert c.overlaps(enclose(whole.coeff(e, k), digits=40).real)
-            assert c.rad() < 1e-35
+        at = Jet(*(ball.q(int(c.p), int(c.q)) for c in inner))
+        again_made = load(kernel("f", [x], {"value": expression}), in_series(ball, arb_series))
+        (again,) = along([at], lambda near: again_made(*near))
+        assert len(found.c) == len(again.c) == 5
+        for k, (c, d) in enumerate(zip(found.c, again.c, strict=True)):
+            true = enclose(whole.coeff(e, k), digits=40).real
+            assert c.overlaps(true)
+            assert d.overlaps(true)
+            assert max(c.rad(), d.rad()) < 1e-35
+
+
+@pytest.mark.parametrize("word", ["sqrt", "log", "atan"])
+def test_a_series_over_complex_balls_has_no_coefficient_where_a_cut_may_pass_through(word):
+    """A ball over the cut, and one all beyond it, where the function would be that of another sheet; off it, values."""
+    words, one = in_series(complex_balls(100), acb_series), acb(arb(0, 1), arb(0, 1))
+    beyond = acb(0, 2) if word == "atan" else acb(-1, 0)
+
+    def coefficients(at):
+        (found,) = along([Jet(at, acb(1), acb(0))], lambda near: [getattr(words, word)(near[0])])
+        return found.c
+
+    for at in (beyond + one, beyond * 3 + acb(1, 1) / 4):
+        assert not any(c.is_finite() for c in coefficients(at))
+    first, *rest = coefficients(acb(arb(2), arb(1) / 4))
+    assert first.overlaps(getattr(acb(arb(2), arb(1) / 4), word)())
+    assert all(c.is_finite() for c in rest)
 
 
 def test_a_jet_that_keeps_its_sine_gives_it_in_the_bits_and_numbers_that_are_asked_for():

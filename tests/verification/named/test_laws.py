@@ -7,7 +7,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from flint import arb
+from flint import arb, arb_series
 from sympy import S
 
 from numeric import PinballMap
@@ -17,7 +17,7 @@ from symbolic.tables import cardioid, circle, cuspless, egg, ellipse, square, st
 from verification import EnclosedMap, certify, find_cycles, follow
 from verification.app.cli import main
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision, working
-from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.series import Jet, along, in_series, jets
 from verification.cycles.chords import Chords, Lengths
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import Closure
@@ -177,6 +177,8 @@ def test_arc_length_is_the_same_in_every_kind_of_number_and_its_derivative_the_s
     with working(100):
         ball = length.placed(balls(100), arb(at, 1e-9))
         moved = length.placed(jets(balls(100)), Jet(arb(at), arb(1), arb(0)))
+        words = in_series(balls(100), arb_series)
+        (again,) = along([Jet(arb(at), arb(1), arb(0))], lambda near: length.placed(words, near[0])[1:])
         h = arb(2) ** -20
         ends = [length.placed(balls(100), arb(at) + side * h)[1] for side in (-1, 0, 1)]
         first, second = (ends[2] - ends[0]) / (2 * h), (ends[2] - 2 * ends[1] + ends[0]) / (h * h)
@@ -185,6 +187,7 @@ def test_arc_length_is_the_same_in_every_kind_of_number_and_its_derivative_the_s
         assert ball[1].contains(ends[1])
         assert abs(moved[1].c[1] - first) < 1e-9
         assert abs(2 * moved[1].c[2] - second) < 1e-6
+        assert all(c.overlaps(d) and d.rad() < 1e-9 for c, d in zip(moved[1].c, again.c, strict=True))
     assert abs(float(mp[1]) - floats[1]) < 1e-14
     around = length.placed(FLOAT64, at + 2 * np.pi)
     assert np.allclose(around, floats, atol=1e-14)

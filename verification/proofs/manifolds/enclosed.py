@@ -27,6 +27,7 @@ this is the manifold.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from flint import acb, acb_mat, arb, ctx, fmpq
@@ -64,7 +65,8 @@ class TooWideError(ValueError):
 def complex_balls(bits: int) -> Words[acb]:
     """The words of the kernels for complex balls, analytic wherever they are finite."""
 
-    def rational(p: int, n: int) -> acb:
+    @cache
+    def rational(p: int, n: int) -> acb:  # a kernel has few, and asks for them at every call
         with ctx.workprec(bits):
             return acb(arb(fmpq(p, n)))
 
@@ -78,9 +80,12 @@ def complex_balls(bits: int) -> Words[acb]:
 def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any], acb]:
     """The function where it is analytic over the whole ball, and nothing at all where a cut may pass through."""
 
+    method = getattr(acb, word)
+
     def function(x: Any) -> acb:
-        ball = acb(x)
-        return getattr(ball, word)() if defined is None or defined(ball) else acb("nan")
+        ball = x if type(x) is acb else acb(x)
+        made: acb = method(ball) if defined is None or defined(ball) else acb("nan")
+        return made
 
     return function
 
@@ -218,9 +223,9 @@ def remainder(made: Enclosed, outer: int) -> arb:
 
 def vanishing(made: Enclosed) -> bool:
     """Do the rules' coefficients up to the order of the series contain 0?"""
-    map, ring = made.saddle.map.lifted, made.ring()
+    map, ring = made.saddle.map, made.ring()
     triples = [ring[i : i + 3] for i in range(len(ring) - 2)]
-    rules: list[Jet] = [map.rule(triple, made.saddle.parameter) for triple in triples]
+    rules = [map.rule_along(triple, made.saddle.parameter) for triple in triples]
     return all(c.contains(0) for rule in rules for c in rule.c)
 
 

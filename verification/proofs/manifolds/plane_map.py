@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
-from typing import Any, ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
 from sympy import Expr
@@ -22,7 +22,7 @@ from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, Arithmetic
 from verification.arithmetic.iteration import Stop, Vector, iterated, largest
-from verification.arithmetic.series import Jet, jets
+from verification.arithmetic.series import SERIES, Jet, along, in_series, jets
 from verification.cycles.chords import Chords, chord_angles, landing
 from verification.cycles.recurrence import Recurrence, Rule, henon
 from verification.cycles.systems import rotations
@@ -62,6 +62,12 @@ class PlaneMap(Protocol):
 
     def linear(self, near: Sequence[Any], parameter: Any) -> tuple[Any, tuple[Any, Any, Any], Any]:
         """The rule, its derivatives by the three points, and the one by the parameter."""
+
+    def rule_along(self, near: Sequence[Jet], parameter: Any) -> Jet:
+        """The rule at jets of its numbers."""
+
+    def linear_along(self, near: Sequence[Jet], parameter: Any) -> tuple[Jet, tuple[Jet, Jet, Jet], Jet]:
+        """The rule at jets of its numbers, its derivatives by the three points, and the one by the parameter."""
 
     def following(self, previous: Any, here: Any, parameter: Any) -> Any:
         """The map: what comes after `previous, here`."""
@@ -109,6 +115,26 @@ class _Bound(ABC):
     def linear(self, near: Sequence[Any], parameter: Any) -> tuple[Any, tuple[Any, Any, Any], Any]:
         terms = self._rule(0, near, self.at(parameter))
         return terms.value, terms.slope, terms.by[self.free]
+
+    def rule_along(self, near: Sequence[Jet], parameter: Any) -> Jet:
+        if type(near[0].c[0]) not in SERIES:
+            return cast(Jet, self.lifted.rule(near, parameter))
+        return along(near, lambda series: [self._in_series.rule(series, parameter)])[0]
+
+    def linear_along(self, near: Sequence[Jet], parameter: Any) -> tuple[Jet, tuple[Jet, Jet, Jet], Jet]:
+        if type(near[0].c[0]) not in SERIES:
+            return self.lifted.linear(near, parameter)
+
+        def listed(series: list[Any]) -> list[Any]:
+            value, slopes, moving = self._in_series.linear(series, parameter)
+            return [value, *slopes, moving]
+
+        value, before, here, after, moving = along(near, listed)
+        return value, (before, here, after), moving
+
+    @cached_property
+    def _in_series(self) -> Self:
+        return self.over(in_series(self.words, SERIES[type(self.words.pi)]))
 
 
 @dataclass(frozen=True, eq=False)

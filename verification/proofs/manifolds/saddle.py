@@ -179,9 +179,8 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
     known, orbit = len(series[0]), saddle.orbit
     powers = _powers(factor, length)
     ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
-    map = saddle.map.lifted
     triples = [ring[i : i + 3] for i in range(len(series))]
-    linear = [map.linear(triple, saddle.parameter) for triple in triples]
+    linear = [saddle.map.linear_along(triple, saddle.parameter) for triple in triples]
     rules, slopes_of = [value for value, *_ in linear], [[s.c for s in slope] for _, slope, _ in linear]
     found: Series = [[*c] for c in series]
     zero = saddle.points[0] * 0

@@ -229,7 +229,7 @@ class Touching:
     def _bounced(self, made: Linear, at: Point, k: int) -> None:
         """The rule at `y[k]`."""
         near = [Jet(at.orbit[j], at.along[j]) for j in range(k, k + 3)]
-        value, slopes, moving = self.map.lifted.linear(near, at.parameter)
+        value, slopes, moving = self.map.linear_along(near, at.parameter)
         m = len(at.orbit)
         rows = ([arb(0)] * k + [s.c[order] for s in slopes] + [arb(0)] * (m - k - 3) for order in (0, 1))
         _add(made, value.c, list(rows), moving.c)

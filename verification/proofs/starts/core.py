@@ -10,7 +10,7 @@ curve along which orbits approach; the cycle has two bounces, one of them at `th
   `M*v <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the one that is fixed, at 0;
 - a gate is a wider and shorter set of the same kind, whose second image lies in the core.
 
-The table is its own mirror image in the axis through the cycle, so that the half `theta >= 0` is enough.
+Table and law are their own mirror images in the axis through the cycle, so that the half `theta >= 0` is enough.
 An orbit that converges to a cycle has the exponents of the cycle, or less. Paper: section 5.3.
 """
 
@@ -90,6 +90,11 @@ class Core:
         return Parallelograms(np.full(middle.size, self.chart), np.stack([middle, phi]), sides, rest)
 
 
+def mirrored(map: PinballImages) -> bool:
+    """Is the map of `(-theta, -phi)` the mirror image of that of `(theta, phi)`? Of table and law it is asked."""
+    return reflected(map.map.table) and (map.law is None or map.scene.law.odd)
+
+
 def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
     """Their images after one round, in their order; None where one lands on both sides of a join, or is lost."""
     for _ in range(ROUND):
@@ -104,7 +109,7 @@ def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
 def attracts(map: PinballImages, core: Core) -> dict[str, bool]:
     """Is all of the core taken to the cycle, step by step? The items are those of the module's docstring."""
     images = twice(map, core.parts())
-    if images is None or not reflected(map.map.table):
+    if images is None or not mirrored(map):
         return {"orbits come to the middle": False, "they converge there": False, "gates lead in": False}
     far = np.abs(images.middle[0]) + images.reach()
     edges = np.linspace(0, core.outer, core.cells + 1)

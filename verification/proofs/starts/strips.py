@@ -25,12 +25,11 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.arithmetic.arrays import BallArray, hull, turned
-from verification.cycles.systems import reflected
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Matrix, matrix, norm, times
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import Chords
-from verification.proofs.starts.core import Core
+from verification.proofs.starts.core import Core, mirrored
 from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 Array = NDArray[np.float64]
@@ -117,6 +116,8 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
     """
     if len(columns) != len(map.charts) or min(rows, *columns) < 1:
         raise ValueError(f"strips: columns = {columns}, rows = {rows}; accepted: 1 or more, for each component")
+    if map.law is not None or not mirrored(map):
+        raise ValueError(f"strips: {map.label}; accepted: tables that are their own mirror images, under -lam*eta")
     pieces: list[Strips] = []
     edges = np.linspace(0.0, QUARTER, rows + 1)
     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2 * (1 + 1e-9)
@@ -291,11 +292,11 @@ def _steepest(
 def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvings: int = 8) -> bool:
     """Is `nu_plus` at most `rate` for every orbit? The norm of so many bounces says so, over boxes cut as needed.
 
-    Where the table is its own mirror image, boxes of `phi >= 0` are enough.
+    Where table and law are their own mirror images, boxes of `phi >= 0` are enough.
     """
-    goal, mirrored = exp(rate * bounces) / SLACK, reflected(map.map.table)
+    goal, half = exp(rate * bounces) / SLACK, mirrored(map)
     for chart, ends in enumerate(map.charts):
-        sides = [(np.array([low]), np.array([high])) for low, high in (ends.x, (0.0, map.top) if mirrored else ends.y)]
+        sides = [(np.array([low]), np.array([high])) for low, high in (ends.x, (0.0, map.top) if half else ends.y)]
         boxes = Boxes(np.array([chart]), *sides).parts(*FIRST)[0]
         for _ in range(halvings):
             open_ = ~(steepest(map, boxes, bounces, weight) <= goal)

@@ -60,7 +60,6 @@ def test_half_of_a_core_is_no_proof_where_the_table_is_not_its_own_mirror_image(
     """Images of `theta >= 0` say nothing of the others there; and the norm is asked of `phi < 0` too."""
     monkeypatch.setattr("verification.proofs.starts.core.reflected", lambda table: False)
     assert not any(attracts(map, SHORT).values())
-    monkeypatch.setattr("verification.proofs.starts.strips.reflected", lambda table: False)
     asked: list[float] = []
 
     def noted(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> np.ndarray:
@@ -70,6 +69,21 @@ def test_half_of_a_core_is_no_proof_where_the_table_is_not_its_own_mirror_image(
     monkeypatch.setattr("verification.proofs.starts.strips.steepest", noted)
     assert bounded(map, 0.54, 2, 0.05)
     assert asked == [-map.top] * 2
+
+
+def test_half_of_a_core_is_no_proof_where_the_law_is_not_its_own_mirror_image() -> None:
+    """With this one the half of `theta >= 0` goes to the middle, and of the other half some leave the core."""
+    law = "-lam*eta + eta**2/300"
+    bent = PinballImages(Scene("cuspless", lam=str(float(HIGH)), law=law), (LOW, HIGH))
+    core = replace(CORE, gates=())
+    theta = -np.linspace(0.001, 0.4099, 400)
+    start = theta, (core.slope + core.cubic * theta**2) * theta - 0.99 * core.width, 2, np.full(theta.size, core.chart)
+    orbit = bent.map.orbit(*start, fields=("theta", "phi"))
+    theta, phi = orbit["theta"][-1], orbit["phi"][-1]
+    assert np.any(np.abs(phi - (core.slope + core.cubic * theta**2) * theta) > core.width)
+    assert not any(attracts(bent, core).values())
+    with pytest.raises(ValueError, match="under -lam"):
+        strips(bent, (64, 12), 12)
 
 
 def test_a_core_and_its_gates_are_their_own_mirror_images_and_the_kernel_takes_them_in(map: PinballImages) -> None:

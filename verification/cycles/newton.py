@@ -1,6 +1,6 @@
 """Newton's method on the equations of a cycle, in float64 and to any number of digits; what the digits are worth.
 
-In mpmath the precision doubles at each step: a step needs no more digits than it will make right, so the last step
+To many digits the precision doubles at each step: a step needs no more digits than it will make right, so the last step
 costs as much as all others together. The precision lives in a context made here; `mpmath.mp` is not touched.
 
 The condition number of a solution is the largest row sum of the inverse of the system's matrix: no unknown moves
@@ -17,8 +17,9 @@ from math import inf, isfinite, log10
 from typing import Any, Protocol, runtime_checkable
 
 import mpmath
+from flint import arb
 
-from verification.arithmetic.balls import FLOAT64, Arithmetic, multiprecision
+from verification.arithmetic.balls import FLOAT64, Arithmetic, balls, exact_balls, multiprecision, working
 from verification.arithmetic.iteration import Iteration, Stop, Vector, iterated
 
 Solve = Callable[[Vector], Vector]
@@ -125,6 +126,7 @@ def total(x: Vector) -> float:
 
 
 GUARD = 15  # decimal digits beyond those asked for
+GUARD_BITS = 64  # of balls, beyond those of the numbers
 START = 16  # digits of the first step in mpmath
 DIGITS = 15  # of a float64, which every number of so many digits survives
 ATTEMPTS = 6  # steps with the same number of digits
@@ -226,8 +228,11 @@ class UnsettledError(ValueError):
         self.last = last
 
 
-def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
-    """The solution near `start` to `digits` digits.
+def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool = True) -> Solution:
+    """The solution near `start` to `digits` digits, in numbers of mpmath.
+
+    Corrections are the middles of balls, which are many times faster than mpmath, where the radii say that all their
+    digits are right. Where they are not, as along long cycles, or without `in_balls`, they are mpmath's.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
@@ -240,12 +245,11 @@ def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
     context = mpmath.MPContext()
     context.prec = 53
     z: Vector = [context.mpf(x) for x in floats(problem, start)]
-    arithmetic = multiprecision(context)
     steps: list[Step] = []
     for level in levels(digits + GUARD):
         context.dps = level
         enough = context.mpf(10) ** -enough_digits(level, digits + GUARD)
-        found = iterated(partial(problem.newton, arithmetic), z, Stop(enough=enough, steps=ATTEMPTS))
+        found = iterated(_correction(problem, context, in_balls), z, Stop(enough=enough, steps=ATTEMPTS))
         z = found.x
         steps += [Step(level, float(context.log10(size))) for size in found.sizes or [context.mpf(10) ** -level]]
         if not found.settled:
@@ -254,6 +258,24 @@ def refined(problem: System, start: Sequence[Any], digits: int) -> Solution:
                 f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
             )
     return Solution(problem, z, digits, tuple(steps))
+
+
+def _correction(problem: System, context: Any, in_balls: bool) -> Callable[[Vector], Vector]:
+    """Newton's correction, with the digits that a context has now."""
+    rounded = partial(problem.newton, multiprecision(context))
+    if not in_balls:
+        return rounded
+    bits = context.prec + GUARD_BITS
+    arithmetic, close = balls(bits), arb(2) ** -context.prec
+
+    def correction(z: Vector) -> Vector:
+        with working(bits):
+            moved = problem.newton(arithmetic, exact_balls(z))
+            if all(isinstance(d, arb) and d.rad() < close for d in moved):
+                return [context.mpf(tuple(map(int, d.mid().man_exp()))) for d in moved]
+        return rounded(z)
+
+    return correction
 
 
 def enough_digits(level: int, digits: int) -> float:

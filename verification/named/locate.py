@@ -132,7 +132,7 @@ def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) ->
 
 
 def certify(problem: Problem, start: list[float], digits: int) -> Proof:
-    """The proof for the solution near `start`: mpmath to a few digits more, then balls around it."""
+    """The proof for the solution near `start`: Newton's method to a few digits more, then balls around it."""
     return _searched(problem, start, digits)[0]
 
 

@@ -1,4 +1,4 @@
-"""Shooting in mpmath: quadratic, of the digits asked for, and without a trace in the ambient context."""
+"""Shooting to many digits: quadratic, of the digits asked for, and without a trace in the ambient context."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -15,8 +15,8 @@ from symbolic.tables.table import lam
 from verification.arithmetic.balls import FLOAT64, working
 from verification.cycles.cascade import attractor, characteristic, next_critical
 from verification.cycles.chain import Chain, by_cramer
-from verification.cycles.critical import corner
-from verification.cycles.newton import floats, levels, refined
+from verification.cycles.critical import Small, corner
+from verification.cycles.newton import ROUNDINGS, floats, levels, refined
 from verification.cycles.problem import LONG, Linearised, Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.named.locate import certify
@@ -35,6 +35,35 @@ def test_corrections_shrink_quadratically():
     assert len(tail) >= 3
     for one, two in pairwise(tail):
         assert two.correction < max(1.9 * one.correction, -0.9 * one.digits)  # or to the rounding
+
+
+@pytest.mark.parametrize(
+    ("system", "start"), [(corner(), [0.25, 0.07]), (flip(), [0.0, 3.14, 0.07])], ids=["corner", "flip"]
+)
+def test_middles_of_balls_are_mpmaths_numbers_up_to_their_rounding(system, start):
+    one, other = (refined(system, start, 50, in_balls) for in_balls in (True, False))
+
+    assert [s.digits for s in one.steps] == [s.digits for s in other.steps]
+    for a, b in zip(one.z, other.z, strict=True):
+        assert a.context.dps == b.context.dps
+        assert abs(a - b) <= ROUNDINGS * one.condition * one.unit
+    assert one.steps[-1].correction == pytest.approx(other.steps[-1].correction, abs=3)
+
+
+def test_balls_that_are_too_wide_give_way_to_mpmath():
+    """Corrections whose balls say less than a float64 does, and whose numbers are those of another run bit for bit."""
+
+    class Wide(Small):
+        def newton(self, arithmetic, z):
+            asked.append(type(z[0]) is arb)
+            wide = arb(0, 2.0**-40) if asked[-1] else 0
+            return [x + wide for x in super().newton(arithmetic, z)]
+
+    asked, plain = [], corner()
+    found = refined(Wide(plain.label, plain.equations), [0.25, 0.07], 50)
+
+    assert found.z == refined(plain, [0.25, 0.07], 50, in_balls=False).z
+    assert {True, False} == set(asked)
 
 
 @pytest.mark.parametrize("digits", [1, 16, 17, 50, 333])

@@ -60,8 +60,12 @@ def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
 def kept_by(law: "Law", symmetry: "Symmetry") -> bool:
     """Are images of orbits under a symmetry of the table orbits? A rotation needs a law that is the same everywhere,
     a mirror also an odd one."""
-    identity = symmetry.name == "identity"
-    return identity or (not law.placed and (symmetry.sign == 1 or law.odd))
+    return is_identity(symmetry) or (not law.placed and (symmetry.sign == 1 or law.odd))
+
+
+def is_identity(symmetry: "Symmetry") -> bool:
+    """Does it leave each point of the plane where it is?"""
+    return symmetry.sign == 1 and bool(symmetry.angle == 0)
 
 
 def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attractor]:
@@ -89,7 +93,7 @@ def united(map: PinballMap, attractors: Sequence[Attractor], group: "Sequence[Sy
     leader, near = {i: i for i in spread}, clouds(map, attractors)
     for i in spread:
         for symmetry in group:
-            if symmetry.name == "identity":  # each point is nearest to itself
+            if is_identity(symmetry):  # each point is nearest to itself
                 continue
             label = near(moved(symmetry, attractors[i].points))
             counts = np.bincount(label[label >= 0], minlength=len(attractors))

@@ -7,7 +7,7 @@ from .branch import Branch, exact, unstable_branch
 from .common_boundary import CommonBoundary, Disc, attracts, disc, entered_around
 from .crisis import BoundaryCrisis, boxed
 from .database import KNOWN, Numbers, continued
-from .fates import NEAR, Cluster, Fate, clusters, invertible
+from .fates import NEAR, Cluster, Fate, clusters
 from .flights import (
     OPS,
     End,
@@ -36,7 +36,7 @@ from .graph import (
     transitions,
     walked,
 )
-from .images import PinballImages
+from .images import PinballImages, invertible
 from .regions import (
     KIND,
     Region,

@@ -41,7 +41,7 @@ from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Transitions, refined
-from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.global_dynamics.images import PinballImages, invertible
 from verification.proofs.global_dynamics.regions import carried
 
 Array = NDArray[np.float64]
@@ -264,14 +264,6 @@ class Fate:
     def proved(self) -> bool:
         """Is all of it proved?"""
         return all(value is True for value in self.checks.values())
-
-
-def invertible(map: PinballImages) -> bool:
-    """Is the law's slope proved to vanish nowhere? Else what comes to a set of no area may have area."""
-    if map.law is None:
-        return True  # it is `lam > 0`
-    slopes = [map.slopes(*some)[0] for some in map.incidences()]
-    return all(np.all(slope.positive()) for slope in slopes) or all(np.all(slope.negative()) for slope in slopes)
 
 
 def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None:

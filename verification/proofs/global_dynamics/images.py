@@ -27,7 +27,7 @@ from numeric.lowering.program import Program
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import ArrayOps, BallArray, Compiled, common_part, exactly, hull, spread
-from verification.maps.first_hit import closes_smoothly, convex
+from verification.maps.first_hit import closes_smoothly, convex, tangents
 from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, Row, collected
 from verification.proofs.global_dynamics.flights import Flights, Piece, Slopes
 
@@ -138,6 +138,17 @@ class PinballImages:
         count = len(self.ends)
         return () if self.closed else tuple((i, (i + 1) % count) for i in range(count))
 
+    @cached_property
+    def homeomorphism(self) -> bool:
+        """Is it proved continuous across joins and one-to-one, with a determinant not 0 where it is smooth?
+
+        There is one tangent at each join, so flights that land there leave alike; one law, whatever the place; and a
+        flight taken back ends at one place, as the table is convex.
+        """
+        turns = tangents(self.map.table)
+        alike = not self.placed and all(bool(a.is_zero and b.is_positive) for a, b in turns)
+        return alike and self.range[0] > 0 and invertible(self)
+
     @property
     def label(self) -> str:
         shape, (low, high) = "".join(f", {name} = {value}" for name, value in self.scene.shape.items()), self.range
@@ -189,3 +200,11 @@ class PinballImages:
         with np.errstate(all="ignore"):
             pieces = (flights := self.flights(boxes)).pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]
+
+
+def invertible(map: PinballImages) -> bool:
+    """Is the law's slope proved to vanish nowhere? Else what comes to a set of no area may have area."""
+    if map.law is None:
+        return True  # it is `lam > 0`
+    slopes = [map.slopes(*some)[0] for some in map.incidences()]
+    return all(np.all(slope.positive()) for slope in slopes) or all(np.all(slope.negative()) for slope in slopes)

@@ -28,9 +28,9 @@ from scipy.sparse.csgraph import connected_components
 from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.fates import NEAR, clusters, invertible
+from verification.proofs.global_dynamics.fates import NEAR, clusters
 from verification.proofs.global_dynamics.graph import Grid, Mask, MorseGraph, morse_graph, refined, walked
-from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.global_dynamics.images import PinballImages, invertible
 from verification.proofs.global_dynamics.regions import expansion
 from verification.proofs.starts.core import NEARLY, Core, attracts, derivative
 from verification.proofs.starts.parallelograms import Parallelograms, carried

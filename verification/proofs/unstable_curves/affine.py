@@ -42,8 +42,8 @@ class BrokenLine:
         return f"(x, y) -> (f(x) + y, {self.b}*x)"
 
     @property
-    def one_to_one(self) -> bool:
-        """Is it one-to-one? The second coordinate gives `x`, the first one then `y`."""
+    def homeomorphism(self) -> bool:
+        """A broken line is continuous; and the second coordinate gives `x`, the first one then `y`."""
         return self.b != 0
 
     def _lines(self, chart: Indices) -> tuple[BallArray, BallArray, BallArray]:

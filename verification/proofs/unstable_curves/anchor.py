@@ -7,12 +7,12 @@ a slope `s` above that of all unstable curves, let
 
     |a| - s*|b| > 1,    |c| + s*|d| < s*(|a| - s*|b|),    |c|/s + |d| < 1,    |a|*r - |b|*h > w,
 
-where `h` is the height of `Q`, and every point of the cycle in `Q` is at least `r` and at most `w` away from either
-end. Then:
+where every point of the cycle in `Q` is at least `r` and at most `w` away from either end, and no point of `Q` is more
+than `h` above or below it. Then:
 
 - an interval Newton step gives exactly one fixed point `p` of `F` in `Q`;
-- an unstable curve that crosses `Q` has an image under `F` that crosses `Q` (the last inequality: the ends leave
-  `Q` on either side), so it holds a point `x` all of whose images under `F` are in `Q`;
+- an unstable curve that crosses `Q` has an image under `F` that crosses `Q` (the last inequality, for an end of the
+  curve and `p`: the ends leave `Q` on either side), so it holds a point `x` all of whose images under `F` are in `Q`;
 - for it `|u| <= |v|/s`, for all images of `x - p`, since else `|u|` would grow for ever (the first two); so
   `|v|` shrinks
   (the third), and `x` lies on the stable set of the cycle;
@@ -34,7 +34,6 @@ from verification.proofs.unstable_curves.spans import Course
 
 Array = NDArray[np.float64]
 CUTS = 6  # of a box, each way, before it is mapped
-STEEPER = 1.5, 2.0, 3.0, 5.0, 8.0  # how much steeper `s` may be than the curves
 
 
 @dataclass(frozen=True)
@@ -63,12 +62,11 @@ def anchor(cover: Cover, point: tuple[int, float, float], period: int, half: flo
         return None
     low, high = float(fixed[0].lower()), float(fixed[0].upper())
     least, most = min(low - box[0][0], box[0][1] - high), max(high - box[0][0], box[0][1] - low)
+    height = max(top - float(fixed[1].lower()), float(fixed[1].upper()) - bottom) * (1 + 1e-12)
     slopes = cover.steepest
     steep = max(abs(float(slopes[0][chart])), abs(float(slopes[1][chart])))
-    for factor in STEEPER:
-        if _hyperbolic(whole[2], factor * steep, least, most, top - bottom):
-            return Anchor(chart, *box[0], bottom, top)
-    return None
+    proved = _hyperbolic(whole[2], _slope(whole[2], steep), least, most, height)
+    return Anchor(chart, *box[0], bottom, top) if proved else None
 
 
 def _span(cover: Cover, chart: int, low: float, high: float) -> tuple[float, float]:
@@ -141,6 +139,14 @@ def _held(cover: Cover, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
         cells = [(float(end) - low) / (high - low) * count for end in (x.lower(), x.upper())]
         spans.append(slice(max(0, int(np.floor(cells[0] - 1e-6))), int(np.floor(cells[1] + 1e-6)) + 1))
     return bool(np.all(member[spans[0], spans[1]] > 0))
+
+
+def _slope(entries: Matrix, steep: float) -> float:
+    """A slope `s` in the middle of those above the curves for which the first and the third inequality may hold."""
+    b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
+    first = entries[0][0]
+    low = max(steep * (1 + 1e-9), c / (1 - d)) if d < 1 else np.inf
+    return (low + max(low, (abs(float(first.m)) - float(first.r) - 1) / max(b, 1e-300))) / 2
 
 
 def _hyperbolic(entries: Matrix, s: float, least: float, most: float, height: float) -> bool:

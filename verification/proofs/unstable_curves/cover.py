@@ -42,6 +42,10 @@ class JoinedMap(SmoothMap, Protocol):
     def joins(self) -> tuple[tuple[int, int], ...]:
         """Pairs of charts: the end of the first is the start of the second."""
 
+    @property
+    def homeomorphism(self) -> bool:
+        """Is it proved continuous across joins and one-to-one, with a determinant not 0 where it is smooth?"""
+
 
 @dataclass(frozen=True)
 class Cover:

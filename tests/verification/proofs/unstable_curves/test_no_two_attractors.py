@@ -80,7 +80,7 @@ def test_two_attractors_are_refused_together_and_each_is_one_by_itself():
 class Stacked:
     """A Lozi map on each of two strips above one another, about heights of 1/2 and -1/2."""
 
-    label, joins, one_to_one = "two Lozi maps", ((0, 1),), True
+    label, joins, homeomorphism = "two Lozi maps", ((0, 1),), True
     charts = tuple(chart._replace(y=(-1.0, 1.0)) for chart in LOZI.map.charts)
 
     def level(self, boxes):

@@ -225,6 +225,62 @@ def test_numbers_below_0_of_ends_prove_nothing_whatever_they_satisfy():
     assert not balance.holds(0, y, w, v, high)
 
 
+@pytest.mark.parametrize(("row", "trapped"), [(0, True), (4, False), (8, False), (11, False), (15, True)])
+def test_boxes_that_trap_less_one_of_them_are_refused_unless_nothing_lands_there(row, trapped):
+    """Fibres of heights up to 1 are taken to heights up to 1/2: rows 4 to 11 of 16."""
+    grid, cells = whole(Tents(0.4))
+    left = np.flatnonzero((cells.chart != 1) | (cells.column != 20) | (cells.row != row))
+    found = typical(Tents(0.4), grid, Cells(*(field[left] for field in cells)), 100, 40)
+    assert left.size == cells.chart.size - 1
+    assert (found.why != "the boxes are no trapping region") is trapped
+
+
+def test_numbers_found_without_what_joins_cut_are_refused():
+    """Without new ends the bound would be closer."""
+    smooth, whole = Balance(tents(), 8), Balance(tents(), 8)
+    smooth.cuts = []
+    y, high = smooth.potential(0)
+    high += 1e-5
+    w, v = smooth.weights(0, y, high)
+    assert smooth.holds(0, y, w, v, high)
+    assert not whole.holds(0, y, w, v, high)
+    assert high < whole.potential(0)[1]
+
+
+def test_ends_gather_where_curves_are_stretched_too_little():
+    """Tents stretch by 5/3 at least; by less than 1 nothing spreads what joins cut."""
+    found = tents()
+    for factor, proved in ((0.9, True), (0.5, False)):
+        weak = found._replace(cast=found.cast._replace(least=found.cast.least * factor))
+        assert (Balance(weak, 8).proved(0) is not None) is proved
+
+
+def test_an_edge_that_leads_back_instead_is_refused():
+    """One label of which the image is said to be itself alone: what is proved of that is not so of the map."""
+    found = tents()
+    source, to = found.edges
+    label = int(source[0])
+    turned = found._replace(edges=(source, np.where(source == label, label, to)))
+    short, whole = Balance(turned, 8), Balance(found, 8)
+    y, high = short.potential(0)
+    w, v = short.weights(0, y, high + 1e-4)
+    assert short.holds(0, y, w, v, high + 1e-4)
+    assert not whole.holds(0, y, w, v, min(high + 1e-4, whole.potential(0)[1] - 1e-3))
+
+
+def test_fibres_that_stretch_more_than_the_base_are_refused():
+    """Curves would be turned to the vertical: by 5/3 and 5/2 along, by 2 across."""
+
+    class Turned(Tents):
+        def landed(self, boxes, slopes):
+            found = super().landed(boxes, slopes)
+            return found._replace(slope=found.slope * 8 + 1.0)
+
+    found = typical(Turned(0.4), *whole(Tents(0.4)), 40, 40)
+    assert not found.proved
+    assert found.why
+
+
 def test_a_potential_of_a_graph_without_one_edge_is_refused():
     found = tents()
     source, to = found.edges

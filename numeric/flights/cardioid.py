@@ -36,8 +36,11 @@ class Cardioid(Family):
         return boundary.ir.same_as == "cardioid"
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
+        return Frame(*self.cartesian(component, theta), -np.sin(1.5 * theta), np.cos(1.5 * theta))
+
+    def cartesian(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         radius = 2 * np.cos(theta / 2) ** 2  # relative accuracy near the cusp
-        return Frame(radius * np.cos(theta), radius * np.sin(theta), -np.sin(1.5 * theta), np.cos(1.5 * theta))
+        return radius * np.cos(theta), radius * np.sin(theta)
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         return np.asarray(2 * np.cos(theta / 2))

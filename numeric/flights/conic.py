@@ -108,6 +108,9 @@ class Conic(Ellipse):
         size = np.hypot(along, across)
         return inverse, size, plane.times(focus.ahead, (along / size, across / size))
 
+    def cartesian(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        return self.frame(component, theta)[:2]
+
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         inverse, _, (x, y) = self._seen(theta)
         return Frame(np.cos(theta) / inverse, np.sin(theta) / inverse, -y, x)

@@ -41,8 +41,11 @@ class Cuspless(Cardioid):
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         wall, arc = component == 1, super().frame(component, theta)
-        x, y = np.where(wall, -QUARTER, arc.x), np.where(wall, -theta, arc.y)
-        return Frame(x, y, np.where(wall, 0.0, arc.tx), np.where(wall, -1.0, arc.ty))
+        return Frame(arc.x, arc.y, np.where(wall, 0.0, arc.tx), np.where(wall, -1.0, arc.ty))
+
+    def cartesian(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        wall, (x, y) = component == 1, super().cartesian(component, theta)
+        return np.where(wall, -QUARTER, x), np.where(wall, -theta, y)
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         return np.where(component == 1, 1.0, super().speed(component, theta))

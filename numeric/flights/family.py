@@ -79,34 +79,30 @@ class Boundary:
         curvature = self.bending(np.zeros(theta.size, dtype=np.int64), theta)[1]
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
-    def curve(self, component: NDArray[np.int64], theta: Array) -> Array:
-        """Rows `x, y`, first and second derivatives with respect to `theta`."""
-        rows = np.empty((6, *theta.shape))
+    def curve(self, component: NDArray[np.int64], theta: Array, count: int = 6) -> Array:
+        """Rows `x, y`, first and second derivatives with respect to `theta`, so many of them."""
+        rows = np.empty((count, *theta.shape))
         for index, part in enumerate(self.ir.parts):
-            here = component == index
-            if not np.any(here):
+            if not np.any(here := component == index):
                 continue
             place = ... if np.all(here) else here  # a view in place of copies
-            for i, values in enumerate(part.curve(self.ops, theta[place], *self.numbers)):
+            for i, values in enumerate(part.first(count)(self.ops, theta[place], *self.numbers)):
                 rows[i, place] = values
         return rows
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Point and unit tangent."""
-        x, y, dx, dy, _, _ = self.curve(component, theta)
-        speed = np.hypot(dx, dy)
-        return Frame(x, y, dx / speed, dy / speed)
+        x, y, dx, dy = self.curve(component, theta, 4)
+        return Frame(x, y, dx / (speed := np.hypot(dx, dy)), dy / speed)
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         """`ds/dtheta`."""
-        _, _, dx, dy, _, _ = self.curve(component, theta)
-        return np.asarray(np.hypot(dx, dy))
+        return np.asarray(np.hypot(*self.curve(component, theta, 4)[2:]))
 
     def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """`ds/dtheta`, and the paper's signed curvature, negative where the boundary focuses."""
         _, _, dx, dy, ax, ay = self.curve(component, theta)
-        speed = np.hypot(dx, dy)
-        return speed, -(dx * ay - dy * ax) / (speed * speed * speed)
+        return (speed := np.hypot(dx, dy)), -(dx * ay - dy * ax) / (speed * speed * speed)
 
 
 SLAP, ELASTIC, PINBALL, FORMULA = "slap", "elastic", "pinball", "formula"  # lam = 0, 1, between; any other law
@@ -172,6 +168,11 @@ class Family(ABC):
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Points and unit tangents; a closed form without cancellation where there is one."""
         return self.boundary.frame(component, theta)
+
+    def cartesian(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
+        """The points of `frame`."""
+        x, y = self.boundary.curve(component, theta, 2)
+        return x, y
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         """`ds/dtheta`."""

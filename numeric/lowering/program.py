@@ -9,6 +9,7 @@ the exact table, through `numeric.lowering.lower`, the only place where SymPy is
 are kept on disk, so that a warm run never imports it.
 """
 
+import functools
 import json
 import operator
 from collections.abc import Mapping
@@ -240,6 +241,15 @@ class Part(NamedTuple):
     name: str
     ends: Program
     curve: Program
+
+    def first(self, count: int) -> Program:
+        """The program of the first outputs of the curve."""
+        return _first(self.curve, count)
+
+
+@functools.cache
+def _first(program: Program, count: int) -> Program:
+    return program.only(*range(count)) if count < len(program.outputs) else program
 
 
 class LawIR(NamedTuple):

@@ -42,7 +42,7 @@ class States:
 
     def point(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """The Cartesian point."""
-        return self.frame(component, theta)[:2]
+        return self.family.cartesian(component, theta)
 
     def tangent(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """The unit tangent."""

@@ -6,6 +6,7 @@ import pytest
 
 from numeric import PinballMap
 from numeric.pinball import coordinates
+from symbolic import tables
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()
@@ -15,6 +16,31 @@ MP.dps = 40
 def grid(map, component, count=41):
     low, high = map.states.ends[component]
     return np.linspace(low, high, count + 2)[1:-1]
+
+
+EVERY = {
+    "circle": ("circle", {}),
+    "ellipse": ("ellipse", {"a": "3/2"}),
+    "egg": ("egg", {"alpha": "0.08"}),
+    "cardioid": ("cardioid", {}),
+    "cuspless": ("cuspless", {}),
+    "sides": (tables.stadium(), {}),
+    "conic": (tables.polar("1/(2 + cos(theta)/2)"), {}),
+    "star": (tables.polar("1 + cos(5*theta)/4"), {}),
+}
+
+
+@pytest.mark.parametrize("table", EVERY)
+def test_points_by_themselves_are_those_of_the_frames_bit_for_bit(table):
+    """For each family of tables; a shorter program computes each number by the same operations."""
+    map = PinballMap(EVERY[table][0], lam="1/2", **EVERY[table][1])
+    for component in range(len(map.states.ends)):
+        theta = grid(map, component)
+        where = np.full(theta.shape, component)
+        frame, family = map.states.frame(where, theta), map.states.family
+
+        assert np.array_equal(map.states.point(where, theta), frame[:2])
+        assert np.array_equal(family.boundary.curve(where, theta)[:4], family.boundary.curve(where, theta, 4))
 
 
 @pytest.mark.parametrize("a", ["1", "3/2", "10", "1000"])

@@ -177,7 +177,7 @@ def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> byt
     layout = drawn.get_layout_engine()
     if layout is not None:
         layout.execute(drawn)
-        drawn.set_layout_engine("none")
+        drawn.set_layout_engine(None)
     buffer = BytesIO()
     drawn.savefig(buffer, format=ending[1:], dpi=dpi, **{**FORMATS[ending], **form})
     return buffer.getvalue()

@@ -7,6 +7,7 @@ import warnings
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from sympy import Rational
 
 from numeric import PinballMap
@@ -242,6 +243,16 @@ def test_the_same_panels_give_the_same_bytes():
 
     for kind in (".png", ".pdf", ".svg"):
         assert picture.image(panels, kind) == picture.image(panels, kind)
+
+
+@pytest.mark.parametrize("kind", [".png", ".svg", ".webp"])
+def test_a_figure_that_is_laid_out_is_drawn_once(monkeypatch, kind):
+    drawings, draw = [], Figure.draw
+    monkeypatch.setattr(Figure, "draw", lambda figure, renderer: drawings.append(draw(figure, renderer)))
+    picture = pictures()["ellipse-slap"]
+
+    picture.image(picture.data(TINY), kind)
+    assert len(drawings) == 1
 
 
 def test_the_list_and_the_data_alone_need_no_matplotlib():

@@ -5,6 +5,7 @@ processes, started afresh. Answers come as they are found, whatever became of th
 dies is replaced, and what it was at is tried once more.
 """
 
+import gc
 import os
 import signal
 from collections import deque
@@ -141,15 +142,20 @@ def _undisturbed() -> Iterator[None]:
 
 def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[Item]:
     here, there = context.Pipe()
-    process: BaseProcess = context.Process(target=_serve, args=(there, work), daemon=True)  # type: ignore[attr-defined]
+    process: BaseProcess = context.Process(target=_serve, args=(there, work, gc.get_threshold()), daemon=True)  # type: ignore[attr-defined]
     process.start()
     there.close()  # so that its death is heard
     return _Worker(process, here)
 
 
-def _serve(pipe: "Connection", work: Callable[[Any], Any]) -> None:
-    """What a worker does: answers until nobody asks. Ctrl-C is for the one that asks."""
+def _serve(pipe: "Connection", work: Callable[[Any], Any], rarely: tuple[int, int, int]) -> None:
+    """What a worker does: answers until nobody asks. Ctrl-C is for the one that asks.
+
+    Unused cycles of objects are searched for as `rarely` as in the process that asks, and not in what was imported.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.set_threshold(*rarely)
+    gc.freeze()
     tasks: SimpleQueue[Any] = SimpleQueue()
     Thread(target=_received, args=(pipe, tasks), daemon=True).start()
     try:

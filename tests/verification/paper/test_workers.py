@@ -1,6 +1,8 @@
 """Work in processes: every item answered, in any number of them; one that dies is said; nothing outlives Ctrl-C."""
 
+import gc
 import multiprocessing
+import operator
 import os
 import re
 import signal
@@ -51,6 +53,18 @@ def test_what_work_raises_is_raised_here_and_the_other_processes_end():
         list(answers)
     assert len(processes) == 2
     assert not any(process.is_alive() for process in processes)
+
+
+def test_processes_search_for_unused_cycles_as_rarely_as_the_one_that_asks_and_not_in_what_they_imported():
+    before = gc.get_threshold()
+    gc.set_threshold(12_345, 6, 7)
+    try:
+        found = dict(in_processes(operator.call, [[gc.get_threshold, gc.get_freeze_count]], 1))
+    finally:
+        gc.set_threshold(*before)
+
+    assert found[gc.get_threshold] == (12_345, 6, 7)
+    assert found[gc.get_freeze_count] > 1000
 
 
 def mark(path):

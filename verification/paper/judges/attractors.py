@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from flint import acb, arb
-from sympy import Rational, Symbol, limit, oo, pi
+from sympy import Rational, Symbol, lambdify, limit, oo, pi
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
@@ -273,13 +273,13 @@ BETWEEN = ("0.4", "0.45")  # of these, where both are sampled
 @cache
 def triangles_attract(low: Fraction, high: Fraction) -> Finding:
     """At that shape a cycle of period 3 attracts at every contraction of a range, halved until each part is proved."""
-    start, parts, tried = near_flat().subs(letter, Rational(TENTH)), [(low, high)], 0
+    bounce, parts, tried = lambdify(lam, near_flat().subs(letter, Rational(TENTH)), "cmath"), [(low, high)], 0
     with working(BITS):
         map = table(Rational(TENTH)).over(complex_balls(BITS))
         while parts and tried < STEPS:
             (a, b), tried = parts.pop(), tried + 1
             middle = (a + b) / 2
-            orbit = Orbit("triangle", (complex(start.subs(lam, float(middle))).real,), TRIANGLE.closure)
+            orbit = Orbit("triangle", (complex(bounce(float(middle))).real,), TRIANGLE.closure)
             if not attracting(orbit, map, acb(exact(a).real.union(exact(b).real))):
                 parts += [(middle, b), (a, middle)]
     return answer(not parts, f"a triangle of period 3 attracts at every lam from {float(low)} to {float(high)}")

@@ -257,7 +257,7 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
     documents = []
     for file in files:
         given = read(Path(file))
-        boxes = given.get("kind") in ("trapping region", "boundary crisis")
+        boxes = given.get("kind") in ("trapping region", "boundary crisis", "no two attractors")
         try:
             document, lines = (_boxes_checked if boxes else _proof_checked)(given)
         except ValueError as why:
@@ -314,12 +314,15 @@ def _checklist(checks: Mapping[str, bool | None]) -> list[str]:
 
 
 def _boxes_checked(given: Mapping[str, Any]) -> Checked:
-    """What has no value to show: a trapping region's boxes are mapped anew, and those of a crisis grow again."""
+    """What has no value to show: boxes of a trapping region are mapped anew, those of other statements grow again."""
     from verification.proofs.global_dynamics.crisis import BoundaryCrisis
-    from verification.proofs.global_dynamics.regions import KIND, Region, checked
+    from verification.proofs.global_dynamics.regions import Region, checked
+    from verification.proofs.unstable_curves.certificate import Certificate
 
     started = time.perf_counter()
-    name, checks = checked(given, (Region if given["kind"] == KIND else BoundaryCrisis).from_dict)
+    kinds: dict[str, type[Region | BoundaryCrisis | Certificate]]
+    kinds = {"trapping region": Region, "boundary crisis": BoundaryCrisis, "no two attractors": Certificate}
+    name, checks = checked(given, kinds[given["kind"]].from_dict)
     seconds, certified = time.perf_counter() - started, all(checks.values())
     said = "certified" if certified else "not certified"
     document = {"name": name, "certified": certified, "checks": checks, "seconds": seconds}

@@ -24,6 +24,7 @@ from .flights import (
 )
 from .graph import (
     BLOCK,
+    LARGEST,
     Cells,
     Grid,
     Indices,
@@ -38,7 +39,6 @@ from .graph import (
 )
 from .images import PinballImages, invertible
 from .regions import (
-    KIND,
     Region,
     SmoothMap,
     arriving,
@@ -51,13 +51,14 @@ from .regions import (
     region,
     sampled_share,
     shares,
+    whole,
 )
 from .returns import every_return
 
 __all__ = [
     "BLOCK",
-    "KIND",
     "KNOWN",
+    "LARGEST",
     "NEAR",
     "OPS",
     "Barrier",
@@ -122,4 +123,5 @@ __all__ = [
     "turn_between",
     "unstable_branch",
     "walked",
+    "whole",
 ]

@@ -85,8 +85,11 @@ def _reach(cover: Cover) -> int:
 
 def _about(cover: Cover, values: Array, reach: int) -> Array:
     """The greatest value within one column and `reach` rows."""
-    picture = _greatest(_greatest(cover.painted(values, 0.0), 1, axis=1), reach, axis=2)
-    return picture[cover.cells.chart, cover.cells.column, cover.cells.row]
+    first, last = cover.cells.row.min(), cover.cells.row.max()
+    picture = cover.painted(values, 0.0)[:, :, first : last + 1]  # rows beyond hold nothing
+    picture = _greatest(_greatest(picture, 1, axis=1), reach, axis=2)
+    found: Array = picture[cover.cells.chart, cover.cells.column, cover.cells.row - first]
+    return found
 
 
 def _greatest(values: Array, reach: int, axis: int) -> Array:

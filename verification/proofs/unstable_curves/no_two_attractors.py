@@ -106,31 +106,35 @@ class NoTwoAttractors:
         return int(np.sum(~crossing(self.region, self.anchor)))
 
     @cached_property
-    def checks(self) -> dict[str, bool | None]:
-        """What is proved, item by item; None where nothing is. The last adds chances to converge to it."""
-        region, wide, at = self.region, self.wide, self.anchor
-        known = not isinstance(region, str)
+    def needed(self) -> dict[str, bool | None]:
+        """What the hypotheses 1 to 4 ask for, item by item; None where it is not proved."""
         grown = self.growth is not None and self.growth.bounces is not None
-        settled = known and at is not None and not isinstance(wide, str) and self.astray == 0
         return {
             "continuous": continuous(self.map) or None,
-            "cones": known or None,
+            "cones": not isinstance(self.region, str) or None,
             "growth": grown or None,
-            "saddle": at is not None or None,
+            "saddle": self.anchor is not None or None,
             "crossing": self.astray == 0 or None,
-            "visits": (settled and attraction(region, wide, at).proved) or None,  # type: ignore[arg-type]
         }
+
+    @cached_property
+    def checks(self) -> dict[str, bool | None]:
+        """All that is proved; the last, which adds chances to converge to it, is not needed for what `proved` says."""
+        region, wide, at = self.region, self.wide, self.anchor
+        known = not (isinstance(region, str) or isinstance(wide, str) or at is None) and self.astray == 0
+        chances = known and attraction(region, wide, at).proved  # type: ignore[arg-type]
+        return self.needed | {"visits": chances or None}
 
     @property
     def proved(self) -> bool:
         """Do the hypotheses 1 to 4 hold? Then the region holds at most one attractor."""
-        return all(held for name, held in self.checks.items() if name != "visits")
+        return all(self.needed.values())
 
     @property
     def reason(self) -> str:
         """What is missing, in words; of several the first."""
-        for name, held in self.checks.items():
-            if not held and not self.proved:
+        for name, held in self.needed.items():
+            if not held:
                 why = self.region if name == "cones" and isinstance(self.region, str) else REFUSED[name]
                 return f"{self.map.label}: {why}"
         return f"{self.map.label}: at most one attractor in the region; the closure of an unstable manifold is in it"

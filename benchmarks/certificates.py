@@ -95,7 +95,7 @@ def digits_table(console: Console, most: int) -> None:
     for name, (system, start) in systems().items():
         certificate(system, refined(system, start, 16).z, 16)  # generates and loads the kernels
         for digits in (d for d in DIGITS if d <= most):
-            shooting, solution = timed(lambda s=system, x=start, d=digits: refined(s, x, d, in_balls=False))
+            shooting, solution = timed(lambda s=system, x=start, d=digits: refined(s, x, d))
             in_arb, _ = timed(lambda s=system, x=start, d=digits: in_balls(s, x, d))
             proof, _ = timed(lambda s=system, z=solution.z, d=digits: certificate(s, z, d))
             shown.add_row(name, str(digits), f"{shooting:.4f}", f"{in_arb:.4f}", f"{proof:.4f}")
@@ -158,7 +158,7 @@ def cascade_table(console: Console, highest: int) -> None:
         seconds, each = timed(lambda: next(members, None))
         if each is None:
             break
-        shooting, solution = timed(lambda r=each: refined(r.problem, r.start, 50, in_balls=False))
+        shooting, solution = timed(lambda r=each: refined(r.problem, r.start, 50))
         proof, _ = timed(lambda r=each, s=solution: certificate(r.problem, s.z, 50))
         values.append(mpmath.nstr(solution.z[-1], 55))
         row = [str(each.n), str(each.problem.period), *(f"{t:.2f}" for t in (seconds, shooting, proof))]

@@ -228,11 +228,11 @@ class UnsettledError(ValueError):
         self.last = last
 
 
-def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool = True) -> Solution:
+def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool = False) -> Solution:
     """The solution near `start` to `digits` digits, in numbers of mpmath.
 
-    Corrections are the middles of balls, which are many times faster than mpmath, where the radii say that all their
-    digits are right. Where they are not, as along long cycles, or without `in_balls`, they are mpmath's.
+    With `in_balls` corrections are the middles of balls, many times faster than mpmath, where the radii say that all
+    their digits are right, and mpmath's elsewhere, as along long cycles. The last bits differ: files keep mpmath's.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational

@@ -61,7 +61,7 @@ def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS
     (True, '-0.4375000000', '0.2500000000')
     """
     problem = Problem(table, tuple(int(i) for i in near.component), lam=lam, law=law)
-    proof = certify(problem, [float(x) for x in near.theta], digits)
+    proof = certify(problem, [float(x) for x in near.theta], digits, in_balls=True)
     bits = proof.claim.bits
     with working(bits):
         try:

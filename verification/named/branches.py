@@ -252,7 +252,7 @@ def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int
     """
     found = doublings(egg(3).at(alpha=alpha), reached(alpha, lam, period), float(lam), step)
     members = list(islice(found, count))
-    proofs = [certify(member.problem, member.start, DIGITS) for member in members]
+    proofs = [certify(member.problem, member.start, DIGITS, in_balls=True) for member in members]
     proved = all(proof.certified and proof.supercritical is True for proof in proofs)
     return Cascade(tuple(m.problem.period for m in members), tuple(m.lam for m in members), proved)
 

@@ -353,7 +353,7 @@ def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
     lams, stable = [], True
     for n in range(3, highest + 1):
         here = doubling(alpha, n)
-        proof = certify(here.problem, here.start, EACH)
+        proof = certify(here.problem, here.start, EACH, in_balls=True)
         if not proof.certified:
             raise ValueError(f"cascade: lambda_{n} at alpha = {alpha} is not certified: {proof.checks}")
         lams.append(decimal(proof.value, EACH)[0])

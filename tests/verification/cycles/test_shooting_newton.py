@@ -60,9 +60,9 @@ def test_balls_that_are_too_wide_give_way_to_mpmath():
             return [x + wide for x in super().newton(arithmetic, z)]
 
     asked, plain = [], corner()
-    found = refined(Wide(plain.label, plain.equations), [0.25, 0.07], 50)
+    found = refined(Wide(plain.label, plain.equations), [0.25, 0.07], 50, in_balls=True)
 
-    assert found.z == refined(plain, [0.25, 0.07], 50, in_balls=False).z
+    assert found.z == refined(plain, [0.25, 0.07], 50).z
     assert {True, False} == set(asked)
 
 

@@ -108,7 +108,7 @@ class Sought:
 
     def in_mpmath(self, digits: int) -> list[Any]:
         """In mpmath, from float64 on."""
-        solution = refined(self.system, self.start, digits, in_balls=False)
+        solution = refined(self.system, self.start, digits)
         context = type(solution.z[0]).context
         return self.read(multiprecision(context), solution.z)
 

@@ -35,37 +35,44 @@ from sympy.polys.rings import PolyElement, ring
 
 
 def is_zero_in_ring(expression: Expr) -> bool | None:
-    """Is a rational function of letters, sines and cosines 0? None for one of another kind, such as one with roots.
+    """Is a rational function of letters, sines, cosines and square roots 0? None where that is not decided.
 
     A letter `x` in the angles enters by the sine and cosine of its smallest share `g*x`, of which every angle has whole
-    multiples; they and the letters obey no relation but `s**2 + c**2 = 1`, so the answer is right both ways.
+    multiples; they and the letters obey no relation but `s**2 + c**2 = 1`, so without roots the answer is right both
+    ways. A root, and `I`, is one more generator whose square is known; roots may obey relations besides, so what is not
+    0 by these alone is not decided.
 
     >>> x, y = symbols("x y")
     >>> is_zero_in_ring(sin(x + 2 * y) ** 2 + cos(2 * y + x) ** 2 - 1), is_zero_in_ring(tan(x) - sin(x))
     (True, False)
+    >>> from sympy import sqrt
+    >>> is_zero_in_ring((x - 1) / (sqrt(x) + 1) - sqrt(x) + 1), is_zero_in_ring(sqrt(x) * sqrt(y) - sqrt(x * y))
+    (True, None)
     """
     angles = {f.args[0] for f in expression.atoms(sin, cos, tan)}
     words = (Add, Mul, Pow, Rational, Symbol, sin, cos, tan)
-    nodes = list(preorder_traversal(expression))
-    if not all(isinstance(node, words) and (node.func is not Pow or node.exp.is_Integer) for node in nodes):
-        return None
+    roots: dict[Expr, Expr] = {}  # what is under each root, outer ones first
+    for node in preorder_traversal(expression):
+        if node is S.ImaginaryUnit or _is_root(node):
+            roots.setdefault(S.NegativeOne if node is S.ImaginaryUnit else node.base, Dummy("root"))
+        elif not isinstance(node, words) or (node.func is Pow and not node.exp.is_Integer):
+            return None
     parts = {angle: expand(angle).as_coefficients_dict() for angle in angles}
     if not all(x.is_Symbol and q.is_Rational for part in parts.values() for x, q in part.items()):
         return None
     shares = {x: gcd_list([part[x] for part in parts.values() if x in part]) for part in parts.values() for x in part}
     circle = {x: symbols(f"cos_{x} sin_{x}", cls=Dummy) for x in shares}
     letters = sorted(expression.free_symbols, key=str)
-    names = [*letters, *(each for pair in circle.values() for each in pair)]
+    names = [*letters, *(each for pair in circle.values() for each in pair), *roots.values()]
     if not names:
         return None
     own = ring(names, QQ)[0]
     generator = dict(zip(names, own.gens, strict=True))
-    sines = [own.gens.index(generator[s]) for _, s in circle.values()]
-    squares = [own.one - generator[c] ** 2 for c, _ in circle.values()]
+    squares = [(own.gens.index(generator[s]), own.one - generator[c] ** 2) for c, s in circle.values()]
 
     def reduced(p: PolyElement) -> PolyElement:
-        """`p` at most linear in each sine."""
-        for place, square in zip(sines, squares, strict=True):
+        """`p` at most linear in each root and each sine."""
+        for place, square in squares:
             found: dict[int, dict[tuple[int, ...], Any]] = {}
             for powers, coefficient in p.terms():
                 rest = (*powers[:place], powers[place] % 2, *powers[place + 1 :])
@@ -95,9 +102,11 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
         if isinstance(node, (sin, cos, tan)):
             c, s = trigonometric[node.args[0]]
             return {sin: (s, own.one), cos: (c, own.one), tan: (s, c)}[node.func]
+        if node is S.ImaginaryUnit:
+            return generator[roots[S.NegativeOne]], own.one
         if isinstance(node, Pow):
-            top, bottom = quotient(node.base)
-            power = int(node.exp)
+            top, bottom = quotient(node.base) if node.exp.is_Integer else (generator[roots[node.base]], own.one)
+            power = int(node.exp.p)
             top, bottom = (top, bottom) if power > 0 else (bottom, top)
             return reduced(top ** abs(power)), reduced(bottom ** abs(power))
         top, bottom = quotient(node.args[0])
@@ -114,9 +123,15 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
         return top, bottom
 
     try:
-        return not quotient(expression)[0]
+        for base in sorted(roots, key=Expr.count_ops):
+            top, bottom = quotient(base)
+            if not bottom.is_ground:
+                return None
+            squares.insert(0, (own.gens.index(generator[roots[base]]), top.quo_ground(bottom.LC)))
+        zero = not quotient(expression)[0]
     except ZeroDivisionError:
         return None
+    return zero or (None if roots else False)
 
 
 def reduced_numerator(expression: Expr) -> Expr:

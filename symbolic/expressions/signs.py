@@ -50,11 +50,11 @@ def vanishes(expression: Expr) -> bool:
     False
     """
     expression = S(expression)
-    if expression.is_zero:
-        return True
     decided = is_zero_in_ring(expression)
     if decided is not None:
         return decided
+    if expression.is_zero:
+        return True
     numerator = reduced_numerator(expression)
     if numerator == 0:
         return True

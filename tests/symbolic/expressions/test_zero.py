@@ -60,6 +60,33 @@ def test_the_ring_of_polynomials_decides_nothing_beyond_it(other):
     assert is_zero_in_ring(other) is None
 
 
+z = Symbol("z")
+
+
+@pytest.mark.parametrize(
+    "identity",
+    [
+        (a - 1) / (sqrt(a) + 1) - sqrt(a) + 1,
+        (1 - a**2) ** Rational(-3, 2) * (1 + a) - 1 / (sqrt(1 - a**2) * (1 - a)),
+        1 / (sqrt(a + sqrt(a)) + 1) - (sqrt(a + sqrt(a)) - 1) / (a + sqrt(a) - 1),
+        1 / (a + I) - (a - I) / (a**2 + 1),
+        sqrt(1 + sin(theta)) * (1 - sin(theta)) - cos(theta) ** 2 / sqrt(1 + sin(theta)),
+    ],
+    ids=str,
+)
+def test_a_root_is_a_generator_whose_square_is_known(identity):
+    assert is_zero_in_ring(identity) is True
+    for wrong in (Rational(1, 10**9), sqrt(a), I):
+        assert is_zero_in_ring(identity + wrong) is None
+
+
+@pytest.mark.parametrize("false", [sqrt(z**2) - z, sqrt(z - 1) - I * sqrt(1 - z), sqrt(z) + sqrt(z + 1)], ids=str)
+def test_a_root_is_the_principal_one_and_no_other(false):
+    """The first two vanish for some values of `z` alone, the last one for none."""
+    assert is_zero_in_ring(false) is None
+    assert not vanishes(false)
+
+
 @settings(max_examples=10)
 @given(trigonometric_sums(), trigonometric_sums(), SHIFTS)
 @example(cos(theta), sin(theta), Rational(1, 10**6))

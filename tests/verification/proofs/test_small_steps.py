@@ -153,7 +153,7 @@ def test_a_core_holds_a_set_only_where_all_of_it_is_near_its_curve(turned):
             sets = Parallelograms(
                 np.zeros(1, int), np.array([[float(at)], [float(curve(at))]]), sides, np.zeros((2, 1))
             )
-            core = lambda width: Core(0, float(slope), float(cubic), width, 0.0, 2.0, 4)  # noqa: E731
+            core = lambda width: Core(0, float(slope), float(cubic), width, 0.5, 2.0, 4)  # noqa: E731
             assert not core(float(off) * 0.99).holds(sets)[0]
             assert core(float(off) * 4 + 1e-9).holds(sets)[0]
 

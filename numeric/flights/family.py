@@ -75,8 +75,7 @@ class Boundary:
     @cached_property
     def convex(self) -> bool:
         """No curvature of the wrong sign on a fine grid of a closed curve, up to rounding."""
-        theta = np.linspace(-np.pi, np.pi, FINE)
-        curvature = self.bending(np.zeros(theta.size, dtype=np.int64), theta)[1]
+        curvature = self.bending(np.zeros(FINE, dtype=np.int64), np.linspace(-np.pi, np.pi, FINE))[1]
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
     def curve(self, component: NDArray[np.int64], theta: Array, count: int = 6) -> Array:
@@ -93,7 +92,8 @@ class Boundary:
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Point and unit tangent."""
         x, y, dx, dy = self.curve(component, theta, 4)
-        return Frame(x, y, dx / (speed := np.hypot(dx, dy)), dy / speed)
+        speed = np.hypot(dx, dy)
+        return Frame(x, y, dx / speed, dy / speed)
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         """`ds/dtheta`."""
@@ -102,7 +102,8 @@ class Boundary:
     def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """`ds/dtheta`, and the paper's signed curvature, negative where the boundary focuses."""
         _, _, dx, dy, ax, ay = self.curve(component, theta)
-        return (speed := np.hypot(dx, dy)), -(dx * ay - dy * ax) / (speed * speed * speed)
+        speed = np.hypot(dx, dy)
+        return speed, -(dx * ay - dy * ax) / (speed * speed * speed)
 
 
 SLAP, ELASTIC, PINBALL, FORMULA = "slap", "elastic", "pinball", "formula"  # lam = 0, 1, between; any other law
@@ -112,9 +113,7 @@ NEAR = 2.0**-50  # on the paper's tables a landing closer than this to a join or
 
 def law_of(lam_low: float, lam_high: float) -> str:
     """The law that serves every contraction between the two."""
-    if lam_low == lam_high == 0:
-        return SLAP
-    return ELASTIC if lam_low == lam_high == 1 else PINBALL
+    return SLAP if lam_low == lam_high == 0 else ELASTIC if lam_low == lam_high == 1 else PINBALL
 
 
 @dataclass

@@ -51,7 +51,7 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
     """
     angles = {f.args[0] for f in expression.atoms(sin, cos, tan)}
     words = (Add, Mul, Pow, Rational, Symbol, sin, cos, tan)
-    roots: dict[Expr, Expr] = {}  # what is under each root, outer ones first
+    roots: dict[Expr, Expr] = {}  # by what is under them
     for node in preorder_traversal(expression):
         if node is S.ImaginaryUnit or _is_root(node):
             roots.setdefault(S.NegativeOne if node is S.ImaginaryUnit else node.base, Dummy("root"))

@@ -11,7 +11,7 @@ from typing import Any
 
 from flint import acb, acb_series, arb, arb_series, ctx
 
-from verification.arithmetic.balls import FUNCTIONS, Arithmetic, Words, balls
+from verification.arithmetic.balls import FUNCTIONS, Arithmetic, Words
 
 
 class Jet:
@@ -161,13 +161,6 @@ def taylor(order: int) -> Iterator[None]:
         ctx.cap = before
 
 
-def series(bits: int) -> Arithmetic:
-    """The words of a kernel for power series with balls for coefficients."""
-    own = {word: getattr(arb_series, word) for word in FUNCTIONS if hasattr(arb_series, word)}
-    words = own | hyperbolic(arb_series.exp) | {"root": lambda x, n: (x.log() / n).exp()}
-    return replace(balls(bits), **words)
-
-
 SERIES = {arb: arb_series, acb: acb_series}  # FLINT's own, with balls of each kind for coefficients
 CUT = ("sqrt", "log", "atan")  # what is not analytic everywhere
 
@@ -204,7 +197,17 @@ def along(near: Sequence[Jet], function: Callable[[list[Any]], Sequence[Any]]) -
     count = len(near[0].c)
     with taylor(count):
         made = SERIES[type(near[0].c[0])]
-        return [Jet(*(found[k] for k in range(count))) for found in function([made([*jet.c]) for jet in near])]
+        return [Jet(*coefficients(found, count)) for found in function([made([*jet.c]) for jet in near])]
+
+
+def coefficients(series: Any, count: int) -> list[Any]:
+    """So many coefficients; none where the series is not known so far, as after a division of one that starts at 0.
+
+    >>> with taylor(3):
+    ...     coefficients(arb_series([0, 1, 2]) / arb_series([0, 1]), 3)
+    [1.00000000000000, 2.00000000000000, nan]
+    """
+    return [series[k] if k < series.prec else arb("nan") for k in range(count)]
 
 
 @dataclass(frozen=True)
@@ -246,7 +249,5 @@ def expanded(function: Function, low: arb, high: arb, order: int) -> Expansion:
     """
     middle = ((low + high) / 2).mid()
     with taylor(order):
-        known = list(function(arb_series([middle, 1])))
-        over = list(function(arb_series([low.union(high), 1])))
-    terms, whole = ([*made, *[arb(0)] * order][:order] for made in (known, over))
+        terms, whole = (coefficients(function(arb_series([at, 1])), order) for at in (middle, low.union(high)))
     return Expansion(low - middle, high - middle, (*terms[:-1], whole[-1]))

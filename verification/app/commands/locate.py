@@ -243,6 +243,9 @@ def _write(path: str, found: "Located") -> None:
     write_whole(Path(path), json.dumps(document(found.proof), indent=1) + "\n")
 
 
+BOXES = "trapping region", "boundary crisis", "no two attractors"  # kinds of certificates that name no cycle
+
+
 @click.command(epilog="Example: pinball locate lambda-c --certificate lambda_c.json && pinball check lambda_c.json")
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @json_option
@@ -257,7 +260,7 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
     documents = []
     for file in files:
         given = read(Path(file))
-        boxes = given.get("kind") in ("trapping region", "boundary crisis", "no two attractors")
+        boxes = given.get("kind") in BOXES
         try:
             document, lines = (_boxes_checked if boxes else _proof_checked)(given)
         except ValueError as why:
@@ -320,9 +323,8 @@ def _boxes_checked(given: Mapping[str, Any]) -> Checked:
     from verification.proofs.unstable_curves.certificate import Certificate
 
     started = time.perf_counter()
-    kinds: dict[str, type[Region | BoundaryCrisis | Certificate]]
-    kinds = {"trapping region": Region, "boundary crisis": BoundaryCrisis, "no two attractors": Certificate}
-    name, checks = checked(given, kinds[given["kind"]].from_dict)
+    kinds: tuple[type[Region | BoundaryCrisis | Certificate], ...] = Region, BoundaryCrisis, Certificate
+    name, checks = checked(given, kinds[BOXES.index(given["kind"])].from_dict)
     seconds, certified = time.perf_counter() - started, all(checks.values())
     said = "certified" if certified else "not certified"
     document = {"name": name, "certified": certified, "checks": checks, "seconds": seconds}

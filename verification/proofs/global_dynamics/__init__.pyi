@@ -51,6 +51,7 @@ from .regions import (
     region,
     sampled_share,
     shares,
+    stated,
     whole,
 )
 from .returns import every_return
@@ -118,6 +119,7 @@ __all__ = [
     "sampled_share",
     "shares",
     "sparse",
+    "stated",
     "times",
     "transitions",
     "turn_between",

@@ -22,7 +22,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from symbolic.tables.scene import Scene
-from verification.cycles.systems import reflected, rotations
+from verification.cycles.systems import rotations
 from verification.proofs.global_dynamics.boxes import Boxes, Images
 from verification.proofs.global_dynamics.crisis import enters, grown, marked_cells
 from verification.proofs.global_dynamics.graph import BLOCK, Cells, Grid, Mask
@@ -63,10 +63,10 @@ class Barrier:
         """How many turns keep the table."""
         return rotations(self.map.map.table)
 
-    @cached_property
+    @property
     def mirrored(self) -> bool:
-        """Does the reflection `theta -> -theta` keep the table?"""
-        return reflected(self.map.map.table)
+        """Is the reflection a symmetry of the map?"""
+        return self.map.mirrored
 
     @cached_property
     def grid(self) -> Grid:

@@ -40,7 +40,7 @@ from verification.proofs.global_dynamics.boxes import Boxes, Images
 from verification.proofs.global_dynamics.branch import OUTER, Branch, exact, unstable_branch
 from verification.proofs.global_dynamics.graph import CELLS, Cells, Grid, Mask, Rectangles
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.global_dynamics.regions import whole
+from verification.proofs.global_dynamics.regions import stated, whole
 from verification.proofs.manifolds.claim import orbit_of, orbit_said
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
@@ -206,13 +206,10 @@ class BoundaryCrisis:
     def from_dict(cls, given: Mapping[str, Any]) -> "BoundaryCrisis":
         """The crisis of a document; `ValueError` names what is wrong with it."""
         try:
-            if (given["kind"], given["schema"]) != (KIND, SCHEMA):
-                raise ValueError(f"certificate: {given['kind']!r} of schema {given['schema']!r} is no {KIND}")
-            scene = Scene.of(given["scene"])
-            low, high = (Fraction(str(text)) for text in given["lam"])
+            scene, lam = stated(given, KIND, SCHEMA)
             columns, rows, parts = (whole(name, given[name], most) for name, most in GRID.items())
             side, start, sink = given["side"], float(given["start"]), (float(given["sink"][0]), float(given["sink"][1]))
-            return cls(scene, orbit_of(given["saddle"]), side, (low, high), columns, rows, parts, start, sink)
+            return cls(scene, orbit_of(given["saddle"]), side, lam, columns, rows, parts, start, sink)
         except (KeyError, IndexError, TypeError, AttributeError) as error:
             raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
 

@@ -27,6 +27,7 @@ from numeric.lowering.program import Program
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import ArrayOps, BallArray, Compiled, common_part, exactly, hull, spread
+from verification.cycles.systems import reflected
 from verification.maps.first_hit import closes_smoothly, convex, tangents
 from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, Row, collected
 from verification.proofs.global_dynamics.flights import Flights, Piece, Slopes
@@ -137,6 +138,11 @@ class PinballImages:
         """Pairs of components: the end of the first is the start of the second; none on one closed curve."""
         count = len(self.ends)
         return () if self.closed else tuple((i, (i + 1) % count) for i in range(count))
+
+    @cached_property
+    def mirrored(self) -> bool:
+        """Is the map of `(-theta, -phi)` the mirror image of that of `(theta, phi)`? Of table and law it is asked."""
+        return reflected(self.map.table) and (self.law is None or self.scene.law.odd)
 
     @cached_property
     def homeomorphism(self) -> bool:

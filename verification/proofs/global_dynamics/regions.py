@@ -102,17 +102,25 @@ class Region:
     def from_dict(cls, given: Mapping[str, Any]) -> "Region":
         """The region of a document; `ValueError` names what is wrong with it."""
         try:
-            if given["schema"] != SCHEMA or given["kind"] != KIND:
-                raise ValueError(f"certificate: {given['kind']!r} of schema {given['schema']!r} is no {KIND}")
-            scene = Scene.of(given["scene"])
-            low, high = (Fraction(str(text)) for text in given["lam"])
+            scene, lam = stated(given, KIND, SCHEMA)
             columns, rows, parts = (whole(name, given[name], LARGEST) for name in ("columns", "rows", "parts"))
             if parts > MOST_PARTS:
                 raise ValueError(f"certificate: parts = {parts} is out of range; accepted: 1 to {MOST_PARTS}")
             charts = len(scene.table.components)
-            return cls(scene, (low, high), columns, rows, parts, _unrolled(given["runs"], charts, columns, rows))
+            return cls(scene, lam, columns, rows, parts, _unrolled(given["runs"], charts, columns, rows))
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
+
+
+def stated(given: Mapping[str, Any], kind: str, schema: int) -> tuple[Scene, tuple[Fraction, Fraction]]:
+    """The scene and the contractions of a document of that kind; `ValueError` names what is wrong with them."""
+    if (given["kind"], given["schema"]) != (kind, schema):
+        raise ValueError(f"certificate: {given['kind']!r} of schema {given['schema']!r} is no {kind}")
+    try:
+        low, high = (Fraction(str(end)) for end in given["lam"])
+    except (ValueError, ZeroDivisionError):
+        raise ValueError(f"certificate: lam = {given['lam']!r}; accepted: two ends, as fractions") from None
+    return Scene.of(given["scene"]), (low, high)
 
 
 class Statement(Protocol):

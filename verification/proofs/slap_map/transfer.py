@@ -65,7 +65,7 @@ from symbolic.cycles.cardioid_slap import (
 )
 from symbolic.expressions.text import load
 from verification.arithmetic.balls import FLOAT64, balls, real_ball, working
-from verification.arithmetic.series import series
+from verification.arithmetic.series import in_series
 
 TURN = -0.1  # the landing where the form of the launching point changes
 
@@ -114,7 +114,7 @@ class Branches:
 
     def __init__(self, bits: int) -> None:
         self.of_balls = [load(branch(above), balls(bits)) for above in (False, True)]
-        self.of_series = [load(branch(above), series(bits)) for above in (False, True)]
+        self.of_series = [load(branch(above), in_series(balls(bits), arb_series)) for above in (False, True)]
 
     def __call__(self, landing: Any) -> tuple[Any, Any]:
         """The launching half angle and the rate of a landing half angle."""

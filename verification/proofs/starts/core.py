@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray
-from verification.cycles.systems import reflected
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Matrix, matrix, times
 from verification.proofs.global_dynamics.images import PinballImages
@@ -90,11 +89,6 @@ class Core:
         return Parallelograms(np.full(middle.size, self.chart), np.stack([middle, phi]), sides, rest)
 
 
-def mirrored(map: PinballImages) -> bool:
-    """Is the map of `(-theta, -phi)` the mirror image of that of `(theta, phi)`? Of table and law it is asked."""
-    return reflected(map.map.table) and (map.law is None or map.scene.law.odd)
-
-
 def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
     """Their images after one round, in their order; None where one lands on both sides of a join, or is lost."""
     for _ in range(ROUND):
@@ -109,7 +103,7 @@ def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
 def attracts(map: PinballImages, core: Core) -> dict[str, bool]:
     """Is all of the core taken to the cycle, step by step? The items are those of the module's docstring."""
     images = twice(map, core.parts())
-    if images is None or not mirrored(map):
+    if images is None or not map.mirrored:
         return {"orbits come to the middle": False, "they converge there": False, "gates lead in": False}
     far = np.abs(images.middle[0]) + images.reach()
     edges = np.linspace(0, core.outer, core.cells + 1)

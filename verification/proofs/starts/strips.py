@@ -29,7 +29,7 @@ from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Matrix, matrix, norm, times
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import Chords
-from verification.proofs.starts.core import Core, mirrored
+from verification.proofs.starts.core import Core
 from verification.proofs.starts.parallelograms import Parallelograms, carried
 
 Array = NDArray[np.float64]
@@ -116,7 +116,7 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
     """
     if len(columns) != len(map.charts) or min(rows, *columns) < 1:
         raise ValueError(f"strips: columns = {columns}, rows = {rows}; accepted: 1 or more, for each component")
-    if map.law is not None or not mirrored(map):
+    if map.law is not None or not map.mirrored:
         raise ValueError(f"strips: {map.label}; accepted: tables that are their own mirror images, under -lam*eta")
     pieces: list[Strips] = []
     edges = np.linspace(0.0, QUARTER, rows + 1)
@@ -294,7 +294,7 @@ def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvin
 
     Where table and law are their own mirror images, boxes of `phi >= 0` are enough.
     """
-    goal, half = exp(rate * bounces) / SLACK, mirrored(map)
+    goal, half = exp(rate * bounces) / SLACK, map.mirrored
     for chart, ends in enumerate(map.charts):
         sides = [(np.array([low]), np.array([high])) for low, high in (ends.x, (0.0, map.top) if half else ends.y)]
         boxes = Boxes(np.array([chart]), *sides).parts(*FIRST)[0]

@@ -16,7 +16,7 @@ import numpy as np
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics import Boxes, PinballImages
 from verification.proofs.global_dynamics.graph import LARGEST
-from verification.proofs.global_dynamics.regions import whole
+from verification.proofs.global_dynamics.regions import stated, whole
 from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractors
 
 KIND, SCHEMA = "no two attractors", 1
@@ -79,12 +79,7 @@ class Certificate:
     def from_dict(cls, given: Mapping[str, Any]) -> "Certificate":
         """The statement of a document; `ValueError` names what is wrong with it."""
         try:
-            if (given["kind"], given["schema"]) != (KIND, SCHEMA):
-                raise ValueError(f"certificate: {given['kind']!r} of schema {given['schema']!r} is no {KIND}")
-            scene = Scene.of(given["scene"])
-            if len(given["lam"]) != 2:
-                raise ValueError(f"certificate: lam = {given['lam']!r}; accepted: two ends")
-            low, high = (Fraction(str(text)) for text in given["lam"])
+            scene, lam = stated(given, KIND, SCHEMA)
             columns, rows = (whole(name, given[name], LARGEST) for name in ("columns", "rows"))
             charts = len(scene.table.components)
             points = tuple(_point(point, charts) for point in given["points"])
@@ -93,10 +88,8 @@ class Certificate:
             saddle, half = _point(given["saddle"], charts), float(given["half"])
             if not 0 < half < 1:
                 raise ValueError(f"certificate: half = {half}; accepted: above 0 and below 1")
-            return cls(
-                scene, (low, high), columns, rows, points, saddle, whole("period", given["period"], LONGEST), half
-            )
-        except (KeyError, IndexError, TypeError, AttributeError, OverflowError, ZeroDivisionError) as error:
+            return cls(scene, lam, columns, rows, points, saddle, whole("period", given["period"], LONGEST), half)
+        except (KeyError, IndexError, TypeError, AttributeError, OverflowError) as error:
             raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
 
 

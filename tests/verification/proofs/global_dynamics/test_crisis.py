@@ -125,6 +125,8 @@ def test_a_turn_that_is_no_symmetry_of_the_table_is_refused(found, shift):
         {"kind": "trapping region"},
         {"side": 2},
         {"lam": ["0.7", "0.6"]},
+        {"lam": ["1/0", "1/2"]},
+        {"lam": ["1/2"]},
         {"start": 1.5},
         {"columns": 0},
         {"sink": [1.0]},

@@ -58,7 +58,7 @@ def test_half_of_a_core_is_no_proof_where_the_table_is_not_its_own_mirror_image(
     map: PinballImages, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Images of `theta >= 0` say nothing of the others there; and the norm is asked of `phi < 0` too."""
-    monkeypatch.setattr("verification.proofs.starts.core.reflected", lambda table: False)
+    monkeypatch.setitem(map.__dict__, "mirrored", False)
     assert not any(attracts(map, SHORT).values())
     asked: list[float] = []
 

@@ -212,7 +212,7 @@ def main() -> None:
     parser.add_argument("--sample", type=float, default=1.0, metavar="SHARE", help="a random share of the mutants")
     parser.add_argument("--seed", default="1", help="of the sample")
     parser.add_argument("--count", type=int, default=120, help="for core and page: how many of what proves")
-    parser.add_argument("--workers", type=int, default=1, help="modules at once")
+    parser.add_argument("--workers", type=int, default=1, help="modules, or for core groups, at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
     parser.add_argument(
         "--longest", type=float, default=mutation_core.LONGEST, help="for core: seconds of a test asked"
@@ -228,7 +228,7 @@ def main() -> None:
         listing(args)
         mutation_core.listing(args.count, args.seed)
     elif args.verb == "core":
-        mutation_core.run(args.count, args.seed, args.budget, args.only, args.again, args.longest)
+        mutation_core.run(args.count, args.seed, args.budget, args.only, args.again, args.longest, args.workers)
     else:
         core = mutation_core.figures(args.count, args.seed)
         write_page(

@@ -4,7 +4,8 @@ What is asked of `symbolic` and `numeric` line by line is asked here of a sample
 the tests that guard them are in benchmarks/records/mutation_core.toml. A process for each group runs its tests once,
 on the package as it is: that measures which test executes which line and how long it takes, and fills the memos of
 `symbolic` and `numeric`, which stay. Then each mutant has a fork in which no module of `verification` is left, so that
-none remembers the unmutated one.
+none remembers the unmutated one. What survives is asked the tests of `make slow` that execute its statement, before
+anybody reads it: its verdict is the one that CI would give.
 
 Nothing false can come of a budget, of a count of boxes, of the bits that a ball is rounded to, of what is told of
 progress, or of a candidate that a proof then checks (`proposes`, in the same file): these have no mutants here.
@@ -39,6 +40,7 @@ CORE = ROOT / "benchmarks" / "records" / "mutation_core.toml"
 RESULTS = STATE / "core.jsonl"
 SLOW = ROOT / "tests" / "slow.txt"
 LONGEST, DEAREST = 1.5, 20.0  # seconds, by slow.txt: what `make test` runs, and all parameters of a test together
+PATIENT, PATIENCE = 30.0, 4.0  # seconds of a test of `make slow` that a survivor is asked, and budgets that they have
 NOTICED = ("killed", "timeout")
 COUNTS = {"budget", "spent", "boxes"}  # how long a proof may take, and has taken
 HARMLESS = {"tick", "bits_of", "slope_bits"}  # calls that tell of progress, or say how many bits are rounded to
@@ -267,10 +269,13 @@ def sample(count: int, seed: str) -> dict[str, list[Change]]:
 
 
 class Guards:
-    """A pytest plugin: which test executes which line of the modules, and its seconds of processor; no slow tests."""
+    """A pytest plugin: which test executes which line of the modules, and its seconds of processor.
 
-    def __init__(self, group: Group, longest: float = LONGEST):
-        self.longest = longest
+    Its tests take longer than `above` seconds, and `longest` at most.
+    """
+
+    def __init__(self, group: Group, longest: float = LONGEST, above: float = 0.0):
+        self.longest, self.above = longest, above
         self.coverage = coverage.Coverage(
             data_file=None, config_file=False, include=[str(ROOT / path) for path in group.modules]
         )
@@ -280,12 +285,13 @@ class Guards:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items):
-        items[:] = [item for item in items if not self.slow(item.nodeid)]
+        quick = self.above or -1.0
+        items[:] = [i for i in items if self.slow(i.nodeid, quick) and not self.slow(i.nodeid, self.longest)]
 
-    def slow(self, node):
-        """Whether a test takes too long to be measured: the list has the seconds of all its parameters together."""
+    def slow(self, node, seconds):
+        """Whether a test takes longer: the list has the seconds of all its parameters together."""
         name, bracket, _ = node.partition("[")
-        return self.listed.get(name, 0.0) > (max(DEAREST, self.longest) if bracket else self.longest)
+        return self.listed.get(name, 0.0) > (max(DEAREST, seconds) if bracket and seconds > 0 else seconds)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
@@ -307,17 +313,23 @@ def forget() -> None:
             del sys.modules[name]
 
 
-def measured(group: Group, longest: float) -> tuple[dict[str, float], dict[tuple[str, int], set[str]]]:
+def measured(
+    group: Group, longest: float, above: float = 0.0
+) -> tuple[dict[str, float], dict[tuple[str, int], set[str]]]:
     """The guards' seconds, and which of them execute a line: found by running them."""
-    plugin = Guards(group, longest)
+    start = time.perf_counter()
+    plugin = Guards(group, longest, above)
     plugin.coverage.start()
     files = [*group.tests, *(path for path in group.modules if path.startswith("verification/"))]
     quiet = [option for option in QUIET if option != "--tb=no"]
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         status = pytest.main([*quiet, *files], plugins=[plugin])
     plugin.coverage.stop()
-    if status:
+    if status not in (0, pytest.ExitCode.NO_TESTS_COLLECTED):
         raise SystemExit(f"mutation testing needs tests that pass: {group.tests}")
+    told = f"{len(plugin.seconds)} tests in {time.perf_counter() - start:.0f} s guard {', '.join(group.modules)}"
+    print(told, flush=True)  # noqa: T201
+    forget()
     data, lines = plugin.coverage.get_data(), {}
     for file in data.measured_files():
         path = str(Path(file).relative_to(ROOT))
@@ -354,37 +366,55 @@ def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float
 
 
 def serve(group: Group, wanted: list[Change], budget: float, longest: float = LONGEST) -> None:
-    """Measures the guards of a group, then asks them about each mutant."""
-    start = time.perf_counter()
-    seconds, lines = measured(group, longest)
-    forget()
-    print(f"{len(seconds)} tests in {time.perf_counter() - start:.0f} s guard {', '.join(group.modules)}", flush=True)  # noqa: T201
-    for number, change in enumerate(wanted, 1):
+    """Asks the guards of a group about each mutant, and slow ones about those that survive."""
+    quick = [(change, 0.0) for change in wanted]
+    survivors = [*asked(quick, *measured(group, longest), budget, last=longest >= PATIENT)]
+    if survivors and longest < PATIENT:
+        for _ in asked(survivors, *measured(group, PATIENT, longest), PATIENCE * budget, last=True):
+            pass  # they are written down
+
+
+def asked(
+    wanted: list[tuple[Change, float]], seconds: dict[str, float], lines: dict, budget: float, last: bool
+) -> Iterator[tuple[Change, float]]:
+    """Writes down the verdict of each mutant; yields those that no test noticed, which are written down by the last."""
+    for number, (change, before) in enumerate(wanted, 1):
         mutant = change.made()
         tests = guards(mutant, seconds, lines, budget)
         status, test, spent = ask(mutant.path, mutant.text, tests, keep=True) if tests else ("uncovered", "", 0.0)
+        if last and status == "uncovered" and before:
+            status = "survived"  # quicker tests have run it
+        spent = round(spent + before, 2)
         entry = {"key": change.key, "operator": mutant.operator, "status": status, "test": test, "seconds": spent}
-        append(RESULTS, entry | {"tests": len(tests), "budget": budget})
+        if last or status in NOTICED:
+            append(RESULTS, entry | {"tests": len(tests), "budget": budget})
         place = f"{mutant.path}:{mutant.line} {mutant.operator}"
         print(f"{time.strftime('%H:%M:%S')} {number}/{len(wanted)} {status} {spent:.1f} s {place} {test}", flush=True)  # noqa: T201
+        if status not in NOTICED:
+            yield change, spent
 
 
-def run(count: int, seed: str, budget: float, only: str, again: str, longest: float) -> None:
+def run(count: int, seed: str, budget: float, only: str, again: str, longest: float, workers: int = 1) -> None:
     """Asks about what is not known of the sample, group by group; or again about what has the verdict `again`.
 
-    Asked are tests of at most `longest` seconds, as far as a budget of seconds goes.
+    Asked are tests of at most `longest` seconds, as far as a budget of seconds goes; `workers` groups at once.
     """
     known = results()
     os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
     os.environ["PINBALL_CACHE"] = str(STATE / "kernels")  # of float64: no module that is mutated writes there
     drawn = sample(count, seed)
     warm()
+    running: set[int] = set()
     for group in groups():
         found = [mutant for path in group.modules if fnmatch(path, only) for mutant in drawn[path]]
         wanted = [m for m in found if (known.get(m.key, {"status": ""})["status"] == again)]
         if wanted:
             wanted.sort(key=lambda mutant: rank(mutant, seed))
-            os.waitpid(in_fork(lambda group=group, wanted=wanted: serve(group, wanted, budget, longest)), 0)
+            running.add(in_fork(lambda group=group, wanted=wanted: serve(group, wanted, budget, longest)))
+            if len(running) == workers:
+                running.discard(os.wait()[0])
+    while running:
+        running.discard(os.wait()[0])
 
 
 def figures(count: int, seed: str) -> dict[str, dict]:

@@ -26,14 +26,13 @@ import sys
 import time
 from collections import Counter, defaultdict
 from fnmatch import fnmatch
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
-from os import waitpid
 
 import mutation_core
 from mutation_mutants import ROOT, STATE, STOREYS, Mutant, mutants
 from mutation_page import given, write_page
-from mutation_server import append, ask, cover, file_of, in_fork, independent, mirrors, name_of, reached, warm
+from mutation_server import append, ask, cover, file_of, in_forks, independent, mirrors, name_of, reached, warm
 
 COVER, RESULTS = STATE / "cover.json", STATE / "results.jsonl"
 
@@ -116,7 +115,7 @@ def covering(paths: list[str]) -> None:
         COVER.write_text(json.dumps(old | new))
         say(f"{len(new) - 1} tests, {sum(entry['seconds'] for entry in new.values()):.0f} s")
 
-    waitpid(in_fork(work), 0)
+    in_forks([work], 1)
 
 
 def wanted(path: str, known: dict[str, dict], args: argparse.Namespace) -> list[Mutant]:
@@ -153,16 +152,9 @@ def running(args: argparse.Namespace) -> None:
     """Module by module, a fork server for each; at most as many at once as there are workers."""
     plan, known = Plan(), results()
     warm()
-    busy = []
-    for path in modules(args.only):
-        chosen = wanted(path, known, args)
-        if not chosen:
-            continue
-        if len(busy) >= args.workers:
-            waitpid(busy.pop(0), 0)
-        busy.append(in_fork(lambda path=path, chosen=chosen: run_module(path, chosen, plan, args)))
-    for child in busy:
-        waitpid(child, 0)
+    found = ((path, wanted(path, known, args)) for path in modules(args.only))
+    works = (partial(run_module, path, chosen, plan, args) for path, chosen in found if chosen)
+    in_forks(works, args.workers)
 
 
 def asked(args: argparse.Namespace) -> dict[str, tuple[int, list[tuple[Mutant, str]]]]:

@@ -4,8 +4,8 @@ What is asked of `symbolic` and `numeric` line by line is asked here of a sample
 the tests that guard them are in benchmarks/records/mutation_core.toml. A process for each group runs its tests once,
 on the package as it is: that measures which test executes which line and how long it takes, and fills the memos of
 `symbolic` and `numeric`, which stay. Then each mutant has a fork in which no module of `verification` is left, so that
-none remembers the unmutated one. What survives is asked the tests of `make slow` that execute its statement, before
-anybody reads it: its verdict is the one that CI would give.
+none remembers the unmutated one. What survives is asked the tests of `make slow` that execute its statement and
+take no longer than half a minute, before anybody reads it.
 
 Nothing false can come of a budget, of a count of boxes, of the bits that a ball is rounded to, of what is told of
 progress, or of a candidate that a proof then checks (`proposes`, in the same file): these have no mutants here.
@@ -26,7 +26,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import redirect_stdout
 from fnmatch import fnmatch
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -34,7 +34,7 @@ from typing import NamedTuple
 import coverage
 import pytest
 from mutation_mutants import ROOT, STATE, Mutant, changed, function_at, statements
-from mutation_server import QUIET, append, ask, file_of, forget_traced, in_fork, warm
+from mutation_server import QUIET, append, ask, file_of, forget_traced, in_forks, warm
 
 CORE = ROOT / "benchmarks" / "records" / "mutation_core.toml"
 RESULTS = STATE / "core.jsonl"
@@ -271,7 +271,7 @@ def sample(count: int, seed: str) -> dict[str, list[Change]]:
 class Guards:
     """A pytest plugin: which test executes which line of the modules, and its seconds of processor.
 
-    Its tests take longer than `above` seconds, and `longest` at most.
+    Its tests take `longest` seconds at most, and longer than `above` where that is not 0.
     """
 
     def __init__(self, group: Group, longest: float = LONGEST, above: float = 0.0):
@@ -285,13 +285,13 @@ class Guards:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items):
-        quick = self.above or -1.0
-        items[:] = [i for i in items if self.slow(i.nodeid, quick) and not self.slow(i.nodeid, self.longest)]
+        wanted = [item for item in items if not self.slow(item.nodeid, self.longest)]
+        items[:] = [item for item in wanted if not self.above or self.slow(item.nodeid, self.above)]
 
     def slow(self, node, seconds):
         """Whether a test takes longer: the list has the seconds of all its parameters together."""
         name, bracket, _ = node.partition("[")
-        return self.listed.get(name, 0.0) > (max(DEAREST, seconds) if bracket and seconds > 0 else seconds)
+        return self.listed.get(name, 0.0) > (max(DEAREST, seconds) if bracket else seconds)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item):
@@ -316,7 +316,7 @@ def forget() -> None:
 def measured(
     group: Group, longest: float, above: float = 0.0
 ) -> tuple[dict[str, float], dict[tuple[str, int], set[str]]]:
-    """The guards' seconds, and which of them execute a line: found by running them."""
+    """The guards' seconds, and which of them execute a line: found by running them, which is then forgotten."""
     start = time.perf_counter()
     plugin = Guards(group, longest, above)
     plugin.coverage.start()
@@ -365,36 +365,34 @@ def guards(mutant: Mutant, seconds: dict[str, float], lines: dict, budget: float
     return chosen
 
 
-def serve(group: Group, wanted: list[Change], budget: float, longest: float = LONGEST) -> None:
-    """Asks the guards of a group about each mutant, and slow ones about those that survive."""
-    quick = [(change, 0.0) for change in wanted]
-    survivors = [*asked(quick, *measured(group, longest), budget, last=longest >= PATIENT)]
-    if survivors and longest < PATIENT:
-        for _ in asked(survivors, *measured(group, PATIENT, longest), PATIENCE * budget, last=True):
-            pass  # they are written down
+def serve(group: Group, wanted: list[Change], budget: float, longest: float) -> None:
+    """Asks the guards of a group about each mutant, and slow ones about survivors; writes the verdicts down."""
+    survived = {}
+    for change, entry in asked(wanted, *measured(group, longest), budget):
+        if entry["status"] in NOTICED or longest >= PATIENT:
+            append(RESULTS, entry)
+        else:
+            survived[change] = entry
+    if survived:
+        for change, entry in asked(survived, *measured(group, PATIENT, longest), PATIENCE * budget):
+            append(RESULTS, survived[change] if entry["status"] == "uncovered" else entry)
 
 
 def asked(
-    wanted: list[tuple[Change, float]], seconds: dict[str, float], lines: dict, budget: float, last: bool
-) -> Iterator[tuple[Change, float]]:
-    """Writes down the verdict of each mutant; yields those that no test noticed, which are written down by the last."""
-    for number, (change, before) in enumerate(wanted, 1):
+    wanted: Collection[Change], seconds: dict[str, float], lines: dict, budget: float
+) -> Iterator[tuple[Change, dict]]:
+    """Each mutant with what the record keeps of it."""
+    for number, change in enumerate(wanted, 1):
         mutant = change.made()
         tests = guards(mutant, seconds, lines, budget)
         status, test, spent = ask(mutant.path, mutant.text, tests, keep=True) if tests else ("uncovered", "", 0.0)
-        if last and status == "uncovered" and before:
-            status = "survived"  # quicker tests have run it
-        spent = round(spent + before, 2)
-        entry = {"key": change.key, "operator": mutant.operator, "status": status, "test": test, "seconds": spent}
-        if last or status in NOTICED:
-            append(RESULTS, entry | {"tests": len(tests), "budget": budget})
         place = f"{mutant.path}:{mutant.line} {mutant.operator}"
         print(f"{time.strftime('%H:%M:%S')} {number}/{len(wanted)} {status} {spent:.1f} s {place} {test}", flush=True)  # noqa: T201
-        if status not in NOTICED:
-            yield change, spent
+        entry = {"key": change.key, "operator": mutant.operator, "status": status, "test": test, "seconds": spent}
+        yield change, entry | {"tests": len(tests), "budget": budget}
 
 
-def run(count: int, seed: str, budget: float, only: str, again: str, longest: float, workers: int = 1) -> None:
+def run(count: int, seed: str, budget: float, only: str, again: str, longest: float, workers: int) -> None:
     """Asks about what is not known of the sample, group by group; or again about what has the verdict `again`.
 
     Asked are tests of at most `longest` seconds, as far as a budget of seconds goes; `workers` groups at once.
@@ -404,17 +402,14 @@ def run(count: int, seed: str, budget: float, only: str, again: str, longest: fl
     os.environ["PINBALL_CACHE"] = str(STATE / "kernels")  # of float64: no module that is mutated writes there
     drawn = sample(count, seed)
     warm()
-    running: set[int] = set()
+    works = []
     for group in groups():
         found = [mutant for path in group.modules if fnmatch(path, only) for mutant in drawn[path]]
         wanted = [m for m in found if (known.get(m.key, {"status": ""})["status"] == again)]
         if wanted:
             wanted.sort(key=lambda mutant: rank(mutant, seed))
-            running.add(in_fork(lambda group=group, wanted=wanted: serve(group, wanted, budget, longest)))
-            if len(running) == workers:
-                running.discard(os.wait()[0])
-    while running:
-        running.discard(os.wait()[0])
+            works.append(partial(serve, group, wanted, budget, longest))
+    in_forks(works, workers)
 
 
 def figures(count: int, seed: str) -> dict[str, dict]:

@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import redirect_stdout, suppress
 from functools import cache
 from importlib.machinery import SourceFileLoader
@@ -289,6 +289,19 @@ def in_fork(work) -> int:
             traceback.print_exc()
         sys.stdout.flush()
         os._exit(status)
+
+
+def in_forks(works: Iterable[Callable[[], None]], workers: int) -> None:
+    """Runs functions in processes of their own, so many at once: where one ends the next begins."""
+    busy = 0
+    for work in works:
+        if busy == workers:
+            os.wait()
+            busy -= 1
+        in_fork(work)
+        busy += 1
+    for _ in range(busy):
+        os.wait()
 
 
 def append(file: Path, entry: dict) -> None:

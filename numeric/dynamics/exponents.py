@@ -318,9 +318,9 @@ def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int
     begin = advanced(map, particles, transient).points
     steps = bounces + 2 * SETTLING
     orbit = map.orbit(begin.theta, begin.phi, steps, begin.component)
-    slopes = [map.derivative(orbit.theta[i], orbit.phi[i], orbit.component[i]) for i in range(steps)]
+    slopes = map.derivative(orbit.theta[:-1], orbit.phi[:-1], orbit.component[:-1])
     expanded = _carried(slopes, np.array([0.6, 0.8]))
-    contracted = _carried([_adjugate(slope) for slope in reversed(slopes)], np.array([0.8, -0.6]))[::-1]
+    contracted = _carried(_adjugate(slopes[::-1]), np.array([0.8, -0.6]))[::-1]
     e, f = expanded[SETTLING : SETTLING + bounces], contracted[SETTLING : SETTLING + bounces]
     sine = np.abs(e[..., 0] * f[..., 1] - e[..., 1] * f[..., 0])
     return np.asarray(elementary.arcsin(np.minimum(sine, 1.0))).ravel()
@@ -328,12 +328,12 @@ def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int
 
 def _adjugate(slope: Array) -> Array:
     """The inverse matrices up to a factor, which turns no direction. LAPACK's last bit depends on the processor."""
-    rows = np.array([[slope[:, 1, 1], -slope[:, 0, 1]], [-slope[:, 1, 0], slope[:, 0, 0]]])
-    return np.moveaxis(rows, 2, 0)
+    (a, b), (c, d) = np.moveaxis(slope, (-2, -1), (0, 1))
+    return np.moveaxis(np.array([[d, -b], [-c, a]]), (0, 1), (-2, -1))
 
 
-def _carried(slopes: list[Array], vector: Array) -> Array:
-    """The unit vector before each step."""
+def _carried(slopes: Array, vector: Array) -> Array:
+    """The unit vector before each step, of each particle; matrices by step and particle."""
     here = np.broadcast_to(vector, (slopes[0].shape[0], 2))
     rows = [here]
     for slope in slopes:
@@ -348,9 +348,8 @@ def slopes(map: PinballMap, count: int, seed: int, bounces: int = 600) -> tuple[
     starts = interior_starts(map, count, seed)
     begin = advanced(map, PhasePoints(*starts[:3]), 1000).points
     orbit = map.orbit(begin.theta, begin.phi, bounces, begin.component)
-    along = _carried(
-        [map.derivative(orbit.theta[i], orbit.phi[i], orbit.component[i]) for i in range(bounces)], np.array([0.6, 0.8])
-    )[SETTLING:]
+    matrices = map.derivative(orbit.theta[:-1], orbit.phi[:-1], orbit.component[:-1])
+    along = _carried(matrices, np.array([0.6, 0.8]))[SETTLING:]
     half = map.arclength.perimeter / 2
     s = np.remainder(map.arclength.s(orbit.theta[SETTLING:], orbit.component[SETTLING:]) + half, 2 * half) - half
     return s.ravel(), orbit.phi[SETTLING:].ravel(), (along[..., 1] / along[..., 0]).ravel()

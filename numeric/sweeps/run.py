@@ -58,6 +58,20 @@ def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
+def in_memory(sweep: Sweep, workers: int) -> dict[str, Array]:
+    """The fields of a sweep by name, computed by threads and kept nowhere else.
+
+    >>> from numeric.sweeps.space import parameter_space
+    >>> import numpy as np
+    >>> int(in_memory(parameter_space(np.array([0.0]), np.array([0.5]), 3, 40, 40), 1)["chaotic"][0, 0])
+    0
+    """
+    results = Memory(sweep)
+    for index, arrays in on_threads(sweep, results.missing(), workers):
+        results.write(index, arrays)
+    return results.arrays
+
+
 def on_processes(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
     """The results of each part, by processes of this machine."""
     tasks = ([sweep.part(index)] for index in indices)

@@ -6,7 +6,8 @@ import numpy as np
 from flint import fmpq
 from sympy import Integer, Rational
 
-from numeric.sweeps.run import run
+from numeric import PinballMap
+from numeric.sweeps.run import in_memory
 from numeric.sweeps.space import parameter_space
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import tilt
@@ -21,7 +22,7 @@ from verification.paper.claims.judges import by, counterexample, judges, sampled
 from verification.paper.egg.period2 import SHAPES
 from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettled
-from verification.paper.judges.hyperbolicity import bounced, ends_of_period
+from verification.paper.judges.hyperbolicity import ends_of_period
 from verification.paper.judges.located import certified, located
 from verification.proofs.periodic.bifurcation import Stability, over_interval
 from verification.proofs.periodic.returning import returning
@@ -46,8 +47,8 @@ def answer(holds: bool | None, reason: str) -> Finding:
 def chaotic_lams() -> dict[str, list[float]]:
     """The contractions of a coarse grid at which a quarter of 20 particles or more are chaotic, for each shape."""
     shapes = np.array([float(shape) for shape in TONGUE])
-    found = run(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), workers=1)
-    rows = zip(TONGUE, found.chaotic.values, strict=True)
+    found = in_memory(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), 1)
+    rows = zip(TONGUE, found["chaotic"], strict=True)
     return {shape: [float(lam) for lam, n in zip(LAMS, row, strict=True) if n >= 5] for shape, row in rows}
 
 
@@ -234,12 +235,10 @@ def tolerance_sensitive(claim: Claim) -> Judgement:
 @cache
 def seen_ends() -> dict[float, float | None]:
     """For each tolerance the first contraction of a grid at which an orbit is not back after four bounces, or None."""
-    theta, phi = np.array([0.05]), np.array([0.0])
-    for _ in range(1000):
-        theta, phi = bounced(theta, phi, np.array([0.36]), 0.08, 1e-12)
-    start, lams = (float(theta[0]), float(phi[0])), np.arange(0.3705, 0.3725, 1e-4)
-    found = {stop: ends_of_period(4, lams, 0.08, stop, start, 2000, 1e-4) for stop in STOPS}
-    return {stop: float(ends[0]) if ends.size else None for stop, ends in found.items()}
+    settled = PinballMap("egg", lam="0.36", alpha=str(SHAPE)).orbit(0.05, 0.0, 1000)
+    start, lams = (float(settled.theta[-1]), float(settled.phi[-1])), np.arange(0.3705, 0.3725, 1e-4)
+    found = ends_of_period(4, lams, 0.08, STOPS, start, 2000, 1e-4)
+    return {stop: float(ends[0]) if ends.size else None for stop, ends in zip(STOPS, found, strict=True)}
 
 
 @judges("egg.isolated_resolution")

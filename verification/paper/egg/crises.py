@@ -43,8 +43,8 @@ def located(kind: str) -> Crisis:
 
 @cache
 def seen(kind: str) -> crises.Crisis:
-    """The same by particles that leave, to five digits in a second or two."""
-    return crises.crisis(kind, str(EXACT_SHAPE), tolerance=2e-5, budget=10**7)
+    """The same by particles that leave: few do at first, and where is known to 3e-4 only, whatever the bracket."""
+    return crises.crisis(kind, str(EXACT_SHAPE), tolerance=1e-4, budget=10**7)
 
 
 @judges("egg.boundary_crisis")
@@ -53,7 +53,7 @@ def values(claim: Claim) -> Judgement:
     printed, found, particles = "0.66", located("boundary"), seen("boundary")
     gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
     value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
-    together = found.agrees and abs(particles.lam - float(found.parameter)) <= particles.error + 2e-5
+    together = found.agrees and abs(particles.lam - float(found.parameter)) <= particles.error
     said = (
         f"homoclinic tangency of the {found.touch.contact.unstable.name} at {value}; the manifolds and the fold of a "
         f"cycle of {found.period} bounces agree to {found.apart:.0e}; particles first leave at {particles.lam:.5f} +- "

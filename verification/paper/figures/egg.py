@@ -13,11 +13,9 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.backends import elementary
 from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_starts
-from numeric.sweeps.run import on_threads
+from numeric.sweeps.run import in_memory
 from numeric.sweeps.space import periods
-from numeric.sweeps.store import Memory
-from numeric.sweeps.sweep import Array, Sweep, measured
-from numeric.sweeps.workers import cores
+from numeric.sweeps.sweep import Array, measured
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter
@@ -253,7 +251,7 @@ def bifurcation(fine: float = 1.0) -> Panels:
 
     lams = np.linspace(*RANGE, scaled(300, fine**0.5, 4))
     orbits, points = scaled(12, fine**0.25, 4), scaled(40, fine**0.25, 8)
-    found = swept(sweep(text_of(Scene("egg", alpha=ALPHA)), lams, orbits, points, 80, 3000, seed=SEED))
+    found = in_memory(sweep(text_of(Scene("egg", alpha=ALPHA)), lams, orbits, points, 80, 3000, seed=SEED), cores())
     theta = found["theta"].ravel()
     curve = Curve(theta, np.repeat(lams, orbits * points))
     known: dict[str, Fact] = {
@@ -345,16 +343,3 @@ def draw_parameter_space(panels: Panels) -> "Figure":
     ax.set_ylim(-0.0015, 0.1015)
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4, handletextpad=0.4)
     return figure
-
-
-def swept(sweep: Sweep) -> dict[str, Array]:
-    """The fields of a sweep by name.
-
-    >>> from numeric.sweeps.space import parameter_space as sweep
-    >>> int(swept(sweep(np.array([0.0]), np.array([0.5]), 3, 40, 40))["chaotic"][0, 0])
-    0
-    """
-    results = Memory(sweep)
-    for index, arrays in on_threads(sweep, results.missing(), cores()):
-        results.write(index, arrays)
-    return results.arrays

@@ -9,6 +9,7 @@ into itself, and every orbit in it has an exponent above a positive bound, so th
 The egg's map with a Newton-Raphson iteration that stops early (appendix): how far values in section 6.6 depend on it.
 """
 
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -155,8 +156,10 @@ def ergodic(claim: Claim) -> Judgement:
 MOST = 30  # steps of Newton's method
 
 
-def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float) -> tuple[Array, Array]:
+def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float | Array) -> tuple[Array, Array]:
     """The next bounce; Newton's method on `cross(z1 - z0, v) = 0` ends with the first step below `tolerance`.
+
+    Of many rows of particles each ends by itself, with the first of its steps of which all are below its tolerance.
 
     >>> quarter = np.array([0.3])
     >>> [float(x.round(6)[0]) for x in bounced(quarter, quarter, np.array([0.5]), 0.0, 1e-9)]  # the circle
@@ -165,11 +168,13 @@ def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float
     z, tangent = _boundary(theta, alpha)
     v = 1j * tangent / np.abs(tangent) * _turned(-phi)  # the inward normal, turned by phi towards the tangent
     landing = theta + np.pi - 2 * phi  # as in the circle; then Newton's method
+    going = np.full((*landing.shape[:-1], 1), True)
     for _ in range(MOST):
         there, along = _boundary(landing, alpha)
-        step = _cross(there - z, v) / _cross(along, v)
+        step = np.where(going, _cross(there - z, v) / _cross(along, v), 0.0)
         landing = landing - step
-        if np.max(np.abs(step)) < tolerance:
+        going = going & ~(np.max(np.abs(step), axis=-1, keepdims=True) < tolerance)
+        if not np.any(going):
             break
     _, along = _boundary(landing, alpha)
     sliding = np.clip((np.conj(along) * v).real / np.abs(along), -1, 1)  # minus the sine of eta
@@ -177,16 +182,26 @@ def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float
 
 
 def ends_of_period(
-    period: int, lams: Array, alpha: float, tolerance: float, start: tuple[float, float], bounces: int, apart: float
-) -> Array:
-    """The contractions at which an orbit is not back after a period, to `apart`, once the transient is over."""
-    theta, phi = np.full(lams.size, start[0]), np.full(lams.size, start[1])
+    period: int,
+    lams: Array,
+    alpha: float,
+    tolerances: Sequence[float],
+    start: tuple[float, float],
+    bounces: int,
+    apart: float,
+) -> list[Array]:
+    """For each tolerance the contractions at which an orbit is not back after a period, to `apart`.
+
+    It is looked at once the transient is over, after so many bounces.
+    """
+    least = np.array(tolerances)[:, None]
+    theta, phi = (np.full((least.size, lams.size), x) for x in start)
     for _ in range(bounces):
-        theta, phi = bounced(theta, phi, lams, alpha, tolerance)
+        theta, phi = bounced(theta, phi, lams, alpha, least)
     then = theta
     for _ in range(period):
-        theta, phi = bounced(theta, phi, lams, alpha, tolerance)
-    return np.asarray(lams[np.abs(theta - then) > apart])
+        theta, phi = bounced(theta, phi, lams, alpha, least)
+    return [lams[gap > apart] for gap in np.abs(theta - then)]
 
 
 def _boundary(theta: Array, alpha: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:

@@ -140,7 +140,7 @@ def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Pol
     polygon = hull([(start[0] + a, start[1] + b) for a, b in around])
     for _ in range(200):
         images = [image for c in pieces for p in part(polygon, c) for image in _vertices(pieces[c], p)]
-        larger = hull(polygon + [(u + a, v + b) for u, v in images for a, b in around])
+        larger = hull(polygon + [(u + a, v + b) for u, v in hull(images) for a, b in around])
         if max(abs(x) for p in larger for x in p) > limit:
             return None
         if len(larger) == len(polygon) and all(math.dist(p, q) < 1e-9 for p, q in zip(larger, polygon, strict=True)):

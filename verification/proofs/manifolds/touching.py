@@ -22,6 +22,7 @@ import mpmath
 from flint import arb, arb_mat
 
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision
+from verification.arithmetic.linear import approximated, solved
 from verification.arithmetic.series import Jet
 from verification.cycles.chain import dot
 from verification.maps.first_hit import unobstructed
@@ -138,8 +139,8 @@ class Linear:
         """What Newton's method takes off the unknowns where the system has these values.
 
         The derivative of the orbit's equations alone is singular at a tangency. Without its first column, and with that
-        by the parameter, it is not: two systems of half the size are solved,
-        each for all matrices in its balls, where `halves` asks for it: faster, and not as close.
+        by the parameter, it is not: two systems of half the size are solved, by way of their
+        inverses in floats, where `halves` asks for it: faster, and not as close.
         """
         if not self.halves:
             try:
@@ -151,25 +152,30 @@ class Linear:
         given = [[*row[1:], g] for row, g in zip(self.rows, self.by_parameter, strict=True)]
         right = [[value, row[0]] for row, value in zip(self.rows, values[:n], strict=True)]
         try:
-            found = arb_mat(given).solve(arb_mat(right), algorithm=algorithm)
-            fixed, free = ([found[i, k] for i in range(n)] for k in (0, 1))  # with the first unknown 0, and along it
+            solve = solved if algorithm == "precond" else approximated
+            fixed, free = zip(*solve(given, right), strict=True)  # with the first unknown 0, and along it
             lower = [[*bent[1:], h] for bent, h in zip(self.bent, self.bent_by_parameter, strict=True)]
             column = [bent[0] - dot(row, free) for bent, row in zip(self.bent, lower, strict=True)]
             left = [[value - dot(row, fixed)] for row, value in zip(lower, values[n:], strict=True)]
             again = [[*row[1:], c] for row, c in zip(self.rows, column, strict=True)]
-            last = arb_mat(again).solve(arb_mat(left), algorithm=algorithm)
+            last = [x for (x,) in solve(again, left)]
         except ZeroDivisionError as why:
             raise TooWideError("exists", "the linearised system may be singular") from why
-        first, rest = last[n - 1, 0], [last[i, 0] for i in range(n - 1)]
+        *rest, first = last
         *orbit, parameter = (x - first * y for x, y in zip(fixed, free, strict=True))
         return [first, *orbit, *rest, parameter]
 
 
 def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
     """`g_zz` and `g_parameter`: how the contact bends, and how fast the manifolds move through each other."""
-    rows = arb_mat([row[1:] for row in linear.rows[:-1]])
-    solved = rows.transpose().solve(arb_mat([[-x] for x in linear.rows[-1][1:]]), algorithm="precond")
-    left = [*(solved[i, 0] for i in range(solved.nrows())), arb(1)]
+    columns = [list(column) for column in zip(*(row[1:] for row in linear.rows[:-1]), strict=True)]
+    right = [[-x] for x in linear.rows[-1][1:]]
+    if linear.halves:
+        left = [x for (x,) in solved(columns, right)]
+    else:
+        found = arb_mat(columns).solve(arb_mat(right), algorithm="precond")
+        left = [found[i, 0] for i in range(found.nrows())]
+    left.append(arb(1))
     bend = dot(left, [dot(row, along) for row in linear.bent])
     return bend, dot(left, linear.by_parameter)
 

@@ -1,0 +1,95 @@
+"""Large systems of linear equations in balls, most of whose entries are 0: solved in floats, and the error enclosed.
+
+With `R` about the inverse of the matrix `A`, the error `d` of any vector `x` obeys `d = R*r + (I - R*A)*d`, where
+`r = b - A*x`. So where `E` bounds `abs(I - R*A)` and `c` bounds `abs(R*r)`, entry by entry, and some `e > 0` has
+`c + E*e < e`, the spectral radius of `E` is below 1, `A` is regular, and `abs(d) <= e` (Collatz and Wielandt). `R` is
+made in float64 and holds for every matrix in the balls: its own errors, those of the products in floats and the radii
+of the balls are all in `E`.
+"""
+
+import math
+from collections.abc import Sequence
+from itertools import starmap
+
+import numpy as np
+from flint import arb
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Sparse = list[list[tuple[int, arb]]]
+UNIT = 2.0**-53
+TINY = 1e-318  # above all that underflows in one sum
+ROUNDS = 12
+
+
+def solved(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> list[list[arb]]:
+    """The solution in balls, for all matrices in those of the rows; `right` has a row for each equation.
+
+    `ZeroDivisionError` where no bound is found: the matrix may be singular.
+
+    >>> found = solved([[arb(2), arb(0)], [arb(1, "1e-9"), arb(4)]], [[arb(2)], [arb(9)]])
+    >>> found[0][0].contains(1), found[1][0].contains(2), found[1][0].rad() < 1e-8
+    (True, True, True)
+    """
+    size = len(rows)
+    sparse = [[(j, x) for j, x in enumerate(row) if not x.is_zero()] for row in rows]
+    middle, radius = np.zeros((size, size)), np.zeros((size, size))
+    for i, row in enumerate(sparse):
+        for j, x in row:
+            middle[i, j] = float(x.mid())
+            radius[i, j] = _above(x - arb(middle[i, j]))
+    inverse = _inverse(middle)
+    blanket = 1 + 8 * (size + 4) * UNIT
+    products = abs(inverse) @ (radius + 4 * (size + 4) * UNIT * abs(middle))
+    off = (abs(np.eye(size) - inverse @ middle) + products) * blanket + size * TINY
+    return [list(row) for row in zip(*(_column(sparse, inverse, off, blanket, b) for b in zip(*right)), strict=True)]  # noqa: B905  # columns
+
+
+def approximated(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> list[list[arb]]:
+    """About the solution, to the digits of float64: nothing is proved of it."""
+    matrix, sides = (np.array([[_middle(x) for x in row] for row in part]) for part in (rows, right))
+    try:
+        found = np.linalg.solve(matrix, sides)
+    except np.linalg.LinAlgError as error:
+        raise ZeroDivisionError("a singular matrix") from error
+    return [[arb(float(x)) for x in row] for row in found]
+
+
+def _inverse(matrix: Floats) -> Floats:
+    if not np.isfinite(matrix).all():
+        raise ZeroDivisionError("a matrix that is not finite")
+    try:
+        return np.asarray(np.linalg.inv(matrix))
+    except np.linalg.LinAlgError as error:
+        raise ZeroDivisionError("a singular matrix") from error
+
+
+def _column(sparse: Sparse, inverse: Floats, off: Floats, blanket: float, right: Sequence[arb]) -> list[arb]:
+    """One column of the solution: twice corrected in floats, with what is left of the error around it."""
+    x = [arb(0)] * len(sparse)
+    for _ in range(2):
+        left = np.array([_middle(r) for r in _residual(sparse, x, right)])
+        x = [(old + arb(float(more))).mid() for old, more in zip(x, inverse @ left, strict=True)]
+    bound = np.array([_above(r) for r in _residual(sparse, x, right)])
+    gap = (abs(inverse) @ bound) * blanket + len(sparse) * TINY
+    error = 2 * gap
+    for _ in range(ROUNDS):
+        after = (gap + off @ error) * blanket + len(sparse) * TINY
+        if np.all(after < error):
+            return list(starmap(arb, zip(x, map(float, error), strict=True)))
+        error = 1.25 * after
+    raise ZeroDivisionError("no bound of the error: the matrix may be singular")
+
+
+def _residual(sparse: Sparse, x: Sequence[arb], right: Sequence[arb]) -> list[arb]:
+    """`b - A*x` in balls."""
+    return [b - sum((a * x[j] for j, a in row), arb(0)) for row, b in zip(sparse, right, strict=True)]
+
+
+def _middle(x: arb) -> float:
+    return 0.0 if x.is_zero() else float(x.mid())
+
+
+def _above(x: arb) -> float:
+    """A bound of the size of a ball: what is not finite stays so, and no condition holds of it."""
+    return math.nextafter(float(x.abs_upper()), math.inf)

@@ -285,6 +285,7 @@ class _Stage:
 
     def __init__(self, shapes: tuple[Symbol, ...], meaning: dict[Expr, Expr]) -> None:
         self.shapes, self.meaning = shapes, meaning
+        self.known: dict[Expr, Expr] = {}  # what stands for a derivative or a coordinate
 
     def finished(self, arguments: tuple[Symbol, ...], found: dict[str, Expr]) -> Staged:
         """The values with each derivative of a coordinate replaced by a name, and the names' definitions."""
@@ -294,12 +295,16 @@ class _Stage:
 
     def _named_parts(self, e: Expr, definitions: dict[Symbol, Expr]) -> Expr:
         derivatives = sorted(e.atoms(Derivative), key=lambda d: (-d.derivative_count, str(d)))
-        own = {d: self._value(d, d.expr, d.variables, definitions) for d in derivatives}
-        e = e.xreplace(own)
+        e = e.xreplace({d: self._known(d, d.expr, d.variables, definitions) for d in derivatives})
         functions = sorted((f for f in self.meaning if e.has(f)), key=str)
-        return e.xreplace({f: self._value(f, f, (), definitions) for f in functions})
+        return e.xreplace({f: self._known(f, f, (), definitions) for f in functions})
 
-    def _value(self, whole: Expr, f: Expr, variables: Sequence[Symbol], definitions: dict[Symbol, Expr]) -> Expr:
+    def _known(self, whole: Expr, f: Expr, variables: Sequence[Symbol], definitions: dict[Symbol, Expr]) -> Expr:
+        if whole not in self.known:
+            self.known[whole] = self._value(f, variables, definitions)
+        return self.known[whole]
+
+    def _value(self, f: Expr, variables: Sequence[Symbol], definitions: dict[Symbol, Expr]) -> Expr:
         expression = self.meaning[f].diff(*variables) if variables else self.meaning[f]
         expression = self._named_parts(expression, definitions)
         if expression.is_number or expression.is_Symbol:

@@ -3,8 +3,8 @@
 With `R` about the inverse of the matrix `A`, the error `d` of any vector `x` obeys `d = R*r + (I - R*A)*d`, where
 `r = b - A*x`. So where `E` bounds `abs(I - R*A)` and `c` bounds `abs(R*r)`, entry by entry, and some `e > 0` has
 `c + E*e < e`, the spectral radius of `E` is below 1, `A` is regular, and `abs(d) <= e` (Collatz and Wielandt). `R` is
-made in float64 and holds for every matrix in the balls: its own errors, those of the products in floats and the radii
-of the balls are all in `E`.
+made in float64 and holds for every matrix in the balls: its own errors, those of the products in floats (summed in any
+order, fused or not: Higham, Accuracy and Stability, section 3.5) and the radii of the balls are all in `E`.
 """
 
 import math
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Sparse = list[list[tuple[int, arb]]]
 UNIT = 2.0**-53
-TINY = 1e-318  # above all that underflows in one sum
+TINY = 1e-300  # above what one operation loses by underflow, also where subnormal numbers count as 0
 ROUNDS = 12
 
 
@@ -38,10 +38,10 @@ def solved(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> lis
         for j, x in row:
             middle[i, j] = float(x.mid())
             radius[i, j] = _above(x - arb(middle[i, j]))
-    inverse = _inverse(middle)
-    blanket = 1 + 8 * (size + 4) * UNIT
-    products = abs(inverse) @ (radius + 4 * (size + 4) * UNIT * abs(middle))
-    off = (abs(np.eye(size) - inverse @ middle) + products) * blanket + size * TINY
+    inverse, blanket = _inverse(middle), 1 + 8 * (size + 4) * UNIT
+    with np.errstate(all="ignore"):  # what is not finite fulfils no condition
+        products = abs(inverse) @ (radius + 4 * (size + 4) * UNIT * abs(middle))
+        off = (abs(np.eye(size) - inverse @ middle) + products) * blanket + size * TINY
     return [list(row) for row in zip(*(_column(sparse, inverse, off, blanket, b) for b in zip(*right)), strict=True)]  # noqa: B905  # columns
 
 
@@ -71,13 +71,14 @@ def _column(sparse: Sparse, inverse: Floats, off: Floats, blanket: float, right:
         left = np.array([_middle(r) for r in _residual(sparse, x, right)])
         x = [(old + arb(float(more))).mid() for old, more in zip(x, inverse @ left, strict=True)]
     bound = np.array([_above(r) for r in _residual(sparse, x, right)])
-    gap = (abs(inverse) @ bound) * blanket + len(sparse) * TINY
-    error = 2 * gap
-    for _ in range(ROUNDS):
-        after = (gap + off @ error) * blanket + len(sparse) * TINY
-        if np.all(after < error):
-            return list(starmap(arb, zip(x, map(float, error), strict=True)))
-        error = 1.25 * after
+    with np.errstate(all="ignore"):
+        gap = (abs(inverse) @ bound) * blanket + len(sparse) * TINY
+        error = 2 * gap
+        for _ in range(ROUNDS):
+            after = (gap + off @ error) * blanket + len(sparse) * TINY
+            if np.all(after < error):
+                return list(starmap(arb, zip(x, map(float, error), strict=True)))
+            error = 1.25 * after
     raise ZeroDivisionError("no bound of the error: the matrix may be singular")
 
 

@@ -16,6 +16,7 @@ from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_star
 from numeric.sweeps.run import in_memory
 from numeric.sweeps.space import periods
 from numeric.sweeps.sweep import Array, measured
+from numeric.sweeps.workers import cores
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter

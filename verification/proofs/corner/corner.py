@@ -190,9 +190,9 @@ def constant(value: arb, spread: Spread) -> Quantity:
 
 
 @cache
-def _angles() -> dict[tuple[int, int], Angle]:
+def _angles(order: int = 1) -> dict[tuple[int, int], Angle]:
     pairs = ((ARC, ARC), (ARC, WALL), (WALL, ARC))
-    return {pair: load(chord_kernel(cuspless, *pair, 1), balls(BITS)) for pair in pairs}
+    return {pair: load(chord_kernel(cuspless, *pair, order), balls(BITS)) for pair in pairs}
 
 
 @cache
@@ -223,12 +223,13 @@ def following(previous: Bounce, here: Bounce, component: int, near: float, lam: 
     True
     """
     back, forth = _angles()[here.component, previous.component], _angles()[here.component, component]
-    eta = back(here.at.centre, previous.at.centre)[0]
+    eta = _angles(0)[here.component, previous.component](here.at.centre, previous.at.centre)[0]
+    plain = _angles(0)[here.component, component]
     middle = _polished(here, component, float((-lam.centre * eta).mid()), near)
-    centre = _root(lambda x: forth(here.at.centre, x), -lam.centre * eta, middle, 1e-14)
+    centre = _root(plain, forth, here.at.centre, -lam.centre * eta, middle, 1e-14)
     into = back(here.at.whole, previous.at.whole)
     room = here.at.whole.rad() + previous.at.whole.rad() + lam.whole.rad()
-    whole = _root(lambda x: forth(here.at.whole, x), -lam.whole * into[0], middle, 3 * float(room) + 1e-13)
+    whole = _root(plain, forth, here.at.whole, -lam.whole * into[0], middle, 3 * float(room) + 1e-13)
     slopes: Spread = ()
     for _ in range(2):  # the second time on the smaller ball that the first one gives
         out = forth(here.at.whole, whole)
@@ -296,11 +297,15 @@ def _polished(here: Bounce, component: int, value: float, near: float) -> float:
     return float(iterated(correction, [near], Stop(enough=1e-13, steps=8)).x[0])
 
 
-def _root(rule: Callable[[arb], tuple[arb, arb, arb]], value: arb, near: float, radius: float) -> arb:
-    """Where the rule takes the value, by an interval Newton step: one place for each pair of rule and value."""
+def _root(plain: Angle, angle: Angle, here: arb, value: arb, near: float, radius: float) -> arb:
+    """Where the angle at `here` takes the value, by an interval Newton step: one place for each pair of both.
+
+    `plain` is the angle without derivatives.
+    """
+    gap = plain(here, arb(near))[0] - value
     for _ in range(10):
         box = arb(near, radius)
-        image: arb = near - (rule(arb(near))[0] - value) / rule(box)[2]
+        image: arb = near - gap / angle(here, box)[2]
         if image.is_finite() and box.contains_interior(image):
             return image
         radius *= 2

@@ -3,9 +3,8 @@
 from . import fields, space
 from .fields import attractors_of, basins, bifurcation
 from .orbits import written
-from .run import Results, UnfinishedError, connected, on_cluster, on_processes, on_threads
+from .run import Results, UnfinishedError, connected, in_memory, on_cluster, on_processes, on_threads
 from .space import egg, parameter_space, periods
-from .store import Memory
 from .sweep import Array, Axis, Field, Measured, Part, Sweep, Task, floor_of, map_of, measured, text_of, versions
 from .workers import Lost, cores, in_processes
 
@@ -15,7 +14,6 @@ __all__ = [
     "Field",
     "Lost",
     "Measured",
-    "Memory",
     "Part",
     "Results",
     "Sweep",
@@ -29,6 +27,7 @@ __all__ = [
     "egg",
     "fields",
     "floor_of",
+    "in_memory",
     "in_processes",
     "map_of",
     "measured",

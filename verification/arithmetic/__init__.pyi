@@ -34,6 +34,7 @@ from .balls import (
     working,
 )
 from .iteration import Iteration, Stop, Tick, Vector, heard, in_rows, iterated, largest, silent, telling
+from .linear import approximated, solved
 from .series import SERIES, Function, Jet, along, expanded, in_series, jets
 
 __all__ = [
@@ -54,6 +55,7 @@ __all__ = [
     "Vector",
     "Words",
     "along",
+    "approximated",
     "as_ball",
     "between",
     "bits_of",
@@ -78,6 +80,7 @@ __all__ = [
     "paired",
     "real_ball",
     "silent",
+    "solved",
     "spread",
     "telling",
     "turned",

@@ -4,7 +4,7 @@ from .attractors import SHAPE, STARTS, chaotic, cycles, egg, found, proved_at, r
 from .cuspless import attracting_below
 from .cuspless_chaos import ONE_PIECE, attracted, one_set
 from .ellipse import LIMIT, lyapunov
-from .hyperbolicity import PROVED_TO, born, bounced, chaos, corner, ends_of_period
+from .hyperbolicity import PROVED_TO, born, chaos, corner, ends_of_period
 from .located import certified
 
 __all__ = [
@@ -16,7 +16,6 @@ __all__ = [
     "attracted",
     "attracting_below",
     "born",
-    "bounced",
     "certified",
     "chaos",
     "chaotic",

@@ -16,8 +16,10 @@ from verification.proofs.manifolds.enclosed import complex_balls
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.periodic import triangles
 from verification.proofs.slap_map.transfer import inverted
+from verification.proofs.starts import basin_edge
 from verification.proofs.starts.basin_edge import BasinEdge
-from verification.proofs.unstable_curves import growth
+from verification.proofs.unstable_curves import attraction, growth
+from verification.proofs.unstable_curves.spans import Course
 
 
 @pytest.mark.parametrize("at", [0.001, 3.0, 6.282])
@@ -79,3 +81,67 @@ def test_angles_over_a_larger_region_reach_further_on_both_sides():
     square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
     small, large = (evidence._angles([(size * u, size * v) for u, v in square]) for size in (1e-3, 2e-3))
     assert large[0] < small[0] < small[1] < large[1]
+
+
+@pytest.mark.parametrize("fails", ["barrier", "disc", "hyperbolic", "alone", None])
+def test_what_is_not_proved_of_an_edge_is_open_and_not_refuted(monkeypatch, fails):
+    monkeypatch.setattr(basin_edge, "attracts", lambda *_: fails != "disc")
+    heights = None if fails == "barrier" else np.zeros(1)
+    made = SimpleNamespace(
+        barrier=SimpleNamespace(heights=heights, map=None, above=lambda boxes: np.array([True])),
+        disc=None,
+        turn=1.0,
+        place=(0.0, 0.0),
+        _about=lambda half: None,
+        _disc_above=lambda: True,
+        _hyperbolic=lambda: fails != "hyperbolic",
+        _alone=lambda: fails != "alone",
+    )
+    found = BasinEdge.checks.func(made)
+    assert all(value in (True, None) for value in found.values())
+    assert [name for name, value in found.items() if value is None and name == fails] == ([fails] if fails else [])
+
+
+TURN = 2 * np.pi
+SHORT = {"high": 0.01, "left": (1.0, 1.0, 0.0, 0.0), "right": (1.01, 1.01, 0.0, 0.0)}  # the image of a short span
+
+
+@pytest.mark.parametrize(
+    ("change", "kept"),
+    [
+        ({}, [0]),
+        ({"high": 2.0}, []),  # as steep as the steepest cell it might go around
+        ({"left": (0.5, 1.0, 0.0, 0.0)}, []),
+        ({"right": (1.01, 1.51, 0.0, 0.0)}, []),
+        ({"right": (0.99, 0.99, 0.0, 0.0)}, []),
+        ({"left": (1.0, 1.0, np.nan, np.nan)}, []),
+        ({"right": (1.01, 1.01, np.nan, np.nan)}, []),
+    ],
+)
+def test_only_spans_whose_images_are_known_and_short_go_on(change, kept):
+    case = SHORT | change
+    sides = {last: [np.array([x]) for x in case["right" if last else "left"]] for last in (False, True)}
+    cover = SimpleNamespace(sign=[1], most=np.array([-9.0, 1.0]))
+    course = SimpleNamespace(
+        cover=cover,
+        starts=[0.0, TURN],
+        around=True,
+        ends=lambda spans, last: sides[last],
+        _cut=lambda origin, left, right: origin.tolist(),
+    )
+    one = np.array([0])
+    spans = SimpleNamespace(chart=one, origin=one, low=np.zeros(1), high=np.array([case["high"]]))
+    assert Course.step(course, spans) == kept
+
+
+@pytest.mark.parametrize(("wide", "tall", "lean"), [(0.01, 0.1, 0.5), (0.1, 0.01, 8.0), (1.0, 1.0, 1.0)])
+def test_the_inner_part_of_a_block_is_as_far_from_its_ends_as_stable_curves_lean(wide, tall, lean):
+    columns = 4 * max(attraction.WIDTHS)
+    shape = SimpleNamespace(x=(0.0, columns * wide), y=(0.0, 4 * tall))
+    narrow = SimpleNamespace(grid=SimpleNamespace(charts=[shape], columns=columns), sides=([wide], [tall]))
+    rows = np.full((1, columns), tall), np.full((1, columns), 3 * tall)
+    found = attraction._blocks(narrow, SimpleNamespace(rows=rows), np.full((1, columns, 4), lean))
+    assert found
+    for _, low, high, first, last in found:
+        assert first * wide - low >= lean * 2 * tall  # across the two rows that the narrow region fills
+        assert high - last * wide >= lean * 2 * tall

@@ -165,7 +165,8 @@ laws that are missing, and not longer tests. Its 30 survivors are read. Nine are
 `Long.solved`), more digits (`judged`), a longer tube (`pair`), a count (`beyond`, `blocks`), a border that balls do not
 meet (`_landed`, `inner` twice, `_inside`, `BrokenLine.images`), a product that would be negative (`_expands`), a word
 that only a call or a power has (`evaluate`, `meaning`). Five were not settled by then; of `BasinEdge.checks`,
-`_blocks` and both of `Course.step` tests have followed, and `cornered` is left. The line "What proves" and the table below are still those of seed 16.
+`_blocks` and both of `Course.step` tests have followed, and `cornered` is left. The line "What proves"
+and the table below are still those of seed 16.
 
 The samples 21b to 21d are of the second reader and of the rooms `global_dynamics`, `corner` and `manifolds` alone, with
 what only searches there, and with tests as far as twelve seconds go. Of the last 30 survivors 19 change nothing that is

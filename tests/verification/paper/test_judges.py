@@ -212,7 +212,18 @@ def test_the_map_whose_newton_iteration_may_stop_early_is_the_map_when_it_does_n
 def test_an_orbit_that_is_back_after_its_period_ends_nothing_and_one_that_is_not_ends_it():
     """The egg's triangle attracts from the fold at 0.378 on; below it nothing has the period 3."""
     lams = np.array([0.37, 0.45, 0.5])
-    ends = on_hyperbolicity.ends_of_period(3, lams, 0.08, 1e-12, (1.1, 0.3), 500, 1e-6)
+    (ends,) = on_hyperbolicity.ends_of_period(3, lams, 0.08, [1e-12], (1.1, 0.3), 500, 1e-6)
 
     assert list(ends) == [0.37]
-    assert list(on_hyperbolicity.ends_of_period(2, lams, 0.08, 1e-12, (1.1, 0.3), 500, 1e-6)) != list(ends)
+    (others,) = on_hyperbolicity.ends_of_period(2, lams, 0.08, [1e-12], (1.1, 0.3), 500, 1e-6)
+    assert list(others) != list(ends)
+
+
+def test_each_row_of_particles_ends_with_its_own_tolerance():
+    theta, phi, lams = np.linspace(0.1, 1.0, 4), np.full(4, 0.2), np.linspace(0.3, 0.6, 4)
+    stops = np.array([[0.3], [0.03], [1e-12]])
+    rows = on_hyperbolicity.bounced(np.tile(theta, (3, 1)), np.tile(phi, (3, 1)), lams, 0.08, stops)
+    for row, (stop,) in enumerate(stops):
+        alone = on_hyperbolicity.bounced(theta, phi, lams, 0.08, stop)
+        assert [part[row].tolist() for part in rows] == [part.tolist() for part in alone]
+    assert rows[0][0].tolist() != rows[0][2].tolist()

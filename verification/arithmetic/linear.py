@@ -42,7 +42,8 @@ def solved(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> lis
     with np.errstate(all="ignore"):  # what is not finite fulfils no condition
         products = abs(inverse) @ (radius + 4 * (size + 4) * UNIT * abs(middle))
         off = (abs(np.eye(size) - inverse @ middle) + products) * blanket + size * TINY
-    return [list(row) for row in zip(*(_column(sparse, inverse, off, blanket, b) for b in zip(*right)), strict=True)]  # noqa: B905  # columns
+    columns = [_column(sparse, inverse, off, blanket, column) for column in zip(*right, strict=True)]
+    return [list(row) for row in zip(*columns, strict=True)]
 
 
 def approximated(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> list[list[arb]]:

@@ -139,8 +139,8 @@ class Linear:
         """What Newton's method takes off the unknowns where the system has these values.
 
         The derivative of the orbit's equations alone is singular at a tangency. Without its first column, and with that
-        by the parameter, it is not: two systems of half the size are solved, by way of their
-        inverses in floats, where `halves` asks for it: faster, and not as close.
+        by the parameter, it is not: where `halves` asks for it two systems of half the size are solved, by way of their
+        inverses in floats: faster, and not as close.
         """
         if not self.halves:
             try:

@@ -204,6 +204,7 @@ def main() -> None:
     parser.add_argument("--sample", type=float, default=1.0, metavar="SHARE", help="a random share of the mutants")
     parser.add_argument("--seed", default="1", help="of the sample")
     parser.add_argument("--count", type=int, default=120, help="for core and page: how many of what proves")
+    parser.add_argument("--part", default=mutation_core.ALL, choices=mutation_core.parts(), help="for core, list, page")
     parser.add_argument("--workers", type=int, default=1, help="modules, or for core groups, at once")
     parser.add_argument("--budget", type=float, default=15.0, help="seconds of tests asked about one mutant")
     parser.add_argument(
@@ -218,11 +219,13 @@ def main() -> None:
         running(args)
     elif args.verb == "list":
         listing(args)
-        mutation_core.listing(args.count, args.seed)
+        mutation_core.listing(args.count, args.seed, args.part)
     elif args.verb == "core":
-        mutation_core.run(args.count, args.seed, args.budget, args.only, args.again, args.longest, args.workers)
+        mutation_core.run(
+            args.count, args.seed, args.part, args.budget, args.only, args.again, args.longest, args.workers
+        )
     else:
-        core = mutation_core.figures(args.count, args.seed)
+        core = mutation_core.figures(args.count, args.seed, args.part)
         write_page(
             figures(args) | core, f"cosmic-ray {version('cosmic-ray')}", mutation_core.drawn(args.seed, core.values())
         )

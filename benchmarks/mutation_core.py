@@ -10,8 +10,8 @@ take no longer than half a minute, before anybody reads it.
 Nothing false can come of a budget, of a count of boxes, of the bits that a ball is rounded to, of what is told of
 progress, or of a candidate that a proof then checks (`proposes`, in the same file): these have no mutants here.
 
-The sample is drawn by a seed, from each module in proportion to its mutants. Of 400 the first 200 are those of a sample
-of 200, so that a run may be cut short and taken up again with a larger count.
+The sample is drawn by a seed, of a part or of all, from each module in proportion to its mutants. Of 400 the first 200
+are those of a sample of 200, so that a run may be cut short and taken up again with a larger count.
 """
 
 import ast
@@ -44,6 +44,7 @@ PATIENT, PATIENCE = 30.0, 4.0  # seconds of a test of `make slow` that a survivo
 NOTICED = ("killed", "timeout")
 COUNTS = {"budget", "spent", "boxes"}  # how long a proof may take, and has taken
 HARMLESS = {"tick", "bits_of", "slope_bits"}  # calls that tell of progress, or say how many bits are rounded to
+ALL = "all"  # parts
 LARGE = 16  # a whole number beyond is a budget, a precision, a size: one more proves the same
 BINARY = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*")}
 BINARY |= {ast.BitOr: ("|", "&"), ast.BitAnd: ("&", "|")}
@@ -63,16 +64,22 @@ OPPOSITE = {one: other for pair in OPPOSITES for one, other in (pair, pair[::-1]
 
 
 class Group(NamedTuple):
-    """Modules, and the test files that guard them."""
+    """Modules, the test files that guard them, and the part of what proves that they belong to."""
 
     modules: list[str]
     tests: list[str]
+    part: str = "core"
 
 
 @cache
 def groups() -> list[Group]:
     """What proves, and its guards."""
     return [Group(**entry) for entry in tomllib.loads(CORE.read_text())["group"]]
+
+
+def parts() -> list[str]:
+    """The names of the parts, and of all together."""
+    return [ALL, *dict.fromkeys(group.part for group in groups())]
 
 
 @cache
@@ -258,9 +265,9 @@ def rank(mutant: Change, seed: str) -> str:
     return hashlib.sha256(f"{seed} {mutant.key}".encode()).hexdigest()
 
 
-def sample(count: int, seed: str) -> dict[str, list[Change]]:
-    """A share of each module's mutants, together about `count`."""
-    every = {path: population(path) for group in groups() for path in group.modules}
+def sample(count: int, seed: str, part: str) -> dict[str, list[Change]]:
+    """A share of the mutants of each module of a part, together about `count`."""
+    every = {path: population(path) for group in groups() if part in (ALL, group.part) for path in group.modules}
     total = sum(map(len, every.values()))
     return {
         path: sorted(found, key=lambda mutant: rank(mutant, seed))[: max(1, round(count * len(found) / total))]
@@ -392,7 +399,7 @@ def asked(
         yield change, entry | {"tests": len(tests), "budget": budget}
 
 
-def run(count: int, seed: str, budget: float, only: str, again: str, longest: float, workers: int) -> None:
+def run(count: int, seed: str, part: str, budget: float, only: str, again: str, longest: float, workers: int) -> None:
     """Asks about what is not known of the sample, group by group; or again about what has the verdict `again`.
 
     Asked are tests of at most `longest` seconds, as far as a budget of seconds goes; `workers` groups at once.
@@ -400,11 +407,11 @@ def run(count: int, seed: str, budget: float, only: str, again: str, longest: fl
     known = results()
     os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
     os.environ["PINBALL_CACHE"] = str(STATE / "kernels")  # of float64: no module that is mutated writes there
-    drawn = sample(count, seed)
+    drawn = sample(count, seed, part)
     warm()
     works = []
     for group in groups():
-        found = [mutant for path in group.modules if fnmatch(path, only) for mutant in drawn[path]]
+        found = [mutant for path in group.modules if fnmatch(path, only) for mutant in drawn.get(path, ())]
         wanted = [m for m in found if (known.get(m.key, {"status": ""})["status"] == again)]
         if wanted:
             wanted.sort(key=lambda mutant: rank(mutant, seed))
@@ -412,13 +419,13 @@ def run(count: int, seed: str, budget: float, only: str, again: str, longest: fl
     in_forks(works, workers)
 
 
-def figures(count: int, seed: str) -> dict[str, dict]:
+def figures(count: int, seed: str, part: str) -> dict[str, dict]:
     """What the record keeps of each module: those asked, those noticed at first and now, and survivors by function."""
     head = ["git", "rev-parse", "--short", "HEAD"]
     at = subprocess.run(head, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
     first, known = results(last=False), results()
     found = {}
-    for path, drawn in sample(count, seed).items():
+    for path, drawn in sample(count, seed, part).items():
         asked = [change for change in drawn if change.key in known]
         if asked:
             status = Counter(known[change.key]["status"] for change in asked)
@@ -442,10 +449,10 @@ def drawn(seed: str, figures: Collection[dict]) -> dict[str, str | int]:
     }
 
 
-def listing(count: int, seed: str) -> None:
+def listing(count: int, seed: str, part: str) -> None:
     """The survivors, as text."""
     known = results()
-    for path, drawn in sample(count, seed).items():
+    for path, drawn in sample(count, seed, part).items():
         for change in drawn:
             if known.get(change.key, {"status": "killed"})["status"] not in NOTICED:
                 mutant = change.made()

@@ -170,9 +170,9 @@ def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> byt
 
     It is laid out here, and once: `savefig` would do that in a drawing of its own, which it throws away.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from verification.plots.layout import Canvas
 
-    FigureCanvasAgg(drawn)
+    Canvas(drawn)
     drawn.set_dpi(72.0 if ending in VECTORS else dpi)
     layout = drawn.get_layout_engine()
     if layout is not None:
@@ -233,14 +233,16 @@ def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tu
     """A figure with one pair of axes for each panel, named and labelled; `height` in inches, of a row."""
     from matplotlib.figure import Figure
 
+    from verification.plots.layout import Grid
+
     rows = -(-len(panels) // columns)
     width = WIDTH if columns > 1 else 4.2
-    figure = Figure(figsize=(width, rows * height), layout="constrained")
+    figure = Figure(figsize=(width, rows * height), layout=Grid())
     axes: list[Any] = []
     for i, panel in enumerate(panels):
         ax = figure.add_subplot(rows, columns, i + 1)
         letter = f"({'abcdefgh'[i]}) " if len(panels) > 1 else ""
-        ax.set_title(letter + panel.title, loc="left")
+        ax.set_title(letter + panel.title, loc="left", y=1.0)
         _prepare(ax, panel)
         axes.append(ax)
     return figure, axes

@@ -40,8 +40,10 @@ def drawn(title: str, unit: str, rows: Sequence[Row], known: dict[str, str]) -> 
     """
     from matplotlib.figure import Figure
 
+    from verification.plots.layout import PAD, Grid, plain_minor_ticks
+
     with styled():
-        figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
+        figure = Figure(figsize=(WIDTH, HEIGHT), layout=Grid())
         axes = figure.add_subplot()
         shown = [row for row in rows if row.error]
         wide = min((row.magnitude for row in shown), default=0.0) < WIDE
@@ -52,9 +54,10 @@ def drawn(title: str, unit: str, rows: Sequence[Row], known: dict[str, str]) -> 
         axes.set_xlabel("seconds of one core for one answer, median and quartiles")
         axes.set_ylabel(f"error, {unit}")
         _scale(axes, shown, wide)
-        axes.set_title(title, loc="left")
+        axes.set_title(title, loc="left", y=1.0)
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), handlelength=2.6)
-        figure.supxlabel(_folded(footer(known)), fontsize=5.5, color="0.35", x=0.01, ha="left")
+        figure.text(0.01, PAD / HEIGHT, _folded(footer(known)), fontsize=5.5, color="0.35", va="bottom")
+        plain_minor_ticks(axes)
     return figure
 
 

@@ -106,6 +106,18 @@ def in_processes(
             worker.process.join(GRACE)
 
 
+def begin(modules: Sequence[str]) -> None:
+    """Has the modules imported for processes to come, where the system can fork, while this process goes on.
+
+    `in_processes` with the same modules then waits only for what is left of that.
+    """
+    if _context(modules).get_start_method() == "forkserver":
+        from multiprocessing.forkserver import ensure_running
+
+        with _undisturbed():
+            ensure_running()
+
+
 def _context(modules: Sequence[str]) -> BaseContext:
     """Processes that inherit nothing of this one: forked from a server that has imported `modules`, or spawned."""
     if "forkserver" not in get_all_start_methods():

@@ -16,7 +16,7 @@ from verification.paper.figures.catalogue import pictures
 from verification.paper.report import report as claims
 from verification.paper.report.findings import GRADES, compared, escaped, findings, graded, letter, tables
 from verification.paper.report.mathml import formula, formulas, mathml, prose, remark
-from verification.paper.report.page import FOLD, Picture, diagrams, page
+from verification.paper.report.page import FOLD, Picture, diagrams, page, set_claims, set_result
 
 VOID = {"meta", "input", "br", "img"}
 
@@ -191,6 +191,19 @@ def test_a_certificate_is_offered_once_as_it_is_and_linked_from_each_claim_that_
 
 def test_two_runs_differ_in_nothing():
     assert page(results(), {"python": "3"}) == html()
+
+
+def test_the_page_finds_all_that_it_says_of_claims_set_where_they_were_set_ahead():
+    judged = {result.id for result in results()}
+    set_claims(claim for claim in claims.catalogue() if claim.id in judged)
+    for result in results():
+        set_result(result)
+    setting = prose, remark, formula
+    before = [function.cache_info().misses for function in setting]
+    page([replace(result, section="Abstract") for result in results()], {"python": "3"})
+
+    more = [function.cache_info().misses - misses for function, misses in zip(setting, before, strict=True)]
+    assert sum(more) < 30, "the words of findings and of the section, and no more"
 
 
 @pytest.mark.parametrize("claim", claims.catalogue(), ids=lambda claim: claim.id)

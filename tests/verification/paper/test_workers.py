@@ -83,6 +83,21 @@ def test_a_process_goes_on_with_the_next_task_while_its_answer_is_looked_at(tmp_
     assert list(answers) == [(second, None)]
 
 
+@pytest.mark.skipif("forkserver" not in multiprocessing.get_all_start_methods(), reason="where nothing can fork")
+def test_what_is_begun_early_is_what_processes_are_forked_of_and_is_imported_meanwhile():
+    code = (
+        "import sys; from multiprocessing.forkserver import _forkserver as server\n"
+        "from numeric.sweeps import workers\n"
+        "workers.begin(['tabnanny']); first = server._forkserver_pid\n"
+        "asked = \"'tabnanny' in __import__('sys').modules\"\n"
+        "(_, forked), = workers.in_processes(eval, [[asked]], 1, ['tabnanny'])\n"
+        "print(forked, eval(asked), first == server._forkserver_pid)"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+
+    assert told.stdout.split() == ["True", "False", "True"]
+
+
 SECONDS = re.compile(r"(?:\"seconds\": |seconds: |claims took |quiet\">)[\d.]+(?: s; [\d.]+ s with)?")
 
 

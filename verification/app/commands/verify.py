@@ -196,7 +196,7 @@ def command(
     The report does not depend on --jobs, but for the seconds in it.
     """
     from verification.paper.claims.folder import OWN, paper
-    from verification.paper.report.page import Picture, diagrams
+    from verification.paper.report.page import Picture, diagrams, set_claims, set_result
 
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy is not loaded yet; it is the judges that share the cores
     about = paper(source or OWN)
@@ -212,6 +212,9 @@ def command(
     images, sections = dict(last.images), {claim.section for claim in claims}
     wanted: list[Figure | Diagram] = [*(each for each in pictured if figures and each.section in sections), *measured]
     drawings = [each for each in wanted if each.name not in images] if drawable(output, wanted) else []
+    report.begin(missing, drawings, jobs)
+    code = codes(claims, digits, pictured)
+    set_claims(claims)
     costs = {claim.id: claim.seconds for claim in claims} | {each.name: each.seconds for each in drawings}
     with (
         output.progress("Judging", seconds([*missing, *drawings])) as step,
@@ -223,10 +226,11 @@ def command(
                 step(f"{len(found)} of {len(claims)}: the figure {answer.name}", costs[answer.name])
             else:
                 found[answer.id] = answer
+                set_result(answer)
                 step(f"{len(found)} of {len(claims)}: {answer.id}", costs[answer.id])
     results = [found[claim.id] for claim in claims]
     shown = [Picture.of(each, images[each.name]) for each in wanted if each.name in images]
-    write_report(directory, results, shown, codes(claims, digits, pictured), about)
+    write_report(directory, results, shown, code, about)
     output.write(report.document(results, about.about))
     show(output.console, results)
     output.console.print(

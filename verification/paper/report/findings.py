@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
-from functools import cache
+from functools import cache, lru_cache
 from itertools import chain, groupby, takewhile
 from pathlib import Path
 from typing import Any
@@ -93,9 +93,15 @@ MARK = Markup("<mark>{}</mark>")
 
 def compared(result: Result) -> tuple[Markup, Markup]:
     """What is printed and what is true, with their difference marked where the two are alike."""
-    printed, true = result.printed, result.derived
+    wrong = result.verdict.value in ("corrected", "refuted")
+    witness = tuple(result.witness.items()) if wrong and result.printed.startswith("[[") else ()
+    return _compared(result.printed, result.derived, wrong, witness)
+
+
+@lru_cache(maxsize=4096)
+def _compared(printed: str, true: str, wrong: bool, witness: tuple[tuple[str, str], ...]) -> tuple[Markup, Markup]:
     plain = formula(printed) or remark(printed), formula(true) or remark(true)
-    if result.verdict.value not in ("corrected", "refuted"):
+    if not wrong:
         return plain
     if DECIMAL.fullmatch(printed) and DECIMAL.match(true):
         same = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(printed, true, strict=False)))
@@ -106,14 +112,14 @@ def compared(result: Result) -> tuple[Markup, Markup]:
         before, matrix = true[: true.index("[[")], true[true.index("[[") :]
         left, right = formula(printed), formula(matrix)
         if left is not None and right is not None:
-            differing = _differing(printed, matrix, result.witness)
+            differing = _differing(printed, matrix, witness)
             return _cells(left, differing), remark(before) + _cells(right, differing)
     return _worded(printed, true) if formula(printed) is None else plain
 
 
-def _differing(left: str, right: str, witness: Any) -> list[int]:
+def _differing(left: str, right: str, witness: Sequence[tuple[str, str]]) -> list[int]:
     """Which entries of two matrices differ at a point."""
-    values = {LETTERS[name]: parse(text, {}) for name, text in witness.items() if name in LETTERS}
+    values = {LETTERS[name]: parse(text, {}) for name, text in witness if name in LETTERS}
     pairs = zip(_entries(left), _entries(right), strict=True)
     return [n for n, (a, b) in enumerate(pairs) if _unequal(a, b, values)]
 

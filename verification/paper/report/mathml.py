@@ -91,6 +91,7 @@ def mathml(latex: str, display: bool = False) -> Markup:
     return Markup(plain.replace("<math", f'<math alttext="{escape(latex)}"', 1))
 
 
+@lru_cache(maxsize=4096)
 def prose(quote: str) -> Markup:
     """The paper's words with their formulas.
 
@@ -111,6 +112,7 @@ def _words(text: str) -> Markup:
     return Markup(TEXT_MACRO.sub(r"<em>\1</em>", plain))
 
 
+@lru_cache(maxsize=8192)
 def remark(text: str) -> Markup:
     """Our own words, in which the code's letters and signs become the paper's, and formulas are set.
 
@@ -204,6 +206,7 @@ def _set(piece: str, text: str, start: int) -> str | None:
     return _read(piece)
 
 
+@lru_cache(maxsize=4096)
 def formula(text: str) -> Markup | None:
     """A formula in our notation as MathML; None when the text is no formula.
 

@@ -21,11 +21,12 @@ from verification.paper.claims.folder import paper
 from verification.paper.claims.sharing import sharing
 from verification.paper.figures.catalogue import plain
 from verification.paper.report.findings import GRADES, compared, findings, graded
-from verification.paper.report.mathml import prose, remark
+from verification.paper.report.mathml import formula, prose, remark
 from verification.paper.report.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
     from verification.measure.work.row import Diagram
+    from verification.paper.claims.claim import Claim
     from verification.paper.claims.folder import Paper
     from verification.paper.figures.catalogue import Picture as Figure
     from verification.paper.report.report import Result
@@ -125,6 +126,22 @@ def page(
         fold=FOLD,
         long=LONG,
     )
+
+
+def set_claims(claims: "Iterable[Claim]") -> None:
+    """Sets what is printed, ahead of the page, which then finds it set."""
+    for claim in claims:
+        prose(claim.quote)
+        formula(claim.text) or remark(claim.text)
+
+
+def set_result(result: "Result") -> None:
+    """Sets what is said of a claim, ahead of the page, as soon as it is judged."""
+    compared(result)
+    for text in (result.erratum, result.unsettled, result.method):
+        sentence(text)
+    if len(result.method) > LONG:
+        opening(result.method)
 
 
 def _text(name: str) -> str:

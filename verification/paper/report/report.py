@@ -27,6 +27,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from numeric.sweeps import workers
 from numeric.sweeps.workers import Lost, cores, in_processes
 from symbolic.expressions.signs import Finding, Outcome
 from verification.arithmetic.balls import decimal, real_ball
@@ -128,16 +129,14 @@ def answered(
     for claim in claims:
         if claim.home.endswith(".py"):
             judge_of(claim)  # a module that cannot be run is refused before any work
-    if jobs == 1 or seconds([*claims, *drawings]) < SMALL:
+    if _few(claims, drawings, jobs):
         yield from (judge(claim, digits) for claim in claims)
         yield from (Drawn(each.name, each.drawn()) for each in drawings)
         return
     tasks: list[list[Claim | Drawing]] = [[*group] for group in shared_out(claims, jobs or cores())]
     tasks.extend([each] for each in drawings)
     tasks.sort(key=seconds, reverse=True)
-    homes = {claim.home for claim in claims if not claim.home.endswith(".py")}
-    modules = sorted(homes | {each.module for each in drawings})
-    with closing(in_processes(partial(answer, digits=digits), tasks, jobs, modules)) as answers:
+    with closing(in_processes(partial(answer, digits=digits), tasks, jobs, _modules(claims, drawings))) as answers:
         for item, found in answers:
             if not isinstance(found, Lost):
                 yield found
@@ -145,6 +144,21 @@ def answered(
                 yield _result(item, _open(f"not judged: {found}"), digits, 0.0)
             else:
                 raise RuntimeError(f"the picture {item.name} could not be drawn: {found}")
+
+
+def begin(claims: Sequence[Claim], drawings: Sequence[Drawing], jobs: int | None) -> None:
+    """Has what `answered` needs in other processes imported there, where it needs any, while this one goes on."""
+    if not _few(claims, drawings, jobs):
+        workers.begin(_modules(claims, drawings))
+
+
+def _few(claims: Sequence[Claim], drawings: Sequence[Drawing], jobs: int | None) -> bool:
+    return jobs == 1 or seconds([*claims, *drawings]) < SMALL
+
+
+def _modules(claims: Sequence[Claim], drawings: Sequence[Drawing]) -> list[str]:
+    homes = {claim.home for claim in claims if not claim.home.endswith(".py")}
+    return sorted(homes | {each.module for each in drawings})
 
 
 def answer(item: Claim | Drawing, digits: int) -> Result | Drawn:

@@ -20,8 +20,11 @@ from numpy.typing import NDArray
 
 from numeric import Exponents, PinballMap
 from numeric.backends import elementary
+from numeric.dynamics.phase_points import advanced, phase_points
 
 BALLS, PART, TRANSIENT = 4096, 200, 2000
+MANY = 400  # particles that left, by which a mean stay is known to 5 per cent
+SURE = 10  # the same where it is asked whether some leave, and whether ten do within the budget
 SEED = 1
 BLOCKS = 6
 ORBITS, LONG, RECORDED = 400, 20_000, 500  # particles, bounces before their orbits count, and bounces that do
@@ -74,29 +77,34 @@ def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) 
     >>> abs(found.lam - 0.4434) < 1e-3
     True
     """
-    left, (low, high) = KINDS[kind]
-    if not np.isfinite(stay(left, alpha, high, budget)) or np.isfinite(stay(left, alpha, low, budget)):
-        raise ValueError(f"{kind} crisis: none between lam = {low} and {high} at alpha = {alpha}; it is known at 0.08")
+    left, (least, high) = KINDS[kind]
     stays: list[tuple[float, float]] = []
-    spent = 2 * budget
-    while high - low > tolerance:
+    low, top, spent = least, high, budget
+    known = np.isfinite(stay(left, alpha, high, budget, SURE))
+    while known and high - low > tolerance:
         lam = (low + high) / 2
-        mean = stay(left, alpha, lam, budget)
+        mean = stay(left, alpha, lam, budget, SURE)
         spent += budget
         if np.isfinite(mean):
             high = lam
             stays.append((lam, mean))
         else:
             low = lam
+    if not known or (low == least and np.isfinite(stay(left, alpha, low, budget, 1))):
+        raise ValueError(f"{kind} crisis: none between lam = {least} and {top} at alpha = {alpha}; it is known at 0.08")
     return Crisis((low + high) / 2, spread(stays, low, high, budget), tuple(stays), spent)
 
 
-def stay(left: Left, alpha: str, lam: float, budget: int) -> float:
-    """The mean number of bounces on the attractor before a particle leaves; infinite when none did."""
+def stay(left: Left, alpha: str, lam: float, budget: int, enough: int = MANY) -> float:
+    """The mean number of bounces on the attractor before a particle leaves; infinite when none did.
+
+    The budget is spent, unless `enough` have left before.
+    """
     map = PinballMap("egg", lam=lam, alpha=alpha)
     rng = np.random.default_rng(SEED)
-    ball = map.exponents(rng.uniform(-0.05, 0.05, BALLS), rng.uniform(-0.05, 0.05, BALLS), TRANSIENT)
-    ball = map.exponents(ball.theta, ball.phi, PART)
+    starts = phase_points(rng.uniform(-0.05, 0.05, BALLS), rng.uniform(-0.05, 0.05, BALLS))
+    there = advanced(map, starts, TRANSIENT).points
+    ball = map.exponents(there.theta, there.phi, PART)
     inside = ~left(ball)
     theta, phi = ball.theta[inside], ball.phi[inside]
     gone = spent = 0
@@ -105,7 +113,7 @@ def stay(left: Left, alpha: str, lam: float, budget: int) -> float:
         out = left(ball)
         spent += PART * theta.size
         gone += int(out.sum())
-        if out.all() or gone >= 400:
+        if out.all() or gone >= enough:
             break
         keep = np.where(out, int(np.argmin(out)), np.arange(theta.size))  # who left is replaced by one who stayed
         theta, phi = ball.theta[keep], ball.phi[keep]

@@ -68,11 +68,20 @@ def is_identity(symmetry: "Symmetry") -> bool:
     return symmetry.sign == 1 and bool(symmetry.angle == 0)
 
 
-def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attractor]:
-    """The attractors with their families and stabilisers under the table's symmetries; missing images come last."""
+def symmetries_of(map: PinballMap) -> "tuple[Symmetry, ...]":
+    """The symmetries of the table under which images of orbits are orbits, the identity first.
+
+    >>> [g.sign for g in symmetries_of(PinballMap("cuspless", lam="0.09"))]
+    [1, -1]
+    """
     from numeric.lowering.lower import symmetries
 
-    group = tuple(g for g in symmetries(map.table) if kept_by(map.reflection, g))
+    return tuple(g for g in symmetries(map.table) if kept_by(map.reflection, g))
+
+
+def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attractor]:
+    """The attractors with their families and stabilisers under the table's symmetries; missing images come last."""
+    group = symmetries_of(map)
     found = [replace(a, family=-1) for a in united(map, attractors, group)]
     at = families = 0
     while at < len(found):
@@ -117,16 +126,22 @@ def _join(map: PinballMap, found: list[Attractor], at: int, family: int, group: 
     attractor = found[at]
     own = []
     for symmetry in group:
-        image = replace(attractor, points=moved(symmetry, attractor.points), share=None)
-        index = _index(map, found, image)
+        index = image_of(map, found, attractor, symmetry)
         if index == at:
             own.append(symmetry)
-        if index == len(found):
-            found.append(image)
         found[index] = replace(found[index], family=family)
     for index, member in enumerate(found):
         if member.family == family:
             found[index] = replace(member, symmetry=name(own))
+
+
+def image_of(map: PinballMap, found: list[Attractor], attractor: Attractor, symmetry: "Symmetry") -> int:
+    """Where the attractor's image is in the list; an image that was not there comes last."""
+    image = replace(attractor, points=moved(symmetry, attractor.points), share=None)
+    index = _index(map, found, image)
+    if index == len(found):
+        found.append(image)
+    return index
 
 
 def _index(map: PinballMap, found: list[Attractor], image: Attractor) -> int:

@@ -13,19 +13,23 @@ attracting cycle is open, so for cycles the first one must vanish in the end: wh
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.attractors import classify, wilson
+from numeric.dynamics.attractors import Classified, classify, image_of, moved, symmetries_of, wilson
 from numeric.dynamics.phase_points import Array, PhasePoints, phase_points
 from numeric.dynamics.recognition import UNSETTLED, Attractor, Labels, Share, at_clouds, at_cycles
-from numeric.pinball.sampling import boundary
+from numeric.pinball.sampling import Grid, boundary
+
+if TYPE_CHECKING:
+    from symbolic.tables.geometry import Symmetry
 
 TRANSIENT = 1000
+APART = 1e-6  # of a cell, between the middle of one and the image of that of another
 PIECE = 1 << 16  # particles at a time
 
 
@@ -101,6 +105,48 @@ def _settled(
         late = classify(map, here.theta, here.phi, here.component, transient=transient, known=attractors).label
         found[going] = np.where(late < len(attractors), late, UNSETTLED)
     return found
+
+
+def classify_cells(map: PinballMap, grid: Grid, transient: int = TRANSIENT) -> Classified:
+    """The attractor that the particle in each cell of a `phase_grid` reaches, and the attractors.
+
+    Of cells that are images of each other under the table's symmetries one is followed: at the image of a start is
+    the image of its orbit, which ends on the image of its attractor.
+
+    >>> from numeric.pinball.sampling import phase_grid
+    >>> map = PinballMap("egg", alpha="0.08", lam="0.7")
+    >>> label, attractors = classify_cells(map, phase_grid(map, 6, 4), 2000)
+    >>> [a.period for a in attractors], label[:6].tolist()
+    ([3, 3], [1, 1, 1, 1, 1, 1])
+    """
+    images = [(g, cells) for g in symmetries_of(map) if (cells := image_cells(map, grid, g)) is not None]
+    first = np.unique(np.max([cells for _, cells in images], axis=0))
+    theta, phi, component = grid.starts.theta[first], grid.starts.phi[first], grid.starts.component[first]
+    followed, attractors = classify(map, theta, phi, component, transient)
+    label, found = np.full(grid.starts.theta.size, UNSETTLED), list(attractors)
+    for symmetry, cells in reversed(images):  # the identity last: who was followed keeps its label
+        onto = np.array([*(image_of(map, found, attractor, symmetry) for attractor in attractors), UNSETTLED])
+        label[cells[first]] = onto[followed]
+    return Classified(label, tuple(found))
+
+
+def image_cells(map: PinballMap, grid: Grid, symmetry: "Symmetry") -> Labels | None:
+    """The cell onto which a symmetry takes each; None where it takes the middles of cells elsewhere.
+
+    >>> from numeric.pinball.sampling import phase_grid
+    >>> map = PinballMap("cuspless")
+    >>> [image_cells(map, phase_grid(map, 2, 2), g).tolist() for g in symmetries_of(map)]
+    [[0, 1, 2, 3], [3, 2, 1, 0]]
+    """
+    columns, rows = grid.s.size, grid.sin_phi.size
+    middles = phase_points(grid.starts.theta[:columns], 0.0, grid.starts.component[:columns])
+    image = moved(symmetry, middles)
+    place = map.arclength.s(image.theta, image.component) / (map.arclength.perimeter / columns) + (columns - 1) / 2
+    column = np.rint(place).astype(np.int64)
+    if np.max(np.abs(place - column)) > APART:
+        return None
+    row = np.arange(rows)[:: symmetry.sign]
+    return np.asarray((row[:, None] * columns + column % columns).ravel(), dtype=np.int64)
 
 
 def random_points(window: Window, count: int, rng: np.random.Generator) -> tuple[Array, Array]:

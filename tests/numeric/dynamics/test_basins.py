@@ -4,10 +4,22 @@ import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.dynamics.attractors import Kind, find, moved
-from numeric.dynamics.basins import Window, entropies, grid, intermingling, labels, random_points, starts_at, whole
-from numeric.dynamics.phase_points import advanced, embedded
+from numeric.dynamics.attractors import Kind, classify, find, moved, symmetries_of
+from numeric.dynamics.basins import (
+    Window,
+    classify_cells,
+    entropies,
+    grid,
+    image_cells,
+    intermingling,
+    labels,
+    random_points,
+    starts_at,
+    whole,
+)
+from numeric.dynamics.phase_points import PhasePoints, advanced, embedded
 from numeric.dynamics.statistics import fitted, power_laws, uncertainty
+from numeric.pinball.sampling import phase_grid
 from symbolic.tables import egg
 from symbolic.tables.geometry import group
 
@@ -44,6 +56,36 @@ def test_labels_do_not_depend_on_how_starts_are_cut_into_pieces():
 
     parts = [labels(map, particles.only(slice(i, i + 130)), found) for i in range(0, 800, 130)]
     assert np.concatenate(parts).tolist() == labels(map, particles, found).tolist()
+
+
+@pytest.mark.parametrize(
+    ("map", "columns", "kept"),
+    [
+        (PinballMap("cuspless", lam="0.09"), 40, 2),
+        (PinballMap("egg", alpha="0.08", lam="0.66"), 42, 6),
+        (PinballMap("egg", alpha="0.08", lam="0.66"), 40, 2),  # a third of a turn takes no column to a column
+    ],
+)
+def test_a_cell_is_followed_once_for_all_its_images_and_all_have_the_label_of_their_own_orbits(map, columns, kept):
+    cells = phase_grid(map, columns, 30)
+    images = [onto for g in symmetries_of(map) if (onto := image_cells(map, cells, g)) is not None]
+    label, found = classify_cells(map, cells)
+    alone = classify(map, cells.starts.theta, cells.starts.phi, cells.starts.component, known=found)
+
+    assert len(images) == kept
+    assert all(np.array_equal(np.sort(onto), np.arange(columns * 30)) for onto in images)
+    assert len(alone.attractors) == len(found)
+    assert np.mean(label == alone.label) > 0.998  # only at a boundary does rounding decide
+
+
+def test_the_image_of_a_cell_is_where_the_symmetry_takes_its_particle():
+    map = PinballMap("egg", alpha="0.08", lam="0.66")
+    cells = phase_grid(map, 12, 8)
+    particles = PhasePoints(*cells.starts[:3])
+
+    for symmetry in symmetries_of(map):
+        onto = image_cells(map, cells, symmetry)
+        assert np.allclose(embedded(map, particles.only(onto)), embedded(map, moved(symmetry, particles)), atol=1e-9)
 
 
 def test_a_mirror_exchanges_the_basins_of_the_two_ways_round():

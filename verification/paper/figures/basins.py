@@ -6,7 +6,7 @@ import numpy as np
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.attractors import classify
+from numeric.dynamics.basins import classify_cells
 from numeric.dynamics.recognition import Kind
 from numeric.pinball.sampling import phase_grid
 from verification.paper.figures.cardioid import cycle_points, orbit_on
@@ -31,7 +31,7 @@ def basins(map: PinballMap, fine: float, angle: bool, transient: int = TRANSIENT
     """
     grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
     particles = grid.starts
-    label, attractors = classify(map, particles.theta, particles.phi, particles.component, transient)
+    label, attractors = classify_cells(map, grid, transient)
     curves, names, count = {}, [], scaled(4000, fine, 50)
     for i, attractor in enumerate(attractors):
         name = "chaotic" if attractor.kind is Kind.CHAOTIC else f"period {attractor.period}"
